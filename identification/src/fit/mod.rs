@@ -1,0 +1,12 @@
+//! Output-error fit: simulate, compare with what was measured, improve the parameters.
+
+mod instruments;
+mod normal_equations;
+mod output_error;
+mod segments;
+mod settings;
+
+pub use instruments::{Instrument, instruments};
+pub use output_error::{Fit, FitError, evaluate, fit};
+pub use segments::{Segment, SegmentedRecording};
+pub use settings::FitSettings;

@@ -1,0 +1,177 @@
+//! Normal equations of one segment, its initial state eliminated.
+
+use excavator_model::equations::System;
+use excavator_model::simulation::{Integrator, Sensitivity, SimulationError, Tolerances};
+use nalgebra::{DMatrix, DVector};
+
+use super::{Instrument, Segment, SegmentedRecording};
+
+/// Sums over one segment, for parameters and its own initial state.
+#[derive(Debug, Clone)]
+pub(super) struct SegmentSums {
+    /// J' J of the parameters after eliminating the initial state.
+    pub information: DMatrix<f64>,
+    /// J' r of the parameters after eliminating the initial state.
+    pub gradient: DVector<f64>,
+    /// Sum of squared errors of each instrument, in its unit.
+    pub squared_errors: Vec<f64>,
+    /// Number of readings of each instrument.
+    pub counts: Vec<usize>,
+    /// Penalty that keeps the initial state near where it was measured.
+    pub prior_loss: f64,
+    state_information: DMatrix<f64>,
+    cross_information: DMatrix<f64>,
+    state_gradient: DVector<f64>,
+}
+
+/// How far an initial state may reasonably be from where the first samples put it; weak, so that it only decides where
+/// nothing is measured.
+#[derive(Debug, Clone)]
+pub(super) struct InitialStatePrior {
+    /// Standard deviation of each state.
+    pub spread: Vec<f64>,
+}
+
+impl InitialStatePrior {
+    pub fn of(system: &System<'_>) -> Self {
+        let layout = system.layout();
+        let mut spread = vec![2e5; layout.len];
+        for joint in 0..layout.joints {
+            spread[layout.joint(joint)] = 0.01;
+            spread[layout.rate(joint)] = 0.5;
+        }
+        for &(first, states) in &layout.effect_states {
+            spread[first..first + states].fill(1e-5);
+        }
+        InitialStatePrior { spread }
+    }
+}
+
+/// Everything that the segments of a fit share.
+pub(super) struct Shared<'a, 'm> {
+    pub system: &'a System<'m>,
+    pub parameters: &'a [f64],
+    /// Indices of the parameters that are fitted.
+    pub fitted: &'a [usize],
+    /// Scale of each fitted parameter: sums are for `parameter / scale`.
+    pub scales: &'a [f64],
+    pub instruments: &'a [Instrument],
+    /// Standard deviation by which each instrument's error is divided.
+    pub weights: &'a [f64],
+    pub prior: &'a InitialStatePrior,
+    pub tolerances: Tolerances,
+}
+
+impl Shared<'_, '_> {
+    /// Simulates a segment and sums its normal equations. `anchor` is the state that the prior is centred on.
+    pub fn sums(
+        &self,
+        recording: &SegmentedRecording<'_>,
+        segment: &Segment,
+        anchor: &[f64],
+    ) -> Result<SegmentSums, SimulationError> {
+        let states = segment.state.len();
+        let fitted = self.fitted.len();
+        let columns = fitted + states;
+        let mut integrator = Integrator::new(self.system, self.parameters, self.fitted, self.tolerances);
+        let mut sensitivity = Sensitivity::at_start(states, fitted);
+        let mut state = segment.state.clone();
+        let mut information = DMatrix::<f64>::zeros(columns, columns);
+        let mut gradient = DVector::<f64>::zeros(columns);
+        let mut squared_errors = vec![0.0; self.instruments.len()];
+        let mut counts = vec![0; self.instruments.len()];
+        let signals: Vec<&[f64]> = self
+            .instruments
+            .iter()
+            .map(|instrument| recording.recording.signal(&instrument.name).unwrap_or(&[]))
+            .collect();
+        let mut row = vec![0.0; columns];
+        for index in segment.first..=segment.last {
+            for (number, instrument) in self.instruments.iter().enumerate() {
+                let measured = signals[number].get(index).copied().unwrap_or(f64::NAN);
+                if !measured.is_finite() {
+                    continue;
+                }
+                let error = measured - instrument.reading(self.system, &state);
+                squared_errors[number] += error * error;
+                counts[number] += 1;
+                let weight = 1.0 / self.weights[number];
+                let [(a, by_a), (b, by_b)] = instrument.gradient(self.system, &state);
+                for (column, slot) in row.iter_mut().enumerate() {
+                    let mut slope = by_a * sensitivity.matrix[(a, column)];
+                    if by_b != 0.0 {
+                        slope += by_b * sensitivity.matrix[(b, column)];
+                    }
+                    let scale = if column < fitted { self.scales[column] } else { 1.0 };
+                    *slot = slope * scale * weight;
+                }
+                let scaled_error = error * weight;
+                for column in 0..columns {
+                    let value = row[column];
+                    gradient[column] += value * scaled_error;
+                    for other in column..columns {
+                        information[(other, column)] += value * row[other];
+                    }
+                }
+            }
+            if index < segment.last {
+                integrator.advance(&recording.inputs, index, &mut state, Some(&mut sensitivity))?;
+            }
+        }
+        for column in 0..columns {
+            for other in column + 1..columns {
+                information[(column, other)] = information[(other, column)];
+            }
+        }
+        let mut prior_loss = 0.0;
+        for index in 0..states {
+            let inverse = 1.0 / (self.prior.spread[index] * self.prior.spread[index]);
+            let away = anchor[index] - segment.state[index];
+            information[(fitted + index, fitted + index)] += inverse;
+            gradient[fitted + index] += away * inverse;
+            prior_loss += away * away * inverse;
+        }
+        Ok(SegmentSums::eliminate(fitted, &information, &gradient, squared_errors, counts, prior_loss))
+    }
+}
+
+impl SegmentSums {
+    fn eliminate(
+        fitted: usize,
+        information: &DMatrix<f64>,
+        gradient: &DVector<f64>,
+        squared_errors: Vec<f64>,
+        counts: Vec<usize>,
+        prior_loss: f64,
+    ) -> Self {
+        let states = gradient.len() - fitted;
+        let state_information = information.view((fitted, fitted), (states, states)).into_owned();
+        let cross_information = information.view((fitted, 0), (states, fitted)).into_owned();
+        let state_gradient = gradient.rows(fitted, states).into_owned();
+        let mut sums = SegmentSums {
+            information: information.view((0, 0), (fitted, fitted)).into_owned(),
+            gradient: gradient.rows(0, fitted).into_owned(),
+            squared_errors,
+            counts,
+            prior_loss,
+            state_information,
+            cross_information,
+            state_gradient,
+        };
+        if let Some(factor) = sums.state_information.clone().cholesky() {
+            sums.information -= sums.cross_information.transpose() * factor.solve(&sums.cross_information);
+            sums.gradient -= sums.cross_information.transpose() * factor.solve(&sums.state_gradient);
+        }
+        sums
+    }
+
+    /// The change of the initial state that goes with a change of the (scaled) parameters, damped by `damping`.
+    pub fn state_step(&self, parameter_step: &DVector<f64>, damping: f64) -> DVector<f64> {
+        let right = &self.state_gradient - &self.cross_information * parameter_step;
+        let mut matrix = self.state_information.clone();
+        for index in 0..matrix.nrows() {
+            matrix[(index, index)] *= 1.0 + damping;
+        }
+        matrix.cholesky().map_or_else(|| DVector::zeros(right.len()), |factor| factor.solve(&right))
+    }
+}

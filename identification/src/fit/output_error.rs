@@ -1,0 +1,322 @@
+//! Multiple-shooting output-error fit by Gauss-Newton steps with Levenberg-Marquardt damping.
+//!
+//! Written here and not left to a general least-squares crate because each segment's initial state is eliminated from
+//! the normal equations before they are added up: a general solver would factor one dense Jacobian with a column for
+//! each initial state of each segment.
+
+use excavator_model::equations::System;
+use excavator_model::recording::Recording;
+use excavator_model::simulation::{SimulationError, Tolerances};
+use excavator_model::{Model, SignalError};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::normal_equations::{InitialStatePrior, SegmentSums, Shared};
+use super::{FitSettings, Instrument, SegmentedRecording, instruments};
+
+/// Why a fit could not be done.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// The recordings do not give what the model needs.
+    #[error(transparent)]
+    Signal(#[from] SignalError),
+    /// The model cannot be simulated at the start values.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// No output of the model is measured.
+    #[error("the recordings measure no output of {machine}; displacement or a pressure is needed")]
+    NothingMeasured {
+        /// The machine.
+        machine: String,
+    },
+    /// No stretch of a recording is long enough.
+    #[error("the recordings have no stretch of at least 20 samples without a gap")]
+    TooShort,
+}
+
+/// Result of a fit.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// The model with the fitted parameters and their standard errors.
+    pub model: Model,
+    /// Indices of the fitted parameters, in the model's order.
+    pub fitted: Vec<usize>,
+    /// Covariance of the fitted parameters, in their units.
+    pub covariance: DMatrix<f64>,
+    /// What was compared.
+    pub instruments: Vec<Instrument>,
+    /// Root mean square error of each instrument, in its unit.
+    pub errors: Vec<f64>,
+    /// Sum of squared errors and number of readings per segment and instrument.
+    pub segment_errors: Vec<Vec<(f64, usize)>>,
+    /// Gauss-Newton steps taken.
+    pub steps: usize,
+    /// Whether the last step was too small to matter.
+    pub converged: bool,
+}
+
+impl Fit {
+    /// Logarithmic loss: mean over instruments of `ln(mean squared error / noise variance)`, half of minus the
+    /// concentrated log-likelihood per reading. Zero when only noise is left.
+    pub fn loss(&self) -> f64 {
+        let sum: f64 = self
+            .errors
+            .iter()
+            .zip(&self.instruments)
+            .map(|(error, instrument)| 2.0 * (error / instrument.noise).max(1e-3).ln())
+            .sum();
+        sum / self.instruments.len() as f64
+    }
+}
+
+/// Fits the unknown parameters of `model` to `recordings`, starting from its values.
+///
+/// Errors of each instrument are divided by their own size in the step before (never less than its noise): where the
+/// model is wrong, that is the maximum-likelihood weighting for errors of unknown size.
+///
+/// # Errors
+/// [`FitError`].
+pub fn fit(model: &Model, recordings: &[&Recording], settings: &FitSettings) -> Result<Fit, FitError> {
+    let fitted = model.unknown_parameters();
+    run(model, recordings, settings, fitted, settings.maximum_steps)
+}
+
+/// Errors of `model` on `recordings` with its parameters as they are; only initial states are fitted.
+///
+/// # Errors
+/// [`FitError`].
+pub fn evaluate(model: &Model, recordings: &[&Recording], settings: &FitSettings) -> Result<Fit, FitError> {
+    run(model, recordings, settings, Vec::new(), 4)
+}
+
+struct State {
+    values: Vec<f64>,
+    sums: Vec<SegmentSums>,
+    loss: f64,
+}
+
+fn run(
+    model: &Model,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+    fitted: Vec<usize>,
+    maximum_steps: usize,
+) -> Result<Fit, FitError> {
+    let system = System::new(model);
+    let instruments = instruments(&system, recordings);
+    if instruments.is_empty() {
+        return Err(FitError::NothingMeasured { machine: model.machine.name.clone() });
+    }
+    let mut segmented = recordings
+        .iter()
+        .map(|recording| SegmentedRecording::new(model, recording, settings.segment_duration))
+        .collect::<Result<Vec<_>, _>>()?;
+    if segmented.iter().all(|recording| recording.segments.is_empty()) {
+        return Err(FitError::TooShort);
+    }
+    let anchors: Vec<Vec<Vec<f64>>> = segmented
+        .iter()
+        .map(|recording| recording.segments.iter().map(|segment| segment.state.clone()).collect())
+        .collect();
+    let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card).collect();
+    let values = model.parameter_values();
+    let scales: Vec<f64> = fitted
+        .iter()
+        .map(|&index| if values[index] != 0.0 { values[index].abs() } else { cards[index].typical.abs() })
+        .collect();
+    let prior = InitialStatePrior::of(&system);
+    let noise: Vec<f64> = instruments.iter().map(|instrument| instrument.noise).collect();
+
+    let sums_at = |values: &[f64], weights: &[f64], segmented: &[SegmentedRecording<'_>]| {
+        let shared = Shared {
+            system: &system,
+            parameters: values,
+            fitted: &fitted,
+            scales: &scales,
+            instruments: &instruments,
+            weights,
+            prior: &prior,
+            tolerances: Tolerances::default(),
+        };
+        let jobs: Vec<(usize, usize)> = segmented
+            .iter()
+            .enumerate()
+            .flat_map(|(r, recording)| (0..recording.segments.len()).map(move |s| (r, s)))
+            .collect();
+        jobs.par_iter()
+            .map(|&(r, s)| shared.sums(&segmented[r], &segmented[r].segments[s], &anchors[r][s]))
+            .collect::<Result<Vec<_>, _>>()
+    };
+    let loss_of = |sums: &[SegmentSums], weights: &[f64]| {
+        let squares: f64 = sums
+            .iter()
+            .flat_map(|segment| segment.squared_errors.iter().zip(weights))
+            .map(|(squared, weight)| squared / (weight * weight))
+            .sum();
+        squares + sums.iter().map(|segment| segment.prior_loss).sum::<f64>()
+    };
+
+    let mut weights = noise.clone();
+    let sums = sums_at(&values, &weights, &segmented)?;
+    weights = error_sizes(&sums, &noise);
+    let sums = sums_at(&values, &weights, &segmented)?;
+    let loss = loss_of(&sums, &weights);
+    let mut current = State { values, sums, loss };
+    let mut damping = 1e-3;
+    let mut steps = 0;
+    let mut converged = false;
+    while steps < maximum_steps {
+        steps += 1;
+        let Some(step) = parameter_step(&current.sums, fitted.len(), damping) else { break };
+        let mut trial_values = current.values.clone();
+        let mut taken = DVector::zeros(fitted.len());
+        for (number, &index) in fitted.iter().enumerate() {
+            let card = cards[index];
+            let wanted = current.values[index] + step[number] * scales[number];
+            trial_values[index] = wanted.clamp(card.minimum, card.maximum);
+            taken[number] = (trial_values[index] - current.values[index]) / scales[number];
+        }
+        let mut trial_segments = segmented.clone();
+        let mut sums = current.sums.iter();
+        for segment in trial_segments.iter_mut().flat_map(|recording| recording.segments.iter_mut()) {
+            let Some(segment_sums) = sums.next() else { break };
+            let change = segment_sums.state_step(&taken, damping);
+            for (value, change) in segment.state.iter_mut().zip(change.iter()) {
+                *value += change;
+            }
+        }
+        let accepted = match sums_at(&trial_values, &weights, &trial_segments) {
+            Ok(sums) => {
+                let loss = loss_of(&sums, &weights);
+                (loss.is_finite() && loss <= current.loss).then_some((sums, loss))
+            }
+            Err(_) => None,
+        };
+        let Some((sums, loss)) = accepted else {
+            damping = (damping * 10.0_f64).max(1e-3);
+            if damping > 1e6 {
+                break;
+            }
+            continue;
+        };
+        let improvement = (current.loss - loss) / current.loss.max(f64::MIN_POSITIVE);
+        segmented = trial_segments;
+        let new_weights = error_sizes(&sums, &noise);
+        let reweighting = new_weights
+            .iter()
+            .zip(&weights)
+            .map(|(new, old)| (new / old).ln().abs())
+            .fold(0.0, f64::max);
+        // Sums are quadratic in 1/weight per instrument only in the loss; the matrices mix instruments, so they are
+        // recomputed when the weights have moved enough to steer differently.
+        if reweighting > 0.05 {
+            weights = new_weights;
+            let sums = sums_at(&trial_values, &weights, &segmented)?;
+            let loss = loss_of(&sums, &weights);
+            current = State { values: trial_values, sums, loss };
+        } else {
+            current = State { values: trial_values, sums, loss };
+        }
+        damping = (damping / 10.0).max(1e-9);
+        if improvement < settings.least_improvement && reweighting <= 0.05 {
+            converged = true;
+            break;
+        }
+    }
+    Ok(result(model, fitted, &scales, instruments, current, steps, converged))
+}
+
+/// Root mean square error of each instrument over all segments, not below its noise.
+fn error_sizes(sums: &[SegmentSums], noise: &[f64]) -> Vec<f64> {
+    noise
+        .iter()
+        .enumerate()
+        .map(|(number, noise)| {
+            let squares: f64 = sums.iter().map(|segment| segment.squared_errors[number]).sum();
+            let count: usize = sums.iter().map(|segment| segment.counts[number]).sum();
+            (squares / count.max(1) as f64).sqrt().max(*noise)
+        })
+        .collect()
+}
+
+fn parameter_step(sums: &[SegmentSums], fitted: usize, damping: f64) -> Option<DVector<f64>> {
+    if fitted == 0 {
+        return Some(DVector::zeros(0));
+    }
+    let mut information = DMatrix::zeros(fitted, fitted);
+    let mut gradient = DVector::zeros(fitted);
+    for segment in sums {
+        information += &segment.information;
+        gradient += &segment.gradient;
+    }
+    let largest = information.diagonal().max();
+    for index in 0..fitted {
+        // The floor holds parameters that the recording does not show at all where they are.
+        information[(index, index)] += damping * information[(index, index)] + 1e-12 * largest;
+    }
+    information.cholesky().map(|factor| factor.solve(&gradient))
+}
+
+fn result(
+    model: &Model,
+    fitted: Vec<usize>,
+    scales: &[f64],
+    instruments: Vec<Instrument>,
+    state: State,
+    steps: usize,
+    converged: bool,
+) -> Fit {
+    let covariance = clustered_covariance(&state.sums, scales);
+    let mut model = model.clone();
+    model.set_parameter_values(&state.values);
+    for (index, parameter) in model.parameters_mut().enumerate() {
+        if let Some(number) = fitted.iter().position(|&candidate| candidate == index) {
+            let variance = covariance[(number, number)];
+            parameter.standard_error = Some(variance.max(0.0).sqrt());
+        }
+    }
+    let errors = instruments
+        .iter()
+        .enumerate()
+        .map(|(number, _)| {
+            let squares: f64 = state.sums.iter().map(|segment| segment.squared_errors[number]).sum();
+            let count: usize = state.sums.iter().map(|segment| segment.counts[number]).sum();
+            (squares / count.max(1) as f64).sqrt()
+        })
+        .collect();
+    let segment_errors = state
+        .sums
+        .iter()
+        .map(|segment| segment.squared_errors.iter().copied().zip(segment.counts.iter().copied()).collect())
+        .collect();
+    Fit { model, fitted, covariance, instruments, errors, segment_errors, steps, converged }
+}
+
+/// Covariance that holds for coloured errors: segments are taken as independent, errors inside one may be correlated in
+/// any way (cluster-robust "sandwich", Liang and Zeger 1986), with the small-sample factor n/(n - p) on the clusters.
+fn clustered_covariance(sums: &[SegmentSums], scales: &[f64]) -> DMatrix<f64> {
+    let fitted = scales.len();
+    let mut information = DMatrix::<f64>::zeros(fitted, fitted);
+    let mut meat = DMatrix::<f64>::zeros(fitted, fitted);
+    for segment in sums {
+        information += &segment.information;
+        meat += &segment.gradient * segment.gradient.transpose();
+    }
+    let Some(factor) = information.clone().cholesky() else {
+        return DMatrix::from_element(fitted, fitted, f64::INFINITY);
+    };
+    let inverse = factor.inverse();
+    let clusters = sums.len() as f64;
+    let correction = if clusters > 1.0 { clusters / (clusters - 1.0) } else { 1.0 };
+    let mut covariance = &inverse * meat * &inverse * correction;
+    // White-noise theory is a lower bound that few clusters can fall below by chance.
+    for index in 0..fitted {
+        covariance[(index, index)] = covariance[(index, index)].max(inverse[(index, index)]);
+    }
+    for row in 0..fitted {
+        for column in 0..fitted {
+            covariance[(row, column)] *= scales[row] * scales[column];
+        }
+    }
+    covariance
+}

@@ -1,0 +1,19 @@
+//! How a fit is done.
+
+/// Settings of an output-error fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FitSettings {
+    /// Length of one shooting segment, s. Long enough that slow effects (leakage, drift) show as displacement, short
+    /// enough that a wrong model cannot run away from the data: a wrong model is what we want to look at.
+    pub segment_duration: f64,
+    /// Most Gauss-Newton steps.
+    pub maximum_steps: usize,
+    /// A step that improves the loss by less than this fraction ends the fit.
+    pub least_improvement: f64,
+}
+
+impl Default for FitSettings {
+    fn default() -> Self {
+        FitSettings { segment_duration: 4.0, maximum_steps: 15, least_improvement: 1e-3 }
+    }
+}

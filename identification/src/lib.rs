@@ -1,0 +1,7 @@
+//! What a recording says about a model: which parameters it has, how far it is from the measurement, where it fails, and
+//! which physical effect it is missing.
+//!
+//! Data flows one way: recording -> regression -> model -> simulation -> comparison -> diagnosis -> refinement ->
+//! report. This crate reads no files and knows no ROS.
+
+pub mod fit;

@@ -1,0 +1,27 @@
+//! Models that come with the program.
+
+use super::{DocumentError, parse};
+use crate::Model;
+use crate::effects::nearest;
+
+/// Names and texts of the built-in models.
+pub static BUILT_IN: &[(&str, &str)] = &[
+    ("zx30u-arm", include_str!("../../../config/zx30u-arm.toml")),
+    ("zx30u", include_str!("../../../config/zx30u.toml")),
+    ("emps", include_str!("../../../config/emps.toml")),
+];
+
+/// The built-in model of this name.
+///
+/// # Errors
+/// [`DocumentError::Unknown`] with the nearest name.
+pub fn built_in(name: &str) -> Result<Model, DocumentError> {
+    let Some((_, text)) = BUILT_IN.iter().find(|(candidate, _)| *candidate == name) else {
+        let suggestion = nearest(name, BUILT_IN.iter().map(|(candidate, _)| *candidate));
+        return Err(DocumentError::Unknown {
+            name: name.to_string(),
+            suggestion: suggestion.map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)")),
+        });
+    };
+    parse(name, text)
+}

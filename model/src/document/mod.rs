@@ -1,0 +1,76 @@
+//! Models as text (TOML): every number with its unit and its source.
+//!
+//! The text is what is read from and written to model files; reading and writing files is left to the caller.
+
+mod built_in;
+mod machine_text;
+mod model_text;
+mod quantity;
+
+pub use built_in::{BUILT_IN, built_in};
+pub use model_text::{parse, to_text};
+
+/// What can be wrong with a model text.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DocumentError {
+    /// Not TOML, or not of a model's form.
+    #[error("{name} is not a model file: {reason}")]
+    Syntax {
+        /// File or built-in name.
+        name: String,
+        /// What the reader says.
+        reason: String,
+    },
+    /// A number has another unit than it must have.
+    #[error("{name}: {quantity} is given in \"{found}\", but must be in \"{expected}\"")]
+    WrongUnit {
+        /// File or built-in name.
+        name: String,
+        /// Which number.
+        quantity: String,
+        /// Unit in the text.
+        found: String,
+        /// Unit that it must have.
+        expected: &'static str,
+    },
+    /// A number is impossible.
+    #[error("{name}: {quantity} = {value} is impossible; it must be {must}")]
+    Impossible {
+        /// File or built-in name.
+        name: String,
+        /// Which number.
+        quantity: String,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        must: String,
+    },
+    /// A parameter of an effect is missing or unknown.
+    #[error("{name}: effect {effect} {problem}")]
+    Parameter {
+        /// File or built-in name.
+        name: String,
+        /// Which effect.
+        effect: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The machine or its effects do not fit together.
+    #[error("{name}: {reason}")]
+    Inconsistent {
+        /// File or built-in name.
+        name: String,
+        /// Why.
+        reason: String,
+    },
+    /// Neither a file nor a built-in model.
+    #[error("unknown model \"{name}\"{suggestion}; built in are {}, or give a model file (.toml)", BUILT_IN_NAMES)]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// "(did you mean ...?)" or nothing.
+        suggestion: String,
+    },
+}
+
+const BUILT_IN_NAMES: &str = "zx30u-arm, zx30u, emps";

@@ -1,0 +1,149 @@
+//! A model file: machine, effects, history.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::DocumentError;
+use super::machine_text::MachineText;
+use crate::effects::{self, Kind, Site};
+use crate::model::site_name;
+use crate::{HistoryEntry, Model, ModelEffect};
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ModelText {
+    machine: MachineText,
+    #[serde(default)]
+    effects: Vec<EffectText>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    history: Vec<HistoryEntry>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EffectText {
+    effect: String,
+    /// A cylinder's name, or "pump".
+    at: String,
+    #[serde(default)]
+    parameters: BTreeMap<String, ParameterText>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ParameterText {
+    value: f64,
+    unit: String,
+    #[serde(default)]
+    known: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    standard_error: Option<f64>,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    source: String,
+}
+
+/// Reads a model from its text. `name` is the file's or the built-in model's, for messages.
+///
+/// # Errors
+/// [`DocumentError`] in one line that says which number is wrong.
+pub fn parse(name: &str, text: &str) -> Result<Model, DocumentError> {
+    let parsed: ModelText = toml::from_str(text).map_err(|error| DocumentError::Syntax {
+        name: name.to_string(),
+        reason: error.to_string().trim().replace('\n', " "),
+    })?;
+    let machine = parsed.machine.machine(name)?;
+    let mut model = Model { machine, effects: Vec::new(), history: parsed.history };
+    for effect in &parsed.effects {
+        let inconsistent = |reason: String| DocumentError::Inconsistent { name: name.to_string(), reason };
+        let physics = effects::find(&effect.effect).map_err(|error| inconsistent(error.to_string()))?;
+        let site = if effect.at == "pump" {
+            Site::PumpLine
+        } else {
+            let index = model.machine.cylinder_index(&effect.at).ok_or_else(|| {
+                inconsistent(format!("effect {} is at \"{}\", which is no cylinder", effect.effect, effect.at))
+            })?;
+            Site::Cylinder(index)
+        };
+        model = model.with_effect(physics, site).map_err(|error| inconsistent(error.to_string()))?;
+        if let Some(added) = model.effects.last_mut() {
+            fill_parameters(name, effect, added)?;
+        }
+    }
+    Ok(model)
+}
+
+fn fill_parameters(name: &str, text: &EffectText, effect: &mut ModelEffect) -> Result<(), DocumentError> {
+    let problem = |problem: String| DocumentError::Parameter {
+        name: name.to_string(),
+        effect: format!("{}@{}", text.effect, text.at),
+        problem,
+    };
+    for wanted in text.parameters.keys() {
+        if !effect.parameters.iter().any(|parameter| parameter.card.name == wanted) {
+            let names: Vec<&str> = effect.parameters.iter().map(|parameter| parameter.card.name).collect();
+            return Err(problem(format!("has no parameter {wanted}; its parameters are {}", names.join(", "))));
+        }
+    }
+    for parameter in &mut effect.parameters {
+        let card = parameter.card;
+        let given = text.parameters.get(card.name).ok_or_else(|| problem(format!("lacks {}", card.name)))?;
+        if given.unit != card.unit {
+            return Err(DocumentError::WrongUnit {
+                name: name.to_string(),
+                quantity: format!("{}.{}", text.at, card.name),
+                found: given.unit.clone(),
+                expected: card.unit,
+            });
+        }
+        let divides = card.kind == Kind::Reciprocal;
+        if !given.value.is_finite() || (divides && given.value <= 0.0) {
+            return Err(DocumentError::Impossible {
+                name: name.to_string(),
+                quantity: format!("{}.{}", text.at, card.name),
+                value: given.value,
+                must: if divides { "positive".into() } else { "a finite number".into() },
+            });
+        }
+        parameter.value = given.value;
+        parameter.known = given.known;
+        parameter.standard_error = given.standard_error;
+        parameter.source.clone_from(&given.source);
+    }
+    Ok(())
+}
+
+/// The text of a model. Sources of the machine's constants are not kept; its name says where to look them up.
+///
+/// # Errors
+/// [`DocumentError::Syntax`] when a number cannot be written.
+pub fn to_text(model: &Model) -> Result<String, DocumentError> {
+    let text = ModelText {
+        machine: MachineText::of(&model.machine),
+        effects: model
+            .effects
+            .iter()
+            .map(|effect| EffectText {
+                effect: effect.name().to_string(),
+                at: site_name(&model.machine, effect.site).to_string(),
+                parameters: effect
+                    .parameters
+                    .iter()
+                    .map(|parameter| {
+                        let text = ParameterText {
+                            value: parameter.value,
+                            unit: parameter.card.unit.to_string(),
+                            known: parameter.known,
+                            standard_error: parameter.standard_error,
+                            source: parameter.source.clone(),
+                        };
+                        (parameter.card.name.to_string(), text)
+                    })
+                    .collect(),
+            })
+            .collect(),
+        history: model.history.clone(),
+    };
+    toml::to_string(&text)
+        .map_err(|error| DocumentError::Syntax { name: model.machine.name.clone(), reason: error.to_string() })
+}

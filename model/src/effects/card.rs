@@ -1,0 +1,98 @@
+//! What is said about an effect: the fourth face.
+
+/// Which part of the machine an effect belongs to; decides where it can be added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ActsOn {
+    /// A joint, its piston or its chambers: one instance per cylinder.
+    Cylinder,
+    /// The valve section of a cylinder: one instance per cylinder with chambers.
+    Valve,
+    /// The pump line: one instance per machine.
+    PumpLine,
+    /// Cylinders with chambers and the pump line alike.
+    CylinderOrPumpLine,
+}
+
+/// Where one instance of an effect sits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Site {
+    /// At the cylinder (or joint) with this index.
+    Cylinder(usize),
+    /// At the pump line.
+    PumpLine,
+}
+
+/// Whether the nominal model of [A] has the effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// Part of the nominal model of [A] or of the frame every simulation needs.
+    Base,
+    /// A candidate for what a nominal model may be missing.
+    Candidate,
+}
+
+/// How a parameter enters the rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The rows are linear in the parameter.
+    Linear,
+    /// The rows are linear in one over the parameter (bulk moduli).
+    Reciprocal,
+    /// The rows depend on the parameter nonlinearly (thresholds, speeds, time constants).
+    Shape,
+}
+
+/// Where a search for a parameter begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Start {
+    /// At each of these values in turn; the best fit wins.
+    At(&'static [f64]),
+    /// At these quantiles of the measured pump pressure: a threshold can only show inside the range that was visited.
+    PumpPressureQuantiles(&'static [f64]),
+}
+
+/// One parameter of an effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParameterCard {
+    /// Name within the effect's site: `arm.` + name.
+    pub name: &'static str,
+    /// Symbol in the equation.
+    pub symbol: &'static str,
+    /// SI unit, "-" for a pure number.
+    pub unit: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// How it enters the rows.
+    pub kind: Kind,
+    /// Least physically possible value.
+    pub minimum: f64,
+    /// Largest plausible value.
+    pub maximum: f64,
+    /// Order of magnitude on a machine of the 3 t class; scales searches.
+    pub typical: f64,
+    /// Where a search begins.
+    pub start: Start,
+}
+
+/// What is said about an effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Card {
+    /// Name in model files, reports, messages and JSON.
+    pub name: &'static str,
+    /// Where it acts.
+    pub acts_on: ActsOn,
+    /// Base or candidate.
+    pub family: Family,
+    /// One sentence.
+    pub summary: &'static str,
+    /// The formula, as in the code.
+    pub equation: &'static str,
+    /// Where the formula comes from.
+    pub source: &'static str,
+    /// How it shows in data.
+    pub shows: &'static str,
+    /// Which experiment shows it best.
+    pub experiment: &'static str,
+    /// Its part in the energy balance.
+    pub energy: &'static str,
+}

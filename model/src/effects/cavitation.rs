@@ -1,0 +1,62 @@
+//! Oil boils instead of stretching.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Machine;
+
+/// Oil boils instead of stretching.
+pub struct Cavitation;
+
+static CARD: Card = Card {
+    name: "cavitation",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Base,
+    summary: "Pressure cannot fall below the vapour pressure: vapour makes up the missing flow.",
+    equation: "Q+ = km max(0, pv - p+), likewise on the rod side",
+    source: "textbook (e.g. Merritt, Hydraulic Control Systems)",
+    shows: "A chamber pressure that rests at its floor while the piston runs ahead of the oil.",
+    experiment: "Lower a load fast.",
+    energy: "Supplies the volume of the vapour at nearly no pressure.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "vapour_pressure",
+        symbol: "pv",
+        unit: "Pa",
+        meaning: "gauge pressure at which the oil boils",
+        kind: Kind::Shape,
+        minimum: -101325.0,
+        maximum: 0.0,
+        typical: -9e4,
+        start: Start::At(&[-9e4]),
+    },
+    ParameterCard {
+        name: "make_up_gain",
+        symbol: "km",
+        unit: "m3/(s Pa)",
+        meaning: "make-up flow per pressure deficit",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e-3,
+        typical: 1e-7,
+        start: Start::At(&[1e-7]),
+    },
+];
+
+impl Physics for Cavitation {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        rows.cap_flow[cylinder] += (parameters[0] - piston.cap_pressure).positive_part() * parameters[1];
+        rows.rod_flow[cylinder] += (parameters[0] - piston.rod_pressure).positive_part() * parameters[1];
+    }
+}

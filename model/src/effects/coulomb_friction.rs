@@ -1,0 +1,52 @@
+//! Coulomb friction of the piston.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::equations::smooth::direction;
+use crate::machine::Machine;
+
+/// Coulomb friction of the piston.
+pub struct CoulombFriction;
+
+static CARD: Card = Card {
+    name: "coulomb_friction",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Base,
+    summary: "Friction force of constant size against the motion.",
+    equation: "force -Fc sgn(v), the sign rounded over 1 mm/s",
+    source: "[A] Eq. 1. Eq. 11 of [A] prints its power with G22 squared, which has the wrong unit; -Fc |v| \
+        follows from Eq. 1.",
+    shows: "Force step at each reversal.",
+    experiment: "Slow reversals.",
+    energy: "Dissipates Fc |v|.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "coulomb_friction",
+        symbol: "Fc",
+        unit: "N",
+        meaning: "friction force",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e6,
+        typical: 200.0,
+        start: Start::At(&[200.0]),
+    },
+];
+
+impl Physics for CoulombFriction {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        rows.piston_force[cylinder] -= parameters[0] * direction(piston.velocity);
+    }
+}

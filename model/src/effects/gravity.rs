@@ -1,0 +1,81 @@
+//! Weight of the links.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Mechanism;
+use crate::machine::Machine;
+
+/// Weight of the links.
+pub struct Gravity;
+
+static CARD: Card = Card {
+    name: "gravity",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Base,
+    summary: "Weight of the link that the cylinder carries.",
+    equation: "torque -W1 g sin q1 on the first joint, -W2 g sin(q1 + q2) on both; one link: -W2 g sin(q1const \
+        + q2); linear load: -Fg",
+    source: "[A] Eq. 1, 4; the unit of W is kg m (Table 1), not m/s2 as in the text.",
+    shows: "Static pressure difference that changes with posture.",
+    experiment: "Slow moves over the whole stroke with holds.",
+    energy: "Stores potential energy -W g cos(q).",
+};
+
+static LINK: &[ParameterCard] = &[
+    ParameterCard {
+        name: "gravity_moment",
+        symbol: "W",
+        unit: "kg m",
+        meaning: "mass times distance of the centre of gravity",
+        kind: Kind::Linear,
+        minimum: -1e6,
+        maximum: 1e6,
+        typical: 200.0,
+        start: Start::At(&[200.0]),
+    },
+];
+
+static LOAD: &[ParameterCard] = &[
+    ParameterCard {
+        name: "weight",
+        symbol: "Fg",
+        unit: "N",
+        meaning: "weight of the load along the cylinder",
+        kind: Kind::Linear,
+        minimum: -1e6,
+        maximum: 1e6,
+        typical: 1000.0,
+        start: Start::At(&[1000.0]),
+    },
+];
+
+impl Physics for Gravity {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
+        match (machine.mechanism, site) {
+            (Mechanism::LinearLoad, _) => LOAD,
+            _ => LINK,
+        }
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        match (now.machine.mechanism, cylinder) {
+            (Mechanism::SingleLink { base_angle }, _) => {
+                rows.torque[0] -= parameters[0] * now.machine.gravity * (piston.joint + base_angle).sin();
+            }
+            (Mechanism::TwoLink, 0) => rows.torque[0] -= parameters[0] * now.machine.gravity * piston.joint.sin(),
+            (Mechanism::TwoLink, _) => {
+                let absolute = now.pistons[0].joint + piston.joint;
+                let moment = parameters[0] * now.machine.gravity * absolute.sin();
+                rows.torque[0] -= moment;
+                rows.torque[1] -= moment;
+            }
+            (Mechanism::LinearLoad, _) => rows.torque[cylinder] -= parameters[0],
+        }
+    }
+}

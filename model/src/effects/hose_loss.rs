@@ -1,0 +1,50 @@
+//! Pressure loss in hoses and pipes.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Machine;
+
+/// Pressure loss in hoses and pipes.
+pub struct HoseLoss;
+
+static CARD: Card = Card {
+    name: "hose_loss",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Candidate,
+    summary: "Force against the motion that grows with the square of speed.",
+    equation: "force -zeta v |v|",
+    source: "[B] Eq. 17-18; printed as v^2, which would push along for v < 0",
+    shows: "Force error bends upward with speed, opposite for the two directions.",
+    experiment: "Steady strokes at several speeds up to the fastest.",
+    energy: "Dissipates zeta |v|^3.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "hose_loss",
+        symbol: "zeta",
+        unit: "N s2/m2",
+        meaning: "loss coefficient",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e9,
+        typical: 3e5,
+        start: Start::At(&[1e5]),
+    },
+];
+
+impl Physics for HoseLoss {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        rows.piston_force[cylinder] -= parameters[0] * piston.velocity * piston.velocity.abs();
+    }
+}

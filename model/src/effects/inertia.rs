@@ -1,0 +1,112 @@
+//! Inertia of the links, or the mass of a linear load.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Mechanism;
+use crate::machine::Machine;
+
+/// Inertia of the links, or the mass of a linear load.
+pub struct Inertia;
+
+static CARD: Card = Card {
+    name: "inertia",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Base,
+    summary: "Inertia of the link that the cylinder moves.",
+    equation: "mass matrix J(q) = [[J1 + 2 R12 cos q2, J2 + R12 cos q2], [., J2]] with the Coriolis torque \
+        c(q, qd); one link: J; linear load: M",
+    source: "[A] Eq. 1, [B] Eq. 5. Eq. 1 of [A] multiplies C(q, qd) by qd; as printed C already is the \
+        torque.",
+    shows: "Pressure difference needed to accelerate: force error in phase with acceleration.",
+    experiment: "Fast reversals: sines of 1 Hz and above.",
+    energy: "Stores kinetic energy 1/2 qd' J(q) qd.",
+};
+
+static SINGLE: &[ParameterCard] = &[
+    ParameterCard {
+        name: "inertia",
+        symbol: "J2",
+        unit: "kg m2",
+        meaning: "moment of inertia about the joint",
+        kind: Kind::Linear,
+        minimum: 1e-3,
+        maximum: 1e7,
+        typical: 200.0,
+        start: Start::At(&[200.0]),
+    },
+];
+
+static FIRST_OF_TWO: &[ParameterCard] = &[
+    ParameterCard {
+        name: "inertia",
+        symbol: "J1",
+        unit: "kg m2",
+        meaning: "moment of inertia of both links about the first joint",
+        kind: Kind::Linear,
+        minimum: 1e-3,
+        maximum: 1e7,
+        typical: 2000.0,
+        start: Start::At(&[2000.0]),
+    },
+    ParameterCard {
+        name: "coupling_inertia",
+        symbol: "R12",
+        unit: "kg m2",
+        meaning: "coupling m2 lg2 l1 between the links",
+        kind: Kind::Linear,
+        minimum: -1e7,
+        maximum: 1e7,
+        typical: 500.0,
+        start: Start::At(&[500.0]),
+    },
+];
+
+static LOAD: &[ParameterCard] = &[
+    ParameterCard {
+        name: "mass",
+        symbol: "M",
+        unit: "kg",
+        meaning: "mass of the load",
+        kind: Kind::Linear,
+        minimum: 1e-3,
+        maximum: 1e6,
+        typical: 100.0,
+        start: Start::At(&[100.0]),
+    },
+];
+
+impl Physics for Inertia {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
+        match (machine.mechanism, site) {
+            (Mechanism::LinearLoad, _) => LOAD,
+            (Mechanism::TwoLink, Site::Cylinder(0)) => FIRST_OF_TWO,
+            _ => SINGLE,
+        }
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(joint) = site else { return };
+        match (now.machine.mechanism, joint) {
+            (Mechanism::TwoLink, 0) => {
+                let (first, second) = (&now.pistons[0], &now.pistons[1]);
+                let [inertia, coupling] = [parameters[0], parameters[1]];
+                let (cosine, sine) = (second.joint.cos() * coupling, second.joint.sin() * coupling);
+                rows.add_mass(0, 0, inertia + cosine * 2.0);
+                rows.add_mass(0, 1, cosine);
+                rows.add_mass(1, 0, cosine);
+                rows.torque[0] += sine * second.rate * (first.rate * 2.0 + second.rate);
+                rows.torque[1] -= sine * first.rate * first.rate;
+            }
+            (Mechanism::TwoLink, _) => {
+                for (row, column) in [(0, 1), (1, 0), (1, 1)] {
+                    rows.add_mass(row, column, parameters[0]);
+                }
+            }
+            _ => rows.add_mass(joint, joint, parameters[0]),
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The effect catalogue: one physical effect per file.
+//!
+//! Every effect has four faces, all from one formula written once for any [`Scalar`]:
+//! 1. *simulation*: what it adds to the [`Rows`] of the equations of motion ([`Physics::contribute`]);
+//! 2. *regressor*: the derivative of those rows with respect to its parameters, by dual numbers;
+//! 3. *power*: its forces times velocities and its flows times pressures ([`crate::energy`]);
+//! 4. *how it shows*: its [`Card`], in words a machine engineer understands, with the experiment that shows it best.
+//!
+//! To add one: write a file with a unit struct and its [`Physics`], and add a line to [`CATALOGUE`].
+
+mod card;
+mod physics;
+
+mod cavitation;
+mod coulomb_friction;
+mod end_stop;
+mod entrained_air;
+mod external_leakage;
+mod force_offset;
+mod gravity;
+mod hose_loss;
+mod inertia;
+mod internal_leakage;
+mod oil_compressibility;
+mod open_centre_bypass;
+mod orifice_flow;
+mod relief_valve;
+mod stribeck_friction;
+mod valve_dead_zone;
+mod valve_lag;
+mod valve_leakage;
+mod viscous_damping;
+
+pub use card::{ActsOn, Card, Family, Kind, ParameterCard, Site, Start};
+pub use physics::{Effect, Number, Physics};
+
+use crate::scalar::Scalar;
+use crate::equations::Rows;
+
+/// Every effect that the program knows, base effects of [A] first, then the candidates beyond them.
+pub static CATALOGUE: &[&dyn Effect] = &[
+    &inertia::Inertia,
+    &gravity::Gravity,
+    &viscous_damping::ViscousDamping,
+    &coulomb_friction::CoulombFriction,
+    &force_offset::ForceOffset,
+    &oil_compressibility::OilCompressibility,
+    &orifice_flow::OrificeFlow,
+    &open_centre_bypass::OpenCentreBypass,
+    &internal_leakage::InternalLeakage,
+    &external_leakage::ExternalLeakage,
+    &end_stop::EndStop,
+    &cavitation::Cavitation,
+    &valve_dead_zone::ValveDeadZone,
+    &valve_leakage::ValveLeakage,
+    &valve_lag::ValveLag,
+    &hose_loss::HoseLoss,
+    &stribeck_friction::StribeckFriction,
+    &entrained_air::EntrainedAir,
+    &relief_valve::ReliefValve,
+];
+
+/// An effect name that the catalogue does not have.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown effect \"{name}\"{}; `excavator effects` lists all", did_you_mean(suggestion))]
+pub struct UnknownEffect {
+    /// The name asked for.
+    pub name: String,
+    /// The nearest name in the catalogue, if one is near.
+    pub suggestion: Option<String>,
+}
+
+fn did_you_mean(suggestion: &Option<String>) -> String {
+    suggestion.as_ref().map_or(String::new(), |name| format!(" (did you mean \"{name}\"?)"))
+}
+
+/// The effect of this name.
+///
+/// # Errors
+/// [`UnknownEffect`] with the nearest name that exists.
+pub fn find(name: &str) -> Result<&'static dyn Effect, UnknownEffect> {
+    CATALOGUE.iter().copied().find(|effect| effect.card().name == name).ok_or_else(|| UnknownEffect {
+        name: name.to_string(),
+        suggestion: nearest(name, CATALOGUE.iter().map(|effect| effect.card().name)),
+    })
+}
+
+/// The candidate nearest in spelling to `name`, if it is near enough to be what was meant.
+pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
+    candidates
+        .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
+        .filter(|(similarity, _)| *similarity > 0.75)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate.to_string())
+}
+
+/// Whether an effect acts on oil, so that a cylinder driven by a measured force cannot have it.
+pub fn needs_chambers(effect: &dyn Effect) -> bool {
+    effect.card().acts_on != ActsOn::Cylinder || OIL_EFFECTS.contains(&effect.card().name)
+}
+
+/// Effects that act on cylinders, but only on their oil.
+const OIL_EFFECTS: &[&str] = &["internal_leakage", "external_leakage", "entrained_air", "cavitation"];

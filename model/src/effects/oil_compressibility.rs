@@ -1,0 +1,60 @@
+//! Compressibility of the oil, with the walls and hoses around it.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Supply;
+use crate::machine::Machine;
+
+/// Compressibility of the oil, with the walls and hoses around it.
+pub struct OilCompressibility;
+
+static CARD: Card = Card {
+    name: "oil_compressibility",
+    acts_on: ActsOn::CylinderOrPumpLine,
+    family: Family::Base,
+    summary: "Oil springs: pressure rises with the oil squeezed in.",
+    equation: "compliance V/b in V/b dp/dt = net flow; pump line Vp/bp",
+    source: "[A] Eq. 1, 2",
+    shows: "Pressure lags behind the net flow; ringing of pressure and load.",
+    experiment: "Steps of the valve.",
+    energy: "Stores V (b (exp(p/b) - 1) - p).",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "bulk_modulus",
+        symbol: "b",
+        unit: "Pa",
+        meaning: "bulk modulus",
+        kind: Kind::Reciprocal,
+        minimum: 1e5,
+        maximum: 1e11,
+        typical: 1e9,
+        start: Start::At(&[1e9]),
+    },
+];
+
+impl Physics for OilCompressibility {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        match site {
+            Site::Cylinder(cylinder) => {
+                let piston = &now.pistons[cylinder];
+                rows.cap_compliance[cylinder] += piston.cap_volume / parameters[0];
+                rows.rod_compliance[cylinder] += piston.rod_volume / parameters[0];
+            }
+            Site::PumpLine => {
+                if let Supply::PumpLine(line) = now.machine.supply {
+                    rows.pump_compliance += parameters[0].recip() * line.volume;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Open-centre bypass from pump to tank.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::equations::smooth::orifice_root;
+use crate::machine::Machine;
+
+/// Open-centre bypass from pump to tank.
+pub struct OpenCentreBypass;
+
+static CARD: Card = Card {
+    name: "open_centre_bypass",
+    acts_on: ActsOn::PumpLine,
+    family: Family::Base,
+    summary: "Pump flow that returns to tank through the open centre, closing as spools move.",
+    equation: "pump line loses Cft phi(pp - pt) usum, usum = (sum_i (umax_i - |u_i|)^-2)^-1/2: sections in \
+        series",
+    source: "[A] Eq. 3; printed with u_i, which would open the bypass beyond its maximum for u < 0: |u_i| is \
+        used.",
+    shows: "Pump pressure against spool travel.",
+    experiment: "Slow sweep of the spool with the cylinder at rest.",
+    energy: "Throttled between pump and tank, outside the cylinders.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "bypass_flow_gain",
+        symbol: "Cft",
+        unit: "m/(s sqrt(Pa))",
+        meaning: "flow gain of the bypass",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1.0,
+        typical: 1e-2,
+        start: Start::At(&[1e-2]),
+    },
+];
+
+impl Physics for OpenCentreBypass {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, _site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let section = bypass_section(now);
+        rows.pump_flow -= parameters[0] * section * orifice_root(now.pump_pressure - now.tank_pressure);
+    }
+}
+
+/// Section usum of the bypass in m²: the sections of all valves in series.
+pub(super) fn bypass_section<T: Scalar>(now: &Situation<T>) -> T {
+    let mut inverse_squares = T::from(0.0);
+    for (cylinder, piston) in now.pistons.iter().enumerate() {
+        let Some(chambers) = now.chambers(cylinder) else { continue };
+        let left = -piston.spool.abs() + chambers.maximum_orifice_area;
+        // A spool at or past its end shuts the whole bypass; the sum would be infinite.
+        if left.value() <= CLOSED_AREA {
+            return T::from(0.0);
+        }
+        inverse_squares += (left * left).recip();
+    }
+    inverse_squares.sqrt().recip()
+}
+
+/// Area under which a bypass section counts as shut, m²: a thousandth of a per cent of a usual spool's.
+const CLOSED_AREA: f64 = 1e-9;

@@ -1,0 +1,117 @@
+//! The interface between an effect and the equations.
+
+use super::{Card, ParameterCard, Rows, Scalar, Site};
+use crate::equations::Situation;
+use crate::machine::Machine;
+use crate::scalar::Dual;
+
+/// One physical effect, written once for any number type.
+pub trait Physics: Sync {
+    /// What is said about it.
+    fn card(&self) -> &'static Card;
+
+    /// Its parameters at `site` of `machine`, in the order in which [`Physics::contribute`] gets them.
+    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard];
+
+    /// Number of states that it adds to the model.
+    fn states(&self) -> usize {
+        0
+    }
+
+    /// Where the spool really is (m²), given where the input says it is; `states` are the effect's own, whose rates
+    /// go to `rates`.
+    fn spool<T: Scalar>(&self, _parameters: &[T], _states: &[T], _rates: &mut [T], spool: T) -> T {
+        spool
+    }
+
+    /// The area open to flow (m²), given the area that the effects before it left open; `maximum` is umax.
+    fn opening<T: Scalar>(&self, _parameters: &[T], opening: T, _maximum: f64) -> T {
+        opening
+    }
+
+    /// Adds the effect at `site` to the rows of the equations of motion.
+    fn contribute<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>, _rows: &mut Rows<T>) {}
+}
+
+/// [`Physics`] for the two number types that the program uses, so that a model can hold a list of unlike effects.
+/// Implemented for every `Physics`; not to be implemented by hand.
+#[allow(missing_docs)]
+pub trait Effect: Sync {
+    fn card(&self) -> &'static Card;
+    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard];
+    fn states(&self) -> usize;
+    fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> f64;
+    fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual;
+    fn opening_plain(&self, parameters: &[f64], opening: f64, maximum: f64) -> f64;
+    fn opening_dual(&self, parameters: &[Dual], opening: Dual, maximum: f64) -> Dual;
+    fn contribute_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>, rows: &mut Rows<f64>);
+    fn contribute_dual(&self, site: Site, parameters: &[Dual], now: &Situation<Dual>, rows: &mut Rows<Dual>);
+}
+
+impl<P: Physics> Effect for P {
+    fn card(&self) -> &'static Card {
+        Physics::card(self)
+    }
+    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
+        Physics::parameters(self, machine, site)
+    }
+    fn states(&self) -> usize {
+        Physics::states(self)
+    }
+    fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> f64 {
+        self.spool(parameters, states, rates, spool)
+    }
+    fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual {
+        self.spool(parameters, states, rates, spool)
+    }
+    fn opening_plain(&self, parameters: &[f64], opening: f64, maximum: f64) -> f64 {
+        self.opening(parameters, opening, maximum)
+    }
+    fn opening_dual(&self, parameters: &[Dual], opening: Dual, maximum: f64) -> Dual {
+        self.opening(parameters, opening, maximum)
+    }
+    fn contribute_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>, rows: &mut Rows<f64>) {
+        self.contribute(site, parameters, now, rows);
+    }
+    fn contribute_dual(&self, site: Site, parameters: &[Dual], now: &Situation<Dual>, rows: &mut Rows<Dual>) {
+        self.contribute(site, parameters, now, rows);
+    }
+}
+
+impl std::fmt::Debug for dyn Effect {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(self.card().name)
+    }
+}
+
+/// A number type that effects can be evaluated with.
+#[allow(missing_docs)]
+pub trait Number: Scalar {
+    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self;
+    fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self;
+    fn contribute(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>, rows: &mut Rows<Self>);
+}
+
+impl Number for f64 {
+    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self {
+        effect.spool_plain(parameters, states, rates, spool)
+    }
+    fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self {
+        effect.opening_plain(parameters, opening, maximum)
+    }
+    fn contribute(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>, rows: &mut Rows<Self>) {
+        effect.contribute_plain(site, parameters, now, rows);
+    }
+}
+
+impl Number for Dual {
+    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self {
+        effect.spool_dual(parameters, states, rates, spool)
+    }
+    fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self {
+        effect.opening_dual(parameters, opening, maximum)
+    }
+    fn contribute(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>, rows: &mut Rows<Self>) {
+        effect.contribute_dual(site, parameters, now, rows);
+    }
+}

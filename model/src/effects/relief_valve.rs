@@ -1,0 +1,59 @@
+//! Relief valve of the pump line.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Machine;
+
+/// Relief valve of the pump line.
+pub struct ReliefValve;
+
+static CARD: Card = Card {
+    name: "relief_valve",
+    acts_on: ActsOn::PumpLine,
+    family: Family::Candidate,
+    summary: "Opens above its cracking pressure and returns flow to tank.",
+    equation: "pump line loses k max(0, pp - pr)",
+    source: "[A] 3.2, [B] II",
+    shows: "Pump pressure stays under a ceiling although the bypass is shut.",
+    experiment: "Full opening against a load until the pressure levels off.",
+    energy: "Throttled between pump and tank, outside the cylinders.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "relief_pressure",
+        symbol: "pr",
+        unit: "Pa",
+        meaning: "cracking pressure",
+        kind: Kind::Shape,
+        minimum: 1e5,
+        maximum: 1e8,
+        typical: 2e6,
+        start: Start::PumpPressureQuantiles(&[0.97, 0.85]),
+    },
+    ParameterCard {
+        name: "relief_gain",
+        symbol: "k",
+        unit: "m3/(s Pa)",
+        meaning: "flow per pressure above cracking",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e-6,
+        typical: 1e-9,
+        start: Start::At(&[3e-10]),
+    },
+];
+
+impl Physics for ReliefValve {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, _site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        rows.pump_flow -= (now.pump_pressure - parameters[0]).positive_part() * parameters[1];
+    }
+}

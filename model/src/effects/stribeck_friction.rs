@@ -1,0 +1,64 @@
+//! Stribeck friction.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::equations::smooth::direction;
+use crate::machine::Machine;
+
+/// Stribeck friction.
+pub struct StribeckFriction;
+
+static CARD: Card = Card {
+    name: "stribeck_friction",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Candidate,
+    summary: "Extra friction near standstill that fades as the seal floats up on its oil film.",
+    equation: "force -Fs exp(-(v/vs)^2) sgn(v), the sign rounded over 1 mm/s",
+    source: "textbook (e.g. Armstrong-Helouvry, Dupont, Canudas de Wit 1994)",
+    shows: "Friction force against speed: the upturn near zero.",
+    experiment: "Very slow strokes with reversals.",
+    energy: "Dissipates Fs exp(-(v/vs)^2) |v|.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "stribeck_force",
+        symbol: "Fs",
+        unit: "N",
+        meaning: "friction at standstill above the Coulomb level",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e6,
+        typical: 500.0,
+        start: Start::At(&[300.0]),
+    },
+    ParameterCard {
+        name: "stribeck_speed",
+        symbol: "vs",
+        unit: "m/s",
+        meaning: "speed at which it has fallen to 37 %",
+        kind: Kind::Shape,
+        minimum: 1e-3,
+        maximum: 0.2,
+        typical: 0.015,
+        start: Start::At(&[6e-3, 2.5e-2]),
+    },
+];
+
+impl Physics for StribeckFriction {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        let relative = piston.velocity / parameters[1];
+        let level = parameters[0] * (-(relative * relative)).exp();
+        rows.piston_force[cylinder] -= level * direction(piston.velocity);
+    }
+}

@@ -1,0 +1,90 @@
+//! Leakage across the lands of the spool.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Machine;
+
+/// Leakage across the lands of the spool.
+pub struct ValveLeakage;
+
+static CARD: Card = Card {
+    name: "valve_leakage",
+    acts_on: ActsOn::Valve,
+    family: Family::Candidate,
+    summary: "Laminar leakage between pump, chambers and tank across the spool's lands.",
+    equation: "Q+ = Cpa (pp - p+) - Cat (p+ - pt), Q- = Cpb (pp - p-) - Cbt (p- - pt); the pump gives the \
+        first term of each",
+    source: "[B] Eq. 12-13",
+    shows: "Chamber pressures move while the valve is closed; both drift towards a value between pump and \
+        tank.",
+    experiment: "Holds of several seconds with the valve closed.",
+    energy: "Supplies or drains each chamber by flow times pressure.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "valve_leakage_pump_cap",
+        symbol: "Cpa",
+        unit: "m3/(s Pa)",
+        meaning: "leakage pump to cap side",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e-8,
+        typical: 2e-11,
+        start: Start::At(&[1e-11]),
+    },
+    ParameterCard {
+        name: "valve_leakage_cap_tank",
+        symbol: "Cat",
+        unit: "m3/(s Pa)",
+        meaning: "leakage cap side to tank",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e-8,
+        typical: 2e-11,
+        start: Start::At(&[1e-11]),
+    },
+    ParameterCard {
+        name: "valve_leakage_pump_rod",
+        symbol: "Cpb",
+        unit: "m3/(s Pa)",
+        meaning: "leakage pump to rod side",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e-8,
+        typical: 2e-11,
+        start: Start::At(&[1e-11]),
+    },
+    ParameterCard {
+        name: "valve_leakage_rod_tank",
+        symbol: "Cbt",
+        unit: "m3/(s Pa)",
+        meaning: "leakage rod side to tank",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e-8,
+        typical: 2e-11,
+        start: Start::At(&[1e-11]),
+    },
+];
+
+impl Physics for ValveLeakage {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        let (pump, tank) = (now.pump_pressure, now.tank_pressure);
+        let pump_to_cap = parameters[0] * (pump - piston.cap_pressure);
+        let pump_to_rod = parameters[2] * (pump - piston.rod_pressure);
+        rows.cap_flow[cylinder] += pump_to_cap - parameters[1] * (piston.cap_pressure - tank);
+        rows.rod_flow[cylinder] += pump_to_rod - parameters[3] * (piston.rod_pressure - tank);
+        rows.pump_flow -= pump_to_cap + pump_to_rod;
+    }
+}

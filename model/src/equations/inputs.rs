@@ -1,0 +1,32 @@
+//! What the model is given from outside at one instant.
+
+use crate::scalar::Scalar;
+
+/// Inputs of the model at one instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inputs<T> {
+    /// Spool opening per cylinder: measured orifice area, or the commanded one where no spool sensor exists, m².
+    pub orifice_area: Vec<T>,
+    /// Force measured on the rod, per cylinder, N; used only by cylinders without chambers.
+    pub rod_force: Vec<T>,
+    /// Supply pressure in Pa; used only where the pump line is not a state.
+    pub supply_pressure: T,
+    /// Tank pressure pt, Pa.
+    pub tank_pressure: T,
+    /// Pump flow Qp, m³/s.
+    pub pump_flow: T,
+}
+
+impl<T: Scalar> Inputs<T> {
+    /// All inputs zero, for `cylinders` cylinders.
+    pub fn zero(cylinders: usize) -> Self {
+        let zero = T::from(0.0);
+        Inputs {
+            orifice_area: vec![zero; cylinders],
+            rod_force: vec![zero; cylinders],
+            supply_pressure: zero,
+            tank_pressure: zero,
+            pump_flow: zero,
+        }
+    }
+}

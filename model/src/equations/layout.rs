@@ -1,0 +1,58 @@
+//! Where each state stands in the state vector.
+
+use crate::Model;
+use crate::machine::Supply;
+
+/// Order of the state vector: joint coordinates q, joint rates, cap and rod pressure of each cylinder, pump pressure,
+/// states of effects.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Layout {
+    /// Number of joints, which is also the number of cylinders.
+    pub joints: usize,
+    /// Whether cylinders have pressure states.
+    pub chambers: bool,
+    /// Index of the pump pressure.
+    pub pump: Option<usize>,
+    /// First state of each effect of the model, in the model's order, and how many it has.
+    pub effect_states: Vec<(usize, usize)>,
+    /// Number of states.
+    pub len: usize,
+}
+
+impl Layout {
+    /// The layout of a model's states.
+    pub fn of(model: &Model) -> Self {
+        let joints = model.machine.mechanism.joints();
+        let chambers = model.machine.has_chambers();
+        let mut len = 2 * joints + if chambers { 2 * joints } else { 0 };
+        let pump = matches!(model.machine.supply, Supply::PumpLine(_)).then_some(len);
+        len += usize::from(pump.is_some());
+        let mut effect_states = Vec::with_capacity(model.effects.len());
+        for effect in &model.effects {
+            let states = effect.physics.states();
+            effect_states.push((len, states));
+            len += states;
+        }
+        Layout { joints, chambers, pump, effect_states, len }
+    }
+
+    /// Index of the joint coordinate q.
+    pub fn joint(&self, joint: usize) -> usize {
+        joint
+    }
+
+    /// Index of the joint rate.
+    pub fn rate(&self, joint: usize) -> usize {
+        self.joints + joint
+    }
+
+    /// Index of the cap side pressure; `None` without chambers.
+    pub fn cap_pressure(&self, cylinder: usize) -> Option<usize> {
+        self.chambers.then_some(2 * self.joints + 2 * cylinder)
+    }
+
+    /// Index of the rod side pressure; `None` without chambers.
+    pub fn rod_pressure(&self, cylinder: usize) -> Option<usize> {
+        self.chambers.then_some(2 * self.joints + 2 * cylinder + 1)
+    }
+}

@@ -1,0 +1,84 @@
+//! The rows of the equations of motion, as sums that effects add to.
+
+use crate::scalar::Scalar;
+
+/// Sums of what effects add. Pressure forces `A+ p+ - A- p-` and the oil displaced by the piston `A v` belong to the
+/// machine itself and are not in here.
+///
+/// The equations are `mass qdd = torque + G (piston_force + A+ p+ - A- p-)`,
+/// `cap_compliance dp+/dt = cap_flow - A+ v`, `rod_compliance dp-/dt = rod_flow + A- v`,
+/// `pump_compliance dpp/dt = pump_flow` (with the pump's own flow Qp in `pump_flow`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rows<T> {
+    joints: usize,
+    /// Mass matrix, row-major, kg m² (kg for a linear load).
+    pub mass: Vec<T>,
+    /// Torque on each joint, N m (N).
+    pub torque: Vec<T>,
+    /// Force on each piston, + = pushes the rod out, N.
+    pub piston_force: Vec<T>,
+    /// Flow into the cap side chamber, m³/s.
+    pub cap_flow: Vec<T>,
+    /// Flow into the rod side chamber, m³/s.
+    pub rod_flow: Vec<T>,
+    /// Volume times compressibility of the cap side, m³/Pa.
+    pub cap_compliance: Vec<T>,
+    /// Volume times compressibility of the rod side, m³/Pa.
+    pub rod_compliance: Vec<T>,
+    /// Flow into the pump line, m³/s.
+    pub pump_flow: T,
+    /// Volume times compressibility of the pump line, m³/Pa.
+    pub pump_compliance: T,
+}
+
+impl<T: Scalar> Rows<T> {
+    /// All sums zero.
+    pub fn zero(joints: usize) -> Self {
+        let zero = T::from(0.0);
+        Rows {
+            joints,
+            mass: vec![zero; joints * joints],
+            torque: vec![zero; joints],
+            piston_force: vec![zero; joints],
+            cap_flow: vec![zero; joints],
+            rod_flow: vec![zero; joints],
+            cap_compliance: vec![zero; joints],
+            rod_compliance: vec![zero; joints],
+            pump_flow: zero,
+            pump_compliance: zero,
+        }
+    }
+
+    /// Sets every sum back to zero without allocating.
+    pub fn clear(&mut self) {
+        let zero = T::from(0.0);
+        for sums in [
+            &mut self.mass,
+            &mut self.torque,
+            &mut self.piston_force,
+            &mut self.cap_flow,
+            &mut self.rod_flow,
+            &mut self.cap_compliance,
+            &mut self.rod_compliance,
+        ] {
+            sums.fill(zero);
+        }
+        self.pump_flow = zero;
+        self.pump_compliance = zero;
+    }
+
+    /// Adds to the mass matrix at (`row`, `column`).
+    pub fn add_mass(&mut self, row: usize, column: usize, value: T) {
+        self.mass[row * self.joints + column] += value;
+    }
+
+    /// The mass matrix at (`row`, `column`).
+    pub fn mass_at(&self, row: usize, column: usize) -> T {
+        self.mass[row * self.joints + column]
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.joints
+    }
+}

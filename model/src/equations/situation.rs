@@ -1,0 +1,81 @@
+//! Everything an effect may look at.
+
+use crate::machine::{Chambers, Machine};
+use crate::scalar::Scalar;
+
+/// State of one cylinder and its joint at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piston<T> {
+    /// Joint coordinate q, rad (m for a linear load).
+    pub joint: T,
+    /// Its rate, rad/s (m/s).
+    pub rate: T,
+    /// Piston displacement s from mid-stroke, m.
+    pub displacement: T,
+    /// Piston velocity v, m/s.
+    pub velocity: T,
+    /// Lever G = ds/dq, m.
+    pub lever: T,
+    /// Cap side pressure p+, Pa; zero without chambers.
+    pub cap_pressure: T,
+    /// Rod side pressure p-, Pa.
+    pub rod_pressure: T,
+    /// Cap side volume V+, m³; one without chambers, so that nothing divides by zero.
+    pub cap_volume: T,
+    /// Rod side volume V-, m³.
+    pub rod_volume: T,
+    /// Where the spool really is, as an orifice area, m²: the input after lag and hysteresis. It sets the bypass.
+    pub spool: T,
+    /// Area open to flow, m²: the spool's after dead zone and area law. It sets the metered flow.
+    pub opening: T,
+    /// Force measured on the rod, N; drives a cylinder without chambers.
+    pub rod_force: T,
+}
+
+/// Everything an effect may look at, at one instant.
+#[derive(Debug, Clone)]
+pub struct Situation<'m, T> {
+    /// The machine.
+    pub machine: &'m Machine,
+    /// One entry per cylinder.
+    pub pistons: Vec<Piston<T>>,
+    /// Pump or supply pressure pp, Pa.
+    pub pump_pressure: T,
+    /// Tank pressure pt, Pa.
+    pub tank_pressure: T,
+    /// Pump flow Qp, m³/s.
+    pub pump_flow: T,
+}
+
+impl<'m, T: Scalar> Situation<'m, T> {
+    /// A situation with everything zero, to be filled.
+    pub fn empty(machine: &'m Machine) -> Self {
+        let zero = T::from(0.0);
+        let piston = Piston {
+            joint: zero,
+            rate: zero,
+            displacement: zero,
+            velocity: zero,
+            lever: zero,
+            cap_pressure: zero,
+            rod_pressure: zero,
+            cap_volume: T::from(1.0),
+            rod_volume: T::from(1.0),
+            spool: zero,
+            opening: zero,
+            rod_force: zero,
+        };
+        Situation {
+            machine,
+            pistons: vec![piston; machine.cylinders.len()],
+            pump_pressure: zero,
+            tank_pressure: zero,
+            pump_flow: zero,
+        }
+    }
+
+    /// Known constants of a cylinder's chambers; `None` for a cylinder driven by a measured force.
+    pub fn chambers(&self, cylinder: usize) -> Option<&'m Chambers> {
+        self.machine.cylinders.get(cylinder).and_then(|c| c.chambers.as_ref())
+    }
+}

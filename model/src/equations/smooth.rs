@@ -1,0 +1,24 @@
+//! Smooth stand-ins for the corners of the physics, with the widths over which the corners are rounded.
+
+use crate::scalar::Scalar;
+
+/// Speed over which the sign of the velocity changes, m/s. Well under any working speed of an arm (0.1 m/s), yet wide
+/// enough that a stuck piston creeps by less than 1 mm in a second at the friction level.
+pub const SLIP_SPEED: f64 = 1.0e-3;
+
+/// Pressure drop below which an orifice is taken as laminar, Pa. The resistance number of a sharp-edged metering slot
+/// (about 10) puts the transition of a 1e-4 m² opening between 1 kPa and 10 kPa for mineral oil.
+pub const LAMINAR_PRESSURE: f64 = 2.0e3;
+
+/// `sgn(v)`, rounded over [`SLIP_SPEED`].
+pub fn direction<T: Scalar>(velocity: T) -> T {
+    (velocity / SLIP_SPEED).tanh()
+}
+
+/// `sgn(x) sqrt|x|` of a pressure drop in Pa, made linear below [`LAMINAR_PRESSURE`]: `x / (x² + d²)^(1/4)`.
+///
+/// [A] prints only the root; the sign lets flow reverse when the supply is below the chamber.
+pub fn orifice_root<T: Scalar>(pressure_drop: T) -> T {
+    let squared = pressure_drop * pressure_drop + LAMINAR_PRESSURE * LAMINAR_PRESSURE;
+    pressure_drop / squared.sqrt().sqrt()
+}

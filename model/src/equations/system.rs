@@ -1,0 +1,203 @@
+//! The equations of motion of a model, for any number type.
+
+use super::{Inputs, Layout, Rows, Situation};
+use crate::Model;
+use crate::effects::{Number, Site};
+use crate::machine::Supply;
+
+/// A model's equations of motion `dx/dt = f(x, inputs, parameters)`.
+#[derive(Debug, Clone)]
+pub struct System<'m> {
+    model: &'m Model,
+    layout: Layout,
+    parameter_ranges: Vec<(usize, usize)>,
+}
+
+/// Memory for one evaluation, reused so that none allocates.
+#[derive(Debug, Clone)]
+pub struct Workspace<'m, T> {
+    /// What the effects saw at the last evaluation.
+    pub situation: Situation<'m, T>,
+    /// What they added.
+    pub rows: Rows<T>,
+    mass: Vec<T>,
+    torque: Vec<T>,
+}
+
+impl<'m> System<'m> {
+    /// The equations of a model.
+    pub fn new(model: &'m Model) -> Self {
+        let mut first = 0;
+        let parameter_ranges = model
+            .effects
+            .iter()
+            .map(|effect| {
+                let range = (first, first + effect.parameters.len());
+                first = range.1;
+                range
+            })
+            .collect();
+        System { model, layout: Layout::of(model), parameter_ranges }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &'m Model {
+        self.model
+    }
+
+    /// Where each state stands.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Index range of each effect's parameters in the model's parameter vector.
+    pub fn parameter_ranges(&self) -> &[(usize, usize)] {
+        &self.parameter_ranges
+    }
+
+    /// Memory for evaluations with number type `T`.
+    pub fn workspace<T: Number>(&self) -> Workspace<'m, T> {
+        let zero = T::from(0.0);
+        let joints = self.layout.joints;
+        Workspace {
+            situation: Situation::empty(&self.model.machine),
+            rows: Rows::zero(joints),
+            mass: vec![zero; joints * joints],
+            torque: vec![zero; joints],
+        }
+    }
+
+    /// Time derivative of `state` (in the order of [`Layout`]) into `rates`.
+    pub fn rates<T: Number>(
+        &self,
+        workspace: &mut Workspace<'m, T>,
+        parameters: &[T],
+        state: &[T],
+        inputs: &Inputs<T>,
+        rates: &mut [T],
+    ) {
+        self.observe(workspace, parameters, state, inputs, rates);
+        workspace.rows.clear();
+        if matches!(self.model.machine.supply, Supply::PumpLine(_)) {
+            workspace.rows.pump_flow = workspace.situation.pump_flow;
+        }
+        for (effect, &(first, last)) in self.model.effects.iter().zip(&self.parameter_ranges) {
+            T::contribute(
+                effect.physics,
+                effect.site,
+                &parameters[first..last],
+                &workspace.situation,
+                &mut workspace.rows,
+            );
+        }
+        self.assemble(workspace, rates);
+    }
+
+    /// Fills the situation: kinematics, pressures, and the spool after the effects that act on it, whose state rates
+    /// go to `rates`.
+    pub fn observe<T: Number>(
+        &self,
+        workspace: &mut Workspace<'m, T>,
+        parameters: &[T],
+        state: &[T],
+        inputs: &Inputs<T>,
+        rates: &mut [T],
+    ) {
+        let layout = &self.layout;
+        let situation = &mut workspace.situation;
+        situation.tank_pressure = inputs.tank_pressure;
+        situation.pump_flow = inputs.pump_flow;
+        situation.pump_pressure = layout.pump.map_or(inputs.supply_pressure, |index| state[index]);
+        for (index, cylinder) in self.model.machine.cylinders.iter().enumerate() {
+            let piston = &mut situation.pistons[index];
+            piston.joint = state[layout.joint(index)];
+            piston.rate = state[layout.rate(index)];
+            piston.displacement = cylinder.linkage.displacement(piston.joint);
+            piston.lever = cylinder.linkage.lever(piston.joint);
+            piston.velocity = piston.lever * piston.rate;
+            piston.rod_force = inputs.rod_force[index];
+            if let Some(chambers) = &cylinder.chambers {
+                if let (Some(cap), Some(rod)) = (layout.cap_pressure(index), layout.rod_pressure(index)) {
+                    piston.cap_pressure = state[cap];
+                    piston.rod_pressure = state[rod];
+                }
+                piston.cap_volume = chambers.cap_volume(cylinder.stroke, piston.displacement);
+                piston.rod_volume = chambers.rod_volume(cylinder.stroke, piston.displacement);
+            }
+            piston.spool = inputs.orifice_area[index];
+        }
+        for (number, effect) in self.model.effects.iter().enumerate() {
+            let Site::Cylinder(index) = effect.site else { continue };
+            let (first, last) = self.parameter_ranges[number];
+            let (state_first, states) = layout.effect_states[number];
+            let own_states = &state[state_first..state_first + states];
+            let own_rates = &mut rates[state_first..state_first + states];
+            let spool = situation.pistons[index].spool;
+            situation.pistons[index].spool =
+                T::spool(effect.physics, &parameters[first..last], own_states, own_rates, spool);
+        }
+        for piston in &mut situation.pistons {
+            piston.opening = piston.spool;
+        }
+        for (effect, &(first, last)) in self.model.effects.iter().zip(&self.parameter_ranges) {
+            let Site::Cylinder(index) = effect.site else { continue };
+            let Some(chambers) = self.model.machine.cylinders[index].chambers else { continue };
+            let opening = situation.pistons[index].opening;
+            situation.pistons[index].opening =
+                T::opening(effect.physics, &parameters[first..last], opening, chambers.maximum_orifice_area);
+        }
+    }
+
+    /// From rows to rates: solves the mass matrix and divides flows by compliances.
+    fn assemble<T: Number>(&self, workspace: &mut Workspace<'m, T>, rates: &mut [T]) {
+        let layout = &self.layout;
+        let Workspace { situation, rows, mass, torque } = workspace;
+        for (index, piston) in situation.pistons.iter().enumerate() {
+            let pressure_force = match situation.machine.cylinders[index].chambers {
+                Some(chambers) => piston.cap_pressure * chambers.cap_area - piston.rod_pressure * chambers.rod_area,
+                None => piston.rod_force,
+            };
+            torque[index] = rows.torque[index] + piston.lever * (rows.piston_force[index] + pressure_force);
+            rates[layout.joint(index)] = piston.rate;
+        }
+        mass.copy_from_slice(&rows.mass);
+        solve_symmetric(mass, torque);
+        for (index, acceleration) in torque.iter().enumerate() {
+            rates[layout.rate(index)] = *acceleration;
+        }
+        for (index, piston) in situation.pistons.iter().enumerate() {
+            let Some(chambers) = situation.machine.cylinders[index].chambers else { continue };
+            let (Some(cap), Some(rod)) = (layout.cap_pressure(index), layout.rod_pressure(index)) else { continue };
+            rates[cap] = (rows.cap_flow[index] - piston.velocity * chambers.cap_area) / rows.cap_compliance[index];
+            rates[rod] = (rows.rod_flow[index] + piston.velocity * chambers.rod_area) / rows.rod_compliance[index];
+        }
+        if let Some(pump) = layout.pump {
+            rates[pump] = rows.pump_flow / rows.pump_compliance;
+        }
+    }
+}
+
+/// Solves the small symmetric positive definite system `matrix x = right` in place by elimination without pivoting,
+/// which is stable for positive definite matrices. Written here because it runs on dual numbers, a few entries each.
+fn solve_symmetric<T: Number>(matrix: &mut [T], right: &mut [T]) {
+    let order = right.len();
+    for pivot in 0..order {
+        let inverse = matrix[pivot * order + pivot].recip();
+        for row in pivot + 1..order {
+            let factor = matrix[row * order + pivot] * inverse;
+            for column in pivot + 1..order {
+                let above = matrix[pivot * order + column];
+                matrix[row * order + column] -= factor * above;
+            }
+            let above = right[pivot];
+            right[row] -= factor * above;
+        }
+    }
+    for row in (0..order).rev() {
+        let mut sum = right[row];
+        for column in row + 1..order {
+            sum -= matrix[row * order + column] * right[column];
+        }
+        right[row] = sum / matrix[row * order + row];
+    }
+}

@@ -1,0 +1,21 @@
+//! What a hydraulic arm is and does: machines, physical effects, simulation and energy.
+//!
+//! The one idea: **a [`Model`] is a [`machine::Machine`] plus a list of physical effects.** One effect is one file in
+//! [`effects`], written once for any [`scalar::Scalar`], and everything else is derived from it: what it adds in
+//! simulation, its regressor, its power in the energy balance, and how it shows in data.
+//!
+//! Equations are those of [A] Arai, Sakai, Tatsuoka, Zhang, Energies 14 (2021) 6210 and [B] "Accurate Dynamic Modelling
+//! of Hydraulic Servomechanisms"; `docs/physics.md` lists where the code departs from print, and why. SI units
+//! everywhere, pressures are gauge. This crate reads no files, knows no ROS and does no statistics.
+
+pub mod document;
+pub mod effects;
+pub mod energy;
+pub mod equations;
+pub mod machine;
+mod model;
+pub mod recording;
+pub mod scalar;
+pub mod simulation;
+
+pub use model::{HistoryEntry, Model, ModelEffect, ModelError, Parameter, SignalError};

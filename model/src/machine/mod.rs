@@ -1,0 +1,40 @@
+//! The machine: geometry and known constants, nothing that has to be identified.
+
+mod cylinder;
+mod linkage;
+mod mechanism;
+mod supply;
+
+pub use cylinder::{Chambers, Cylinder};
+pub use linkage::Linkage;
+pub use mechanism::Mechanism;
+pub use supply::{PumpLine, Supply};
+
+/// A machine: a mechanism driven by one cylinder per joint, fed by one supply.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Machine {
+    /// Short name, as on the command line: `zx30u-arm`.
+    pub name: String,
+    /// What the machine is, for people.
+    pub description: String,
+    /// Gravity acceleration g in m/s².
+    pub gravity: f64,
+    /// How joints move.
+    pub mechanism: Mechanism,
+    /// One cylinder per joint, in the order of the joints.
+    pub cylinders: Vec<Cylinder>,
+    /// Where the oil comes from.
+    pub supply: Supply,
+}
+
+impl Machine {
+    /// Index of the cylinder with this name.
+    pub fn cylinder_index(&self, name: &str) -> Option<usize> {
+        self.cylinders.iter().position(|cylinder| cylinder.name == name)
+    }
+
+    /// Whether the cylinders have chambers; a machine without is driven by a measured force.
+    pub fn has_chambers(&self) -> bool {
+        self.cylinders.iter().any(|cylinder| cylinder.chambers.is_some())
+    }
+}

@@ -1,0 +1,288 @@
+//! A model: a machine plus a list of physical effects.
+
+use crate::effects::{self, ActsOn, Effect, ParameterCard, Site, UnknownEffect};
+use crate::machine::{Machine, Supply};
+
+/// A machine plus a list of physical effects with parameter values.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// Geometry and known constants.
+    pub machine: Machine,
+    /// The effects, in the order in which valve effects are applied to the spool.
+    pub effects: Vec<ModelEffect>,
+    /// What was done to the model, oldest first.
+    pub history: Vec<HistoryEntry>,
+}
+
+/// One effect at one place with its parameter values.
+#[derive(Debug, Clone)]
+pub struct ModelEffect {
+    /// The physics.
+    pub physics: &'static dyn Effect,
+    /// Where it sits.
+    pub site: Site,
+    /// Its parameters, in the order of its cards.
+    pub parameters: Vec<Parameter>,
+}
+
+/// A parameter value and what is known about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// What it means.
+    pub card: &'static ParameterCard,
+    /// Value in the card's unit.
+    pub value: f64,
+    /// Whether the value is a known constant, which identification leaves alone.
+    pub known: bool,
+    /// Standard error of an identified value, in the card's unit.
+    pub standard_error: Option<f64>,
+    /// Where the value comes from, for people.
+    pub source: String,
+}
+
+/// Something that was done to a model.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct HistoryEntry {
+    /// When, ISO 8601.
+    pub when: String,
+    /// What, in one sentence.
+    pub what: String,
+    /// The recordings used.
+    #[serde(default)]
+    pub recordings: Vec<String>,
+    /// Mean normalised squared error on the validation recordings before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub validation_error_before: Option<f64>,
+    /// The same after.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub validation_error_after: Option<f64>,
+}
+
+/// What can be wrong with a change to a model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// No such effect in the catalogue.
+    #[error(transparent)]
+    UnknownEffect(#[from] UnknownEffect),
+    /// The effect cannot sit there.
+    #[error("effect {effect} cannot be added at \"{site}\" of {machine}: {reason}")]
+    WrongSite {
+        /// Effect name.
+        effect: String,
+        /// Where it was to go.
+        site: String,
+        /// The machine.
+        machine: String,
+        /// Why not.
+        reason: String,
+    },
+    /// The model already has this effect there.
+    #[error("{machine} already has {effect} at \"{site}\"")]
+    AlreadyPresent {
+        /// Effect name.
+        effect: String,
+        /// Where.
+        site: String,
+        /// The machine.
+        machine: String,
+    },
+}
+
+/// What can be wrong between a model and a recording.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SignalError {
+    /// A signal that the model needs as input is nowhere in the recording.
+    #[error("{source_name} does not measure {signal}, which {machine} needs as an input")]
+    MissingInput {
+        /// The recording.
+        source_name: String,
+        /// Contract name of the signal.
+        signal: String,
+        /// The machine.
+        machine: String,
+    },
+    /// The recording has no cylinder of a name that the machine has.
+    #[error(transparent)]
+    Recording(#[from] crate::recording::RecordingError),
+    /// The initial state cannot be found.
+    #[error("{source_name} has no initial value of {signal}: {reason}")]
+    NoInitialState {
+        /// The recording.
+        source_name: String,
+        /// The signal.
+        signal: String,
+        /// Why not.
+        reason: String,
+    },
+}
+
+impl ModelEffect {
+    /// The effect at `site` of `machine`, with its cards' first start values.
+    ///
+    /// # Errors
+    /// [`ModelError::WrongSite`] when the effect cannot act there.
+    pub fn new(physics: &'static dyn Effect, machine: &Machine, site: Site) -> Result<Self, ModelError> {
+        if let Some(reason) = why_not(physics, machine, site) {
+            return Err(ModelError::WrongSite {
+                effect: physics.card().name.into(),
+                site: site_name(machine, site).into(),
+                machine: machine.name.clone(),
+                reason: reason.into(),
+            });
+        }
+        let parameters = physics
+            .parameters(machine, site)
+            .iter()
+            .map(|card| Parameter {
+                card,
+                value: match card.start {
+                    effects::Start::At(values) => values.first().copied().unwrap_or(card.typical),
+                    effects::Start::PumpPressureQuantiles(_) => card.typical,
+                },
+                known: false,
+                standard_error: None,
+                source: String::new(),
+            })
+            .collect();
+        Ok(ModelEffect { physics, site, parameters })
+    }
+
+    /// Name in the catalogue.
+    pub fn name(&self) -> &'static str {
+        self.physics.card().name
+    }
+}
+
+/// Name of a site: the cylinder's, or "pump".
+pub fn site_name(machine: &Machine, site: Site) -> &str {
+    match site {
+        Site::Cylinder(index) => machine.cylinders.get(index).map_or("?", |cylinder| cylinder.name.as_str()),
+        Site::PumpLine => "pump",
+    }
+}
+
+fn why_not(physics: &dyn Effect, machine: &Machine, site: Site) -> Option<&'static str> {
+    let pump_line = matches!(machine.supply, Supply::PumpLine(_));
+    match (physics.card().acts_on, site) {
+        (ActsOn::Cylinder | ActsOn::Valve | ActsOn::CylinderOrPumpLine, Site::Cylinder(index)) => {
+            let Some(cylinder) = machine.cylinders.get(index) else { return Some("no such cylinder") };
+            let needs_oil = effects::needs_chambers(physics);
+            (needs_oil && cylinder.chambers.is_none()).then_some("it acts on oil, and this cylinder has no chambers")
+        }
+        (ActsOn::PumpLine | ActsOn::CylinderOrPumpLine, Site::PumpLine) => {
+            (!pump_line).then_some("the machine has no pump line")
+        }
+        (ActsOn::PumpLine, Site::Cylinder(_)) => Some("it acts on the pump line; leave out the cylinder or say @pump"),
+        (_, Site::PumpLine) => Some("it acts on a cylinder; say which, as in EFFECT@arm"),
+    }
+}
+
+impl Model {
+    /// Values of all parameters, effect after effect.
+    pub fn parameter_values(&self) -> Vec<f64> {
+        self.parameters().map(|(_, parameter)| parameter.value).collect()
+    }
+
+    /// All parameters with the index of their effect, effect after effect.
+    pub fn parameters(&self) -> impl Iterator<Item = (usize, &Parameter)> {
+        self.effects
+            .iter()
+            .enumerate()
+            .flat_map(|(index, effect)| effect.parameters.iter().map(move |parameter| (index, parameter)))
+    }
+
+    /// All parameters, mutable, in the same order as [`Model::parameters`].
+    pub fn parameters_mut(&mut self) -> impl Iterator<Item = &mut Parameter> {
+        self.effects.iter_mut().flat_map(|effect| effect.parameters.iter_mut())
+    }
+
+    /// Contract names of all parameters (`arm.inertia`, `pump.bulk_modulus`, ...), in the same order.
+    pub fn parameter_names(&self) -> Vec<String> {
+        self.parameters()
+            .map(|(effect, parameter)| {
+                format!("{}.{}", site_name(&self.machine, self.effects[effect].site), parameter.card.name)
+            })
+            .collect()
+    }
+
+    /// Indices, in the order of [`Model::parameters`], of those that identification may change.
+    pub fn unknown_parameters(&self) -> Vec<usize> {
+        self.parameters().enumerate().filter(|(_, (_, parameter))| !parameter.known).map(|(index, _)| index).collect()
+    }
+
+    /// Sets the values of all parameters, in the same order; surplus values are ignored.
+    pub fn set_parameter_values(&mut self, values: &[f64]) {
+        for (parameter, value) in self.parameters_mut().zip(values) {
+            parameter.value = *value;
+        }
+    }
+
+    /// The value of the parameter with this contract name.
+    pub fn value_of(&self, name: &str) -> Option<f64> {
+        let index = self.parameter_names().iter().position(|candidate| candidate == name)?;
+        self.parameter_values().get(index).copied()
+    }
+
+    /// Whether the model has this effect at this site.
+    pub fn has(&self, effect: &str, site: Site) -> bool {
+        self.effects.iter().any(|present| present.name() == effect && present.site == site)
+    }
+
+    /// Sites of the machine where `physics` can act and is not yet, in order.
+    pub fn free_sites(&self, physics: &'static dyn Effect) -> Vec<Site> {
+        (0..self.machine.cylinders.len())
+            .map(Site::Cylinder)
+            .chain([Site::PumpLine])
+            .filter(|&site| why_not(physics, &self.machine, site).is_none() && !self.has(physics.card().name, site))
+            .collect()
+    }
+
+    /// A copy of the model with one more effect at its start values.
+    ///
+    /// # Errors
+    /// [`ModelError::WrongSite`], [`ModelError::AlreadyPresent`].
+    pub fn with_effect(&self, physics: &'static dyn Effect, site: Site) -> Result<Model, ModelError> {
+        if self.has(physics.card().name, site) {
+            return Err(ModelError::AlreadyPresent {
+                effect: physics.card().name.into(),
+                site: site_name(&self.machine, site).into(),
+                machine: self.machine.name.clone(),
+            });
+        }
+        let mut model = self.clone();
+        model.effects.push(ModelEffect::new(physics, &self.machine, site)?);
+        Ok(model)
+    }
+
+    /// Sites named by a person: `EFFECT` (everywhere it can act) or `EFFECT@CYLINDER`, `EFFECT@pump`.
+    ///
+    /// # Errors
+    /// [`ModelError`] when effect or site do not exist or do not fit.
+    pub fn parse_addition(&self, text: &str) -> Result<Vec<(&'static dyn Effect, Site)>, ModelError> {
+        let (name, place) = text.split_once('@').map_or((text, None), |(name, place)| (name, Some(place)));
+        let physics = effects::find(name)?;
+        let wrong_site = |site: &str, reason: String| ModelError::WrongSite {
+            effect: name.to_string(),
+            site: site.to_string(),
+            machine: self.machine.name.clone(),
+            reason,
+        };
+        let Some(place) = place else {
+            let sites = self.free_sites(physics);
+            if sites.is_empty() {
+                return Err(wrong_site("any place", "it is there already, or nothing it could act on".into()));
+            }
+            return Ok(sites.into_iter().map(|site| (physics, site)).collect());
+        };
+        let site = if place == "pump" {
+            Site::PumpLine
+        } else {
+            let index = self.machine.cylinder_index(place).ok_or_else(|| {
+                let names: Vec<&str> = self.machine.cylinders.iter().map(|c| c.name.as_str()).collect();
+                wrong_site(place, format!("the machine's cylinders are {}", names.join(", ")))
+            })?;
+            Site::Cylinder(index)
+        };
+        Ok(vec![(physics, site)])
+    }
+}

@@ -1,0 +1,89 @@
+//! Removing sensor noise from a signal without blurring its corners.
+
+/// Half widths of the windows that are tried, in samples; below two a parabola has nothing to average.
+const HALF_WIDTHS: [usize; 7] = [2, 4, 8, 16, 32, 64, 128];
+
+/// How many standard errors wide the confidence intervals are. The rule's authors recommend 1.5 to 3; of 1, 1.6 and
+/// 2.5, 1.6 left the smallest simulation errors on recordings whose true model is known.
+const CONFIDENCE: f64 = 1.6;
+
+/// Standard deviation of white noise on a smooth signal, from the median size of second differences, which smooth
+/// motion hardly enters and which outliers do not move. Zero for fewer than three values or a noiseless signal.
+pub fn noise_level(signal: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = signal
+        .windows(3)
+        .map(|three| (three[2] - 2.0 * three[1] + three[0]).abs())
+        .filter(|size| size.is_finite())
+        .collect();
+    if sizes.is_empty() {
+        return 0.0;
+    }
+    let middle = sizes.len() / 2;
+    let median = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
+    // Second differences of white noise have variance 1 + 4 + 1; a normal variable's median size is 0.6745 of its
+    // standard deviation.
+    median / (0.6745 * 6.0_f64.sqrt())
+}
+
+/// Parabola through the widest symmetric window that the noise allows at each sample: the intersection-of-confidence-
+/// intervals rule (Goldenshluger, Nemirovski 1997; Katkovnik 1999) over Savitzky-Golay fits. Wide windows where the
+/// signal rests or runs smoothly, narrow ones at corners. Values must be finite.
+///
+/// A measured spool opening needs this before it drives a model: flow goes one way for u > 0 and another for u < 0, so
+/// noise about a closed valve does not average out but acts as a leak from pump to tank through both chambers.
+pub fn denoised(signal: &[f64]) -> Vec<f64> {
+    let noise = noise_level(signal);
+    if noise == 0.0 {
+        return signal.to_vec();
+    }
+    let windows: Vec<Window> = HALF_WIDTHS.iter().map(|&half_width| Window::parabola(half_width)).collect();
+    (0..signal.len())
+        .map(|index| {
+            let room = index.min(signal.len() - 1 - index);
+            let (mut low, mut high) = (signal[index] - CONFIDENCE * noise, signal[index] + CONFIDENCE * noise);
+            let mut estimate = signal[index];
+            for window in windows.iter().take_while(|window| window.half_width() <= room) {
+                let value = window.at(signal, index);
+                let margin = CONFIDENCE * noise * window.standard_error;
+                low = low.max(value - margin);
+                high = high.min(value + margin);
+                if low > high {
+                    break;
+                }
+                estimate = value;
+            }
+            estimate
+        })
+        .collect()
+}
+
+/// Weights whose sum over a symmetric window is the value of the least-squares parabola at the centre.
+struct Window {
+    /// From the centre outwards; the same on both sides.
+    weights: Vec<f64>,
+    /// Standard error of the result per unit of noise.
+    standard_error: f64,
+}
+
+impl Window {
+    fn parabola(half_width: usize) -> Self {
+        let squares = |power: i32| (1..=half_width).map(|k| 2.0 * (k as f64).powi(power)).sum::<f64>();
+        let (count, second, fourth) = ((2 * half_width + 1) as f64, squares(2), squares(4));
+        let determinant = count * fourth - second * second;
+        let weights: Vec<f64> =
+            (0..=half_width).map(|k| (fourth - second * (k * k) as f64) / determinant).collect();
+        // For a projection, the variance of the value at the centre is the centre's own weight.
+        let standard_error = weights[0].sqrt();
+        Window { weights, standard_error }
+    }
+
+    fn half_width(&self) -> usize {
+        self.weights.len() - 1
+    }
+
+    fn at(&self, signal: &[f64], index: usize) -> f64 {
+        let sides = self.weights.iter().enumerate().skip(1);
+        signal[index] * self.weights[0]
+            + sides.map(|(k, weight)| weight * (signal[index - k] + signal[index + k])).sum::<f64>()
+    }
+}

@@ -1,0 +1,157 @@
+//! Signals on one clock. A measured bag and a simulation are the same type.
+
+mod cylinder_signals;
+mod denoise;
+mod error;
+mod interpolation;
+
+pub use cylinder_signals::CylinderSignals;
+pub use denoise::{denoised, noise_level};
+pub use error::RecordingError;
+pub use interpolation::{linear, zero_order_hold};
+
+/// A recording of one machine: all signals sampled on one, possibly uneven, clock.
+///
+/// Every signal has one value per entry of [`Recording::time`]; `NaN` means "not measured". A signal that no
+/// instrument measures at all is a vector of `NaN`. All quantities are SI: m, rad, s, N, Pa (gauge), m², m³/s;
+/// oil temperature is in °C.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Recording {
+    /// Where the signals come from, for people: a bag's path or a simulated model's name.
+    pub source: String,
+    /// Stamp of the first sample in nanoseconds since the Unix epoch.
+    pub start_nanoseconds: i64,
+    /// Sample times in s after the first sample, strictly increasing; the first entry is 0.
+    pub time: Vec<f64>,
+    /// One entry per hydraulic cylinder, in the order of the messages.
+    pub cylinders: Vec<CylinderSignals>,
+    /// Pump pressure pp in Pa (gauge).
+    pub pump_pressure: Vec<f64>,
+    /// Tank pressure pt in Pa (gauge).
+    pub tank_pressure: Vec<f64>,
+    /// Pump flow Qp in m³/s.
+    pub pump_flow: Vec<f64>,
+    /// Oil temperature in °C.
+    pub oil_temperature: Vec<f64>,
+}
+
+impl Recording {
+    /// An empty recording on the given clock (s, strictly increasing): every signal is `NaN`.
+    pub fn unmeasured(source: &str, time: Vec<f64>, cylinder_names: &[&str]) -> Self {
+        let samples = time.len();
+        let nothing = vec![f64::NAN; samples];
+        Recording {
+            source: source.to_string(),
+            start_nanoseconds: 0,
+            cylinders: cylinder_names
+                .iter()
+                .map(|name| CylinderSignals::unmeasured(name, samples))
+                .collect(),
+            pump_pressure: nothing.clone(),
+            tank_pressure: nothing.clone(),
+            pump_flow: nothing.clone(),
+            oil_temperature: nothing,
+            time,
+        }
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether the recording has no sample at all.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+
+    /// Time between the first and the last sample in s; 0 for fewer than two samples.
+    pub fn duration(&self) -> f64 {
+        match (self.time.first(), self.time.last()) {
+            (Some(first), Some(last)) => last - first,
+            _ => 0.0,
+        }
+    }
+
+    /// Median time between samples in s; `NaN` for fewer than two samples. The median, not the mean, because lost
+    /// messages leave gaps that say nothing about the rate of the clock.
+    pub fn sample_interval(&self) -> f64 {
+        let mut steps: Vec<f64> = self.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        if steps.is_empty() {
+            return f64::NAN;
+        }
+        let middle = steps.len() / 2;
+        *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+
+    /// The signals of the cylinder with this name.
+    ///
+    /// # Errors
+    /// [`RecordingError::UnknownCylinder`] with the names that the recording has.
+    pub fn cylinder(&self, name: &str) -> Result<&CylinderSignals, RecordingError> {
+        self.cylinders
+            .iter()
+            .find(|cylinder| cylinder.name == name)
+            .ok_or_else(|| RecordingError::UnknownCylinder {
+                source_name: self.source.clone(),
+                wanted: name.to_string(),
+                found: self.cylinders.iter().map(|c| c.name.clone()).collect(),
+            })
+    }
+
+    /// Checks the invariants that the fields promise: equal lengths and a strictly increasing, finite clock.
+    ///
+    /// # Errors
+    /// [`RecordingError::LengthMismatch`] or [`RecordingError::ClockNotIncreasing`].
+    pub fn validate(&self) -> Result<(), RecordingError> {
+        for (name, signal) in self.signals() {
+            if signal.len() != self.len() {
+                return Err(RecordingError::LengthMismatch {
+                    signal: name,
+                    found: signal.len(),
+                    expected: self.len(),
+                });
+            }
+        }
+        if let Some(&first) = self.time.first()
+            && !first.is_finite()
+        {
+            return Err(RecordingError::ClockNotIncreasing { index: 0, previous: f64::NAN, next: first });
+        }
+        for (index, pair) in self.time.windows(2).enumerate() {
+            if pair[1].partial_cmp(&pair[0]) != Some(std::cmp::Ordering::Greater) || !pair[1].is_finite() {
+                return Err(RecordingError::ClockNotIncreasing {
+                    index: index + 1,
+                    previous: pair[0],
+                    next: pair[1],
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Every signal with its contract name (`arm.displacement`, `pump_pressure`, ...), in a fixed order.
+    pub fn signals(&self) -> Vec<(String, &[f64])> {
+        let mut signals: Vec<(String, &[f64])> = Vec::new();
+        for cylinder in &self.cylinders {
+            for (name, values) in cylinder.signals() {
+                signals.push((format!("{}.{name}", cylinder.name), values));
+            }
+        }
+        signals.push(("pump_pressure".into(), &self.pump_pressure));
+        signals.push(("tank_pressure".into(), &self.tank_pressure));
+        signals.push(("pump_flow".into(), &self.pump_flow));
+        signals.push(("oil_temperature".into(), &self.oil_temperature));
+        signals
+    }
+
+    /// The signal with this contract name, `None` when there is no such name.
+    pub fn signal(&self, name: &str) -> Option<&[f64]> {
+        self.signals().into_iter().find(|(candidate, _)| candidate == name).map(|(_, values)| values)
+    }
+}
+
+/// Whether at least one value of the signal was measured.
+pub fn is_measured(signal: &[f64]) -> bool {
+    signal.iter().any(|value| value.is_finite())
+}

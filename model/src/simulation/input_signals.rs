@@ -1,0 +1,167 @@
+//! The inputs of a simulation as functions of time.
+
+use crate::equations::Inputs;
+use crate::machine::{Machine, Supply};
+use crate::recording::{CylinderSignals, Recording, denoised, is_measured};
+use crate::{Model, SignalError};
+
+/// How an input runs between its samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Straight lines: right for a measured quantity.
+    Linear,
+    /// Held until the next sample: right for a command.
+    Hold,
+}
+
+/// Inputs of a model on the clock of a recording, without holes: gaps of single signals are bridged by straight lines.
+#[derive(Debug, Clone)]
+pub struct InputSignals {
+    /// Sample times, s.
+    pub time: Vec<f64>,
+    orifice_area: Vec<(Interpolation, Vec<f64>)>,
+    rod_force: Vec<Vec<f64>>,
+    supply_pressure: Vec<f64>,
+    tank_pressure: Vec<f64>,
+    pump_flow: Vec<f64>,
+}
+
+impl InputSignals {
+    /// The inputs that `model` needs, from a recording. The spool opening is the measured one where a sensor exists,
+    /// else the command. Tank pressure and pump flow fall back to the machine's constants.
+    ///
+    /// # Errors
+    /// [`SignalError::MissingInput`], [`SignalError::Recording`].
+    pub fn from_recording(model: &Model, recording: &Recording) -> Result<Self, SignalError> {
+        let machine = &model.machine;
+        let missing = |signal: String| SignalError::MissingInput {
+            source_name: recording.source.clone(),
+            signal,
+            machine: machine.name.clone(),
+        };
+        let samples = recording.len();
+        let mut orifice_area = Vec::new();
+        let mut rod_force = Vec::new();
+        for cylinder in &machine.cylinders {
+            let signals = recording.cylinder(&cylinder.name)?;
+            if cylinder.chambers.is_some() {
+                let area = orifice_input(signals, &recording.time)
+                    .ok_or_else(|| missing(format!("{}.orifice_area (nor a command)", cylinder.name)))?;
+                orifice_area.push(area);
+                rod_force.push(vec![0.0; samples]);
+            } else {
+                let force = without_holes(&recording.time, &signals.rod_force)
+                    .ok_or_else(|| missing(format!("{}.rod_force", cylinder.name)))?;
+                rod_force.push(force);
+                orifice_area.push((Interpolation::Linear, vec![0.0; samples]));
+            }
+        }
+        let (default_tank, default_flow) = supply_constants(machine);
+        let supply_pressure = if machine.supply == Supply::MeasuredPressure {
+            without_holes(&recording.time, &recording.pump_pressure).ok_or_else(|| missing("pump_pressure".into()))?
+        } else {
+            vec![0.0; samples]
+        };
+        let or_constant = |signal: &[f64], constant: f64| {
+            without_holes(&recording.time, signal).unwrap_or_else(|| vec![constant; samples])
+        };
+        Ok(InputSignals {
+            orifice_area,
+            rod_force,
+            supply_pressure,
+            tank_pressure: smoothed(&or_constant(&recording.tank_pressure, default_tank)),
+            pump_flow: or_constant(&recording.pump_flow, default_flow),
+            time: recording.time.clone(),
+        })
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+
+    /// Opening of one cylinder's valve at each sample, m².
+    pub fn orifice_area(&self, cylinder: usize) -> &[f64] {
+        &self.orifice_area[cylinder].1
+    }
+
+    /// Tank pressure at each sample, Pa.
+    pub fn tank_pressure(&self) -> &[f64] {
+        &self.tank_pressure
+    }
+
+    /// Inputs at `fraction` (0 to 1) of the way from sample `index` to the next, into `inputs`.
+    pub fn between(&self, index: usize, fraction: f64, inputs: &mut Inputs<f64>) {
+        let next = (index + 1).min(self.time.len().saturating_sub(1));
+        let line = |values: &[f64]| values[index] + fraction * (values[next] - values[index]);
+        for (slot, (interpolation, values)) in inputs.orifice_area.iter_mut().zip(&self.orifice_area) {
+            *slot = match interpolation {
+                Interpolation::Linear => line(values),
+                Interpolation::Hold => values[index],
+            };
+        }
+        for (slot, values) in inputs.rod_force.iter_mut().zip(&self.rod_force) {
+            *slot = line(values);
+        }
+        inputs.supply_pressure = line(&self.supply_pressure);
+        inputs.tank_pressure = line(&self.tank_pressure);
+        inputs.pump_flow = line(&self.pump_flow);
+    }
+}
+
+/// Tank pressure and pump flow where nothing measures them.
+fn supply_constants(machine: &Machine) -> (f64, f64) {
+    match machine.supply {
+        Supply::PumpLine(line) => (line.tank_pressure, line.flow),
+        Supply::MeasuredPressure | Supply::None => (0.0, 0.0),
+    }
+}
+
+fn orifice_input(signals: &CylinderSignals, time: &[f64]) -> Option<(Interpolation, Vec<f64>)> {
+    if is_measured(&signals.orifice_area) {
+        return without_holes(time, &signals.orifice_area).map(|values| (Interpolation::Linear, denoised(&values)));
+    }
+    // Before the first command the valve is taken to be closed: nobody has asked for anything.
+    is_measured(&signals.orifice_command).then(|| {
+        let values = signals.orifice_command.iter().map(|&area| if area.is_finite() { area } else { 0.0 }).collect();
+        (Interpolation::Hold, values)
+    })
+}
+
+/// The signal with holes bridged by straight lines and held at the ends; `None` when nothing was measured.
+pub(crate) fn without_holes(time: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
+    if signal.iter().all(|value| value.is_finite()) {
+        return (!signal.is_empty()).then(|| signal.to_vec());
+    }
+    let (known_time, known): (Vec<f64>, Vec<f64>) =
+        time.iter().zip(signal).filter(|(_, value)| value.is_finite()).map(|(&t, &value)| (t, value)).unzip();
+    if known.is_empty() {
+        return None;
+    }
+    Some(time.iter().map(|&t| crate::recording::linear(&known_time, &known, t)).collect())
+}
+
+/// Half width of the mean over tank pressure, in samples. The tank line is short and open: its pressure moves slowly,
+/// while its sensor's noise would enter every flow to tank at small pressure drops.
+const TANK_HALF_WIDTH: usize = 10;
+
+fn smoothed(values: &[f64]) -> Vec<f64> {
+    let mut sums = Vec::with_capacity(values.len() + 1);
+    let mut sum = 0.0;
+    sums.push(sum);
+    for value in values {
+        sum += value;
+        sums.push(sum);
+    }
+    (0..values.len())
+        .map(|index| {
+            let half = TANK_HALF_WIDTH.min(index).min(values.len() - 1 - index);
+            (sums[index + half + 1] - sums[index - half]) / (2 * half + 1) as f64
+        })
+        .collect()
+}

@@ -1,0 +1,100 @@
+//! Derivatives of the equations of motion with respect to states and parameters.
+
+use nalgebra::DMatrix;
+
+use crate::equations::{Inputs, System, Workspace};
+use crate::scalar::{DIRECTIONS, Dual, constant, derivative, variable};
+
+/// Jacobians of the rates at one instant, exact to rounding (forward dual numbers).
+#[derive(Debug, Clone)]
+pub struct Linearisation<'m> {
+    /// Rates f, in the order of the layout.
+    pub rates: Vec<f64>,
+    /// df/dx, states by states.
+    pub by_state: DMatrix<f64>,
+    /// df/dp, states by the parameters asked for.
+    pub by_parameter: DMatrix<f64>,
+    parameters_wanted: Vec<usize>,
+    workspace: Workspace<'m, Dual>,
+    dual_state: Vec<Dual>,
+    dual_parameters: Vec<Dual>,
+    dual_inputs: Inputs<Dual>,
+    dual_rates: Vec<Dual>,
+}
+
+impl<'m> Linearisation<'m> {
+    /// Memory for linearisations of `system` with respect to its states and the parameters with these indices.
+    pub fn new(system: &System<'m>, parameters_wanted: &[usize]) -> Self {
+        let states = system.layout().len;
+        let zero = constant(0.0);
+        Linearisation {
+            rates: vec![0.0; states],
+            by_state: DMatrix::zeros(states, states),
+            by_parameter: DMatrix::zeros(states, parameters_wanted.len()),
+            parameters_wanted: parameters_wanted.to_vec(),
+            workspace: system.workspace(),
+            dual_state: vec![zero; states],
+            dual_parameters: vec![zero; system.model().parameters().count()],
+            dual_inputs: Inputs::zero(system.layout().joints),
+            dual_rates: vec![zero; states],
+        }
+    }
+
+    /// Evaluates rates and both Jacobians.
+    pub fn evaluate(&mut self, system: &System<'m>, parameters: &[f64], state: &[f64], inputs: &Inputs<f64>) {
+        lift_inputs(inputs, &mut self.dual_inputs);
+        let states = state.len();
+        let directions = states + self.parameters_wanted.len();
+        let mut first = 0;
+        while first < directions {
+            let last = (first + DIRECTIONS).min(directions);
+            for (slot, &value) in self.dual_parameters.iter_mut().zip(parameters) {
+                *slot = constant(value);
+            }
+            for (slot, &value) in self.dual_state.iter_mut().zip(state) {
+                *slot = constant(value);
+            }
+            for direction in first..last {
+                if direction < states {
+                    self.dual_state[direction] = variable(state[direction], direction - first);
+                } else {
+                    let parameter = self.parameters_wanted[direction - states];
+                    self.dual_parameters[parameter] = variable(parameters[parameter], direction - first);
+                }
+            }
+            system.rates(
+                &mut self.workspace,
+                &self.dual_parameters,
+                &self.dual_state,
+                &self.dual_inputs,
+                &mut self.dual_rates,
+            );
+            for direction in first..last {
+                for (row, rate) in self.dual_rates.iter().enumerate() {
+                    let slope = derivative(rate, direction - first);
+                    if direction < states {
+                        self.by_state[(row, direction)] = slope;
+                    } else {
+                        self.by_parameter[(row, direction - states)] = slope;
+                    }
+                }
+            }
+            first = last;
+        }
+        for (slot, rate) in self.rates.iter_mut().zip(&self.dual_rates) {
+            *slot = rate.re;
+        }
+    }
+}
+
+fn lift_inputs(inputs: &Inputs<f64>, lifted: &mut Inputs<Dual>) {
+    for (slot, &value) in lifted.orifice_area.iter_mut().zip(&inputs.orifice_area) {
+        *slot = constant(value);
+    }
+    for (slot, &value) in lifted.rod_force.iter_mut().zip(&inputs.rod_force) {
+        *slot = constant(value);
+    }
+    lifted.supply_pressure = constant(inputs.supply_pressure);
+    lifted.tank_pressure = constant(inputs.tank_pressure);
+    lifted.pump_flow = constant(inputs.pump_flow);
+}

@@ -1,0 +1,17 @@
+//! From a model and its inputs to a trajectory, with sensitivities where wanted.
+
+mod initial;
+mod input_signals;
+mod integrator;
+mod linearisation;
+mod profile;
+mod run;
+mod sensitivity;
+
+pub use initial::initial_state;
+pub use input_signals::{InputSignals, Interpolation};
+pub use integrator::{Integrator, SimulationError, Tolerances};
+pub use linearisation::Linearisation;
+pub use profile::{Profile, ProfileError, Segment};
+pub use run::{RunError, observed, simulate, simulate_from};
+pub use sensitivity::{OutputSensitivity, Sensitivity};

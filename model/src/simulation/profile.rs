@@ -1,0 +1,140 @@
+//! Command profiles: orifice areas as functions of time.
+
+use serde::{Deserialize, Serialize};
+
+/// A command profile can not be used.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ProfileError {
+    /// A number of the profile is impossible.
+    #[error("profile: {quantity} = {value} must be {must}")]
+    Impossible {
+        /// Which number.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+}
+
+/// Orifice area commanded to one cylinder: segments one after the other.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Profile {
+    /// The cylinder.
+    pub cylinder: String,
+    /// What it is asked to do, in order; closed afterwards.
+    pub segments: Vec<Segment>,
+}
+
+/// One piece of a profile. Times in s, areas in m² (+ = pump to cap side), frequencies in Hz.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Segment {
+    /// `amplitude sin(2 pi frequency t)`.
+    Sine {
+        /// Length, s.
+        duration: f64,
+        /// m².
+        amplitude: f64,
+        /// Hz.
+        frequency: f64,
+    },
+    /// A sine whose frequency runs from one value to another at a constant rate.
+    Sweep {
+        /// Length, s.
+        duration: f64,
+        /// m².
+        amplitude: f64,
+        /// Hz at the start.
+        from_frequency: f64,
+        /// Hz at the end.
+        to_frequency: f64,
+    },
+    /// Up in `ramp` seconds, held, down in `ramp` seconds.
+    Trapezoid {
+        /// Whole length, s.
+        duration: f64,
+        /// m².
+        amplitude: f64,
+        /// s.
+        ramp: f64,
+    },
+    /// A constant area.
+    Hold {
+        /// Length, s.
+        duration: f64,
+        /// m².
+        area: f64,
+    },
+}
+
+impl Segment {
+    /// Length in s.
+    pub fn duration(&self) -> f64 {
+        match *self {
+            Segment::Sine { duration, .. }
+            | Segment::Sweep { duration, .. }
+            | Segment::Trapezoid { duration, .. }
+            | Segment::Hold { duration, .. } => duration,
+        }
+    }
+
+    /// Area at `time` s after the segment's start, m².
+    pub fn area(&self, time: f64) -> f64 {
+        let turn = std::f64::consts::TAU;
+        match *self {
+            Segment::Sine { amplitude, frequency, .. } => amplitude * (turn * frequency * time).sin(),
+            Segment::Sweep { duration, amplitude, from_frequency, to_frequency } => {
+                let phase = from_frequency * time + (to_frequency - from_frequency) * time * time / (2.0 * duration);
+                amplitude * (turn * phase).sin()
+            }
+            Segment::Trapezoid { duration, amplitude, ramp } => {
+                amplitude * (time / ramp).min((duration - time) / ramp).clamp(0.0, 1.0)
+            }
+            Segment::Hold { area, .. } => area,
+        }
+    }
+
+    fn check(&self) -> Result<(), ProfileError> {
+        let positive = |quantity, value: f64| {
+            if value.is_finite() && value > 0.0 {
+                Ok(())
+            } else {
+                Err(ProfileError::Impossible { quantity, value, must: "a positive number" })
+            }
+        };
+        positive("duration", self.duration())?;
+        match *self {
+            Segment::Trapezoid { ramp, .. } => positive("ramp", ramp),
+            Segment::Sine { frequency, .. } => positive("frequency", frequency),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Profile {
+    /// Whole length in s.
+    pub fn duration(&self) -> f64 {
+        self.segments.iter().map(Segment::duration).sum()
+    }
+
+    /// Area at `time` s, m²; zero outside.
+    pub fn area(&self, time: f64) -> f64 {
+        let mut start = 0.0;
+        for segment in &self.segments {
+            if time >= start && time < start + segment.duration() {
+                return segment.area(time - start);
+            }
+            start += segment.duration();
+        }
+        0.0
+    }
+
+    /// Checks that every number makes sense.
+    ///
+    /// # Errors
+    /// [`ProfileError::Impossible`].
+    pub fn check(&self) -> Result<(), ProfileError> {
+        self.segments.iter().try_for_each(Segment::check)
+    }
+}
