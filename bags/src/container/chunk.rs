@@ -1,0 +1,142 @@
+//! Chunks: many records under one compression and one checksum.
+
+use std::io::Read;
+
+use bytes::Bytes;
+use thiserror::Error;
+
+use super::fields::Fields;
+
+/// No recorder makes chunks this large; a larger size is damage, and must not be believed when reserving memory.
+const SIZE_LIMIT: u64 = 4 << 30;
+/// First reservation for decompressed bytes: the size that rosbag2 and we give a chunk, and then some.
+const FIRST_RESERVATION: u64 = 1 << 20;
+
+/// Why a chunk cannot be trusted.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub(super) enum ChunkFault {
+    #[error("its head makes no sense")]
+    BadHead,
+    #[error("its compression \"{0}\" is not supported")]
+    UnknownCompression(String),
+    #[error("it announces {announced} bytes compressed, but has {available}")]
+    Incomplete { announced: u64, available: u64 },
+    #[error("it announces {0} bytes uncompressed, which no recorder writes")]
+    TooLarge(u64),
+    #[error("it decompresses to {found} bytes instead of {announced}: {reason}")]
+    Decompression {
+        announced: u64,
+        found: u64,
+        reason: String,
+    },
+    #[error("its checksum is {calculated:08x} instead of {saved:08x}")]
+    Checksum { saved: u32, calculated: u32 },
+}
+
+struct ChunkHead<'b> {
+    uncompressed_size: u64,
+    checksum: u32,
+    compression: &'b str,
+    compressed_size: u64,
+    content: &'b [u8],
+}
+
+impl<'b> ChunkHead<'b> {
+    fn parse(record: &'b [u8]) -> Option<ChunkHead<'b>> {
+        let mut fields = Fields(record);
+        let _start_time = fields.u64()?;
+        let _end_time = fields.u64()?;
+        Some(ChunkHead {
+            uncompressed_size: fields.u64()?,
+            checksum: fields.u32()?,
+            compression: fields.text()?,
+            compressed_size: fields.u64()?,
+            content: fields.0,
+        })
+    }
+}
+
+/// The records of a whole chunk, checked against its size and checksum. A checksum of 0 means that there is none.
+pub(super) fn decompress(record: Bytes) -> Result<Bytes, ChunkFault> {
+    let head = ChunkHead::parse(&record).ok_or(ChunkFault::BadHead)?;
+    let announced = head.uncompressed_size;
+    if announced > SIZE_LIMIT {
+        return Err(ChunkFault::TooLarge(announced));
+    }
+    let compressed = usize::try_from(head.compressed_size)
+        .ok()
+        .and_then(|size| head.content.get(..size))
+        .ok_or(ChunkFault::Incomplete {
+            announced: head.compressed_size,
+            available: head.content.len() as u64,
+        })?;
+    let records = if head.compression.is_empty() {
+        record.slice_ref(compressed)
+    } else {
+        let (records, fault) = inflate(head.compression, compressed, announced)?;
+        if records.len() as u64 != announced {
+            let reason = fault.unwrap_or_else(|| "the data ends early".to_string());
+            return Err(ChunkFault::Decompression {
+                announced,
+                found: records.len() as u64,
+                reason,
+            });
+        }
+        Bytes::from(records)
+    };
+    if records.len() as u64 != announced {
+        let reason = "it is not compressed".to_string();
+        return Err(ChunkFault::Decompression {
+            announced,
+            found: records.len() as u64,
+            reason,
+        });
+    }
+    let saved = head.checksum;
+    if saved != 0 {
+        let calculated = crc32fast::hash(&records);
+        if calculated != saved {
+            return Err(ChunkFault::Checksum { saved, calculated });
+        }
+    }
+    Ok(records)
+}
+
+/// What can be won from a chunk of which the end is missing. Its checksum covers what is missing, so it is of no use.
+/// A writer that was killed leaves the sizes in the head unset (all ones): they are not believed either.
+pub(super) fn salvage(record: Bytes) -> Bytes {
+    let Some(head) = ChunkHead::parse(&record) else {
+        return Bytes::new();
+    };
+    if head.compression.is_empty() {
+        return record.slice_ref(head.content);
+    }
+    match inflate(
+        head.compression,
+        head.content,
+        head.uncompressed_size.min(SIZE_LIMIT),
+    ) {
+        Ok((records, _end_is_missing)) => Bytes::from(records),
+        Err(_unknown_compression) => Bytes::new(),
+    }
+}
+
+/// Decompresses up to `limit` bytes, and says why when something stopped it before.
+///
+/// The limit, not the end of the compressed data, is the end: some writers pad the data with zeros.
+fn inflate(
+    compression: &str,
+    compressed: &[u8],
+    limit: u64,
+) -> Result<(Vec<u8>, Option<String>), ChunkFault> {
+    let mut records =
+        Vec::with_capacity(usize::try_from(limit.min(FIRST_RESERVATION)).unwrap_or_default());
+    let result = match compression {
+        "zstd" => zstd::stream::read::Decoder::with_buffer(compressed)
+            .and_then(|decoder| decoder.take(limit).read_to_end(&mut records)),
+        "lz4" => lz4::Decoder::new(compressed)
+            .and_then(|decoder| decoder.take(limit).read_to_end(&mut records)),
+        other => return Err(ChunkFault::UnknownCompression(other.to_string())),
+    };
+    Ok((records, result.err().map(|error| error.to_string())))
+}

@@ -1,0 +1,109 @@
+//! What of a file could not be read.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+/// One damaged place of one file, and what it cost.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Damage {
+    /// The file.
+    pub file: PathBuf,
+    /// Where the damage begins, bytes from the start of the file.
+    pub offset: u64,
+    /// Bytes lost: those that are there but of no use, plus those that are announced but not there.
+    pub lost_bytes: u64,
+    /// Log time of the last message before the damage, ns since the epoch; `None` when there is none.
+    pub readable_until: Option<u64>,
+    /// What is wrong.
+    pub kind: DamageKind,
+}
+
+/// What is wrong with a damaged place.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DamageKind {
+    /// The file is no MCAP at all, or empty.
+    NotMcap,
+    /// The file ends in the middle of a record, as after a power cut or an interrupted copy.
+    CutOff {
+        /// Messages that were still won from the cut chunk; without checksum, since that covers the whole chunk.
+        recovered_messages: u64,
+    },
+    /// All messages are whole, but the end of a closed file is missing: no message is known to be lost.
+    NotClosed,
+    /// A chunk that cannot be trusted was left out.
+    BadChunk {
+        /// Checksum, compression or structure.
+        reason: String,
+    },
+    /// A record outside chunks, or one definition of a topic, makes no sense.
+    BadRecord {
+        /// What makes no sense.
+        reason: String,
+    },
+    /// The chain of records is broken; reading went on at the next chunk in the index, or ended for want of one.
+    LostSync,
+    /// Messages whose topic was defined in a place that is lost.
+    UnknownTopic {
+        /// How many.
+        messages: u64,
+    },
+}
+
+impl Damage {
+    /// Whether the end of the file is missing, as opposed to a hole in the middle.
+    pub fn is_truncation(&self) -> bool {
+        matches!(self.kind, DamageKind::CutOff { .. } | DamageKind::NotClosed)
+    }
+}
+
+impl fmt::Display for Damage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Damage {
+            file,
+            offset,
+            lost_bytes,
+            kind,
+            ..
+        } = self;
+        let file = file.display();
+        match kind {
+            DamageKind::NotMcap => {
+                write!(f, "{file} is not an MCAP file: {lost_bytes} bytes left out")
+            }
+            DamageKind::CutOff { recovered_messages } => write!(
+                f,
+                "{file} is cut off in the record at byte {offset}: {lost_bytes} bytes lost, {recovered_messages} messages \
+                 recovered from the cut chunk"
+            ),
+            DamageKind::NotClosed => write!(
+                f,
+                "{file} was not closed: its data ends at byte {offset} after a whole record"
+            ),
+            DamageKind::BadChunk { reason } => {
+                write!(
+                    f,
+                    "{file}: chunk at byte {offset} left out, {lost_bytes} bytes lost: {reason}"
+                )
+            }
+            DamageKind::BadRecord { reason } => {
+                write!(
+                    f,
+                    "{file}: record at byte {offset} left out, {lost_bytes} bytes lost: {reason}"
+                )
+            }
+            DamageKind::LostSync => write!(
+                f,
+                "{file}: no valid records at byte {offset}, {lost_bytes} bytes lost"
+            ),
+            DamageKind::UnknownTopic { messages } => {
+                write!(
+                    f,
+                    "{file}: {messages} messages left out, {lost_bytes} bytes lost: the definition of their topic is lost"
+                )
+            }
+        }
+    }
+}

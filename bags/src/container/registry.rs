@@ -1,0 +1,85 @@
+//! The topics of one file, as its schema and channel records define them.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use mcap::McapError;
+use mcap::records::{Record, op};
+
+use crate::raw_messages::Topic;
+
+/// Schemas and topics by their numbers in the file.
+#[derive(Debug, Default)]
+pub(super) struct Registry {
+    schemas: HashMap<u16, Arc<Schema>>,
+    topics: HashMap<u16, Arc<Topic>>,
+}
+
+#[derive(Debug, PartialEq, Eq)]
+struct Schema {
+    name: String,
+    encoding: String,
+    text: String,
+}
+
+impl Registry {
+    /// The topic with this number.
+    pub fn topic(&self, channel: u16) -> Option<&Arc<Topic>> {
+        self.topics.get(&channel)
+    }
+
+    /// Every topic defined so far.
+    pub fn topics(&self) -> impl Iterator<Item = &Arc<Topic>> {
+        self.topics.values()
+    }
+
+    /// Takes in a schema or channel record; other opcodes are ignored. A repeated definition keeps the first [`Arc`],
+    /// so that messages of one topic share it; a different one replaces it.
+    pub fn define(&mut self, opcode: u8, content: &[u8]) -> Result<(), McapError> {
+        if opcode != op::SCHEMA && opcode != op::CHANNEL {
+            return Ok(());
+        }
+        match mcap::parse_record(opcode, content)? {
+            Record::Schema { header, data } => {
+                let schema = Schema {
+                    name: header.name,
+                    encoding: header.encoding,
+                    text: String::from_utf8_lossy(&data).into_owned(),
+                };
+                if self
+                    .schemas
+                    .get(&header.id)
+                    .is_none_or(|known| **known != schema)
+                {
+                    self.schemas.insert(header.id, Arc::new(schema));
+                }
+            }
+            Record::Channel(channel) => {
+                let schema = self.schemas.get(&channel.schema_id);
+                let topic = Topic {
+                    name: channel.topic,
+                    type_name: schema.map(|schema| schema.name.clone()).unwrap_or_default(),
+                    schema_encoding: schema
+                        .map(|schema| schema.encoding.clone())
+                        .unwrap_or_default(),
+                    schema: schema.map(|schema| schema.text.clone()).unwrap_or_default(),
+                    message_encoding: channel.message_encoding,
+                    offered_qos_profiles: channel
+                        .metadata
+                        .get("offered_qos_profiles")
+                        .cloned()
+                        .unwrap_or_default(),
+                };
+                if self
+                    .topics
+                    .get(&channel.id)
+                    .is_none_or(|known| **known != topic)
+                {
+                    self.topics.insert(channel.id, Arc::new(topic));
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,224 @@
+//! Why a bag cannot be read or written.
+
+use std::path::{Path, PathBuf};
+
+use excavator_model::recording::RecordingError;
+use thiserror::Error;
+
+/// A bag that cannot be read or written at all. Damage that can be read around is no error but a
+/// [`Damage`](crate::Damage) in the report.
+#[derive(Debug, Error)]
+pub enum BagError {
+    /// Nothing at that path.
+    #[error("{} does not exist", path.display())]
+    DoesNotExist {
+        /// The path asked for.
+        path: PathBuf,
+    },
+    /// The operating system refused to read or write.
+    #[error("cannot {action} {}: {source}", path.display())]
+    Io {
+        /// What was tried: "read", "create", ...
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What the operating system says.
+        source: std::io::Error,
+    },
+    /// A folder without any MCAP file, or a file that is no MCAP.
+    #[error("{} is not a bag: {reason}; give a rosbag2 folder or an .mcap file", path.display())]
+    NotABag {
+        /// The path asked for.
+        path: PathBuf,
+        /// What was found instead.
+        reason: String,
+    },
+    /// `metadata.yaml` is not what rosbag2 writes.
+    #[error("{}: {reason}; move the file away to read the bag without it", path.display())]
+    BadMetadata {
+        /// Path of `metadata.yaml`.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// `metadata.yaml` lists a file that is not there.
+    #[error("{} lists {file}, which is not there; put it back, or move metadata.yaml away to read the other files", metadata.display())]
+    MissingFile {
+        /// Path of `metadata.yaml`.
+        metadata: PathBuf,
+        /// The listed file.
+        file: String,
+    },
+    /// A storage other than MCAP.
+    #[error("{}: {storage} storage is not supported yet; convert the bag to MCAP with `ros2 bag convert`", path.display())]
+    UnsupportedStorage {
+        /// The bag.
+        path: PathBuf,
+        /// Name of the storage: "SQLite3", ...
+        storage: String,
+    },
+    /// Files or messages compressed by rosbag2 itself, not by the chunks of MCAP.
+    #[error("{}: rosbag2 compression mode \"{mode}\" ({format}) is not supported; convert the bag with `ros2 bag convert`", path.display())]
+    UnsupportedCompression {
+        /// The bag.
+        path: PathBuf,
+        /// `compression_mode` of the metadata: "file" or "message".
+        mode: String,
+        /// `compression_format` of the metadata.
+        format: String,
+    },
+    /// Messages that are not CDR.
+    #[error("{}: topic {topic} has serialization format \"{format}\", only \"cdr\" can be read", path.display())]
+    UnsupportedSerialization {
+        /// The bag.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+        /// What the bag says its messages are.
+        format: String,
+    },
+    /// The bag has no such topic.
+    #[error("{} has no topic {topic}; it has {}", path.display(), listed(existing))]
+    NoTopic {
+        /// The bag.
+        path: PathBuf,
+        /// The topic asked for.
+        topic: String,
+        /// The topics that exist.
+        existing: Vec<String>,
+    },
+    /// The topic exists, but no message of it could be read.
+    #[error("{}: topic {topic} has no readable message{}", path.display(), because(damage))]
+    NoMessages {
+        /// The bag.
+        path: PathBuf,
+        /// The topic asked for.
+        topic: String,
+        /// The damage that may be the reason, one line each; empty for a bag in good order.
+        damage: Vec<String>,
+    },
+    /// The topic carries another type of message.
+    #[error("{}: topic {topic} has type {found}, expected {expected}", path.display())]
+    WrongType {
+        /// The bag.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+        /// Type in the bag.
+        found: String,
+        /// Type that can be read.
+        expected: &'static str,
+    },
+    /// The bag was written with another version of the message definition.
+    #[error("{}: the definition of {type_name} that topic {topic} was recorded with differs from ours: {difference}", path.display())]
+    OtherDefinition {
+        /// The bag.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+        /// Type of the messages.
+        type_name: &'static str,
+        /// The first field that differs.
+        difference: String,
+    },
+    /// No message of the topic can be decoded; this is about the first.
+    #[error("{}: message {index} on topic {topic} ({bytes} bytes) cannot be decoded: {reason}", path.display())]
+    Undecodable {
+        /// The bag.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+        /// Number of the message on its topic, from 0.
+        index: u64,
+        /// Length of the message in bytes.
+        bytes: usize,
+        /// What is wrong with the bytes.
+        reason: String,
+    },
+    /// The place to write to is taken.
+    #[error("{} exists already and is not overwritten; choose another name or remove it first", path.display())]
+    AlreadyExists {
+        /// The path asked for.
+        path: PathBuf,
+    },
+    /// A bag needs a name.
+    #[error("{} does not end with a name for the bag", path.display())]
+    NoName {
+        /// The path asked for.
+        path: PathBuf,
+    },
+    /// The recording breaks its own promises.
+    #[error("the recording cannot be written: {0}")]
+    InvalidRecording(#[from] RecordingError),
+    /// The stamp of a sample cannot be a ROS time.
+    #[error(
+        "sample {index} cannot be written: its stamp of {nanoseconds} ns is outside 1970 to 2038"
+    )]
+    StampOutOfRange {
+        /// Index of the sample.
+        index: usize,
+        /// The stamp, ns since the epoch.
+        nanoseconds: i64,
+    },
+    /// Two samples less than a nanosecond apart.
+    #[error("samples {} and {index} cannot be written: both have the stamp {nanoseconds} ns", index - 1)]
+    StampsCoincide {
+        /// Index of the second sample.
+        index: usize,
+        /// The stamp, ns since the epoch.
+        nanoseconds: i64,
+    },
+    /// The topic was added before with another type or definition.
+    #[error("topic {topic} is already in the bag as {existing}, it cannot be added as {wanted}")]
+    TopicConflict {
+        /// The topic.
+        topic: String,
+        /// Type that it has.
+        existing: String,
+        /// Type that it should get.
+        wanted: String,
+    },
+    /// A message was refused by its encoder.
+    #[error("a message for topic {topic} cannot be encoded: {reason}")]
+    Unencodable {
+        /// The topic.
+        topic: String,
+        /// What the encoder says.
+        reason: String,
+    },
+    /// The MCAP library refused to write.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the library says.
+        source: mcap::McapError,
+    },
+}
+
+impl BagError {
+    /// For `map_err` after an operation on `path`.
+    pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> BagError {
+        move |source| BagError::Io {
+            action,
+            path: path.to_path_buf(),
+            source,
+        }
+    }
+}
+
+fn listed(topics: &[String]) -> String {
+    if topics.is_empty() {
+        "no topics at all".to_string()
+    } else {
+        topics.join(", ")
+    }
+}
+
+fn because(damage: &[String]) -> String {
+    if damage.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", damage.join("; "))
+    }
+}

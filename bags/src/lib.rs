@@ -1,0 +1,43 @@
+//! Bags to recordings and back.
+//!
+//! A bag is a rosbag2 folder (`metadata.yaml` beside MCAP files) or a bare `.mcap` file. There are three levels:
+//!
+//! - [`read_recording`] and [`write_recording`]: `/arm/state` and `/arm/orifice_command` as a
+//!   [`Recording`](excavator_model::recording::Recording), with a [`ReadReport`] of everything that was not perfect.
+//! - [`RawMessages`] and [`BagWriter`]: the bytes of any topic, for recorders, players and repairs.
+//! - [`info`]: what is in a bag, per topic.
+//!
+//! Damage is read around, never hidden: a file that was cut is read to the cut, a chunk with a wrong checksum is left
+//! out, and each [`Damage`] says where, how many bytes, and up to which time the data is there.
+//!
+//! ```no_run
+//! use excavator_bags::{Topics, read_recording};
+//!
+//! let (recording, report) = read_recording("drive_1".as_ref(), &Topics::default())?;
+//! println!("{} samples in {} s", recording.len(), recording.duration());
+//! for problem in report.problems() {
+//!     eprintln!("{problem}");
+//! }
+//! # Ok::<(), excavator_bags::BagError>(())
+//! ```
+
+pub mod cdr;
+mod container;
+mod error;
+mod info;
+mod location;
+mod metadata;
+mod qos;
+mod raw_messages;
+mod reading;
+mod topics;
+mod writing;
+
+pub use container::{Damage, DamageKind};
+pub use error::BagError;
+pub use info::{BagInfo, TopicInfo, info};
+pub use qos::{Durability, History, Qos, Reliability};
+pub use raw_messages::{RawMessage, RawMessages, Topic};
+pub use reading::{Gap, ReadReport, read_recording};
+pub use topics::Topics;
+pub use writing::{BagWriter, Compression, TopicId, TopicToWrite, WriteOptions, write_recording};

@@ -1,0 +1,183 @@
+//! `metadata.yaml` of a rosbag2 folder.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::BagError;
+use crate::qos::QosEntry;
+
+/// Name of the file in every rosbag2 folder.
+pub(crate) const FILE_NAME: &str = "metadata.yaml";
+
+/// The version that rosbag2 of ROS 2 Jazzy writes.
+const VERSION_WRITTEN: u32 = 9;
+
+/// What reading needs of a `metadata.yaml` of any version since 1; everything else may be absent or strange.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Metadata {
+    pub storage_identifier: String,
+    #[serde(default)]
+    pub relative_file_paths: Vec<String>,
+    #[serde(default)]
+    pub compression_format: Option<String>,
+    #[serde(default)]
+    pub compression_mode: Option<String>,
+    #[serde(default)]
+    pub message_count: Option<u64>,
+    #[serde(default)]
+    pub topics_with_message_count: Vec<TopicWithCount>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct TopicWithCount {
+    pub topic_metadata: TopicMetadata,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct TopicMetadata {
+    pub name: String,
+    pub serialization_format: String,
+}
+
+#[derive(Deserialize)]
+struct Document {
+    rosbag2_bagfile_information: Metadata,
+}
+
+impl Metadata {
+    /// The content of the file at `path`.
+    pub fn read(path: &Path) -> Result<Metadata, BagError> {
+        let text = std::fs::read(path).map_err(BagError::io("read", path))?;
+        let document: Document =
+            serde_yaml_ng::from_slice(&text).map_err(|error| BagError::BadMetadata {
+                path: path.to_path_buf(),
+                reason: error.to_string(),
+            })?;
+        Ok(document.rosbag2_bagfile_information)
+    }
+}
+
+/// What is known about a bag when it is closed.
+#[derive(Debug, Clone)]
+pub(crate) struct Contents<'c> {
+    pub file_name: &'c str,
+    pub topics: &'c [TopicContents],
+    /// Log times of the earliest and the latest message, ns; `None` without messages.
+    pub span: Option<(u64, u64)>,
+    pub custom_data: &'c BTreeMap<String, String>,
+}
+
+/// One topic of [`Contents`].
+#[derive(Debug, Clone)]
+pub(crate) struct TopicContents {
+    pub name: String,
+    pub type_name: String,
+    pub qos: Vec<QosEntry>,
+    pub message_count: u64,
+}
+
+impl Contents<'_> {
+    /// The text of `metadata.yaml`, field by field in the order of rosbag2.
+    pub fn to_yaml(&self) -> Result<String, serde_yaml_ng::Error> {
+        let (start, end) = self.span.unwrap_or((0, 0));
+        let starting_time = StartingTime {
+            nanoseconds_since_epoch: start,
+        };
+        let duration = Duration {
+            nanoseconds: end - start,
+        };
+        let message_count = self.topics.iter().map(|topic| topic.message_count).sum();
+        serde_yaml_ng::to_string(&Written {
+            rosbag2_bagfile_information: WrittenMetadata {
+                version: VERSION_WRITTEN,
+                storage_identifier: "mcap",
+                duration,
+                starting_time,
+                message_count,
+                topics_with_message_count: self.topics.iter().map(WrittenTopic::from).collect(),
+                compression_format: "",
+                compression_mode: "",
+                relative_file_paths: vec![self.file_name],
+                files: vec![WrittenFile {
+                    path: self.file_name,
+                    starting_time,
+                    duration,
+                    message_count,
+                }],
+                custom_data: (!self.custom_data.is_empty()).then_some(self.custom_data),
+                ros_distro: "jazzy",
+            },
+        })
+    }
+}
+
+#[derive(Serialize)]
+struct Written<'w> {
+    rosbag2_bagfile_information: WrittenMetadata<'w>,
+}
+
+#[derive(Serialize)]
+struct WrittenMetadata<'w> {
+    version: u32,
+    storage_identifier: &'static str,
+    duration: Duration,
+    starting_time: StartingTime,
+    message_count: u64,
+    topics_with_message_count: Vec<WrittenTopic<'w>>,
+    compression_format: &'static str,
+    compression_mode: &'static str,
+    relative_file_paths: Vec<&'w str>,
+    files: Vec<WrittenFile<'w>>,
+    custom_data: Option<&'w BTreeMap<String, String>>,
+    ros_distro: &'static str,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct Duration {
+    nanoseconds: u64,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct StartingTime {
+    nanoseconds_since_epoch: u64,
+}
+
+#[derive(Serialize)]
+struct WrittenFile<'w> {
+    path: &'w str,
+    starting_time: StartingTime,
+    duration: Duration,
+    message_count: u64,
+}
+
+#[derive(Serialize)]
+struct WrittenTopic<'w> {
+    topic_metadata: WrittenTopicMetadata<'w>,
+    message_count: u64,
+}
+
+#[derive(Serialize)]
+struct WrittenTopicMetadata<'w> {
+    name: &'w str,
+    r#type: &'w str,
+    serialization_format: &'static str,
+    offered_qos_profiles: &'w [QosEntry],
+    type_description_hash: &'static str,
+}
+
+impl<'w> From<&'w TopicContents> for WrittenTopic<'w> {
+    fn from(topic: &'w TopicContents) -> Self {
+        WrittenTopic {
+            topic_metadata: WrittenTopicMetadata {
+                name: &topic.name,
+                r#type: &topic.type_name,
+                serialization_format: "cdr",
+                offered_qos_profiles: &topic.qos,
+                type_description_hash: "",
+            },
+            message_count: topic.message_count,
+        }
+    }
+}

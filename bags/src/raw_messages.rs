@@ -1,0 +1,168 @@
+//! The messages of a bag as bytes, whatever their type.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use bytes::Bytes;
+
+use crate::container::McapFile;
+use crate::location::BagFiles;
+use crate::{BagError, Damage, DamageKind, Qos};
+
+/// A topic as the bag defines it.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Topic {
+    /// Name: `/arm/state`.
+    pub name: String,
+    /// Type of the messages: `excavator_msgs/msg/ArmState`; empty when the bag does not say.
+    pub type_name: String,
+    /// Language of the definition: `ros2msg` or `ros2idl`; empty when the bag has no definition.
+    pub schema_encoding: String,
+    /// Definition of the type with those of all types that it contains.
+    pub schema: String,
+    /// Serialization of the messages: `cdr`.
+    pub message_encoding: String,
+    /// Quality of service that the publishers offered, YAML as the bag has it; see [`Topic::qos`].
+    pub offered_qos_profiles: String,
+}
+
+impl Topic {
+    /// Quality of service that the publishers offered; empty when the bag does not say.
+    pub fn qos(&self) -> Vec<Qos> {
+        Qos::list_from_yaml(&self.offered_qos_profiles)
+    }
+}
+
+/// One message as bytes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RawMessage {
+    /// The topic; all messages of a topic within one file share it.
+    pub topic: Arc<Topic>,
+    /// Number given by the recorder or the publisher; often 0.
+    pub sequence: u32,
+    /// When the recorder received the message, ns since the epoch.
+    pub log_time: u64,
+    /// When the message was published, ns since the epoch; equal to `log_time` where the recorder does not know.
+    pub publish_time: u64,
+    /// The message with its four bytes of encapsulation. A window into the decompressed chunk: cheap to clone, but it
+    /// keeps the whole chunk in memory for as long as it lives.
+    pub data: Bytes,
+}
+
+/// Iterator over all messages of a bag in the order in which they were written, file after file.
+///
+/// Damage does not end the iteration; it is collected in [`RawMessages::damage`]. Memory holds one chunk at a time.
+#[derive(Debug)]
+pub struct RawMessages {
+    path: PathBuf,
+    waiting: VecDeque<McapFile>,
+    done: Vec<McapFile>,
+    unreadable: Vec<Damage>,
+    promised_messages: Option<u64>,
+}
+
+impl RawMessages {
+    /// Opens the bag at `path`: a rosbag2 folder or a bare `.mcap` file.
+    ///
+    /// # Errors
+    /// When there is no bag, or one of a kind that cannot be read: [`BagError::DoesNotExist`], [`BagError::NotABag`],
+    /// [`BagError::BadMetadata`], [`BagError::MissingFile`], [`BagError::UnsupportedStorage`],
+    /// [`BagError::UnsupportedCompression`], [`BagError::UnsupportedSerialization`], [`BagError::Io`].
+    pub fn open(path: &Path) -> Result<Self, BagError> {
+        let BagFiles {
+            files,
+            promised_messages,
+        } = BagFiles::locate(path)?;
+        let mut waiting = VecDeque::new();
+        let mut unreadable = Vec::new();
+        for file in &files {
+            match McapFile::open(file)? {
+                Some(open) => waiting.push_back(open),
+                None => {
+                    let lost_bytes = std::fs::metadata(file).map_or(0, |metadata| metadata.len());
+                    let kind = DamageKind::NotMcap;
+                    unreadable.push(Damage {
+                        file: file.clone(),
+                        offset: 0,
+                        lost_bytes,
+                        readable_until: None,
+                        kind,
+                    });
+                }
+            }
+        }
+        if let (Some(first), true) = (unreadable.first(), waiting.is_empty()) {
+            let reason = format!(
+                "{} ({} bytes) does not begin like an MCAP file",
+                first.file.display(),
+                first.lost_bytes
+            );
+            return Err(BagError::NotABag {
+                path: path.to_path_buf(),
+                reason,
+            });
+        }
+        Ok(RawMessages {
+            path: path.to_path_buf(),
+            waiting,
+            done: Vec::new(),
+            unreadable,
+            promised_messages,
+        })
+    }
+
+    /// The path that was opened.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The topics known so far, each name once, sorted. At the start that is all of them where the files have a
+    /// summary; after the last message it is certainly all.
+    pub fn topics(&self) -> Vec<Arc<Topic>> {
+        let mut topics: Vec<Arc<Topic>> = self
+            .done
+            .iter()
+            .chain(&self.waiting)
+            .flat_map(McapFile::topics)
+            .cloned()
+            .collect();
+        topics.sort_by(|a, b| a.name.cmp(&b.name));
+        topics.dedup_by(|a, b| a.name == b.name);
+        topics
+    }
+
+    /// The damage met so far; complete after the last message.
+    pub fn damage(&self) -> Vec<Damage> {
+        let read = self
+            .done
+            .iter()
+            .chain(&self.waiting)
+            .flat_map(McapFile::damage);
+        self.unreadable.iter().chain(read).cloned().collect()
+    }
+
+    /// How many messages `metadata.yaml` promises; `None` without one.
+    pub fn promised_messages(&self) -> Option<u64> {
+        self.promised_messages
+    }
+}
+
+impl Iterator for RawMessages {
+    type Item = Result<RawMessage, BagError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let file = self.waiting.front_mut()?;
+            match file.next_message() {
+                Ok(Some(message)) => return Some(Ok(message)),
+                Ok(None) => self.done.extend(self.waiting.pop_front()),
+                Err(error) => {
+                    // The operating system will say the same again: this file is over.
+                    self.done.extend(self.waiting.pop_front());
+                    return Some(Err(error));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! State and command messages of a bag as one recording.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use excavator_model::recording::Recording;
+use excavator_msgs::{ArmState, Message, OrificeCommand};
+
+use super::command_track::CommandTrack;
+use super::report::ReadReport;
+use super::state_decoder::StateDecoder;
+use super::state_table::StateTable;
+use super::topic_check;
+use crate::cdr::{self, CdrError};
+use crate::{BagError, Damage, RawMessage, RawMessages, Topic, Topics};
+
+/// Reads the bag at `path` (a rosbag2 folder or a bare `.mcap` file) as a recording.
+///
+/// The clock is that of the stamps in the headers of the state messages, sorted; commands are held from their own
+/// stamp until the next one. A topic of commands is not needed: without it `orifice_command` is `NaN`. What was dropped, sorted,
+/// damaged or missing is in the report.
+///
+/// # Errors
+/// All of [`RawMessages::open`]; [`BagError::NoTopic`] and [`BagError::NoMessages`] for the state topic;
+/// [`BagError::WrongType`], [`BagError::OtherDefinition`], [`BagError::UnsupportedSerialization`] for either topic;
+/// [`BagError::Undecodable`] when not one message of a topic can be decoded.
+pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadReport), BagError> {
+    let mut messages = RawMessages::open(path)?;
+    let mut report = ReadReport::default();
+    let mut states = TopicReader::<ArmState>::new(path, &topics.state);
+    let mut commands = TopicReader::<OrificeCommand>::new(path, &topics.command);
+    let mut decoder = StateDecoder::new();
+    let mut table = StateTable::default();
+    let mut track = CommandTrack::default();
+    let mut counts = TopicCounts::default();
+    let mut first_log_time = None;
+    for message in &mut messages {
+        let message = message?;
+        first_log_time.get_or_insert(message.log_time);
+        counts.count(&message);
+        if message.topic.name == topics.state {
+            if let Some(state) = states.decode(&message, |bytes| decoder.decode(bytes))? {
+                table.push(state);
+            }
+        } else if message.topic.name == topics.command
+            && let Some(command) = commands.decode(&message, cdr::decode::<OrificeCommand>)?
+        {
+            track.push(&command);
+        }
+    }
+    counts.write_to(&mut report);
+    report.damage = messages.damage();
+    report.truncated_after = truncated_after(&report.damage, first_log_time);
+    let found: u64 = report.messages.values().sum();
+    report.missing_messages = messages
+        .promised_messages()
+        .unwrap_or(0)
+        .saturating_sub(found);
+    states.finish(&mut report)?;
+    commands.finish(&mut report)?;
+    if table.is_empty() {
+        return Err(no_state(&messages, topics, &report));
+    }
+    let (mut recording, stamps) = table.into_recording(&path.display().to_string(), &mut report);
+    track.hold(&mut recording, &stamps, &mut report);
+    Ok((recording, report))
+}
+
+fn no_state(messages: &RawMessages, topics: &Topics, report: &ReadReport) -> BagError {
+    let path = messages.path().to_path_buf();
+    let topic = topics.state.clone();
+    let existing: Vec<String> = messages
+        .topics()
+        .iter()
+        .map(|topic| topic.name.clone())
+        .collect();
+    // Where there is damage, the definition of the topic itself may be lost.
+    if existing.contains(&topic) || (existing.is_empty() && !report.damage.is_empty()) {
+        let damage = report.damage.iter().map(ToString::to_string).collect();
+        BagError::NoMessages {
+            path,
+            topic,
+            damage,
+        }
+    } else {
+        BagError::NoTopic {
+            path,
+            topic,
+            existing,
+        }
+    }
+}
+
+/// Seconds from the first message of the bag to the last before the first missing end of a file.
+fn truncated_after(damage: &[Damage], first_log_time: Option<u64>) -> Option<f64> {
+    let cut = damage.iter().find(|damage| damage.is_truncation())?;
+    let nanoseconds = cut
+        .readable_until
+        .zip(first_log_time)
+        .map_or(0, |(until, first)| until.saturating_sub(first));
+    Some(nanoseconds as f64 / 1e9)
+}
+
+/// Messages per topic. Counted per shared [`Topic`] first, since a look-up by name for every message costs more than
+/// decompressing it.
+#[derive(Default)]
+struct TopicCounts(Vec<(Arc<Topic>, u64)>);
+
+impl TopicCounts {
+    fn count(&mut self, message: &RawMessage) {
+        match self
+            .0
+            .iter_mut()
+            .find(|(topic, _)| Arc::ptr_eq(topic, &message.topic))
+        {
+            Some((_, count)) => *count += 1,
+            None => self.0.push((Arc::clone(&message.topic), 1)),
+        }
+    }
+
+    fn write_to(self, report: &mut ReadReport) {
+        for (topic, count) in self.0 {
+            *report.messages.entry(topic.name.clone()).or_default() += count;
+        }
+    }
+}
+
+/// Decodes the messages of one topic, after a check of each definition that the bag has of it.
+struct TopicReader<'r, M> {
+    path: &'r Path,
+    topic: &'r str,
+    checked: Option<Arc<Topic>>,
+    seen: u64,
+    undecodable: u64,
+    first_undecodable: Option<BagError>,
+    message: std::marker::PhantomData<M>,
+}
+
+impl<'r, M: Message> TopicReader<'r, M> {
+    fn new(path: &'r Path, topic: &'r str) -> Self {
+        TopicReader {
+            path,
+            topic,
+            checked: None,
+            seen: 0,
+            undecodable: 0,
+            first_undecodable: None,
+            message: std::marker::PhantomData,
+        }
+    }
+
+    /// The message, `None` if its bytes make none.
+    fn decode<T>(
+        &mut self,
+        message: &RawMessage,
+        decode: impl FnOnce(&[u8]) -> Result<T, CdrError>,
+    ) -> Result<Option<T>, BagError> {
+        if !self
+            .checked
+            .as_ref()
+            .is_some_and(|checked| Arc::ptr_eq(checked, &message.topic))
+        {
+            topic_check::check::<M>(self.path, &message.topic)?;
+            self.checked = Some(Arc::clone(&message.topic));
+        }
+        let index = self.seen;
+        self.seen += 1;
+        match decode(&message.data) {
+            Ok(decoded) => Ok(Some(decoded)),
+            Err(error) => {
+                self.undecodable += 1;
+                self.first_undecodable
+                    .get_or_insert_with(|| BagError::Undecodable {
+                        path: self.path.to_path_buf(),
+                        topic: self.topic.to_string(),
+                        index,
+                        bytes: message.data.len(),
+                        reason: error.to_string(),
+                    });
+                Ok(None)
+            }
+        }
+    }
+
+    /// Enters what could not be decoded into the report. All of it is an error: then the type is not what it says.
+    fn finish(self, report: &mut ReadReport) -> Result<(), BagError> {
+        let Some(error) = self.first_undecodable else {
+            return Ok(());
+        };
+        if self.undecodable == self.seen {
+            return Err(error);
+        }
+        report.undecodable += self.undecodable;
+        report
+            .first_undecodable
+            .get_or_insert_with(|| error.to_string());
+        Ok(())
+    }
+}

@@ -1,0 +1,138 @@
+//! Everything about the reading of a bag that was not perfect.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::Damage;
+
+/// A pause in the state messages.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Gap {
+    /// Time of the last sample before the gap, s after the first sample.
+    pub after: f64,
+    /// Time from that sample to the next, s.
+    pub length: f64,
+}
+
+/// What was found in a bag, and what had to be done to make a recording of it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct ReadReport {
+    /// Messages read per topic, of all topics in the bag.
+    pub messages: BTreeMap<String, u64>,
+    /// State messages dropped because an earlier one has the same stamp.
+    pub duplicates: u64,
+    /// State messages that came after one with a later stamp; they were sorted in.
+    pub reordered: u64,
+    /// Commands that came after one with a later stamp; they were sorted in.
+    pub reordered_commands: u64,
+    /// Pauses of more than 1.5 times the median interval between state messages.
+    pub gaps: Vec<Gap>,
+    /// Infinite values, taken as not measured.
+    pub infinite_values: u64,
+    /// Entries dropped because their message has another cylinder of the same name before them.
+    pub repeated_cylinders: u64,
+    /// Commands dropped because they have not as many names as areas.
+    pub malformed_commands: u64,
+    /// Cylinders that were commanded, but appear in no state message: their commands are not in the recording.
+    pub commands_without_cylinder: Vec<String>,
+    /// Messages on the state and command topics that could not be decoded and were left out.
+    pub undecodable: u64,
+    /// The first of them: topic, number, bytes, reason.
+    pub first_undecodable: Option<String>,
+    /// What is wrong with the files.
+    pub damage: Vec<Damage>,
+    /// Time up to which data is there when the end of a file is missing: log time of the last message before the first
+    /// such place, s after the first message of the bag. `None` when no end is missing.
+    pub truncated_after: Option<f64>,
+    /// Messages that `metadata.yaml` promises and that are not there; 0 without metadata.
+    pub missing_messages: u64,
+}
+
+impl ReadReport {
+    /// Bytes lost to damage, in all files together.
+    pub fn lost_bytes(&self) -> u64 {
+        self.damage
+            .iter()
+            .map(|damage| damage.lost_bytes)
+            .fold(0, u64::saturating_add)
+    }
+
+    /// Chunks left out because of a wrong checksum or broken content.
+    pub fn bad_chunks(&self) -> usize {
+        self.damage
+            .iter()
+            .filter(|damage| matches!(damage.kind, crate::DamageKind::BadChunk { .. }))
+            .count()
+    }
+
+    /// One line for people about each kind of imperfection; empty for a perfect bag.
+    pub fn problems(&self) -> Vec<String> {
+        let mut lines: Vec<String> = self.damage.iter().map(ToString::to_string).collect();
+        if let Some(time) = self.truncated_after {
+            lines.push(format!(
+                "the recording is cut off: data is there up to {time:.3} s after its first message"
+            ));
+        }
+        let counts = [
+            (
+                self.missing_messages,
+                "messages fewer than metadata.yaml promises",
+            ),
+            (
+                self.undecodable,
+                "messages that could not be decoded were left out",
+            ),
+            (
+                self.duplicates,
+                "state messages with the stamp of an earlier one were dropped",
+            ),
+            (self.reordered, "state messages out of order were sorted in"),
+            (
+                self.reordered_commands,
+                "commands out of order were sorted in",
+            ),
+            (
+                self.infinite_values,
+                "infinite values were taken as not measured",
+            ),
+            (
+                self.repeated_cylinders,
+                "entries for a cylinder already in the same message were dropped",
+            ),
+            (
+                self.malformed_commands,
+                "commands without exactly one area per name were dropped",
+            ),
+        ];
+        lines.extend(
+            counts
+                .iter()
+                .filter(|(count, _)| *count > 0)
+                .map(|(count, what)| format!("{count} {what}")),
+        );
+        lines.extend(
+            self.first_undecodable
+                .iter()
+                .map(|first| format!("the first that could not be decoded: {first}")),
+        );
+        if let Some(longest) = self
+            .gaps
+            .iter()
+            .max_by(|a, b| a.length.total_cmp(&b.length))
+        {
+            let Gap { after, length } = longest;
+            lines.push(format!(
+                "{} gaps in the state messages, the longest {length:.4} s at {after:.3} s",
+                self.gaps.len()
+            ));
+        }
+        if !self.commands_without_cylinder.is_empty() {
+            let names = self.commands_without_cylinder.join(", ");
+            lines.push(format!(
+                "commands for {names} are not used: no state message has such a cylinder"
+            ));
+        }
+        lines
+    }
+}

@@ -1,0 +1,187 @@
+//! State messages as columns: grown message by message, then sorted by stamp.
+
+use excavator_model::recording::{CylinderSignals, Recording};
+use excavator_msgs::{ArmState, CylinderState};
+
+use super::report::{Gap, ReadReport};
+
+/// An interval longer than this many median intervals is a gap.
+const GAP_FACTOR: f64 = 1.5;
+const NANOSECONDS_PER_SECOND: f64 = 1e9;
+
+/// The state messages read so far, in the order of the bag.
+#[derive(Debug, Default)]
+pub(super) struct StateTable {
+    stamps: Vec<i64>,
+    cylinders: Vec<CylinderSignals>,
+    pump_pressure: Vec<f64>,
+    tank_pressure: Vec<f64>,
+    pump_flow: Vec<f64>,
+    oil_temperature: Vec<f64>,
+    infinite_values: u64,
+    repeated_cylinders: u64,
+}
+
+impl StateTable {
+    /// Adds one message.
+    pub fn push(&mut self, state: &ArmState) {
+        let row = self.stamps.len();
+        self.stamps.push(state.header.stamp.nanoseconds());
+        let infinite = &mut self.infinite_values;
+        push_finite(&mut self.pump_pressure, state.pump_pressure, infinite);
+        push_finite(&mut self.tank_pressure, state.tank_pressure, infinite);
+        push_finite(&mut self.pump_flow, state.pump_flow, infinite);
+        push_finite(&mut self.oil_temperature, state.oil_temperature, infinite);
+        for (position, cylinder) in state.cylinders.iter().enumerate() {
+            self.push_cylinder(row, position, cylinder);
+        }
+    }
+
+    fn push_cylinder(&mut self, row: usize, position: usize, state: &CylinderState) {
+        // Almost always the cylinders come in the same order in every message.
+        let at_position = self
+            .cylinders
+            .get(position)
+            .is_some_and(|cylinder| cylinder.name == state.name);
+        let known = if at_position {
+            Some(position)
+        } else {
+            self.cylinders
+                .iter()
+                .position(|cylinder| cylinder.name == state.name)
+        };
+        let index = known.unwrap_or_else(|| {
+            self.cylinders.push(CylinderSignals {
+                name: state.name.clone(),
+                ..CylinderSignals::default()
+            });
+            self.cylinders.len() - 1
+        });
+        let cylinder = &mut self.cylinders[index];
+        if cylinder.displacement.len() > row {
+            self.repeated_cylinders += 1;
+            return;
+        }
+        let values = [
+            (&mut cylinder.joint_angle, state.joint_angle),
+            (&mut cylinder.displacement, state.displacement),
+            (&mut cylinder.velocity, state.velocity),
+            (&mut cylinder.cap_pressure, state.cap_pressure),
+            (&mut cylinder.rod_pressure, state.rod_pressure),
+            (&mut cylinder.orifice_area, state.orifice_area),
+            (&mut cylinder.rod_force, state.rod_force),
+        ];
+        for (column, value) in values {
+            // Rows of messages without this cylinder.
+            column.resize(row, f64::NAN);
+            push_finite(column, value, &mut self.infinite_values);
+        }
+    }
+
+    /// Whether there is no message yet.
+    pub fn is_empty(&self) -> bool {
+        self.stamps.is_empty()
+    }
+
+    /// The recording, its clock in ns since the epoch, and the counts of what had to be set right.
+    pub fn into_recording(
+        mut self,
+        source: &str,
+        report: &mut ReadReport,
+    ) -> (Recording, Vec<i64>) {
+        report.infinite_values += self.infinite_values;
+        report.repeated_cylinders = self.repeated_cylinders;
+        report.reordered = count_late(&self.stamps);
+        let order = rows_by_stamp(&self.stamps);
+        report.duplicates = (self.stamps.len() - order.len()) as u64;
+        let samples = self.stamps.len();
+        for cylinder in &mut self.cylinders {
+            for column in measured_columns(cylinder) {
+                column.resize(samples, f64::NAN);
+            }
+        }
+        let already_in_order = order.len() == samples && report.reordered == 0;
+        if !already_in_order {
+            self.stamps = order.iter().map(|&row| self.stamps[row]).collect();
+            let shared = [
+                &mut self.pump_pressure,
+                &mut self.tank_pressure,
+                &mut self.pump_flow,
+                &mut self.oil_temperature,
+            ];
+            for column in shared
+                .into_iter()
+                .chain(self.cylinders.iter_mut().flat_map(measured_columns))
+            {
+                *column = order.iter().map(|&row| column[row]).collect();
+            }
+        }
+        for cylinder in &mut self.cylinders {
+            cylinder.orifice_command = vec![f64::NAN; self.stamps.len()];
+        }
+        let start = self.stamps.first().copied().unwrap_or_default();
+        // Division, not multiplication by 1e-9: it gives the double nearest to the decimal number.
+        let time: Vec<f64> = self
+            .stamps
+            .iter()
+            .map(|&stamp| (stamp - start) as f64 / NANOSECONDS_PER_SECOND)
+            .collect();
+        let recording = Recording {
+            source: source.to_string(),
+            start_nanoseconds: start,
+            time,
+            cylinders: self.cylinders,
+            pump_pressure: self.pump_pressure,
+            tank_pressure: self.tank_pressure,
+            pump_flow: self.pump_flow,
+            oil_temperature: self.oil_temperature,
+        };
+        report.gaps = gaps(&recording);
+        (recording, self.stamps)
+    }
+}
+
+fn measured_columns(cylinder: &mut CylinderSignals) -> [&mut Vec<f64>; 7] {
+    [
+        &mut cylinder.joint_angle,
+        &mut cylinder.displacement,
+        &mut cylinder.velocity,
+        &mut cylinder.cap_pressure,
+        &mut cylinder.rod_pressure,
+        &mut cylinder.orifice_area,
+        &mut cylinder.rod_force,
+    ]
+}
+
+fn push_finite(column: &mut Vec<f64>, value: f64, infinite_values: &mut u64) {
+    *infinite_values += u64::from(value.is_infinite());
+    column.push(if value.is_infinite() { f64::NAN } else { value });
+}
+
+/// How many stamps are smaller than one before them.
+pub(super) fn count_late(stamps: &[i64]) -> u64 {
+    let mut latest = i64::MIN;
+    let mut late = 0;
+    for &stamp in stamps {
+        late += u64::from(stamp < latest);
+        latest = latest.max(stamp);
+    }
+    late
+}
+
+/// Rows in the order of their stamps; of rows with equal stamps only the first.
+fn rows_by_stamp(stamps: &[i64]) -> Vec<usize> {
+    let mut rows: Vec<usize> = (0..stamps.len()).collect();
+    rows.sort_by_key(|&row| stamps[row]);
+    rows.dedup_by_key(|row| stamps[*row]);
+    rows
+}
+
+fn gaps(recording: &Recording) -> Vec<Gap> {
+    let limit = GAP_FACTOR * recording.sample_interval();
+    let steps = recording.time.windows(2).map(|pair| Gap {
+        after: pair[0],
+        length: pair[1] - pair[0],
+    });
+    steps.filter(|step| step.length > limit).collect()
+}

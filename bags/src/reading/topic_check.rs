@@ -1,0 +1,66 @@
+//! Whether a topic carries what we can decode.
+
+use std::path::Path;
+
+use excavator_msgs::{Message, definitions, layout};
+
+use crate::{BagError, Topic};
+
+/// Checks type, serialization and definition of a topic before its first message is decoded.
+///
+/// A definition with other fields would not always fail to decode: it can also give wrong numbers.
+pub(super) fn check<M: Message>(path: &Path, topic: &Topic) -> Result<(), BagError> {
+    let path = || path.to_path_buf();
+    let name = || topic.name.clone();
+    if !topic.type_name.is_empty()
+        && layout::short_name(&topic.type_name) != layout::short_name(M::TYPE_NAME)
+    {
+        let found = topic.type_name.clone();
+        return Err(BagError::WrongType {
+            path: path(),
+            topic: name(),
+            found,
+            expected: M::TYPE_NAME,
+        });
+    }
+    if topic.message_encoding != "cdr" {
+        let format = topic.message_encoding.clone();
+        return Err(BagError::UnsupportedSerialization {
+            path: path(),
+            topic: name(),
+            format,
+        });
+    }
+    match difference(M::TYPE_NAME, topic) {
+        Some(difference) => Err(BagError::OtherDefinition {
+            path: path(),
+            topic: name(),
+            type_name: M::TYPE_NAME,
+            difference,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The first field in which the bag's definition differs from ours; `None` also when the bag has no definition.
+fn difference(type_name: &str, topic: &Topic) -> Option<String> {
+    if topic.schema_encoding != "ros2msg" || topic.schema.trim().is_empty() {
+        return None;
+    }
+    let theirs = layout::flat_fields(type_name, &topic.schema);
+    let ours = layout::flat_fields(type_name, &definitions::schema(type_name)?);
+    let describe = |field: Option<&layout::Field>| match field {
+        Some(field) => format!("\"{} {}\"", field.type_name, field.name),
+        None => "nothing".to_string(),
+    };
+    let longest = ours.len().max(theirs.len());
+    (0..longest)
+        .find(|&index| ours.get(index) != theirs.get(index))
+        .map(|index| {
+            format!(
+                "it has {} where we have {}",
+                describe(theirs.get(index)),
+                describe(ours.get(index))
+            )
+        })
+}

@@ -1,0 +1,48 @@
+//! How a bag is written.
+
+use std::collections::BTreeMap;
+
+/// Compression of the chunks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Compression {
+    /// None: fastest to write, three times as large.
+    None,
+    /// Fast, about half the size.
+    Lz4,
+    /// About a third of the size. The default: a disk that is full ends a recording, and 0.37 million messages per
+    /// second are far more than a machine sends.
+    #[default]
+    Zstd,
+}
+
+impl Compression {
+    pub(super) fn to_mcap(self) -> Option<mcap::Compression> {
+        match self {
+            Compression::None => None,
+            Compression::Lz4 => Some(mcap::Compression::Lz4),
+            Compression::Zstd => Some(mcap::Compression::Zstd),
+        }
+    }
+}
+
+/// How a bag is written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// Compression of the chunks.
+    pub compression: Compression,
+    /// Size at which a chunk is closed, bytes before compression. What is in an open chunk is lost with the power.
+    pub chunk_size: u64,
+    /// Pairs for `custom_data` in `metadata.yaml`, which `ros2 bag info` shows.
+    pub custom_data: BTreeMap<String, String>,
+}
+
+impl Default for WriteOptions {
+    /// Zstd, chunks of 768 KiB as rosbag2 writes them, no custom data.
+    fn default() -> Self {
+        WriteOptions {
+            compression: Compression::default(),
+            chunk_size: 768 * 1024,
+            custom_data: BTreeMap::new(),
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! What several tests need: made-up recordings, comparison with NaN, the folder with other people's files.
+
+#![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::path::{Path, PathBuf};
+
+use excavator_bags::{
+    BagWriter, Compression, Qos, TopicToWrite, Topics, WriteOptions, cdr, write_recording,
+};
+use excavator_model::recording::Recording;
+use excavator_msgs::{ArmState, CylinderState, Header, Message, OrificeCommand, Time};
+
+/// Start of all made-up recordings, ns since the epoch.
+pub const START: i64 = 1_790_000_000_000_024_320;
+
+/// Two cylinders, 500 Hz, with everything that makes reading hard: uneven stamps, NaN, a sensor that is not there,
+/// commands that begin late, change one at a time and end.
+pub fn recording(samples: usize) -> Recording {
+    let time: Vec<f64> = (0..samples as i64)
+        .map(|i| (i * 2_000_000 + (i * 7919 % 40_000) * i64::from(i > 0)) as f64 / 1e9)
+        .collect();
+    let mut recording = Recording::unmeasured("made up", time, &["boom", "arm"]);
+    recording.start_nanoseconds = START;
+    for i in 0..samples {
+        let t = recording.time[i];
+        recording.pump_pressure[i] = 2e7 + 1e5 * (3.0 * t).sin();
+        recording.tank_pressure[i] = if i % 17 == 0 {
+            f64::NAN
+        } else {
+            2e5 + i as f64 / 3.0
+        };
+        recording.oil_temperature[i] = 40.0 + 0.1 * t;
+        for (k, cylinder) in recording.cylinders.iter_mut().enumerate() {
+            let phase = t + k as f64;
+            cylinder.displacement[i] = 0.1 * phase.sin();
+            cylinder.joint_angle[i] = phase.cos();
+            cylinder.cap_pressure[i] = 5e6 * (2.0 * phase).sin();
+            cylinder.rod_pressure[i] = f64::MIN_POSITIVE * i as f64;
+            cylinder.orifice_area[i] = -1e-4 * phase.cos();
+            cylinder.orifice_command[i] = match i / (10 * (k + 1)) {
+                0 => f64::NAN,
+                step if step % 7 == 3 => f64::NAN,
+                step => 1e-5 * (step % 5) as f64,
+            };
+        }
+    }
+    recording
+}
+
+/// Panics unless the recordings are equal bit for bit, `NaN` equal to `NaN`; the source is not compared.
+pub fn assert_equal(found: &Recording, expected: &Recording) {
+    let bits = |values: &[f64]| -> Vec<u64> {
+        values
+            .iter()
+            .map(|value| {
+                if value.is_nan() {
+                    f64::NAN.to_bits()
+                } else {
+                    value.to_bits()
+                }
+            })
+            .collect()
+    };
+    assert_eq!(found.start_nanoseconds, expected.start_nanoseconds);
+    assert_eq!(bits(&found.time), bits(&expected.time), "time");
+    let (found, expected) = (found.signals(), expected.signals());
+    assert_eq!(found.len(), expected.len(), "number of signals");
+    for ((name, values), (expected_name, expected_values)) in found.into_iter().zip(expected) {
+        assert_eq!(name, expected_name);
+        assert_eq!(bits(values), bits(expected_values), "{name}");
+    }
+}
+
+/// Writes a recording with small chunks and gives the path of its MCAP file.
+pub fn write_small_chunks(
+    folder: &Path,
+    recording: &Recording,
+    compression: Compression,
+) -> PathBuf {
+    let options = WriteOptions {
+        compression,
+        chunk_size: 16 * 1024,
+        ..WriteOptions::default()
+    };
+    write_recording(folder, recording, &Topics::default(), &options).unwrap();
+    mcap_file(folder)
+}
+
+/// The MCAP file of a folder that we wrote.
+pub fn mcap_file(folder: &Path) -> PathBuf {
+    folder.join(format!(
+        "{}_0.mcap",
+        folder.file_name().unwrap().to_string_lossy()
+    ))
+}
+
+/// A state message of the given cylinders with recognisable numbers.
+pub fn state(nanoseconds: i64, cylinders: &[&str]) -> ArmState {
+    ArmState {
+        header: header(nanoseconds),
+        cylinders: cylinders
+            .iter()
+            .map(|name| CylinderState {
+                displacement: nanoseconds as f64,
+                ..CylinderState::unmeasured(name)
+            })
+            .collect(),
+        pump_pressure: 1.0,
+        tank_pressure: 2.0,
+        pump_flow: 3.0,
+        oil_temperature: 4.0,
+    }
+}
+
+/// A command.
+pub fn command(nanoseconds: i64, names: &[&str], areas: &[f64]) -> OrificeCommand {
+    OrificeCommand {
+        header: header(nanoseconds),
+        names: names.iter().map(ToString::to_string).collect(),
+        areas: areas.to_vec(),
+    }
+}
+
+/// A header with this stamp, ns.
+pub fn header(nanoseconds: i64) -> Header {
+    Header {
+        stamp: Time::from_nanoseconds(nanoseconds).unwrap(),
+        frame_id: String::new(),
+    }
+}
+
+/// Writes one message at log time 0: what counts are the stamps.
+pub fn add<M: Message>(bag: &mut BagWriter, topic: &str, message: &M) {
+    let id = bag
+        .add_topic(&TopicToWrite::of::<M>(topic, Qos::reliable(10)))
+        .unwrap();
+    bag.write(id, 0, 0, &cdr::encode(message).unwrap()).unwrap();
+}
+
+/// The folder of other people's files, or `None` with a line that says what is skipped.
+pub fn shared(what: &str) -> Option<PathBuf> {
+    let root = match std::env::var_os("EXCAVATOR_SHARED") {
+        Some(path) => PathBuf::from(path),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
+    };
+    let path = root.join(what);
+    if path.exists() {
+        return Some(path);
+    }
+    eprintln!(
+        "skipped: {} does not exist (set EXCAVATOR_SHARED to the folder of shared files)",
+        path.display()
+    );
+    None
+}

@@ -1,0 +1,206 @@
+//! What a `ros2msg` definition says about the order and the types of the bytes of a message.
+//!
+//! A bag carries the definition that its messages were written with. Comparing the layouts of that definition and of
+//! ours tells whether we can decode it, however the two differ in comments and blank lines.
+
+use std::collections::HashMap;
+
+use crate::definitions;
+
+/// More fields than any sane message has; a definition that nests itself stops here.
+const FIELD_LIMIT: usize = 10_000;
+/// Deeper than any sane message nests.
+const DEPTH_LIMIT: usize = 32;
+
+/// The types that contain no other.
+const PRIMITIVES: [&str; 15] = [
+    "bool", "byte", "char", "float32", "float64", "int8", "uint8", "int16", "uint16", "int32",
+    "uint32", "int64", "uint64", "string", "wstring",
+];
+
+/// One field of a message definition.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Field {
+    /// Type as written, with array suffix: `float64[]`, `std_msgs/Header`, `string<=10`.
+    pub type_name: String,
+    /// Name of the field; dotted with `[]` for array elements after [`flat_fields`]: `cylinders[].name`.
+    pub name: String,
+}
+
+impl Field {
+    /// The type without array suffix and string bound.
+    pub fn base_type(&self) -> &str {
+        self.type_name.split(['[', '<']).next().unwrap_or_default()
+    }
+
+    /// The array suffix, `""` for a single value: `[]`, `[3]`, `[<=5]`.
+    pub fn array_suffix(&self) -> &str {
+        self.type_name
+            .find('[')
+            .map_or("", |at| &self.type_name[at..])
+    }
+
+    /// Whether the type contains no other type.
+    pub fn is_primitive(&self) -> bool {
+        PRIMITIVES.contains(&self.base_type())
+    }
+}
+
+/// `package/Type` of a name that may be written `package/msg/Type`.
+pub fn short_name(type_name: &str) -> String {
+    type_name.replacen("/msg/", "/", 1)
+}
+
+/// The package of `package/Type`, `""` when there is none.
+pub fn package(short_name: &str) -> &str {
+    short_name
+        .split_once('/')
+        .map_or("", |(package, _)| package)
+}
+
+/// Full short name of the type that a definition of `package` refers to.
+pub fn resolve(type_name: &str, package: &str) -> String {
+    if type_name.contains('/') {
+        short_name(type_name)
+    } else {
+        format!("{package}/{type_name}")
+    }
+}
+
+/// The fields of one definition in order; comments, blank lines and constants are left out.
+pub fn fields(text: &str) -> Vec<Field> {
+    let mut fields = Vec::new();
+    for line in text.lines() {
+        let line = line.split('#').next().unwrap_or_default();
+        let mut words = line.split_whitespace();
+        let (Some(type_name), Some(name)) = (words.next(), words.next()) else {
+            continue;
+        };
+        let constant = name.contains('=') || words.next().is_some_and(|word| word.starts_with('='));
+        if !constant {
+            fields.push(Field {
+                type_name: type_name.to_string(),
+                name: name.to_string(),
+            });
+        }
+    }
+    fields
+}
+
+/// All primitive fields of a schema in the order of their bytes, with the fields of contained types in their place.
+///
+/// Types that the schema does not define are looked up in [`definitions`]; if unknown there too, the field stays as it
+/// is. Comments and spelling (`std_msgs/msg/Header` or `std_msgs/Header`) make no difference.
+pub fn flat_fields(type_name: &str, schema: &str) -> Vec<Field> {
+    let mut sections: HashMap<String, &str> = HashMap::new();
+    let mut parts = split_at_separators(schema).into_iter();
+    let root = parts.next().unwrap_or_default();
+    for part in parts {
+        if let Some((heading, text)) = part.trim_start().split_once('\n')
+            && let Some(name) = heading.trim().strip_prefix("MSG:")
+        {
+            sections.insert(short_name(name.trim()), text);
+        }
+    }
+    let mut flat = Vec::new();
+    flatten(
+        &sections,
+        root,
+        package(&short_name(type_name)),
+        "",
+        0,
+        &mut flat,
+    );
+    flat
+}
+
+fn flatten(
+    sections: &HashMap<String, &str>,
+    text: &str,
+    package_name: &str,
+    path: &str,
+    depth: usize,
+    flat: &mut Vec<Field>,
+) {
+    for field in fields(text) {
+        if flat.len() >= FIELD_LIMIT {
+            return;
+        }
+        let name = format!("{path}{}", field.name);
+        let contained = resolve(field.base_type(), package_name);
+        let text = sections
+            .get(&contained)
+            .copied()
+            .or_else(|| definitions::message_text(&contained));
+        match text {
+            Some(text) if !field.is_primitive() && depth < DEPTH_LIMIT => {
+                let path = format!("{name}{}.", field.array_suffix());
+                flatten(sections, text, package(&contained), &path, depth + 1, flat);
+            }
+            _ => flat.push(Field {
+                type_name: field.type_name,
+                name,
+            }),
+        }
+    }
+}
+
+/// Parts of a schema between lines of `=`. Any run of at least ten counts: not every writer gets the 80 right.
+fn split_at_separators(schema: &str) -> Vec<&str> {
+    let mut parts = Vec::new();
+    let mut start = 0;
+    let mut position = 0;
+    for line in schema.split_inclusive('\n') {
+        let content = line.trim();
+        if content.len() >= 10 && content.bytes().all(|byte| byte == b'=') {
+            parts.push(&schema[start..position]);
+            start = position + line.len();
+        }
+        position += line.len();
+    }
+    parts.push(&schema[start..]);
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(fields: &[Field]) -> Vec<String> {
+        fields
+            .iter()
+            .map(|field| format!("{} {}", field.type_name, field.name))
+            .collect()
+    }
+
+    #[test]
+    fn comments_constants_and_defaults_are_no_fields() {
+        let text = "# a comment\nint32 LIMIT=3\nint32 OTHER = 4\n\nfloat64 x 1.5 # m\nstring<=10[3] names\n";
+        let found = fields(text);
+        assert_eq!(names(&found), ["float64 x", "string<=10[3] names"]);
+        assert_eq!(found[1].base_type(), "string");
+        assert_eq!(found[1].array_suffix(), "[3]");
+    }
+
+    #[test]
+    fn contained_types_are_replaced_by_their_fields() {
+        let schema = "a_msgs/B[] many\nstd_msgs/msg/Header header\n====================\nMSG: a_msgs/B\nC c\n\
+                      ====================\nMSG: a_msgs/C\nbool yes";
+        let flat = flat_fields("a_msgs/msg/A", schema);
+        assert_eq!(
+            names(&flat),
+            [
+                "bool many[].c.yes",
+                "int32 header.stamp.sec",
+                "uint32 header.stamp.nanosec",
+                "string header.frame_id"
+            ]
+        );
+    }
+
+    #[test]
+    fn a_definition_that_contains_itself_twice_comes_to_an_end() {
+        let schema = "A a\nA b\n====================\nMSG: p/A\nA a\nA b\n";
+        assert!(flat_fields("p/A", schema).len() <= FIELD_LIMIT);
+    }
+}
