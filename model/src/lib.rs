@@ -18,4 +18,5 @@ pub mod recording;
 pub mod scalar;
 pub mod simulation;
 
+pub use model::site_name;
 pub use model::{HistoryEntry, Model, ModelEffect, ModelError, Parameter, SignalError};

@@ -17,12 +17,20 @@ pub(super) struct SegmentSums {
     pub squared_errors: Vec<f64>,
     /// Number of readings of each instrument.
     pub counts: Vec<usize>,
+    /// J' r of each block of the segment, after eliminating the initial state; they add up to the gradient.
+    pub block_gradients: Vec<DVector<f64>>,
+    /// Sum of squared errors and number of readings of each instrument in each block.
+    pub block_errors: Vec<Vec<(f64, usize)>>,
     /// Penalty that keeps the initial state near where it was measured.
     pub prior_loss: f64,
     state_information: DMatrix<f64>,
     cross_information: DMatrix<f64>,
     state_gradient: DVector<f64>,
 }
+
+/// Length of the blocks whose gradients are taken as independent in standard errors, s: longer than any correlation of
+/// an arm's errors but drift, and short enough to give many blocks.
+const BLOCK_DURATION: f64 = 0.5;
 
 /// How far an initial state may reasonably be from where the first samples put it; weak, so that it only decides where
 /// nothing is measured.
@@ -86,7 +94,15 @@ impl Shared<'_, '_> {
             .map(|instrument| recording.recording.signal(&instrument.name).unwrap_or(&[]))
             .collect();
         let mut row = vec![0.0; columns];
+        let mut blocks: Vec<DVector<f64>> = Vec::new();
+        let mut block_errors: Vec<Vec<(f64, usize)>> = Vec::new();
+        let start = recording.recording.time[segment.first];
         for index in segment.first..=segment.last {
+            let block = ((recording.recording.time[index] - start) / BLOCK_DURATION) as usize;
+            while blocks.len() <= block {
+                blocks.push(DVector::zeros(columns));
+                block_errors.push(vec![(0.0, 0); self.instruments.len()]);
+            }
             for (number, instrument) in self.instruments.iter().enumerate() {
                 let measured = signals[number].get(index).copied().unwrap_or(f64::NAN);
                 if !measured.is_finite() {
@@ -95,6 +111,8 @@ impl Shared<'_, '_> {
                 let error = measured - instrument.reading(self.system, &state);
                 squared_errors[number] += error * error;
                 counts[number] += 1;
+                block_errors[block][number].0 += error * error;
+                block_errors[block][number].1 += 1;
                 let weight = 1.0 / self.weights[number];
                 let [(a, by_a), (b, by_b)] = instrument.gradient(self.system, &state);
                 for (column, slot) in row.iter_mut().enumerate() {
@@ -108,7 +126,7 @@ impl Shared<'_, '_> {
                 let scaled_error = error * weight;
                 for column in 0..columns {
                     let value = row[column];
-                    gradient[column] += value * scaled_error;
+                    blocks[block][column] += value * scaled_error;
                     for other in column..columns {
                         information[(other, column)] += value * row[other];
                     }
@@ -123,6 +141,9 @@ impl Shared<'_, '_> {
                 information[(column, other)] = information[(other, column)];
             }
         }
+        for block in &blocks {
+            gradient += block;
+        }
         let mut prior_loss = 0.0;
         for index in 0..states {
             let inverse = 1.0 / (self.prior.spread[index] * self.prior.spread[index]);
@@ -131,7 +152,9 @@ impl Shared<'_, '_> {
             gradient[fitted + index] += away * inverse;
             prior_loss += away * away * inverse;
         }
-        Ok(SegmentSums::eliminate(fitted, &information, &gradient, squared_errors, counts, prior_loss))
+        let mut sums = SegmentSums::eliminate(fitted, &information, &gradient, &blocks, prior_loss);
+        (sums.squared_errors, sums.counts, sums.block_errors) = (squared_errors, counts, block_errors);
+        Ok(sums)
     }
 }
 
@@ -140,8 +163,7 @@ impl SegmentSums {
         fitted: usize,
         information: &DMatrix<f64>,
         gradient: &DVector<f64>,
-        squared_errors: Vec<f64>,
-        counts: Vec<usize>,
+        blocks: &[DVector<f64>],
         prior_loss: f64,
     ) -> Self {
         let states = gradient.len() - fitted;
@@ -151,8 +173,10 @@ impl SegmentSums {
         let mut sums = SegmentSums {
             information: information.view((0, 0), (fitted, fitted)).into_owned(),
             gradient: gradient.rows(0, fitted).into_owned(),
-            squared_errors,
-            counts,
+            squared_errors: Vec::new(),
+            counts: Vec::new(),
+            block_errors: Vec::new(),
+            block_gradients: blocks.iter().map(|block| block.rows(0, fitted).into_owned()).collect(),
             prior_loss,
             state_information,
             cross_information,
@@ -161,6 +185,10 @@ impl SegmentSums {
         if let Some(factor) = sums.state_information.clone().cholesky() {
             sums.information -= sums.cross_information.transpose() * factor.solve(&sums.cross_information);
             sums.gradient -= sums.cross_information.transpose() * factor.solve(&sums.state_gradient);
+            for (reduced, block) in sums.block_gradients.iter_mut().zip(blocks) {
+                let states = block.rows(fitted, states).into_owned();
+                *reduced -= sums.cross_information.transpose() * factor.solve(&states);
+            }
         }
         sums
     }

@@ -47,8 +47,8 @@ pub struct Fit {
     pub instruments: Vec<Instrument>,
     /// Root mean square error of each instrument, in its unit.
     pub errors: Vec<f64>,
-    /// Sum of squared errors and number of readings per segment and instrument.
-    pub segment_errors: Vec<Vec<(f64, usize)>>,
+    /// Sum of squared errors and number of readings per block of half a second and instrument.
+    pub block_errors: Vec<Vec<(f64, usize)>>,
     /// Gauss-Newton steps taken.
     pub steps: usize,
     /// Whether the last step was too small to matter.
@@ -284,30 +284,30 @@ fn result(
             (squares / count.max(1) as f64).sqrt()
         })
         .collect();
-    let segment_errors = state
-        .sums
-        .iter()
-        .map(|segment| segment.squared_errors.iter().copied().zip(segment.counts.iter().copied()).collect())
-        .collect();
-    Fit { model, fitted, covariance, instruments, errors, segment_errors, steps, converged }
+    let block_errors = state.sums.iter().flat_map(|segment| segment.block_errors.iter().cloned()).collect();
+    Fit { model, fitted, covariance, instruments, errors, block_errors, steps, converged }
 }
 
-/// Covariance that holds for coloured errors: segments are taken as independent, errors inside one may be correlated in
-/// any way (cluster-robust "sandwich", Liang and Zeger 1986), with the small-sample factor n/(n - p) on the clusters.
+/// Covariance that holds for coloured errors: blocks of half a second are taken as independent, errors inside one may be
+/// correlated in any way (cluster-robust "sandwich", Liang and Zeger 1986), with the factor n/(n - p) on the blocks.
 fn clustered_covariance(sums: &[SegmentSums], scales: &[f64]) -> DMatrix<f64> {
     let fitted = scales.len();
     let mut information = DMatrix::<f64>::zeros(fitted, fitted);
     let mut meat = DMatrix::<f64>::zeros(fitted, fitted);
+    let mut blocks = 0.0;
     for segment in sums {
         information += &segment.information;
-        meat += &segment.gradient * segment.gradient.transpose();
+        for block in &segment.block_gradients {
+            meat += block * block.transpose();
+            blocks += 1.0;
+        }
     }
     let Some(factor) = information.clone().cholesky() else {
         return DMatrix::from_element(fitted, fitted, f64::INFINITY);
     };
     let inverse = factor.inverse();
-    let clusters = sums.len() as f64;
-    let correction = if clusters > 1.0 { clusters / (clusters - 1.0) } else { 1.0 };
+    let parameters = fitted as f64;
+    let correction = if blocks > parameters { blocks / (blocks - parameters) } else { f64::INFINITY };
     let mut covariance = &inverse * meat * &inverse * correction;
     // White-noise theory is a lower bound that few clusters can fall below by chance.
     for index in 0..fitted {

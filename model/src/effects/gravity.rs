@@ -61,6 +61,19 @@ impl Physics for Gravity {
         }
     }
 
+    /// `-W g cos` of the link's absolute angle, zero at level ([A] Eq. 9); `Fg q` for a linear load.
+    fn potential<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>) -> Option<T> {
+        let Site::Cylinder(cylinder) = site else { return None };
+        let joint = now.pistons[cylinder].joint;
+        let angle = match (now.machine.mechanism, cylinder) {
+            (Mechanism::LinearLoad, _) => return Some(parameters[0] * joint),
+            (Mechanism::SingleLink { base_angle }, _) => joint + base_angle,
+            (Mechanism::TwoLink, 0) => joint,
+            (Mechanism::TwoLink, _) => now.pistons[0].joint + joint,
+        };
+        Some(-parameters[0] * now.machine.gravity * angle.cos())
+    }
+
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];

@@ -29,6 +29,12 @@ pub trait Physics: Sync {
         opening
     }
 
+    /// Potential energy in J that the effect stores by posture, for an effect whose whole torque follows from it;
+    /// `None` for all others. What an effect adds to the mass matrix needs no such word: it stores kinetic energy.
+    fn potential<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>) -> Option<T> {
+        None
+    }
+
     /// Adds the effect at `site` to the rows of the equations of motion.
     fn contribute<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>, _rows: &mut Rows<T>) {}
 }
@@ -44,6 +50,8 @@ pub trait Effect: Sync {
     fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual;
     fn opening_plain(&self, parameters: &[f64], opening: f64, maximum: f64) -> f64;
     fn opening_dual(&self, parameters: &[Dual], opening: Dual, maximum: f64) -> Dual;
+    fn potential_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>) -> Option<f64>;
+    fn potential_dual(&self, site: Site, parameters: &[Dual], now: &Situation<Dual>) -> Option<Dual>;
     fn contribute_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>, rows: &mut Rows<f64>);
     fn contribute_dual(&self, site: Site, parameters: &[Dual], now: &Situation<Dual>, rows: &mut Rows<Dual>);
 }
@@ -70,6 +78,12 @@ impl<P: Physics> Effect for P {
     fn opening_dual(&self, parameters: &[Dual], opening: Dual, maximum: f64) -> Dual {
         self.opening(parameters, opening, maximum)
     }
+    fn potential_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>) -> Option<f64> {
+        self.potential(site, parameters, now)
+    }
+    fn potential_dual(&self, site: Site, parameters: &[Dual], now: &Situation<Dual>) -> Option<Dual> {
+        self.potential(site, parameters, now)
+    }
     fn contribute_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>, rows: &mut Rows<f64>) {
         self.contribute(site, parameters, now, rows);
     }
@@ -89,6 +103,7 @@ impl std::fmt::Debug for dyn Effect {
 pub trait Number: Scalar {
     fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self;
     fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self;
+    fn potential(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>) -> Option<Self>;
     fn contribute(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>, rows: &mut Rows<Self>);
 }
 
@@ -98,6 +113,9 @@ impl Number for f64 {
     }
     fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self {
         effect.opening_plain(parameters, opening, maximum)
+    }
+    fn potential(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>) -> Option<Self> {
+        effect.potential_plain(site, parameters, now)
     }
     fn contribute(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>, rows: &mut Rows<Self>) {
         effect.contribute_plain(site, parameters, now, rows);
@@ -110,6 +128,9 @@ impl Number for Dual {
     }
     fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self {
         effect.opening_dual(parameters, opening, maximum)
+    }
+    fn potential(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>) -> Option<Self> {
+        effect.potential_dual(site, parameters, now)
     }
     fn contribute(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>, rows: &mut Rows<Self>) {
         effect.contribute_dual(site, parameters, now, rows);

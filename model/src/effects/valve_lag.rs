@@ -1,7 +1,6 @@
 //! Lag of the spool.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
-use crate::equations::Situation;
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
 use crate::machine::Machine;
 
 /// Lag of the spool.

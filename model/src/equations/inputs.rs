@@ -29,4 +29,13 @@ impl<T: Scalar> Inputs<T> {
             pump_flow: zero,
         }
     }
+
+    /// Takes over the values of `other`, which has as many cylinders, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.orifice_area.copy_from_slice(&other.orifice_area);
+        self.rod_force.copy_from_slice(&other.rod_force);
+        self.supply_pressure = other.supply_pressure;
+        self.tank_pressure = other.tank_pressure;
+        self.pump_flow = other.pump_flow;
+    }
 }

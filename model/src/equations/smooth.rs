@@ -10,10 +10,21 @@ pub const SLIP_SPEED: f64 = 1.0e-3;
 /// (about 10) puts the transition of a 1e-4 m² opening between 1 kPa and 10 kPa for mineral oil.
 pub const LAMINAR_PRESSURE: f64 = 2.0e3;
 
-/// `sgn(v)`, rounded over [`SLIP_SPEED`].
+/// `sgn(v)`, rounded over [`SLIP_SPEED`]: `tanh(v / SLIP_SPEED)`.
+///
+/// Written with one exponential and cut off where it has reached one: `num_dual` takes the hyperbolic sine and cosine
+/// apart, which overflow at 0.36 m/s and leave a derivative that is not a number.
 pub fn direction<T: Scalar>(velocity: T) -> T {
-    (velocity / SLIP_SPEED).tanh()
+    let ratio = velocity / SLIP_SPEED;
+    if ratio.value().abs() > FULL_SLIP {
+        return T::from(ratio.value().signum());
+    }
+    let excess = (ratio * 2.0).exp_m1();
+    excess / (excess + 2.0)
 }
+
+/// Ratio beyond which the hyperbolic tangent is one to the last digit of a double.
+const FULL_SLIP: f64 = 20.0;
 
 /// `sgn(x) sqrt|x|` of a pressure drop in Pa, made linear below [`LAMINAR_PRESSURE`]: `x / (x² + d²)^(1/4)`.
 ///

@@ -2,7 +2,8 @@
 
 use crate::equations::Inputs;
 use crate::machine::{Machine, Supply};
-use crate::recording::{CylinderSignals, Recording, denoised, is_measured};
+use super::spool_estimate::spool_estimate;
+use crate::recording::{CylinderSignals, Recording, is_measured};
 use crate::{Model, SignalError};
 
 /// How an input runs between its samples.
@@ -98,7 +99,10 @@ impl InputSignals {
     /// Inputs at `fraction` (0 to 1) of the way from sample `index` to the next, into `inputs`.
     pub fn between(&self, index: usize, fraction: f64, inputs: &mut Inputs<f64>) {
         let next = (index + 1).min(self.time.len().saturating_sub(1));
-        let line = |values: &[f64]| values[index] + fraction * (values[next] - values[index]);
+        // Exactly the next sample's value at its end, so that an integrator can see that nothing jumps there.
+        let line = |values: &[f64]| {
+            if fraction < 1.0 { values[index] + fraction * (values[next] - values[index]) } else { values[next] }
+        };
         for (slot, (interpolation, values)) in inputs.orifice_area.iter_mut().zip(&self.orifice_area) {
             *slot = match interpolation {
                 Interpolation::Linear => line(values),
@@ -124,7 +128,10 @@ fn supply_constants(machine: &Machine) -> (f64, f64) {
 
 fn orifice_input(signals: &CylinderSignals, time: &[f64]) -> Option<(Interpolation, Vec<f64>)> {
     if is_measured(&signals.orifice_area) {
-        return without_holes(time, &signals.orifice_area).map(|values| (Interpolation::Linear, denoised(&values)));
+        return without_holes(time, &signals.orifice_area).map(|measured| {
+            let spool = spool_estimate(time, &measured, &signals.orifice_command);
+            (Interpolation::Linear, spool)
+        });
     }
     // Before the first command the valve is taken to be closed: nobody has asked for anything.
     is_measured(&signals.orifice_command).then(|| {

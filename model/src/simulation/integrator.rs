@@ -7,9 +7,9 @@
 //! cannot make it fail to converge. `benches/simulation.rs` measures it against the solvers of `diffsol`, and
 //! `tests/reference_solutions.rs` checks it against them.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU};
 use thiserror::Error;
 
+use super::factors::Factors;
 use super::sensitivity::Sensitivity;
 use super::{InputSignals, Linearisation};
 use crate::equations::{Inputs, System, Workspace};
@@ -97,10 +97,13 @@ pub struct Integrator<'m, 's> {
     settings: Tolerances,
     workspace: Workspace<'m, f64>,
     linearisation: Linearisation<'m>,
-    linearisation_is_current: bool,
+    /// State and inputs of `linearisation`; the state is empty before the first.
+    linearised_at: (Vec<f64>, Inputs<f64>),
     inputs: Inputs<f64>,
     later_inputs: Inputs<f64>,
-    stages: [DVector<f64>; 4],
+    factors: Factors,
+    drift: Vec<f64>,
+    stages: [Vec<f64>; 4],
     trial: Vec<f64>,
     trial_rates: Vec<f64>,
     step: f64,
@@ -130,7 +133,7 @@ impl<'m, 's> Integrator<'m, 's> {
             // Effect states are openings in m²; a hundred-thousandth of a usual spool's.
             tolerances[first..first + states].fill(1e-9);
         }
-        let zeros = DVector::zeros(layout.len);
+        let zeros = vec![0.0; layout.len];
         Integrator {
             system,
             parameters: parameters.to_vec(),
@@ -138,9 +141,11 @@ impl<'m, 's> Integrator<'m, 's> {
             settings,
             workspace: system.workspace(),
             linearisation: Linearisation::new(system, sensitivity_parameters),
-            linearisation_is_current: false,
+            linearised_at: (Vec::new(), Inputs::zero(layout.joints)),
             inputs: Inputs::zero(layout.joints),
             later_inputs: Inputs::zero(layout.joints),
+            factors: Factors::new(layout.len),
+            drift: zeros.clone(),
             stages: [zeros.clone(), zeros.clone(), zeros.clone(), zeros],
             trial: vec![0.0; layout.len],
             trial_rates: vec![0.0; layout.len],
@@ -162,17 +167,12 @@ impl<'m, 's> Integrator<'m, 's> {
     ) -> Result<(), SimulationError> {
         let interval = signals.time[index + 1] - signals.time[index];
         let mut done = 0.0;
-        // A held input jumps at the sample, so what was linearised before it is stale there only for rates; the
-        // Jacobian is evaluated anew at each step, which covers both.
         while done < interval {
             let left = interval - done;
             let pieces = (left / self.step.min(self.settings.maximum_step)).ceil().max(1.0);
             let step = if pieces <= 1.0 { left } else { left / pieces };
             signals.between(index, done / interval, &mut self.inputs);
-            if !self.linearisation_is_current || done == 0.0 {
-                self.linearisation.evaluate(self.system, &self.parameters, state, &self.inputs);
-                self.linearisation_is_current = true;
-            }
+            self.linearise(state);
             let end = if pieces <= 1.0 { 1.0 } else { (done + step) / interval };
             signals.between(index, end, &mut self.later_inputs);
             let error = self.attempt(state, step);
@@ -191,14 +191,10 @@ impl<'m, 's> Integrator<'m, 's> {
                 sensitivity.begin(&self.linearisation);
             }
             state.copy_from_slice(&self.trial);
-            self.linearisation_is_current = false;
-            if sensitivity.is_some() {
+            if let Some(sensitivity) = sensitivity.as_deref_mut() {
                 std::mem::swap(&mut self.inputs, &mut self.later_inputs);
-                self.linearisation.evaluate(self.system, &self.parameters, state, &self.inputs);
-                self.linearisation_is_current = true;
-                if let Some(sensitivity) = sensitivity.as_deref_mut() {
-                    sensitivity.finish(&self.linearisation, step);
-                }
+                self.linearise(state);
+                sensitivity.finish(&self.linearisation, step);
             }
             done = if pieces <= 1.0 { interval } else { done + step };
             let growth = if error > 0.0 { (0.9 * error.powf(-1.0 / 3.0)).clamp(0.3, 4.0) } else { 4.0 };
@@ -207,30 +203,42 @@ impl<'m, 's> Integrator<'m, 's> {
         Ok(())
     }
 
+    /// Linearises at `state` and `self.inputs`, unless that is where it was done last: the end of a step with
+    /// sensitivities is the start of the next one, but for inputs that jump there or a state set by the caller.
+    fn linearise(&mut self, state: &[f64]) {
+        let (known_state, known_inputs) = &mut self.linearised_at;
+        if known_state == state && *known_inputs == self.inputs {
+            return;
+        }
+        self.linearisation.evaluate(self.system, &self.parameters, state, &self.inputs);
+        known_state.clear();
+        known_state.extend_from_slice(state);
+        known_inputs.copy_from(&self.inputs);
+    }
+
     /// One Rodas3 step of length `step` from `state` into `self.trial`; returns the error in units of the tolerance.
     fn attempt(&mut self, state: &[f64], step: f64) -> f64 {
         let states = state.len();
-        let mut matrix = -&self.linearisation.by_state;
-        for index in 0..states {
-            matrix[(index, index)] += 1.0 / (GAMMA * step);
-        }
-        let factors: LU<f64, Dyn, Dyn> = matrix.lu();
+        self.factors.factorise(1.0 / (GAMMA * step), 1.0, self.linearisation.by_state.as_slice());
+        let factors = &self.factors;
 
         // The input's drift over the step, as the secant of the rates: exact where rates are linear in the input.
         self.system.rates(&mut self.workspace, &self.parameters, state, &self.later_inputs, &mut self.trial_rates);
         let rates = &self.linearisation.rates;
-        let drift: DVector<f64> =
-            DVector::from_iterator(states, self.trial_rates.iter().zip(rates).map(|(late, now)| late - now));
+        let drift = &mut self.drift;
+        for ((drift, late), now) in drift.iter_mut().zip(&self.trial_rates).zip(rates) {
+            *drift = late - now;
+        }
 
         let [k1, k2, k3, k4] = &mut self.stages;
         for index in 0..states {
             k1[index] = rates[index] + GAMMA * drift[index];
         }
-        factors.solve_mut(k1);
+        factors.solve(k1);
         for index in 0..states {
             k2[index] = rates[index] + 1.5 * drift[index] + 4.0 / step * k1[index];
         }
-        factors.solve_mut(k2);
+        factors.solve(k2);
         for index in 0..states {
             self.trial[index] = state[index] + 2.0 * k1[index];
         }
@@ -244,7 +252,7 @@ impl<'m, 's> Integrator<'m, 's> {
         for index in 0..states {
             k3[index] = self.trial_rates[index] + (k1[index] - k2[index]) / step;
         }
-        factors.solve_mut(k3);
+        factors.solve(k3);
         for index in 0..states {
             self.trial[index] = state[index] + 2.0 * k1[index] + k3[index];
         }
@@ -258,7 +266,7 @@ impl<'m, 's> Integrator<'m, 's> {
         for index in 0..states {
             k4[index] = self.trial_rates[index] + (k1[index] - k2[index] - 8.0 / 3.0 * k3[index]) / step;
         }
-        factors.solve_mut(k4);
+        factors.solve(k4);
         let mut sum = 0.0;
         for index in 0..states {
             self.trial[index] += k4[index];

@@ -1,5 +1,6 @@
 //! From a model and its inputs to a trajectory, with sensitivities where wanted.
 
+mod factors;
 mod initial;
 mod input_signals;
 mod integrator;
@@ -7,6 +8,7 @@ mod linearisation;
 mod profile;
 mod run;
 mod sensitivity;
+mod spool_estimate;
 
 pub use initial::initial_state;
 pub use input_signals::{InputSignals, Interpolation};

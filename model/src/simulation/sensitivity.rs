@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::Linearisation;
+use super::factors::Factors;
 use crate::equations::System;
 use crate::scalar::{constant, derivative, variable};
 
@@ -18,6 +19,12 @@ pub struct Sensitivity {
     parameters: usize,
     start_by_state: DMatrix<f64>,
     start_by_parameter: DMatrix<f64>,
+    middle_by_state: Vec<f64>,
+    factors: Factors,
+    /// The sensitivities, row-major, so that one row operation runs over all parameters and initial states at once.
+    old: Vec<f64>,
+    /// The stage that is being solved for, row-major.
+    stage: Vec<f64>,
 }
 
 impl Sensitivity {
@@ -32,6 +39,10 @@ impl Sensitivity {
             parameters,
             start_by_state: DMatrix::zeros(states, states),
             start_by_parameter: DMatrix::zeros(states, parameters),
+            middle_by_state: vec![0.0; states * states],
+            factors: Factors::new(states),
+            old: vec![0.0; states * (parameters + states)],
+            stage: vec![0.0; states * (parameters + states)],
         }
     }
 
@@ -46,35 +57,52 @@ impl Sensitivity {
         /// Where TR-BDF2 puts its middle stage: 2 - sqrt 2 makes both stages share one coefficient.
         const MIDDLE: f64 = 2.0 - std::f64::consts::SQRT_2;
         let weight = MIDDLE / 2.0 * step;
-        let states = self.matrix.nrows();
-        let identity_minus = |jacobian: DMatrix<f64>| {
-            let mut matrix = jacobian * -weight;
-            for state in 0..states {
-                matrix[(state, state)] += 1.0;
-            }
-            matrix.lu()
-        };
-        let middle_by_state = &self.start_by_state * (1.0 - MIDDLE) + &linearisation.by_state * MIDDLE;
-        let mut middle = &self.matrix + &self.start_by_state * &self.matrix * weight;
-        for column in 0..self.parameters {
-            for state in 0..states {
-                let start = self.start_by_parameter[(state, column)];
-                let end = linearisation.by_parameter[(state, column)];
-                middle[(state, column)] += weight * (start * (2.0 - MIDDLE) + end * MIDDLE);
+        let (states, columns) = self.matrix.shape();
+        let Sensitivity { matrix, start_by_state, start_by_parameter, middle_by_state, factors, old, stage, .. } = self;
+
+        for row in 0..states {
+            for column in 0..columns {
+                old[row * columns + column] = matrix[(row, column)];
             }
         }
-        identity_minus(middle_by_state).solve_mut(&mut middle);
+        stage.copy_from_slice(old);
+        for row in 0..states {
+            let target = &mut stage[row * columns..(row + 1) * columns];
+            for (other, values) in old.chunks_exact(columns).enumerate() {
+                let factor = weight * start_by_state[(row, other)];
+                for (slot, value) in target.iter_mut().zip(values) {
+                    *slot += factor * value;
+                }
+            }
+            for (column, slot) in target[..self.parameters].iter_mut().enumerate() {
+                let (start, end) = (start_by_parameter[(row, column)], linearisation.by_parameter[(row, column)]);
+                *slot += weight * (start * (2.0 - MIDDLE) + end * MIDDLE);
+            }
+        }
+        let ends = start_by_state.iter().zip(&linearisation.by_state);
+        for (slot, (start, end)) in middle_by_state.iter_mut().zip(ends) {
+            *slot = start * (1.0 - MIDDLE) + end * MIDDLE;
+        }
+        factors.factorise(1.0, weight, middle_by_state);
+        factors.solve_side_by_side(stage, columns);
+
         let normal = 1.0 / (MIDDLE * (2.0 - MIDDLE));
-        let old = (1.0 - MIDDLE) * (1.0 - MIDDLE) * normal;
-        middle *= normal;
-        self.matrix *= -old;
-        self.matrix += middle;
-        for column in 0..self.parameters {
-            for state in 0..states {
-                self.matrix[(state, column)] += weight * linearisation.by_parameter[(state, column)];
+        let share = (1.0 - MIDDLE) * (1.0 - MIDDLE) * normal;
+        for (slot, old) in stage.iter_mut().zip(&*old) {
+            *slot = normal * *slot - share * old;
+        }
+        for (row, target) in stage.chunks_exact_mut(columns).enumerate() {
+            for (column, slot) in target[..self.parameters].iter_mut().enumerate() {
+                *slot += weight * linearisation.by_parameter[(row, column)];
             }
         }
-        identity_minus(linearisation.by_state.clone()).solve_mut(&mut self.matrix);
+        factors.factorise(1.0, weight, linearisation.by_state.as_slice());
+        factors.solve_side_by_side(stage, columns);
+        for row in 0..states {
+            for column in 0..columns {
+                matrix[(row, column)] = stage[row * columns + column];
+            }
+        }
     }
 }
 

@@ -1,0 +1,13 @@
+//! Which physical effect is missing: candidates, evidence, verdict.
+
+mod candidate;
+mod diagnose;
+mod evidence;
+mod residual_map;
+mod settings;
+
+pub use candidate::{Candidate, additions};
+pub use diagnose::{Diagnosis, DiagnosisError, Verdict, diagnose};
+pub use evidence::{Evidence, compare_losses};
+pub use residual_map::{Share, Unexplained, residual_map, unexplained};
+pub use settings::DiagnosisSettings;

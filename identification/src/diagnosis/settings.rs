@@ -1,0 +1,46 @@
+//! Thresholds of a verdict, with their reasons.
+
+use crate::fit::FitSettings;
+
+/// Settings of a diagnosis. Losses are mean logarithms of squared error over noise variance: 0 is pure noise, 0.7 twice
+/// the noise variance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DiagnosisSettings {
+    /// Fits of nominal and candidate models.
+    pub fit: FitSettings,
+    /// Least gain of validation loss that makes a candidate worth naming. An effect that lowers the mean squared error
+    /// by less than a fifth cannot be told from the small errors that every model has.
+    pub least_gain: f64,
+    /// Least number of standard errors by which that gain must differ from zero; 3.5 keeps the chance of one false name
+    /// among 26 candidates near 1 %.
+    pub least_significance: f64,
+    /// Candidates whose loss is within this of the best one's are tied with it.
+    pub tie_gain: f64,
+    /// Candidates whose loss differs from the best one's by fewer standard errors are tied with it.
+    pub tie_significance: f64,
+    /// A model whose loss is below this has nothing left to explain: its mean squared error is at most this many e-folds
+    /// above sensor noise.
+    pub adequate_loss: f64,
+    /// Or its normalised mean squared error, mean over signals, is below this: an engineer would not act on it.
+    pub adequate_error: f64,
+    /// Effects explain a recording when together they lower the loss at least by this (five times less squared error).
+    pub explained_gain: f64,
+    /// Most effects added one after the other.
+    pub most_effects: usize,
+}
+
+impl Default for DiagnosisSettings {
+    fn default() -> Self {
+        DiagnosisSettings {
+            fit: FitSettings::default(),
+            least_gain: 0.22,
+            least_significance: 3.5,
+            tie_gain: 0.1,
+            tie_significance: 2.0,
+            adequate_loss: 1.2,
+            adequate_error: 1e-3,
+            explained_gain: 1.6,
+            most_effects: 3,
+        }
+    }
+}

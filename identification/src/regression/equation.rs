@@ -1,0 +1,312 @@
+//! Each equation of motion as sampled terms, with derivatives by the parameters.
+
+use excavator_model::Model;
+use excavator_model::equations::{Inputs, Rows, System};
+use excavator_model::machine::Supply;
+use excavator_model::scalar::{DIRECTIONS, Dual, constant, derivative, variable};
+
+use super::Observation;
+
+/// Which equation of motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum EquationKind {
+    /// Torque balance of a joint.
+    Motion(usize),
+    /// Continuity of a cap side chamber.
+    CapContinuity(usize),
+    /// Continuity of a rod side chamber.
+    RodContinuity(usize),
+    /// Continuity of the pump line.
+    PumpContinuity,
+}
+
+impl EquationKind {
+    /// Name for people and JSON: `arm.motion`, `arm.cap_continuity`, `pump.continuity`.
+    pub fn name(&self, model: &Model) -> String {
+        let cylinder = |index: usize| model.machine.cylinders.get(index).map_or("?", |c| c.name.as_str());
+        match *self {
+            EquationKind::Motion(index) => format!("{}.motion", cylinder(index)),
+            EquationKind::CapContinuity(index) => format!("{}.cap_continuity", cylinder(index)),
+            EquationKind::RodContinuity(index) => format!("{}.rod_continuity", cylinder(index)),
+            EquationKind::PumpContinuity => "pump.continuity".to_string(),
+        }
+    }
+}
+
+/// Storage times a derivative of a measured quantity.
+#[derive(Debug, Clone)]
+pub struct Term {
+    /// Order of the derivative, 1 or 2.
+    pub order: usize,
+    /// The quantity at each sample, as measured.
+    pub quantity: Vec<f64>,
+    /// Storage c at each sample.
+    pub storage: Vec<f64>,
+    /// Its derivative by each fitted parameter; empty where it is zero throughout.
+    pub by_parameter: Vec<Vec<f64>>,
+}
+
+/// One equation: `sum of terms = rest`.
+#[derive(Debug, Clone)]
+pub struct Equation {
+    /// Which one.
+    pub kind: EquationKind,
+    /// Storage terms.
+    pub terms: Vec<Term>,
+    /// Forces (torques) or flows at each sample.
+    pub rest: Vec<f64>,
+    /// Their derivative by each fitted parameter; empty where it is zero throughout.
+    pub rest_by_parameter: Vec<Vec<f64>>,
+    /// Their derivative by what each sensor measures, in the order of [`Sensor::all`]: how noise enters.
+    pub rest_by_sensor: Vec<Vec<f64>>,
+}
+
+/// What a sensor measures that enters an equation's forces or flows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sensor {
+    /// Velocity of a cylinder's piston, from its displacement sensor.
+    Velocity(usize),
+    /// Cap side pressure.
+    CapPressure(usize),
+    /// Rod side pressure.
+    RodPressure(usize),
+    /// Spool opening.
+    Spool(usize),
+    /// Pump pressure.
+    PumpPressure,
+}
+
+impl Sensor {
+    /// All sensors of a machine with `cylinders` cylinders, in a fixed order.
+    pub fn all(cylinders: usize) -> Vec<Sensor> {
+        let of_cylinder = |c| [Sensor::Velocity(c), Sensor::CapPressure(c), Sensor::RodPressure(c), Sensor::Spool(c)];
+        (0..cylinders).flat_map(of_cylinder).chain([Sensor::PumpPressure]).collect()
+    }
+}
+
+/// Quantities of [`Rows`] at all samples, with derivatives by the parameters of the present pass.
+struct Track {
+    value: Vec<f64>,
+    by_parameter: Vec<Vec<f64>>,
+}
+
+impl Track {
+    fn new(samples: usize, parameters: usize) -> Self {
+        Track { value: vec![f64::NAN; samples], by_parameter: vec![Vec::new(); parameters] }
+    }
+
+    fn set(&mut self, sample: usize, number: &Dual, first: usize, last: usize) {
+        self.value[sample] = number.re;
+        for parameter in first..last {
+            let slope = derivative(number, parameter - first);
+            let column = &mut self.by_parameter[parameter];
+            if column.is_empty() {
+                if slope == 0.0 {
+                    continue;
+                }
+                column.resize(self.value.len(), 0.0);
+            }
+            column[sample] = slope;
+        }
+    }
+}
+
+/// All equations of a model along an observation, with derivatives by the parameters with indices `fitted`. States of
+/// effects (a lagging spool) are taken from `effect_states`, sample by sample. Samples where something is not measured
+/// are `NaN` in the equations that need it.
+pub fn equations(
+    system: &System<'_>,
+    observation: &Observation,
+    effect_states: &[Vec<f64>],
+    fitted: &[usize],
+) -> Vec<Equation> {
+    let model = system.model();
+    let layout = system.layout();
+    let (joints, samples) = (layout.joints, observation.time.len());
+    let chambers = layout.chambers;
+    let sensors = Sensor::all(joints);
+    let directions = fitted.len() + sensors.len();
+    let track = || Track::new(samples, directions);
+    let mut mass: Vec<Track> = (0..joints * joints).map(|_| track()).collect();
+    let mut torque: Vec<Track> = (0..joints).map(|_| track()).collect();
+    let mut flows: Vec<[Track; 2]> = (0..joints).map(|_| [track(), track()]).collect();
+    let mut compliances: Vec<[Track; 2]> = (0..joints).map(|_| [track(), track()]).collect();
+    let (mut pump_flow, mut pump_compliance) = (track(), track());
+
+    let values = model.parameter_values();
+    let mut parameters: Vec<Dual> = values.iter().map(|&value| constant(value)).collect();
+    let mut workspace = system.workspace::<Dual>();
+    let mut plain_inputs = Inputs::<f64>::zero(joints);
+    let mut inputs = Inputs::<Dual>::zero(joints);
+    let mut state = vec![constant(0.0); layout.len];
+    let mut rates = vec![constant(0.0); layout.len];
+    let passes = (0..directions).step_by(DIRECTIONS).map(|first| (first, (first + DIRECTIONS).min(directions)));
+    for (first, last) in passes {
+        for (slot, &value) in parameters.iter_mut().zip(&values) {
+            *slot = constant(value);
+        }
+        for number in first..last.min(fitted.len()) {
+            parameters[fitted[number]] = variable(values[fitted[number]], number - first);
+        }
+        for sample in 0..samples {
+            observation.inputs.between(sample, 0.0, &mut plain_inputs);
+            lift(&plain_inputs, &mut inputs);
+            for (index, cylinder) in observation.cylinders.iter().enumerate() {
+                let linkage = &model.machine.cylinders[index].linkage;
+                let joint = linkage.joint(cylinder.smooth_displacement[sample]);
+                state[layout.joint(index)] = constant(joint);
+                state[layout.rate(index)] = constant(cylinder.velocity[sample] / linkage.lever(joint));
+                if let (Some(cap), Some(rod)) = (layout.cap_pressure(index), layout.rod_pressure(index)) {
+                    state[cap] = constant(cylinder.smooth_pressures[0][sample]);
+                    state[rod] = constant(cylinder.smooth_pressures[1][sample]);
+                }
+            }
+            if let Some(pump) = layout.pump {
+                state[pump] = constant(observation.smooth_pump_pressure[sample]);
+            }
+            if let Some(states) = effect_states.get(sample) {
+                let start = layout.len - states.len();
+                for (slot, &value) in state[start..].iter_mut().zip(states) {
+                    *slot = constant(value);
+                }
+            }
+            for number in first.max(fitted.len())..last {
+                let direction = number - first;
+                let vary = |number: &mut Dual| *number = variable(number.re, direction);
+                match sensors[number - fitted.len()] {
+                    Sensor::Velocity(c) => vary(&mut state[layout.rate(c)]),
+                    Sensor::CapPressure(c) => layout.cap_pressure(c).into_iter().for_each(|i| vary(&mut state[i])),
+                    Sensor::RodPressure(c) => layout.rod_pressure(c).into_iter().for_each(|i| vary(&mut state[i])),
+                    Sensor::Spool(c) => vary(&mut inputs.orifice_area[c]),
+                    Sensor::PumpPressure => layout.pump.into_iter().for_each(|i| vary(&mut state[i])),
+                }
+            }
+            system.rates(&mut workspace, &parameters, &state, &inputs, &mut rates);
+            let rows: &Rows<Dual> = &workspace.rows;
+            for (slot, number) in mass.iter_mut().zip(&rows.mass) {
+                slot.set(sample, number, first, last);
+            }
+            for (index, piston) in workspace.situation.pistons.iter().enumerate() {
+                let drive = match model.machine.cylinders[index].chambers {
+                    Some(c) => piston.cap_pressure * c.cap_area - piston.rod_pressure * c.rod_area,
+                    None => piston.rod_force,
+                };
+                let total = rows.torque[index] + piston.lever * (rows.piston_force[index] + drive);
+                torque[index].set(sample, &total, first, last);
+                if chambers {
+                    flows[index][0].set(sample, &rows.cap_flow[index], first, last);
+                    flows[index][1].set(sample, &rows.rod_flow[index], first, last);
+                    compliances[index][0].set(sample, &rows.cap_compliance[index], first, last);
+                    compliances[index][1].set(sample, &rows.rod_compliance[index], first, last);
+                }
+            }
+            pump_flow.set(sample, &rows.pump_flow, first, last);
+            pump_compliance.set(sample, &rows.pump_compliance, first, last);
+        }
+    }
+
+    let parameters_only = |mut track: Track| {
+        track.by_parameter.truncate(fitted.len());
+        track
+    };
+    let split = |mut track: Track| {
+        let mut by_sensor = track.by_parameter.split_off(fitted.len());
+        for (sensor, column) in sensors.iter().zip(&mut by_sensor) {
+            if let Sensor::Velocity(c) = *sensor
+                && !column.is_empty()
+            {
+                // From joint rate to piston velocity.
+                let linkage = &model.machine.cylinders[c].linkage;
+                for (slope, &s) in column.iter_mut().zip(&observation.cylinders[c].smooth_displacement) {
+                    *slope /= linkage.lever(linkage.joint(s));
+                }
+            }
+        }
+        (track, by_sensor)
+    };
+    let mut equations = Vec::new();
+    let mut mass = mass.into_iter();
+    for (index, torque) in torque.into_iter().enumerate() {
+        let terms = mass
+            .by_ref()
+            .take(joints)
+            .enumerate()
+            .map(|(other, track)| (other, parameters_only(track)))
+            .map(|(other, track)| Term {
+                order: 2,
+                quantity: observation.cylinders[other].joint.clone(),
+                storage: track.value,
+                by_parameter: track.by_parameter,
+            })
+            .collect();
+        let (torque, rest_by_sensor) = split(torque);
+        equations.push(Equation {
+            kind: EquationKind::Motion(index),
+            terms,
+            rest: torque.value,
+            rest_by_parameter: torque.by_parameter,
+            rest_by_sensor,
+        });
+    }
+    for (index, (flows, compliances)) in flows.into_iter().zip(compliances).enumerate() {
+        let Some(constants) = model.machine.cylinders[index].chambers else { continue };
+        let cylinder = &observation.cylinders[index];
+        let sides = [
+            (EquationKind::CapContinuity(index), constants.cap_area),
+            (EquationKind::RodContinuity(index), -constants.rod_area),
+        ];
+        for (side, ((kind, area), (flow, compliance))) in sides.into_iter().zip(flows.into_iter().zip(compliances)).enumerate()
+        {
+            let compliance = parameters_only(compliance);
+            let (flow, rest_by_sensor) = split(flow);
+            let displaced = Term {
+                order: 1,
+                quantity: cylinder.displacement.clone(),
+                storage: vec![area; samples],
+                by_parameter: vec![Vec::new(); fitted.len()],
+            };
+            let compressed = Term {
+                order: 1,
+                quantity: cylinder.pressures[side].clone(),
+                storage: compliance.value,
+                by_parameter: compliance.by_parameter,
+            };
+            equations.push(Equation {
+                kind,
+                terms: vec![displaced, compressed],
+                rest: flow.value,
+                rest_by_parameter: flow.by_parameter,
+                rest_by_sensor,
+            });
+        }
+    }
+    if matches!(model.machine.supply, Supply::PumpLine(_)) {
+        let pump_compliance = parameters_only(pump_compliance);
+        let (pump_flow, rest_by_sensor) = split(pump_flow);
+        equations.push(Equation {
+            kind: EquationKind::PumpContinuity,
+            terms: vec![Term {
+                order: 1,
+                quantity: observation.pump_pressure.clone(),
+                storage: pump_compliance.value,
+                by_parameter: pump_compliance.by_parameter,
+            }],
+            rest: pump_flow.value,
+            rest_by_parameter: pump_flow.by_parameter,
+            rest_by_sensor,
+        });
+    }
+    equations
+}
+
+fn lift(plain: &Inputs<f64>, lifted: &mut Inputs<Dual>) {
+    for (slot, &value) in lifted.orifice_area.iter_mut().zip(&plain.orifice_area) {
+        *slot = constant(value);
+    }
+    for (slot, &value) in lifted.rod_force.iter_mut().zip(&plain.rod_force) {
+        *slot = constant(value);
+    }
+    lifted.supply_pressure = constant(plain.supply_pressure);
+    lifted.tank_pressure = constant(plain.tank_pressure);
+    lifted.pump_flow = constant(plain.pump_flow);
+}

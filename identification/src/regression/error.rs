@@ -1,0 +1,49 @@
+//! Why a regression gives no numbers.
+
+use excavator_model::SignalError;
+
+use crate::fit::FitError;
+
+/// Why a regression gives no numbers.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RegressionError {
+    /// The recordings do not give what the model needs.
+    #[error(transparent)]
+    Signal(#[from] SignalError),
+    /// The simulation that makes the instruments failed.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// No equation has all its signals.
+    #[error("{source_name}: no equation of {machine} has all its signals; {missing}")]
+    NoEquation {
+        /// The recordings.
+        source_name: String,
+        /// The machine.
+        machine: String,
+        /// What is not measured.
+        missing: String,
+    },
+    /// Too little data for the number of parameters.
+    #[error(
+        "{source_name}: {rows} usable windows for {parameters} parameters; at least {needed} are needed, so record longer, \
+         with motion"
+    )]
+    TooFewRows {
+        /// The recordings.
+        source_name: String,
+        /// Usable rows.
+        rows: usize,
+        /// Parameters asked for.
+        parameters: usize,
+        /// Rows needed.
+        needed: usize,
+    },
+    /// A combination of parameters does not show in the data.
+    #[error("{source_name}: these parameters cannot be told apart here: {}; vary speed, load and opening more", names.join(", "))]
+    NotIdentifiable {
+        /// The recordings.
+        source_name: String,
+        /// Parameters that take part in the combination.
+        names: Vec<String>,
+    },
+}

@@ -1,0 +1,21 @@
+//! Regression on the equations themselves: the paper's least squares, and the weak form with instruments.
+//!
+//! Every equation has the form `sum of c(t) x^(n)(t) = rest(t)`: storage (inertia, compliance, piston area) times a
+//! derivative of a measured quantity, against forces or flows. What stands in `c` and `rest`, and its derivative by each
+//! parameter, comes from the model's effects, so that a new effect needs no code here.
+
+mod equation;
+mod error;
+mod least_squares;
+mod observation;
+mod solution;
+mod weak_form;
+mod weak_row;
+mod window;
+
+pub use equation::{Equation, EquationKind, Sensor, Term, equations};
+pub use error::RegressionError;
+pub use least_squares::least_squares;
+pub use observation::{Observation, observe};
+pub use solution::{EquationGauge, Regression};
+pub use weak_form::{WeakFormSettings, WeakResidual, weak_form, weak_residuals};

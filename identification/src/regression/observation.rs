@@ -1,0 +1,116 @@
+//! The state along a recording, sample by sample.
+
+use excavator_model::Model;
+use excavator_model::recording::{CylinderSignals, Recording, denoised};
+use excavator_model::simulation::InputSignals;
+
+/// What is known of the state at each sample: raw where an equation differentiates it, smooth where it enters a formula.
+#[derive(Debug, Clone)]
+pub struct Observation {
+    /// Sample times, s.
+    pub time: Vec<f64>,
+    /// Inputs on the same clock.
+    pub inputs: InputSignals,
+    /// One entry per cylinder.
+    pub cylinders: Vec<CylinderObservation>,
+    /// Pump pressure as measured, Pa.
+    pub pump_pressure: Vec<f64>,
+    /// Pump pressure without noise, Pa.
+    pub smooth_pump_pressure: Vec<f64>,
+}
+
+/// What is known of one cylinder at each sample.
+#[derive(Debug, Clone)]
+pub struct CylinderObservation {
+    /// Joint coordinate from the displacement (or joint angle) as measured, rad or m.
+    pub joint: Vec<f64>,
+    /// Displacement as measured, m.
+    pub displacement: Vec<f64>,
+    /// Pressures as measured, Pa: cap side, rod side.
+    pub pressures: [Vec<f64>; 2],
+    /// Displacement without noise, m.
+    pub smooth_displacement: Vec<f64>,
+    /// Piston velocity, m/s: slope of the displacement unless measured.
+    pub velocity: Vec<f64>,
+    /// Pressures without noise, Pa.
+    pub smooth_pressures: [Vec<f64>; 2],
+}
+
+/// Half width of the parabola whose slope is the velocity, s. Averages 21 samples at 500 Hz; shorter than the fastest
+/// swing of an arm (0.1 s).
+const SLOPE_HALF_WIDTH: f64 = 0.02;
+
+/// The state along `recording`, as far as it is measured.
+///
+/// # Errors
+/// [`excavator_model::SignalError`] when the model's inputs are missing.
+pub fn observe(model: &Model, recording: &Recording) -> Result<Observation, excavator_model::SignalError> {
+    let inputs = InputSignals::from_recording(model, recording)?;
+    let mut cylinders = Vec::new();
+    for cylinder in &model.machine.cylinders {
+        let signals = recording.cylinder(&cylinder.name)?;
+        let displacement = displacement(signals, |joint| cylinder.linkage.displacement(joint));
+        let joint: Vec<f64> = displacement.iter().map(|&s| cylinder.linkage.joint(s)).collect();
+        let measured_velocity = signals.velocity.iter().any(|v| v.is_finite());
+        let (smooth_displacement, slope) = parabolas(&recording.time, &displacement);
+        cylinders.push(CylinderObservation {
+            joint,
+            smooth_displacement,
+            velocity: if measured_velocity { smooth(&signals.velocity) } else { slope },
+            smooth_pressures: [smooth(&signals.cap_pressure), smooth(&signals.rod_pressure)],
+            pressures: [signals.cap_pressure.clone(), signals.rod_pressure.clone()],
+            displacement,
+        });
+    }
+    Ok(Observation {
+        time: recording.time.clone(),
+        inputs,
+        cylinders,
+        smooth_pump_pressure: smooth(&recording.pump_pressure),
+        pump_pressure: recording.pump_pressure.clone(),
+    })
+}
+
+fn displacement(signals: &CylinderSignals, from_joint: impl Fn(f64) -> f64) -> Vec<f64> {
+    let pairs = signals.displacement.iter().zip(&signals.joint_angle);
+    pairs.map(|(&s, &q)| if s.is_finite() { s } else { from_joint(q) }).collect()
+}
+
+/// Without noise where all is measured, as it is where there are holes: windows with holes are left out anyway.
+fn smooth(signal: &[f64]) -> Vec<f64> {
+    if signal.iter().all(|value| value.is_finite()) { denoised(signal) } else { signal.to_vec() }
+}
+
+/// Value and slope, at each sample, of the least-squares parabola through the samples within [`SLOPE_HALF_WIDTH`].
+fn parabolas(time: &[f64], signal: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let mut values = Vec::with_capacity(signal.len());
+    let mut slopes = Vec::with_capacity(signal.len());
+    let (mut first, mut last) = (0, 0);
+    for &centre in time {
+        while time[first] < centre - SLOPE_HALF_WIDTH {
+            first += 1;
+        }
+        while last < time.len() && time[last] <= centre + SLOPE_HALF_WIDTH {
+            last += 1;
+        }
+        let (value, slope) = parabola(&time[first..last], &signal[first..last], centre).unwrap_or((f64::NAN, f64::NAN));
+        values.push(value);
+        slopes.push(slope);
+    }
+    (values, slopes)
+}
+
+fn parabola(time: &[f64], signal: &[f64], centre: f64) -> Option<(f64, f64)> {
+    let mut matrix = nalgebra::Matrix3::zeros();
+    let mut right = nalgebra::Vector3::zeros();
+    let origin = *signal.first()?;
+    for (&t, &value) in time.iter().zip(signal) {
+        // In units of the half width, so that the normal equations are well conditioned.
+        let x = (t - centre) / SLOPE_HALF_WIDTH;
+        let powers = nalgebra::Vector3::new(1.0, x, x * x);
+        matrix += powers * powers.transpose();
+        right += powers * (value - origin);
+    }
+    let solution = matrix.cholesky()?.solve(&right);
+    Some((solution[0] + origin, solution[1] / SLOPE_HALF_WIDTH))
+}

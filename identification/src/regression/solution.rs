@@ -1,0 +1,62 @@
+//! Results of a regression.
+
+use excavator_model::Model;
+use nalgebra::DMatrix;
+
+/// Result of a regression.
+#[derive(Debug, Clone)]
+pub struct Regression {
+    /// The model with the identified parameters and their standard errors.
+    pub model: Model,
+    /// Indices of the identified parameters, in the model's order.
+    pub fitted: Vec<usize>,
+    /// Their covariance, in their units.
+    pub covariance: DMatrix<f64>,
+    /// Condition number of each group of equations, unscaled as in [A] and with columns scaled to length one.
+    pub condition_numbers: Vec<ConditionNumber>,
+    /// Rows of the regression.
+    pub rows: usize,
+    /// How well each equation is met.
+    pub equations: Vec<EquationGauge>,
+    /// Parameters that take part in no equation whose signals are measured, with the reason.
+    pub not_identified: Vec<(usize, String)>,
+}
+
+/// Condition number of a group of equations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConditionNumber {
+    /// "mechanical", "hydraulic".
+    pub group: &'static str,
+    /// Of the regressor matrix as it is, in SI units.
+    pub unscaled: f64,
+    /// Of the regressor matrix with columns scaled to length one: what matters numerically.
+    pub scaled: f64,
+}
+
+/// How well an equation is met.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EquationGauge {
+    /// Name: `arm.motion`, `pump.continuity`.
+    pub equation: String,
+    /// Mean squared residual over what sensor noise explains; 1 when nothing is missing.
+    pub chi_squared_per_row: f64,
+    /// Share of the equation's own size that its residual has, root mean square.
+    pub relative_residual: f64,
+    /// Rows.
+    pub rows: usize,
+}
+
+/// Ratio of largest to smallest singular value of a matrix, as it is and with columns scaled to length one.
+pub(super) fn condition_numbers(matrix: &DMatrix<f64>) -> (f64, f64) {
+    let ratio = |singular: &nalgebra::DVector<f64>| singular.max() / singular.min();
+    let plain = matrix.clone().svd(false, false).singular_values;
+    let mut scaled = matrix.clone();
+    for mut column in scaled.column_iter_mut() {
+        let length = column.norm();
+        if length > 0.0 {
+            column /= length;
+        }
+    }
+    let scaled = scaled.svd(false, false).singular_values;
+    if plain.is_empty() { (f64::NAN, f64::NAN) } else { (ratio(&plain), ratio(&scaled)) }
+}

@@ -1,0 +1,55 @@
+//! Test functions of the weak form.
+
+/// A smooth bump `(1 - x²)^4` on `[-1, 1]`, zero with its first three derivatives at both ends, so that two partial
+/// integrations leave no boundary terms.
+fn bump(x: f64) -> [f64; 3] {
+    let y = 1.0 - x * x;
+    if y <= 0.0 {
+        return [0.0; 3];
+    }
+    let y2 = y * y;
+    [y2 * y2, -8.0 * x * y2 * y, -8.0 * y2 * y + 48.0 * x * x * y2]
+}
+
+/// One window on a clock: samples `first..last` with quadrature weights of the bump and its two derivatives.
+#[derive(Debug, Clone)]
+pub(super) struct Window {
+    pub first: usize,
+    /// Centre, s.
+    pub centre: f64,
+    /// For each sample: weights of value, first and second derivative (s, 1, 1/s).
+    pub weights: Vec<[f64; 3]>,
+}
+
+/// A gap in the clock longer than this many median intervals inside a window spoils its quadrature.
+const LARGEST_GAP: f64 = 4.0;
+
+/// Windows of half width `half_width` every `step` s along `time`, without those across gaps.
+pub(super) fn windows(time: &[f64], interval: f64, half_width: f64, step: f64) -> Vec<Window> {
+    let mut windows = Vec::new();
+    let (Some(&start), Some(&end)) = (time.first(), time.last()) else { return windows };
+    let mut centre = start + half_width;
+    while centre + half_width <= end {
+        let first = time.partition_point(|&t| t <= centre - half_width);
+        let last = time.partition_point(|&t| t < centre + half_width);
+        let inside = &time[first..last];
+        let whole = inside.len() >= 8 && inside.windows(2).all(|pair| pair[1] - pair[0] <= LARGEST_GAP * interval);
+        if whole {
+            let weights = inside
+                .iter()
+                .enumerate()
+                .map(|(index, &t)| {
+                    // Trapezoidal weights on the clock as it is; the bump vanishes at the ends, where it is exact.
+                    let before = if index > 0 { t - inside[index - 1] } else { interval };
+                    let after = inside.get(index + 1).map_or(interval, |next| next - t);
+                    let weight = (before + after) / 2.0;
+                    let [value, slope, curvature] = bump((t - centre) / half_width);
+                    [value * weight, slope * weight / half_width, curvature * weight / (half_width * half_width)]
+                })
+                .collect();
+            windows.push(Window { first, centre, weights });
+        }
+        centre += step;
+    }
+    windows
+}

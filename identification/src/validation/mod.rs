@@ -1,0 +1,9 @@
+//! How far a model is from a measurement.
+
+mod compare;
+mod measures;
+mod phase;
+
+pub use compare::{Comparison, SignalComparison, compare, measured_velocity};
+pub use measures::{fit_percent, normalised_mean_squared_error};
+pub use phase::{dominant_frequency, phase_delay_degrees};

@@ -1,0 +1,188 @@
+//! From a state to its ledger.
+
+use super::{CylinderStorage, EffectPower, Ledger, OilEnergy};
+use crate::effects::{Number, Site};
+use crate::equations::{Inputs, Situation, System, Workspace};
+use crate::machine::Supply;
+
+/// Storage and powers of a model at one instant: parameters in the model's order, state in the order of its layout.
+pub fn ledger<'m, T: Number>(
+    system: &System<'m>,
+    parameters: &[T],
+    state: &[T],
+    inputs: &Inputs<T>,
+) -> Ledger<T> {
+    let zero = T::from(0.0);
+    let mut workspace = system.workspace();
+    let mut rates = vec![zero; state.len()];
+    // The rows are evaluated too: the mass matrix gives the kinetic energy.
+    system.rates(&mut workspace, parameters, state, inputs, &mut rates);
+    let mut account = Account { system, parameters, workspace };
+
+    let mut cylinders = account.mechanical_storage();
+    let mut potentials = Vec::with_capacity(cylinders.len());
+    for (index, storage) in cylinders.iter_mut().enumerate() {
+        let piston = account.workspace.situation.pistons[index];
+        if account.workspace.situation.chambers(index).is_none() {
+            potentials.push((zero, zero));
+            continue;
+        }
+        let cap = account.oil(Oil::Cap(index), piston.cap_pressure, piston.cap_volume);
+        let rod = account.oil(Oil::Rod(index), piston.rod_pressure, piston.rod_volume);
+        storage.cap_internal = cap.stored * piston.cap_volume;
+        storage.rod_internal = rod.stored * piston.rod_volume;
+        potentials.push((cap.potential, rod.potential));
+    }
+    let supply_pressure = account.workspace.situation.pump_pressure;
+    let (pump_line, pump_potential) = match system.model().machine.supply {
+        Supply::PumpLine(line) => {
+            let oil = account.oil(Oil::PumpLine, supply_pressure, T::from(line.volume));
+            (oil.stored * line.volume, oil.potential)
+        }
+        // A pressure given from outside has no volume that could store anything.
+        Supply::MeasuredPressure => (zero, supply_pressure),
+        Supply::None => (zero, zero),
+    };
+    let effects = account.effect_powers(&potentials, pump_potential);
+
+    let pump_power = match system.model().machine.supply {
+        Supply::PumpLine(_) => pump_potential * inputs.pump_flow,
+        Supply::MeasuredPressure | Supply::None => {
+            effects.iter().fold(zero, |sum, effect| sum - effect.pump_line)
+        }
+    };
+    let pistons = account.workspace.situation.pistons.iter().zip(&system.model().machine.cylinders);
+    let rod_force_power = pistons
+        .filter(|(_, cylinder)| cylinder.chambers.is_none())
+        .fold(zero, |sum, (piston, _)| sum + piston.rod_force * piston.velocity);
+    Ledger { cylinders, pump_line, effects, pump_power, rod_force_power }
+}
+
+/// One volume of oil.
+#[derive(Clone, Copy)]
+enum Oil {
+    Cap(usize),
+    Rod(usize),
+    PumpLine,
+}
+
+impl Oil {
+    fn set_pressure<T>(self, situation: &mut Situation<'_, T>, pressure: T) {
+        match self {
+            Oil::Cap(index) => situation.pistons[index].cap_pressure = pressure,
+            Oil::Rod(index) => situation.pistons[index].rod_pressure = pressure,
+            Oil::PumpLine => situation.pump_pressure = pressure,
+        }
+    }
+}
+
+struct Account<'m, 'a, T> {
+    system: &'a System<'m>,
+    parameters: &'a [T],
+    workspace: Workspace<'m, T>,
+}
+
+impl<T: Number> Account<'_, '_, T> {
+    /// What effect `number` alone adds to the rows.
+    fn contribute_alone(&mut self, number: usize) {
+        self.workspace.rows.clear();
+        let effect = &self.system.model().effects[number];
+        let (first, last) = self.system.parameter_ranges()[number];
+        let Workspace { situation, rows, .. } = &mut self.workspace;
+        T::contribute(effect.physics, effect.site, &self.parameters[first..last], situation, rows);
+    }
+
+    /// Kinetic and potential energy of each joint, [A] Eq. 9, from rows that all effects have added to.
+    fn mechanical_storage(&self) -> Vec<CylinderStorage<T>> {
+        let zero = T::from(0.0);
+        let Workspace { situation, rows, .. } = &self.workspace;
+        let mut storage: Vec<CylinderStorage<T>> = (0..situation.pistons.len())
+            .map(|row| {
+                let momentum = (0..situation.pistons.len())
+                    .fold(zero, |sum, column| sum + rows.mass_at(row, column) * situation.pistons[column].rate);
+                let kinetic = momentum * situation.pistons[row].rate * 0.5;
+                CylinderStorage { kinetic, potential: zero, cap_internal: zero, rod_internal: zero }
+            })
+            .collect();
+        for (effect, &(first, last)) in self.system.model().effects.iter().zip(self.system.parameter_ranges()) {
+            let stored = T::potential(effect.physics, effect.site, &self.parameters[first..last], situation);
+            if let (Some(potential), Site::Cylinder(index)) = (stored, effect.site) {
+                storage[index].potential += potential;
+            }
+        }
+        storage
+    }
+
+    /// Energy of one volume of oil, from the compliances of all effects at the pressures below its own.
+    fn oil(&mut self, oil: Oil, pressure: T, volume: T) -> OilEnergy<T> {
+        let mut springs = Vec::new();
+        for number in 0..self.system.model().effects.len() {
+            self.contribute_alone(number);
+            if self.compliance(oil).value() != 0.0 {
+                springs.push(number);
+            }
+        }
+        let constant = springs.iter().all(|&number| self.system.model().effects[number].name() == "oil_compressibility");
+        let mut compressibility = |pressure: T| {
+            oil.set_pressure(&mut self.workspace.situation, pressure);
+            springs.iter().fold(T::from(0.0), |sum, &number| {
+                self.contribute_alone(number);
+                sum + self.compliance(oil)
+            }) / volume
+        };
+        let energy = if constant {
+            OilEnergy::of_constant(compressibility(pressure), pressure)
+        } else {
+            OilEnergy::of_varying(&mut compressibility, pressure)
+        };
+        oil.set_pressure(&mut self.workspace.situation, pressure);
+        energy
+    }
+
+    fn compliance(&self, oil: Oil) -> T {
+        let rows = &self.workspace.rows;
+        match oil {
+            Oil::Cap(index) => rows.cap_compliance[index],
+            Oil::Rod(index) => rows.rod_compliance[index],
+            Oil::PumpLine => rows.pump_compliance,
+        }
+    }
+
+    /// Power of each effect; `potentials` are e(p+) and e(p-) of each cylinder, `pump_potential` is e(pp).
+    fn effect_powers(&mut self, potentials: &[(T, T)], pump_potential: T) -> Vec<EffectPower<T>> {
+        let zero = T::from(0.0);
+        (0..self.system.model().effects.len())
+            .map(|number| {
+                self.contribute_alone(number);
+                let effect = &self.system.model().effects[number];
+                let (first, last) = self.system.parameter_ranges()[number];
+                let Workspace { situation, rows, .. } = &self.workspace;
+                let parameters = &self.parameters[first..last];
+                // The torque of what has mass is its Coriolis torque, whose power is the change of the mass matrix.
+                let has_mass = rows.mass.iter().any(|entry| entry.value() != 0.0);
+                let has_weight = T::potential(effect.physics, effect.site, parameters, situation).is_some();
+                let has_spring = rows.cap_compliance.iter().chain(&rows.rod_compliance).any(|c| c.value() != 0.0)
+                    || rows.pump_compliance.value() != 0.0;
+                let (mut mechanical, mut cap, mut rod) = (zero, zero, zero);
+                for (index, piston) in situation.pistons.iter().enumerate() {
+                    if !(has_mass || has_weight) {
+                        mechanical += rows.torque[index] * piston.rate;
+                    }
+                    mechanical += rows.piston_force[index] * piston.velocity;
+                    cap += rows.cap_flow[index] * potentials[index].0;
+                    rod += rows.rod_flow[index] * potentials[index].1;
+                }
+                EffectPower {
+                    effect: effect.name(),
+                    site: effect.site,
+                    acts_on: effect.physics.card().acts_on,
+                    stores: has_mass || has_weight || has_spring,
+                    mechanical,
+                    cap,
+                    rod,
+                    pump_line: rows.pump_flow * pump_potential,
+                }
+            })
+            .collect()
+    }
+}

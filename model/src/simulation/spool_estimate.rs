@@ -1,0 +1,90 @@
+//! The best estimate of where a spool really was.
+
+use crate::recording::{denoised, linear, noise_level};
+
+/// Spool position (m²) from its sensor and, where there is one, from the command that moved it.
+///
+/// A spool follows its command through a servo; a lag of first order with a delay, gain and offset, fitted to the
+/// recording, explains most of the motion without any noise. What it leaves is denoised and added back, so that nothing
+/// the sensor saw beyond its noise is lost: with a perfect servo the result is nearly noiseless, with none it is the
+/// denoised measurement.
+pub(super) fn spool_estimate(time: &[f64], measured: &[f64], command: &[f64]) -> Vec<f64> {
+    let plain = denoised(measured);
+    if noise_level(measured) == 0.0 || !command.iter().all(|area| area.is_finite()) {
+        return plain;
+    }
+    let Some(follower) = best_follower(time, measured, command) else { return plain };
+    let rest: Vec<f64> = measured.iter().zip(&follower).map(|(measured, follower)| measured - follower).collect();
+    // A poor servo model would add corners of its own; then the sensor alone is the better witness.
+    if noise_level(&rest) > 1.2 * noise_level(measured) {
+        return plain;
+    }
+    denoised(&rest).iter().zip(&follower).map(|(rest, follower)| rest + follower).collect()
+}
+
+/// Time constants that are tried, s: from faster than any sampling to a slow pilot stage.
+const LAGS: [f64; 10] = [0.001, 0.002, 0.004, 0.007, 0.012, 0.02, 0.035, 0.06, 0.1, 0.2];
+
+/// The lagged, delayed, scaled and shifted command that is nearest to the measured spool.
+fn best_follower(time: &[f64], measured: &[f64], command: &[f64]) -> Option<Vec<f64>> {
+    let misfit = |lag: f64, delay: f64| {
+        let follower = scaled_to(measured, &lagged(time, command, lag, delay))?;
+        let squares: f64 = measured.iter().zip(&follower).map(|(m, f)| (m - f) * (m - f)).sum();
+        Some((squares, follower))
+    };
+    let mut best = (f64::INFINITY, 0.0, 0.0, None);
+    let consider = |lag: f64, delay: f64, best: &mut (f64, f64, f64, Option<Vec<f64>>)| {
+        if let Some((squares, follower)) = misfit(lag, delay)
+            && squares < best.0
+        {
+            *best = (squares, lag, delay, Some(follower));
+        }
+    };
+    for lag in LAGS {
+        consider(lag, 0.0, &mut best);
+    }
+    // Coordinate search from the best of the grid; the misfit is smooth in both.
+    let (mut lag_factor, mut delay_step) = (1.3_f64, 0.004);
+    for _ in 0..24 {
+        let (before, lag, delay) = (best.0, best.1, best.2);
+        consider(lag * lag_factor, delay, &mut best);
+        consider(lag / lag_factor, delay, &mut best);
+        consider(best.1, delay + delay_step, &mut best);
+        consider(best.1, delay - delay_step, &mut best);
+        if best.0 >= before {
+            lag_factor = lag_factor.sqrt();
+            delay_step /= 2.0;
+        }
+    }
+    best.3
+}
+
+/// The command after a lag of first order and a delay, both in s.
+fn lagged(time: &[f64], command: &[f64], lag: f64, delay: f64) -> Vec<f64> {
+    let mut state = command.first().copied().unwrap_or(0.0);
+    let mut result = Vec::with_capacity(time.len());
+    result.push(state);
+    for pair in time.windows(2) {
+        // Straight lines between commands, exactly integrated: a held command is the same with half a sample's delay,
+        // which the delay takes up.
+        let (from, to) = (linear(time, command, pair[0] - delay), linear(time, command, pair[1] - delay));
+        let step = pair[1] - pair[0];
+        let slope = (to - from) / step;
+        state = to - slope * lag + (state - from + slope * lag) * (-step / lag).exp();
+        result.push(state);
+    }
+    result
+}
+
+/// `gain follower + offset` nearest to `measured`.
+fn scaled_to(measured: &[f64], follower: &[f64]) -> Option<Vec<f64>> {
+    let count = measured.len() as f64;
+    let (mean, mean_follower) = (measured.iter().sum::<f64>() / count, follower.iter().sum::<f64>() / count);
+    let variance: f64 = follower.iter().map(|value| (value - mean_follower).powi(2)).sum();
+    if !(variance > 0.0) {
+        return None;
+    }
+    let covariance: f64 = measured.iter().zip(follower).map(|(m, f)| (m - mean) * (f - mean_follower)).sum();
+    let gain = covariance / variance;
+    Some(follower.iter().map(|value| mean + gain * (value - mean_follower)).collect())
+}

@@ -1,0 +1,106 @@
+//! What the catalogue says about its effects.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use std::collections::HashSet;
+
+use excavator_model::effects::{CATALOGUE, Family, Site, Start, find};
+
+#[test]
+fn every_card_says_something() {
+    for effect in CATALOGUE {
+        let card = effect.card();
+        let texts = [card.summary, card.equation, card.source, card.shows, card.experiment, card.energy];
+        for text in texts {
+            assert!(text.trim().len() > 5, "{}: \"{text}\"", card.name);
+            assert!(!text.contains("  "), "{}: \"{text}\" has holes", card.name);
+        }
+        assert!(card.name.chars().all(|c| c.is_ascii_lowercase() || c == '_'), "{}", card.name);
+    }
+}
+
+#[test]
+fn effect_names_are_unique_and_found() {
+    let names: HashSet<&str> = CATALOGUE.iter().map(|effect| effect.card().name).collect();
+    assert_eq!(names.len(), CATALOGUE.len());
+    for name in names {
+        assert_eq!(find(name).unwrap().card().name, name);
+    }
+}
+
+#[test]
+fn a_misspelt_effect_gets_a_suggestion() {
+    let error = find("stribek_friction").unwrap_err();
+    assert_eq!(error.suggestion.as_deref(), Some("stribeck_friction"));
+    assert!(error.to_string().contains("stribeck_friction"));
+    assert_eq!(find("zzz").unwrap_err().suggestion, None);
+}
+
+#[test]
+fn every_effect_of_the_contract_that_is_listed_acts_somewhere() {
+    for effect in CATALOGUE {
+        let somewhere = common::machines().iter().any(|model| {
+            !model.free_sites(*effect).is_empty() || model.effects.iter().any(|e| e.name() == effect.card().name)
+        });
+        assert!(somewhere, "{}", effect.card().name);
+    }
+    assert!(CATALOGUE.iter().any(|effect| effect.card().family == Family::Base));
+    assert!(CATALOGUE.iter().any(|effect| effect.card().family == Family::Candidate));
+}
+
+#[test]
+fn parameters_are_complete_and_start_within_their_bounds() {
+    for (model, index) in common::every_effect_everywhere() {
+        let effect = &model.effects[index];
+        let name = common::label(&model, index);
+        for parameter in &effect.parameters {
+            let card = parameter.card;
+            for text in [card.name, card.symbol, card.unit, card.meaning] {
+                assert!(!text.trim().is_empty(), "{name} {}", card.name);
+            }
+            assert!(card.minimum < card.maximum, "{name} {}", card.name);
+            let bounds = card.minimum..=card.maximum;
+            assert!(bounds.contains(&card.typical), "{name} {}", card.name);
+            assert!(bounds.contains(&parameter.value), "{name} {}", card.name);
+            match card.start {
+                Start::At(values) => {
+                    assert!(!values.is_empty(), "{name} {}", card.name);
+                    assert!(values.iter().all(|value| bounds.contains(value)), "{name} {}", card.name);
+                }
+                Start::PumpPressureQuantiles(quantiles) => {
+                    assert!(!quantiles.is_empty(), "{name} {}", card.name);
+                    assert!(quantiles.iter().all(|quantile| (0.0..=1.0).contains(quantile)), "{name} {}", card.name);
+                }
+            }
+        }
+    }
+}
+
+/// `arm.inertia`, `pump.bulk_modulus`: files and reports find parameters by these names.
+#[test]
+fn parameter_names_are_unique_with_every_effect_present() {
+    for model in common::machines() {
+        let mut all = model.clone();
+        for &physics in CATALOGUE {
+            for site in model.free_sites(physics) {
+                all = common::with_typical(&all, physics, site);
+            }
+        }
+        let names = all.parameter_names();
+        let unique: HashSet<&String> = names.iter().collect();
+        assert_eq!(unique.len(), names.len(), "{names:?}");
+        for (name, value) in names.iter().zip(all.parameter_values()) {
+            assert_eq!(all.value_of(name), Some(value));
+        }
+    }
+}
+
+#[test]
+fn effects_that_need_oil_do_not_go_where_there_is_none() {
+    let emps = excavator_model::document::built_in("emps").unwrap();
+    for name in ["orifice_flow", "internal_leakage", "entrained_air", "cavitation", "oil_compressibility"] {
+        let error = emps.with_effect(find(name).unwrap(), Site::Cylinder(0)).unwrap_err();
+        assert!(error.to_string().contains("no chambers"), "{error}");
+    }
+}

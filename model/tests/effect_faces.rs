@@ -1,0 +1,276 @@
+//! Every effect of the catalogue, at every place of every machine: its faces agree.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use common::Random;
+use excavator_model::effects::Kind;
+use excavator_model::energy::ledger;
+use excavator_model::equations::{Inputs, Rows, System};
+use excavator_model::scalar::{DIRECTIONS, Dual, constant, derivative, variable};
+use excavator_model::simulation::Linearisation;
+use excavator_model::Model;
+
+const STATES_PER_CASE: usize = 20;
+
+/// All sums of the rows, in one list.
+fn flat<T: Copy>(rows: &Rows<T>) -> Vec<T> {
+    let mut all = Vec::new();
+    for sums in [
+        &rows.mass,
+        &rows.torque,
+        &rows.piston_force,
+        &rows.cap_flow,
+        &rows.rod_flow,
+        &rows.cap_compliance,
+        &rows.rod_compliance,
+    ] {
+        all.extend_from_slice(sums);
+    }
+    all.extend([rows.pump_flow, rows.pump_compliance]);
+    all
+}
+
+fn rows_at(system: &System<'_>, parameters: &[f64], state: &[f64], inputs: &Inputs<f64>) -> Vec<f64> {
+    let mut workspace = system.workspace();
+    system.rates(&mut workspace, parameters, state, inputs, &mut vec![0.0; state.len()]);
+    flat(&workspace.rows)
+}
+
+fn lift(inputs: &Inputs<f64>) -> Inputs<Dual> {
+    Inputs {
+        orifice_area: inputs.orifice_area.iter().map(|&value| constant(value)).collect(),
+        rod_force: inputs.rod_force.iter().map(|&value| constant(value)).collect(),
+        supply_pressure: constant(inputs.supply_pressure),
+        tank_pressure: constant(inputs.tank_pressure),
+        pump_flow: constant(inputs.pump_flow),
+    }
+}
+
+/// Derivative of each row with respect to parameter `index`.
+fn regressor(system: &System<'_>, parameters: &[f64], state: &[f64], inputs: &Inputs<f64>, index: usize) -> Vec<f64> {
+    let mut lifted: Vec<Dual> = parameters.iter().map(|&value| constant(value)).collect();
+    lifted[index] = variable(parameters[index], 0);
+    let state: Vec<Dual> = state.iter().map(|&value| constant(value)).collect();
+    let mut workspace = system.workspace::<Dual>();
+    system.rates(&mut workspace, &lifted, &state, &lift(inputs), &mut vec![constant(0.0); state.len()]);
+    flat(&workspace.rows).iter().map(|row| derivative(row, 0)).collect()
+}
+
+/// The model without effect `index`, and the parameters that remain.
+fn without(model: &Model, parameters: &[f64], index: usize) -> (Model, Vec<f64>) {
+    let (first, last) = System::new(model).parameter_ranges()[index];
+    let mut rest = model.clone();
+    rest.effects.remove(index);
+    let mut values = parameters.to_vec();
+    values.drain(first..last);
+    (rest, values)
+}
+
+/// Regressor times coefficient is what the simulation adds: for parameters that rows are linear in (or in one over
+/// them), the sum of derivative times value is the difference that the effect makes, at any size of the coefficients.
+#[test]
+fn regressor_times_coefficient_is_the_contribution() {
+    let mut random = Random(1);
+    let mut compared = 0;
+    for (model, index) in common::every_effect_everywhere() {
+        let effect = &model.effects[index];
+        if effect.parameters.iter().all(|parameter| parameter.card.kind == Kind::Shape) {
+            continue;
+        }
+        let system = System::new(&model);
+        let (first, last) = system.parameter_ranges()[index];
+        let mut seen = false;
+        for _ in 0..STATES_PER_CASE {
+            let mut parameters = common::random_parameters(&model, &mut random);
+            let state = common::random_state(&system, &mut random);
+            let inputs = common::random_inputs(&model.machine, &mut random);
+            let (rest, rest_parameters) = without(&model, &parameters, index);
+            let rest_system = System::new(&rest);
+            assert_eq!(rest_system.layout().len, state.len(), "effects with states have shapes only");
+            let absent = rows_at(&rest_system, &rest_parameters, &state, &inputs);
+            for size in [1.0, 2.5] {
+                let kinds = effect.parameters.iter().map(|parameter| parameter.card.kind);
+                for (parameter, kind) in parameters[first..last].iter_mut().zip(kinds.clone()) {
+                    match kind {
+                        Kind::Linear => *parameter *= size,
+                        Kind::Reciprocal => *parameter /= size,
+                        Kind::Shape => {}
+                    }
+                }
+                let present = rows_at(&system, &parameters, &state, &inputs);
+                let mut predicted = vec![0.0; present.len()];
+                for (number, kind) in (first..last).zip(kinds) {
+                    let sign = match kind {
+                        Kind::Linear => 1.0,
+                        // p d/dp = -(1/p) d/d(1/p)
+                        Kind::Reciprocal => -1.0,
+                        Kind::Shape => continue,
+                    };
+                    let slopes = regressor(&system, &parameters, &state, &inputs, number);
+                    for (slot, slope) in predicted.iter_mut().zip(slopes) {
+                        *slot += sign * slope * parameters[number];
+                    }
+                }
+                for (row, ((present, absent), predicted)) in present.iter().zip(&absent).zip(&predicted).enumerate() {
+                    let scale = present.abs() + absent.abs() + predicted.abs();
+                    let difference = (present - absent - predicted).abs();
+                    assert!(
+                        difference <= 1e-12 * scale,
+                        "{} row {row}: {present} - {absent} is not {predicted}",
+                        common::label(&model, index)
+                    );
+                    seen |= predicted.abs() > 0.0;
+                    compared += 1;
+                }
+            }
+        }
+        assert!(seen, "{} added nothing in {STATES_PER_CASE} states", common::label(&model, index));
+    }
+    assert!(compared > 10_000, "{compared}");
+}
+
+/// The energy balance closes in the vector field: dH/dt, by dual numbers along the rates, is the sum of the powers; and
+/// the same for cylinders and pump line alone.
+#[test]
+fn powers_add_up_to_the_rate_of_the_storage() {
+    let mut random = Random(2);
+    let mut worst = 0.0_f64;
+    for (model, index) in common::every_effect_everywhere() {
+        let system = System::new(&model);
+        for _ in 0..STATES_PER_CASE {
+            let parameters = common::random_parameters(&model, &mut random);
+            let state = common::random_state(&system, &mut random);
+            let inputs = common::random_inputs(&model.machine, &mut random);
+            let mut rates = vec![0.0; state.len()];
+            system.rates(&mut system.workspace(), &parameters, &state, &inputs, &mut rates);
+            let along: Vec<Dual> = state
+                .iter()
+                .zip(&rates)
+                .map(|(&value, &rate)| constant(value) + variable(0.0, 0) * rate)
+                .collect();
+            let parameters: Vec<Dual> = parameters.iter().map(|&value| constant(value)).collect();
+            let book = ledger(&system, &parameters, &along, &lift(&inputs));
+
+            let size: f64 = book.pump_power.re.abs()
+                + book.rod_force_power.re.abs()
+                + book
+                    .effects
+                    .iter()
+                    .map(|e| e.mechanical.re.abs() + e.cap.re.abs() + e.rod.re.abs() + e.pump_line.re.abs())
+                    .sum::<f64>()
+                + book
+                    .cylinders
+                    .iter()
+                    .flat_map(|c| [c.kinetic, c.potential, c.cap_internal, c.rod_internal])
+                    .map(|part| derivative(&part, 0).abs())
+                    .sum::<f64>();
+            let rate = |stored: Dual| derivative(&stored, 0);
+            let into_line = book.pump_power - book.bypass_loss() - book.metering_loss() - book.supply()
+                + book.rod_force_power;
+            let pairs = [
+                ("all", rate(book.stored()), book.balance().re),
+                ("cylinders", rate(book.stored_in_cylinders()), (book.supply() + book.dissipation()).re),
+                ("pump line", rate(book.pump_line), into_line.re),
+            ];
+            for (what, rate, powers) in pairs {
+                let error = (rate - powers).abs() / size;
+                worst = worst.max(error);
+                assert!(
+                    error <= 1e-9,
+                    "{}, {what}: dH/dt {rate} W, powers {powers} W, size {size} W",
+                    common::label(&model, index)
+                );
+            }
+        }
+    }
+    println!("largest relative error of the energy balance in the vector field: {worst:.1e}");
+}
+
+/// Duals against central differences of the rates, by all states and by all parameters.
+#[test]
+fn jacobians_are_central_differences() {
+    let mut random = Random(3);
+    let mut worst = 0.0_f64;
+    for (model, index) in common::every_effect_everywhere() {
+        let system = System::new(&model);
+        let layout = system.layout().clone();
+        let wanted: Vec<usize> = (0..model.parameters().count()).collect();
+        let mut linearisation = Linearisation::new(&system, &wanted);
+        let mut state_steps = vec![2.0; layout.len];
+        state_steps[..2 * layout.joints].fill(1e-6);
+        for &(first, states) in &layout.effect_states {
+            state_steps[first..first + states].fill(1e-10);
+        }
+        for _ in 0..STATES_PER_CASE {
+            let parameters = common::random_parameters(&model, &mut random);
+            let state = common::random_state(&system, &mut random);
+            let inputs = common::random_inputs(&model.machine, &mut random);
+            linearisation.evaluate(&system, &parameters, &state, &inputs);
+            let rates_at = |parameters: &[f64], state: &[f64]| {
+                let mut rates = vec![0.0; state.len()];
+                system.rates(&mut system.workspace(), parameters, state, &inputs, &mut rates);
+                rates
+            };
+            let rates = rates_at(&parameters, &state);
+            for (rate, plain) in linearisation.rates.iter().zip(&rates) {
+                assert!((rate - plain).abs() <= 1e-12 * plain.abs(), "{}", common::label(&model, index));
+            }
+            let mut compare = |what: &str, step: f64, upper: &[f64], lower: &[f64], slopes: Vec<f64>| {
+                for row in 0..layout.len {
+                    let difference = (upper[row] - lower[row]) / (2.0 * step);
+                    // What rounding of the rates leaves of a difference.
+                    let rounding = 1e-13 * (upper[row].abs() + 1e-3 * rates_scale(&layout, row)) / step;
+                    let error = (difference - slopes[row]).abs();
+                    let allowed = 1e-5 * (difference.abs() + slopes[row].abs()) + rounding;
+                    worst = worst.max((error - rounding).max(0.0) / (difference.abs() + slopes[row].abs() + 1e-300));
+                    assert!(
+                        error <= allowed,
+                        "{} {what} row {row}: {} by duals, {difference} by differences",
+                        common::label(&model, index),
+                        slopes[row]
+                    );
+                }
+            };
+            for (column, &step) in state_steps.iter().enumerate() {
+                let mut moved = state.clone();
+                moved[column] = state[column] + step;
+                let upper = rates_at(&parameters, &moved);
+                moved[column] = state[column] - step;
+                let lower = rates_at(&parameters, &moved);
+                let slopes = linearisation.by_state.column(column).iter().copied().collect();
+                compare(&format!("state {column}"), step, &upper, &lower, slopes);
+            }
+            for (column, &value) in parameters.iter().enumerate() {
+                let step = value.abs() * 1e-6;
+                let mut moved = parameters.clone();
+                moved[column] = value + step;
+                let upper = rates_at(&moved, &state);
+                moved[column] = value - step;
+                let lower = rates_at(&moved, &state);
+                let slopes = linearisation.by_parameter.column(column).iter().copied().collect();
+                compare(&format!("parameter {column}"), step, &upper, &lower, slopes);
+            }
+        }
+    }
+    println!("largest relative difference of Jacobians beyond rounding: {worst:.1e}");
+}
+
+/// Size of the terms that a rate is the sum of, to judge rounding: velocities, accelerations, pressure rates.
+fn rates_scale(layout: &excavator_model::equations::Layout, row: usize) -> f64 {
+    if row < layout.joints {
+        1.0
+    } else if row < 2 * layout.joints {
+        1e3
+    } else {
+        1e11
+    }
+}
+
+/// More directions than one dual number carries take several passes; both Jacobians must come out whole.
+#[test]
+fn the_two_joint_machine_needs_several_passes() {
+    let model = excavator_model::document::built_in("zx30u").unwrap();
+    let system = System::new(&model);
+    assert!(system.layout().len > DIRECTIONS);
+}

@@ -1,0 +1,173 @@
+//! The energy balance along simulated trajectories, and the formulas of [A] Eq. 11.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use common::Random;
+use excavator_model::Model;
+use excavator_model::document::built_in;
+use excavator_model::energy::{EffectPower, Ledger, ledger};
+use excavator_model::equations::{Inputs, System};
+use excavator_model::simulation::{InputSignals, Integrator, Tolerances};
+
+const DURATION: f64 = 0.5;
+const INTERVAL: f64 = 1e-4;
+
+/// Largest difference between stored energy and the integral of the powers over a driven trajectory, relative to the
+/// energy that was turned over: the integral of the sizes of all powers.
+fn imbalance(model: &Model) -> f64 {
+    let area = |number: usize, t: f64| {
+        let phase = 1.3 * number as f64;
+        8e-5 * (std::f64::consts::TAU * 1.5 * t + phase).sin()
+    };
+    let recording = common::driven(model, DURATION, INTERVAL, area, |t| 800.0 * (std::f64::consts::TAU * 5.0 * t).sin());
+    let signals = InputSignals::from_recording(model, &recording).unwrap();
+    let system = System::new(model);
+    let parameters = model.parameter_values();
+    let mut integrator = Integrator::new(&system, &parameters, &[], Tolerances::default().scaled(1e-6));
+    let mut state = common::at_rest(&system);
+    for (effect, &(first, states)) in model.effects.iter().zip(&system.layout().effect_states) {
+        if let excavator_model::effects::Site::Cylinder(number) = effect.site {
+            state[first..first + states].fill(area(number, 0.0));
+        }
+    }
+    let mut inputs = Inputs::zero(system.layout().joints);
+    let mut books: Vec<(f64, f64, f64)> = Vec::with_capacity(signals.len());
+    for index in 0..signals.len() {
+        signals.between(index, 0.0, &mut inputs);
+        let book: Ledger = ledger(&system, &parameters, &state, &inputs);
+        let turned_over = book.pump_power.abs()
+            + book.rod_force_power.abs()
+            + book.effects.iter().map(|effect| effect.total().abs()).sum::<f64>();
+        books.push((book.stored(), book.balance(), turned_over));
+        if index + 1 < signals.len() {
+            integrator.advance(&signals, index, &mut state, None).unwrap();
+        }
+    }
+    // Simpson's rule over pairs of samples.
+    let (mut supplied, mut turned_over, mut worst) = (0.0, 0.0, 0.0_f64);
+    let start = books[0].0;
+    for three in books.windows(3).step_by(2) {
+        let weighted = |part: fn(&(f64, f64, f64)) -> f64| {
+            INTERVAL / 3.0 * (part(&three[0]) + 4.0 * part(&three[1]) + part(&three[2]))
+        };
+        supplied += weighted(|book| book.1);
+        turned_over += weighted(|book| book.2);
+        worst = worst.max((three[2].0 - start - supplied).abs());
+    }
+    assert!(turned_over > 0.1, "nothing happens: {turned_over} J");
+    worst / turned_over
+}
+
+#[test]
+fn balance_closes_along_trajectories_of_the_nominal_models() {
+    for model in common::machines() {
+        let imbalance = imbalance(&model);
+        println!("{}: {imbalance:.1e}", model.machine.name);
+        assert!(imbalance <= 1e-6, "{}: {imbalance:e}", model.machine.name);
+    }
+}
+
+#[test]
+fn balance_closes_along_trajectories_with_each_effect_added() {
+    let mut worst = (0.0, String::new());
+    for (model, index) in common::every_effect_everywhere() {
+        let present = built_in(&model.machine.name).is_ok_and(|base| base.effects.len() == model.effects.len());
+        if present {
+            continue;
+        }
+        let imbalance = imbalance(&model);
+        let label = common::label(&model, index);
+        assert!(imbalance <= 1e-6, "{label}: {imbalance:e}");
+        if imbalance > worst.0 {
+            worst = (imbalance, label);
+        }
+    }
+    println!("largest imbalance: {:.1e} with {}", worst.0, worst.1);
+}
+
+fn power<'a>(book: &'a Ledger, effect: &str) -> &'a EffectPower {
+    book.effects.iter().find(|power| power.effect == effect).unwrap()
+}
+
+/// [A] Eq. 9 and 11, written out once more by hand for the arm.
+#[test]
+fn the_arm_has_the_energies_of_the_paper() {
+    let model = built_in("zx30u-arm").unwrap();
+    let system = System::new(&model);
+    let parameters = model.parameter_values();
+    let mut random = Random(11);
+    for _ in 0..50 {
+        let mut state = common::random_state(&system, &mut random);
+        state[0] = model.machine.cylinders[0].linkage.joint(random.between(-0.29, 0.29));
+        state[1] = random.between(0.1, 0.5) * if random.unit() < 0.5 { -1.0 } else { 1.0 };
+        for pressure in &mut state[2..5] {
+            *pressure = random.between(1e4, 2e7);
+        }
+        let inputs = common::random_inputs(&model.machine, &mut random);
+        let book = ledger(&system, &parameters, &state, &inputs);
+        let (q, rate, cap, rod, pump) = (state[0], state[1], state[2], state[3], state[4]);
+        let (b, bp) = (9.6e8, 6.5e7);
+        let linkage = &model.machine.cylinders[0].linkage;
+        let (s, v) = (linkage.displacement(q), linkage.lever(q) * rate);
+        let e = |p: f64| (p / b).exp_m1();
+        let h = |p: f64, b: f64| b * (p / b).exp_m1() - p;
+        let volumes = (3.4e-4 + (0.3 + s) * 3.8e-3, 3.0e-4 + (0.3 - s) * 2.6e-3);
+        let close = |what: &str, found: f64, wanted: f64| {
+            assert!((found - wanted).abs() <= 1e-7 * wanted.abs(), "{what}: {found}, by hand {wanted}");
+        };
+        let stored = book.cylinders[0];
+        close("kinetic", stored.kinetic, 0.5 * 230.0 * rate * rate);
+        close("potential", stored.potential, -190.0 * 9.8 * (std::f64::consts::FRAC_PI_3 + q).cos());
+        close("cap", stored.cap_internal, volumes.0 * h(cap, b));
+        close("rod", stored.rod_internal, volumes.1 * h(rod, b));
+        close("pump line", book.pump_line, 1.2e-4 * h(pump, bp));
+        close("damping", power(&book, "viscous_damping").total(), -1.3e4 * v * v);
+        // The sign is rounded over 1 mm/s.
+        close("Coulomb", power(&book, "coulomb_friction").total(), -160.0 * v.abs() * (v.abs() / 1e-3).tanh());
+        let leak = -b * 1.4e-11 * (cap - rod) * (e(cap) - e(rod));
+        close("internal leakage", power(&book, "internal_leakage").total(), leak);
+        let leak = -b * (4.1e-12 * cap * e(cap) + 3.0e-12 * rod * e(rod));
+        close("external leakage", power(&book, "external_leakage").total(), leak);
+        close("pump", book.pump_power, bp * (pump / bp).exp_m1() * inputs.pump_flow);
+        for name in ["inertia", "gravity", "oil_compressibility"] {
+            let effect = power(&book, name);
+            assert!(effect.stores && effect.total() == 0.0, "{effect:?}");
+        }
+    }
+}
+
+/// Friction, leakage, metering and bypass only ever take energy.
+#[test]
+fn losses_lose() {
+    let mut random = Random(12);
+    for model in common::machines() {
+        let mut all = model.clone();
+        for name in ["stribeck_friction", "hose_loss", "valve_leakage", "relief_valve", "coulomb_friction"] {
+            let physics = excavator_model::effects::find(name).unwrap();
+            for site in all.free_sites(physics) {
+                all = common::with_typical(&all, physics, site);
+            }
+        }
+        let system = System::new(&all);
+        for _ in 0..200 {
+            let parameters = common::random_parameters(&all, &mut random);
+            let mut state = common::random_state(&system, &mut random);
+            for slot in state.iter_mut().skip(2 * system.layout().joints) {
+                *slot = slot.abs();
+            }
+            let mut inputs = common::random_inputs(&all.machine, &mut random);
+            inputs.tank_pressure = 0.0;
+            let book = ledger(&system, &parameters, &state, &inputs);
+            for effect in &book.effects {
+                let takes = ["viscous", "coulomb", "stribeck", "hose", "leakage", "orifice", "bypass", "relief"];
+                if takes.iter().any(|name| effect.effect.contains(name)) {
+                    let size = effect.cap.abs() + effect.rod.abs() + effect.pump_line.abs();
+                    // Metering between volumes of different bulk moduli is exact in pressure, not in e.
+                    let slack = if all.machine.has_chambers() { 0.2 * size } else { 0.0 };
+                    assert!(effect.total() <= slack, "{} {effect:?}", all.machine.name);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Sensitivities carried along a trajectory against finite differences of whole simulations.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use excavator_model::Model;
+use excavator_model::equations::System;
+use excavator_model::simulation::{
+    InputSignals, Integrator, OutputSensitivity, Sensitivity, Tolerances,
+};
+
+const SAMPLES: usize = 800;
+
+/// States at every fiftieth sample.
+fn simulate(model: &Model, parameters: &[f64], start: &[f64], signals: &InputSignals) -> Vec<f64> {
+    let system = System::new(model);
+    let mut integrator = Integrator::new(&system, parameters, &[], Tolerances::default().scaled(1e-4));
+    let mut state = start.to_vec();
+    let mut states = Vec::new();
+    for index in 0..SAMPLES {
+        integrator.advance(signals, index, &mut state, None).unwrap();
+        if (index + 1) % 50 == 0 {
+            states.extend_from_slice(&state);
+        }
+    }
+    states
+}
+
+/// Largest distance between two columns, relative to the largest entry of the second, state by state.
+fn relative_distance(found: &[f64], wanted: &[f64], states: usize, scale: &[f64]) -> f64 {
+    (0..states)
+        .map(|state| {
+            let pairs = || found.iter().zip(wanted).skip(state).step_by(states);
+            let size = pairs().map(|(_, wanted)| wanted.abs()).fold(scale[state], f64::max);
+            pairs().map(|(found, wanted)| (found - wanted).abs()).fold(0.0, f64::max) / size
+        })
+        .fold(0.0, f64::max)
+}
+
+/// Sensitivities of all states at every fiftieth sample, column by column, against central differences.
+fn check(model: &Model) -> f64 {
+    let area = |number: usize, t: f64| 6e-5 * (std::f64::consts::TAU * 0.9 * t + 0.5 + number as f64).sin();
+    let recording =
+        common::driven(model, 1.0, 1e-3, area, |t| 300.0 * (std::f64::consts::TAU * 2.0 * t).sin() + 60.0);
+    let signals = InputSignals::from_recording(model, &recording).unwrap();
+    let system = System::new(model);
+    let layout = system.layout();
+    let states = layout.len;
+    let parameters = model.parameter_values();
+    let mut start = common::at_rest(&system);
+    for &(first, count) in &layout.effect_states {
+        start[first..first + count].fill(1e-5);
+    }
+    let wanted = model.unknown_parameters();
+    let mut integrator = Integrator::new(&system, &parameters, &wanted, Tolerances::default());
+    let mut sensitivity = Sensitivity::at_start(states, wanted.len());
+    let mut state = start.clone();
+    let mut columns = vec![Vec::new(); wanted.len() + states];
+    for index in 0..SAMPLES {
+        integrator.advance(&signals, index, &mut state, Some(&mut sensitivity)).unwrap();
+        if (index + 1) % 50 == 0 {
+            for (number, column) in columns.iter_mut().enumerate() {
+                column.extend(sensitivity.matrix.column(number).iter());
+            }
+        }
+    }
+    let mut state_scale = vec![1e5; states];
+    state_scale[..layout.joints].fill(1e-3);
+    state_scale[layout.joints..2 * layout.joints].fill(1e-2);
+    for &(first, count) in &layout.effect_states {
+        state_scale[first..first + count].fill(1e-5);
+    }
+    let mut worst = 0.0_f64;
+    for (number, found) in columns.iter().enumerate() {
+        let (mut upper, mut lower) = ((parameters.clone(), start.clone()), (parameters.clone(), start.clone()));
+        let (what, step) = if number < wanted.len() {
+            let index = wanted[number];
+            let card = model.parameters().nth(index).unwrap().1.card;
+            let step = 1e-4 * if parameters[index] == 0.0 { card.typical } else { parameters[index].abs() };
+            upper.0[index] += step;
+            lower.0[index] -= step;
+            (card.name.to_string(), step)
+        } else {
+            let index = number - wanted.len();
+            let step = 1e-3 * state_scale[index];
+            upper.1[index] += step;
+            lower.1[index] -= step;
+            (format!("initial state {index}"), step)
+        };
+        let upper = simulate(model, &upper.0, &upper.1, &signals);
+        let lower = simulate(model, &lower.0, &lower.1, &signals);
+        let differences: Vec<f64> = upper.iter().zip(&lower).map(|(u, l)| (u - l) / (2.0 * step)).collect();
+        // A state whose whole change under a relative step of one is below a ten-thousandth of its scale is not moved.
+        let least: Vec<f64> = state_scale.iter().map(|scale| 1e-4 * scale * 1e-4 / step).collect();
+        let error = relative_distance(found, &differences, states, &least);
+        worst = worst.max(error);
+        assert!(error < 1e-2, "{} by {what}: {error}", model.machine.name);
+    }
+    worst
+}
+
+#[test]
+fn sensitivities_are_the_slopes_of_simulations() {
+    for model in common::machines() {
+        println!("{}: {:.1e}", model.machine.name, check(&model));
+    }
+}
+
+#[test]
+fn sensitivities_to_each_added_effect() {
+    let base = excavator_model::document::built_in("zx30u-arm").unwrap();
+    for &physics in excavator_model::effects::CATALOGUE {
+        for site in base.free_sites(physics) {
+            let model = common::with_typical(&base, physics, site);
+            println!("{}: {:.1e}", physics.card().name, check(&model));
+        }
+    }
+}
+
+/// What instruments see, from what states do.
+#[test]
+fn output_sensitivities_are_slopes() {
+    let model = excavator_model::document::built_in("zx30u").unwrap();
+    let system = System::new(&model);
+    let state = [1.4, 4.9, 0.2, -0.3, 1e6, 1e6, 1e6, 1e6, 1e6];
+    for (cylinder, described) in model.machine.cylinders.iter().enumerate() {
+        let slopes = OutputSensitivity::of(&system, cylinder, &state);
+        let (joint, rate, step) = (state[cylinder], state[2 + cylinder], 1e-6);
+        let linkage = &described.linkage;
+        let by_joint = |of: &dyn Fn(f64) -> f64| (of(joint + step) - of(joint - step)) / (2.0 * step);
+        let pairs = [
+            (slopes.displacement_by_joint, by_joint(&|q| linkage.displacement(q))),
+            (slopes.velocity_by_joint, by_joint(&|q| linkage.lever(q) * rate)),
+            (slopes.velocity_by_rate, linkage.lever(joint)),
+        ];
+        for (found, wanted) in pairs {
+            assert!((found - wanted).abs() < 1e-8, "{cylinder}: {found} {wanted}");
+        }
+    }
+}
+
+/// A caller may change the state between samples, as shooting methods do: nothing may be remembered from before.
+#[test]
+fn a_state_set_by_the_caller_is_noticed() {
+    let model = excavator_model::document::built_in("zx30u-arm").unwrap();
+    let recording = common::driven(&model, 0.1, 1e-3, |_, t| 5e-5 + 1e-4 * t, |_| 0.0);
+    let signals = InputSignals::from_recording(&model, &recording).unwrap();
+    let system = System::new(&model);
+    let parameters = model.parameter_values();
+    let wanted = model.unknown_parameters();
+    let start = common::at_rest(&system);
+    let mut used = Integrator::new(&system, &parameters, &wanted, Tolerances::default());
+    let mut state = start.clone();
+    let mut sensitivity = Sensitivity::at_start(start.len(), wanted.len());
+    for index in 0..10 {
+        used.advance(&signals, index, &mut state, Some(&mut sensitivity)).unwrap();
+    }
+    let result = |integrator: &mut Integrator<'_, '_>| {
+        let mut state = start.clone();
+        let mut sensitivity = Sensitivity::at_start(start.len(), wanted.len());
+        integrator.advance(&signals, 10, &mut state, Some(&mut sensitivity)).unwrap();
+        (state, sensitivity.matrix)
+    };
+    let mut fresh = Integrator::new(&system, &parameters, &wanted, Tolerances::default());
+    let (from_used, from_fresh) = (result(&mut used), result(&mut fresh));
+    for (used, fresh) in from_used.0.iter().zip(&from_fresh.0) {
+        // The step size is remembered, and may be; errors stay below the tolerance.
+        assert!((used - fresh).abs() <= 1e-4 * fresh.abs().max(1e-3), "{used} {fresh}");
+    }
+    assert!((from_used.1 - &from_fresh.1).norm() <= 1e-3 * from_fresh.1.norm());
+}
