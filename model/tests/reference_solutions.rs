@@ -166,24 +166,37 @@ fn arm_and_reference(duration: f64) -> (Model, Recording, Vec<f64>, impl Fn(f64,
 /// 2e-4 rad, pressure sensors have 2 kPa of noise.
 const STATES: [(&str, f64); 5] = [("rad", 2e-4), ("rad/s", 5e-3), ("Pa", 2e3), ("Pa", 2e3), ("Pa", 2e3)];
 
-/// How far the default tolerance may be from the truth, in units of sensor noise. It is reached for some milliseconds
-/// where the rod side leaves cavitation while the valve changes direction, two corners inside one step, which no error
-/// estimate of a smooth method sees; elsewhere errors are ten times smaller.
-const DEFAULT_ERROR: f64 = 0.2;
+/// How far the default tolerance may be from the truth at any one sample, in units of sensor noise. It is reached for
+/// some milliseconds where a chamber leaves cavitation while the valve changes direction, two corners inside one step,
+/// which no error estimate of a smooth method sees.
+const DEFAULT_LARGEST: f64 = 0.5;
+
+/// The same for the root of the mean square over the trajectory.
+const DEFAULT_MEAN: f64 = 0.05;
+
+/// Root of the mean squared distance of one state between two trajectories.
+fn mean_distance(a: &[Vec<f64>], b: &[Vec<f64>], state: usize) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let squares: f64 = a.iter().zip(b).map(|(a, b)| (a[state] - b[state]).powi(2)).sum();
+    (squares / a.len() as f64).sqrt()
+}
 
 /// Up to 2.5 s: at 2.873 s both corners fall together again, and diffsol's Newton iterations give up there.
 #[test]
 fn the_arm_moves_as_diffsol_says() {
     let (model, recording, start, inputs_at) = arm_and_reference(2.5);
-    let reference = solve(&model, &start, &recording.time, &inputs_at, Method::Bdf, 1e-10);
-    let second = solve(&model, &start, &recording.time, &inputs_at, Method::Esdirk34, 1e-9);
+    let reference = solve(&model, &start, &recording.time, &inputs_at, Method::Bdf, 1e-10).unwrap();
+    let second = solve(&model, &start, &recording.time, &inputs_at, Method::Esdirk34, 1e-9).unwrap();
     let ours = trajectory(&model, &recording, &start, Tolerances::default());
-    let tight = trajectory(&model, &recording, &start, Tolerances::default().scaled(1e-5));
+    let tight = trajectory(&model, &recording, &start, Tolerances::default().scaled(1e-6));
     for (state, (unit, noise)) in STATES.iter().enumerate() {
         let agreement = distance(&reference, &second, state);
         let (default, tight) = (distance(&ours, &reference, state), distance(&tight, &reference, state));
         println!("state {state}: default {default:.1e} {unit}, tight {tight:.1e} {unit}, solvers agree {agreement:.1e}");
-        assert!(default < DEFAULT_ERROR * noise, "default tolerance, state {state}: {default} {unit}");
+        let mean = mean_distance(&ours, &reference, state);
+        println!("         default, root mean square {mean:.1e} {unit}");
+        assert!(default < DEFAULT_LARGEST * noise, "default tolerance, state {state}: {default} {unit}");
+        assert!(mean < DEFAULT_MEAN * noise, "default tolerance, state {state}: {mean} {unit}");
         assert!(tight < 1e-4 * noise, "tight tolerance, state {state}: {tight} {unit}");
         assert!(agreement < 1e-4 * noise, "diffsol's solvers, state {state}: {agreement} {unit}");
     }
@@ -196,7 +209,7 @@ fn the_arm_moves_as_diffsol_says() {
 #[test]
 fn errors_shrink_with_the_tolerance() {
     let (model, recording, start, inputs_at) = arm_and_reference(2.0);
-    let reference = solve(&model, &start, &recording.time, &inputs_at, Method::Bdf, 1e-11);
+    let reference = solve(&model, &start, &recording.time, &inputs_at, Method::Bdf, 1e-11).unwrap();
     let error = |factor: f64| {
         let states = trajectory(&model, &recording, &start, Tolerances::default().scaled(factor));
         STATES.iter().enumerate().map(|(state, (_, noise))| distance(&states, &reference, state) / noise).fold(0.0, f64::max)
@@ -221,12 +234,14 @@ fn two_joints_move_as_diffsol_says() {
         let index = ((t / 1e-3) as usize).min(signals.len() - 2);
         signals.between(index, ((t - signals.time[index]) / 1e-3).clamp(0.0, 1.0), inputs);
     };
-    let reference = solve(&model, &start, &recording.time, inputs_at, Method::Bdf, 1e-9);
+    let reference = solve(&model, &start, &recording.time, inputs_at, Method::Bdf, 1e-9).unwrap();
     let ours = trajectory(&model, &recording, &start, Tolerances::default());
     for state in 0..start.len() {
         let noise = [2e-4, 2e-4, 5e-3, 5e-3].get(state).copied().unwrap_or(2e3);
         let error = distance(&ours, &reference, state);
-        println!("state {state}: {error:.1e}");
-        assert!(error < DEFAULT_ERROR * noise, "state {state}: {error}");
+        let mean = mean_distance(&ours, &reference, state);
+        println!("two joints, state {state}: largest {error:.1e}, root mean square {mean:.1e}");
+        assert!(error < DEFAULT_LARGEST * noise, "state {state}: {error}");
+        assert!(mean < DEFAULT_MEAN * noise, "state {state}: {mean}");
     }
 }

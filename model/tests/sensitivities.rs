@@ -11,15 +11,15 @@ use excavator_model::simulation::{
 
 const SAMPLES: usize = 800;
 
-/// States at every fiftieth sample.
+/// States at the start and at every tenth sample.
 fn simulate(model: &Model, parameters: &[f64], start: &[f64], signals: &InputSignals) -> Vec<f64> {
     let system = System::new(model);
     let mut integrator = Integrator::new(&system, parameters, &[], Tolerances::default().scaled(1e-4));
     let mut state = start.to_vec();
-    let mut states = Vec::new();
+    let mut states = state.clone();
     for index in 0..SAMPLES {
         integrator.advance(signals, index, &mut state, None).unwrap();
-        if (index + 1) % 50 == 0 {
+        if index % 10 == 0 {
             states.extend_from_slice(&state);
         }
     }
@@ -37,8 +37,9 @@ fn relative_distance(found: &[f64], wanted: &[f64], states: usize, scale: &[f64]
         .fold(0.0, f64::max)
 }
 
-/// Sensitivities of all states at every fiftieth sample, column by column, against central differences.
-fn check(model: &Model) -> f64 {
+/// Largest relative errors of the sensitivities of all states at every tenth sample, with the parameter or initial state
+/// that they are for.
+fn errors(model: &Model, settings: Tolerances) -> Vec<(String, f64)> {
     let area = |number: usize, t: f64| 6e-5 * (std::f64::consts::TAU * 0.9 * t + 0.5 + number as f64).sin();
     let recording =
         common::driven(model, 1.0, 1e-3, area, |t| 300.0 * (std::f64::consts::TAU * 2.0 * t).sin() + 60.0);
@@ -52,13 +53,13 @@ fn check(model: &Model) -> f64 {
         start[first..first + count].fill(1e-5);
     }
     let wanted = model.unknown_parameters();
-    let mut integrator = Integrator::new(&system, &parameters, &wanted, Tolerances::default());
+    let mut integrator = Integrator::new(&system, &parameters, &wanted, settings);
     let mut sensitivity = Sensitivity::at_start(states, wanted.len());
     let mut state = start.clone();
-    let mut columns = vec![Vec::new(); wanted.len() + states];
+    let mut columns: Vec<Vec<f64>> = sensitivity.matrix.column_iter().map(|c| c.iter().copied().collect()).collect();
     for index in 0..SAMPLES {
         integrator.advance(&signals, index, &mut state, Some(&mut sensitivity)).unwrap();
-        if (index + 1) % 50 == 0 {
+        if index % 10 == 0 {
             for (number, column) in columns.iter_mut().enumerate() {
                 column.extend(sensitivity.matrix.column(number).iter());
             }
@@ -70,7 +71,7 @@ fn check(model: &Model) -> f64 {
     for &(first, count) in &layout.effect_states {
         state_scale[first..first + count].fill(1e-5);
     }
-    let mut worst = 0.0_f64;
+    let mut errors = Vec::with_capacity(columns.len());
     for (number, found) in columns.iter().enumerate() {
         let (mut upper, mut lower) = ((parameters.clone(), start.clone()), (parameters.clone(), start.clone()));
         let (what, step) = if number < wanted.len() {
@@ -92,27 +93,44 @@ fn check(model: &Model) -> f64 {
         let differences: Vec<f64> = upper.iter().zip(&lower).map(|(u, l)| (u - l) / (2.0 * step)).collect();
         // A state whose whole change under a relative step of one is below a ten-thousandth of its scale is not moved.
         let least: Vec<f64> = state_scale.iter().map(|scale| 1e-4 * scale * 1e-4 / step).collect();
-        let error = relative_distance(found, &differences, states, &least);
-        worst = worst.max(error);
-        assert!(error < 1e-2, "{} by {what}: {error}", model.machine.name);
+        errors.push((what, relative_distance(found, &differences, states, &least)));
     }
-    worst
+    errors
 }
 
+/// Checks the median and the largest error of all columns.
+fn check(model: &Model, settings: Tolerances, median: f64, largest: f64) {
+    let mut errors = errors(model, settings);
+    errors.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let (middle, (worst, error)) = (errors[errors.len() / 2].1, errors.last().unwrap());
+    let name = format!("{} with {}", model.machine.name, model.effects.last().unwrap().name());
+    println!("{name}, steps to {} s: median {middle:.1e}, largest {error:.1e} by {worst}", settings.maximum_step);
+    assert!(middle < median, "{name}: median {middle}");
+    assert!(*error < largest, "{name}: {error} by {worst}");
+}
+
+/// With one step per sample of 1 ms: a tenth for what acts within milliseconds or where a chamber cavitates as the valve
+/// changes direction, two hundredths for most. With steps of 0.1 ms: a hundredth for all.
 #[test]
 fn sensitivities_are_the_slopes_of_simulations() {
     for model in common::machines() {
-        println!("{}: {:.1e}", model.machine.name, check(&model));
+        check(&model, Tolerances::default(), 0.02, 0.1);
+        check(&model, fine(), 1e-3, 0.01);
     }
 }
 
+fn fine() -> Tolerances {
+    Tolerances { maximum_step: 1e-4, ..Tolerances::default() }
+}
+
 #[test]
-fn sensitivities_to_each_added_effect() {
+fn sensitivities_with_each_effect_added() {
     let base = excavator_model::document::built_in("zx30u-arm").unwrap();
     for &physics in excavator_model::effects::CATALOGUE {
         for site in base.free_sites(physics) {
             let model = common::with_typical(&base, physics, site);
-            println!("{}: {:.1e}", physics.card().name, check(&model));
+            check(&model, Tolerances::default(), 0.02, 0.1);
+            check(&model, fine(), 2e-3, 0.01);
         }
     }
 }
@@ -163,9 +181,11 @@ fn a_state_set_by_the_caller_is_noticed() {
     };
     let mut fresh = Integrator::new(&system, &parameters, &wanted, Tolerances::default());
     let (from_used, from_fresh) = (result(&mut used), result(&mut fresh));
-    for (used, fresh) in from_used.0.iter().zip(&from_fresh.0) {
+    let settings = Tolerances::default();
+    let tolerances = [settings.joint, settings.rate, settings.pressure, settings.pressure, settings.pressure];
+    for ((used, fresh), absolute) in from_used.0.iter().zip(&from_fresh.0).zip(tolerances) {
         // The step size is remembered, and may be; errors stay below the tolerance.
-        assert!((used - fresh).abs() <= 1e-4 * fresh.abs().max(1e-3), "{used} {fresh}");
+        assert!((used - fresh).abs() <= absolute + settings.relative * fresh.abs(), "{used} {fresh}");
     }
-    assert!((from_used.1 - &from_fresh.1).norm() <= 1e-3 * from_fresh.1.norm());
+    assert!((from_used.1 - &from_fresh.1).norm() <= 1e-2 * from_fresh.1.norm());
 }

@@ -32,9 +32,10 @@ fn segments_have_their_shapes() {
 #[test]
 fn a_sweep_runs_from_one_frequency_to_the_other() {
     let sweep = Segment::Sweep { duration: 20.0, amplitude: 1.0, from_frequency: 0.5, to_frequency: 3.0 };
-    let crossings: Vec<f64> = (0..2_000_000)
-        .map(|index| f64::from(index) * 1e-5)
-        .filter(|&t| sweep.area(t) < 0.0 && sweep.area(t + 1e-5) >= 0.0)
+    let time = |index: i32| f64::from(index) * 1e-5;
+    let crossings: Vec<f64> = (0..1_999_999)
+        .filter(|&index| sweep.area(time(index)) < 0.0 && sweep.area(time(index + 1)) >= 0.0)
+        .map(time)
         .collect();
     for pair in crossings.windows(2) {
         let (frequency, middle) = (1.0 / (pair[1] - pair[0]), (pair[0] + pair[1]) / 2.0);

@@ -6,7 +6,7 @@ use excavator_model::recording::Recording;
 
 use super::candidate::{CandidateError, fit_addition};
 use super::{Candidate, DiagnosisSettings, Share, Unexplained, additions, compare_losses, residual_map, unexplained};
-use crate::fit::{Fit, FitError, evaluate, fit};
+use crate::fit::{Fit, FitError, FitSettings, evaluate, fit};
 use crate::regression::{RegressionError, WeakFormSettings, weak_form};
 
 /// What is to be thought of a model.
@@ -192,7 +192,10 @@ fn try_all(
         let place = excavator_model::site_name(&base.model.machine, site).to_string();
         let name = format!("{}@{place}", physics.card().name);
         progress(&name, number as f64 / wanted.len() as f64);
-        let result = fit_addition(&base.model, physics, site, identification, &settings.fit).and_then(|fit| {
+        // A candidate that has gained nothing after a few steps will not be named; its fit need not be finished.
+        let give_up_above = base.loss() - settings.least_gain / 4.0;
+        let patience = FitSettings { give_up_above, ..settings.fit };
+        let result = fit_addition(&base.model, physics, site, identification, &patience).and_then(|fit| {
             let validation = evaluate(&fit.model, validation, &settings.fit)?;
             Ok((fit, validation))
         });

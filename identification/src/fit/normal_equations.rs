@@ -74,7 +74,7 @@ impl Shared<'_, '_> {
     /// Simulates a segment and sums its normal equations. `anchor` is the state that the prior is centred on.
     pub fn sums(
         &self,
-        recording: &SegmentedRecording<'_>,
+        recording: &SegmentedRecording,
         segment: &Segment,
         anchor: &[f64],
     ) -> Result<SegmentSums, SimulationError> {

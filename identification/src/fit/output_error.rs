@@ -59,13 +59,8 @@ impl Fit {
     /// Logarithmic loss: mean over instruments of `ln(mean squared error / noise variance)`, half of minus the
     /// concentrated log-likelihood per reading. Zero when only noise is left.
     pub fn loss(&self) -> f64 {
-        let sum: f64 = self
-            .errors
-            .iter()
-            .zip(&self.instruments)
-            .map(|(error, instrument)| 2.0 * (error / instrument.noise).max(1e-3).ln())
-            .sum();
-        sum / self.instruments.len() as f64
+        let noise: Vec<f64> = self.instruments.iter().map(|instrument| instrument.noise).collect();
+        loss_per_reading(&self.errors, &noise)
     }
 }
 
@@ -109,7 +104,7 @@ fn run(
     }
     let mut segmented = recordings
         .iter()
-        .map(|recording| SegmentedRecording::new(model, recording, settings.segment_duration))
+        .map(|recording| SegmentedRecording::new(model, recording, settings.segment_duration, settings.sample_rate))
         .collect::<Result<Vec<_>, _>>()?;
     if segmented.iter().all(|recording| recording.segments.is_empty()) {
         return Err(FitError::TooShort);
@@ -127,7 +122,7 @@ fn run(
     let prior = InitialStatePrior::of(&system);
     let noise: Vec<f64> = instruments.iter().map(|instrument| instrument.noise).collect();
 
-    let sums_at = |values: &[f64], weights: &[f64], segmented: &[SegmentedRecording<'_>]| {
+    let sums_at = |values: &[f64], weights: &[f64], segmented: &[SegmentedRecording]| {
         let shared = Shared {
             system: &system,
             parameters: values,
@@ -167,7 +162,8 @@ fn run(
     let mut converged = false;
     while steps < maximum_steps {
         steps += 1;
-        let Some(step) = parameter_step(&current.sums, fitted.len(), damping) else { break };
+        let held = held_at_bounds(&current, &fitted, |index| (cards[index].minimum, cards[index].maximum));
+        let Some(step) = parameter_step(&current.sums, &held, damping) else { break };
         let mut trial_values = current.values.clone();
         let mut taken = DVector::zeros(fitted.len());
         for (number, &index) in fitted.iter().enumerate() {
@@ -218,12 +214,20 @@ fn run(
             current = State { values: trial_values, sums, loss };
         }
         damping = (damping / 10.0).max(1e-9);
+        if steps >= 4 && loss_per_reading(&error_sizes(&current.sums, &noise), &noise) > settings.give_up_above {
+            break;
+        }
         if improvement < settings.least_improvement && reweighting <= 0.05 {
             converged = true;
             break;
         }
     }
     Ok(result(model, fitted, &scales, instruments, current, steps, converged))
+}
+
+/// Loss of a model whose instruments have these errors; see [`Fit::loss`].
+fn loss_per_reading(errors: &[f64], noise: &[f64]) -> f64 {
+    errors.iter().zip(noise).map(|(error, noise)| 2.0 * (error / noise).max(1e-3).ln()).sum::<f64>() / noise.len() as f64
 }
 
 /// Root mean square error of each instrument over all segments, not below its noise.
@@ -239,7 +243,22 @@ fn error_sizes(sums: &[SegmentSums], noise: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-fn parameter_step(sums: &[SegmentSums], fitted: usize, damping: f64) -> Option<DVector<f64>> {
+/// Which fitted parameters sit at a bound that the loss would push them through; they take no part in the step.
+fn held_at_bounds(state: &State, fitted: &[usize], bounds: impl Fn(usize) -> (f64, f64)) -> Vec<bool> {
+    fitted
+        .iter()
+        .enumerate()
+        .map(|(number, &index)| {
+            let (minimum, maximum) = bounds(index);
+            let downhill: f64 = state.sums.iter().map(|segment| segment.gradient[number]).sum();
+            let value = state.values[index];
+            (value <= minimum && downhill < 0.0) || (value >= maximum && downhill > 0.0)
+        })
+        .collect()
+}
+
+fn parameter_step(sums: &[SegmentSums], held: &[bool], damping: f64) -> Option<DVector<f64>> {
+    let fitted = held.len();
     if fitted == 0 {
         return Some(DVector::zeros(0));
     }
@@ -250,7 +269,13 @@ fn parameter_step(sums: &[SegmentSums], fitted: usize, damping: f64) -> Option<D
         gradient += &segment.gradient;
     }
     let largest = information.diagonal().max();
-    for index in 0..fitted {
+    for (index, &held) in held.iter().enumerate() {
+        if held {
+            information.row_mut(index).fill(0.0);
+            information.column_mut(index).fill(0.0);
+            information[(index, index)] = largest;
+            gradient[index] = 0.0;
+        }
         // The floor holds parameters that the recording does not show at all where they are.
         information[(index, index)] += damping * information[(index, index)] + 1e-12 * largest;
     }

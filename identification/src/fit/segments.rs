@@ -7,9 +7,9 @@ use excavator_model::{Model, SignalError};
 
 /// A recording with its inputs, cut into pieces that are simulated each from an own initial state.
 #[derive(Debug, Clone)]
-pub struct SegmentedRecording<'r> {
-    /// The recording.
-    pub recording: &'r Recording,
+pub struct SegmentedRecording {
+    /// The recording, thinned.
+    pub recording: Recording,
     /// Inputs of the model on its clock.
     pub inputs: InputSignals,
     /// The pieces, in order.
@@ -33,13 +33,24 @@ const LARGEST_GAP: f64 = 10.0;
 /// Fewer samples than this say nothing beyond their own initial state.
 const FEWEST_SAMPLES: usize = 20;
 
-impl<'r> SegmentedRecording<'r> {
-    /// Cuts `recording` into segments of about `duration` s, all of the same length, never across a gap of the clock.
+impl SegmentedRecording {
+    /// Cuts `recording` into segments of about `duration` s, all of the same length, never across a gap of the clock,
+    /// after thinning it to about `sample_rate` samples per second.
     ///
     /// # Errors
     /// [`SignalError`] when inputs or initial states are missing.
-    pub fn new(model: &Model, recording: &'r Recording, duration: f64) -> Result<Self, SignalError> {
-        let inputs = InputSignals::from_recording(model, recording)?;
+    pub fn new(
+        model: &Model,
+        recording: &Recording,
+        duration: f64,
+        sample_rate: f64,
+    ) -> Result<Self, SignalError> {
+        let stride = (1.0 / (recording.sample_interval() * sample_rate)).round().max(1.0);
+        let stride = if stride.is_finite() { stride as usize } else { 1 };
+        // Inputs are freed of noise at the full rate, then thinned.
+        let inputs = InputSignals::from_recording(model, recording)?.thinned(stride);
+        let full = recording;
+        let recording = full.thinned(stride);
         let system = System::new(model);
         let interval = recording.sample_interval();
         let mut stretches = Vec::new();
@@ -63,7 +74,7 @@ impl<'r> SegmentedRecording<'r> {
                 }
                 let spool: Vec<f64> =
                     (0..model.machine.cylinders.len()).map(|c| inputs.orifice_area(c)[from]).collect();
-                match initial_state(&system, recording, from, &spool, inputs.tank_pressure()[from]) {
+                match initial_state(&system, full, from * stride, &spool, inputs.tank_pressure()[from]) {
                     Ok(state) => segments.push(Segment { first: from, last: to, state }),
                     // A segment that starts in a hole of the displacement cannot be simulated; the others can.
                     Err(SignalError::NoInitialState { .. }) => {}

@@ -104,7 +104,8 @@ pub(super) fn sources(recordings: &[&Recording]) -> String {
 /// The recording as the model would have produced it, simulated piece by piece, and the states of effects along it.
 fn simulated(model: &Model, recording: &Recording) -> Result<(Recording, Vec<Vec<f64>>), RegressionError> {
     let system = System::new(model);
-    let segmented = SegmentedRecording::new(model, recording, FitSettings::default().segment_duration)?;
+    let segmented =
+        SegmentedRecording::new(model, recording, FitSettings::default().segment_duration, f64::INFINITY)?;
     let mut copy = recording.clone();
     let own_states: usize = model.effects.iter().map(|effect| effect.physics.states()).sum();
     let mut effect_states = vec![vec![f64::NAN; own_states]; recording.len()];

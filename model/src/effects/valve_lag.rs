@@ -28,7 +28,7 @@ static PARAMETERS: &[ParameterCard] = &[
         minimum: 1e-4,
         maximum: 2.0,
         typical: 0.02,
-        start: Start::At(&[0.02]),
+        start: Start::At(&[0.01]),
     },
 ];
 

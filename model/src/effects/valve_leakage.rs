@@ -31,7 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
-        start: Start::At(&[1e-11]),
+        start: Start::At(&[2e-12]),
     },
     ParameterCard {
         name: "valve_leakage_cap_tank",
@@ -42,7 +42,7 @@ static PARAMETERS: &[ParameterCard] = &[
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
-        start: Start::At(&[1e-11]),
+        start: Start::At(&[2e-12]),
     },
     ParameterCard {
         name: "valve_leakage_pump_rod",
@@ -53,7 +53,7 @@ static PARAMETERS: &[ParameterCard] = &[
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
-        start: Start::At(&[1e-11]),
+        start: Start::At(&[2e-12]),
     },
     ParameterCard {
         name: "valve_leakage_rod_tank",
@@ -64,7 +64,7 @@ static PARAMETERS: &[ParameterCard] = &[
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
-        start: Start::At(&[1e-11]),
+        start: Start::At(&[2e-12]),
     },
 ];
 

@@ -55,6 +55,21 @@ impl Recording {
         }
     }
 
+    /// Every `stride`-th sample of the recording.
+    pub fn thinned(&self, stride: usize) -> Self {
+        let thin = |values: &[f64]| values.iter().copied().step_by(stride.max(1)).collect::<Vec<f64>>();
+        Recording {
+            source: self.source.clone(),
+            start_nanoseconds: self.start_nanoseconds,
+            time: thin(&self.time),
+            cylinders: self.cylinders.iter().map(|cylinder| cylinder.thinned(stride)).collect(),
+            pump_pressure: thin(&self.pump_pressure),
+            tank_pressure: thin(&self.tank_pressure),
+            pump_flow: thin(&self.pump_flow),
+            oil_temperature: thin(&self.oil_temperature),
+        }
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.time.len()

@@ -76,6 +76,19 @@ impl InputSignals {
         })
     }
 
+    /// Every `stride`-th sample of the inputs.
+    pub fn thinned(&self, stride: usize) -> Self {
+        let thin = |values: &[f64]| values.iter().copied().step_by(stride.max(1)).collect::<Vec<f64>>();
+        InputSignals {
+            time: thin(&self.time),
+            orifice_area: self.orifice_area.iter().map(|(kind, values)| (*kind, thin(values))).collect(),
+            rod_force: self.rod_force.iter().map(|values| thin(values)).collect(),
+            supply_pressure: thin(&self.supply_pressure),
+            tank_pressure: thin(&self.tank_pressure),
+            pump_flow: thin(&self.pump_flow),
+        }
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.time.len()

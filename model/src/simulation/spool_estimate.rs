@@ -1,6 +1,6 @@
 //! The best estimate of where a spool really was.
 
-use crate::recording::{denoised, linear, noise_level};
+use crate::recording::{denoised, noise_level};
 
 /// Spool position (m²) from its sensor and, where there is one, from the command that moved it.
 ///
@@ -10,7 +10,7 @@ use crate::recording::{denoised, linear, noise_level};
 /// denoised measurement.
 pub(super) fn spool_estimate(time: &[f64], measured: &[f64], command: &[f64]) -> Vec<f64> {
     let plain = denoised(measured);
-    if noise_level(measured) == 0.0 || !command.iter().all(|area| area.is_finite()) {
+    if time.len() < 3 || noise_level(measured) == 0.0 || !command.iter().all(|area| area.is_finite()) {
         return plain;
     }
     let Some(follower) = best_follower(time, measured, command) else { return plain };
@@ -61,17 +61,27 @@ fn best_follower(time: &[f64], measured: &[f64], command: &[f64]) -> Option<Vec<
 
 /// The command after a lag of first order and a delay, both in s.
 fn lagged(time: &[f64], command: &[f64], lag: f64, delay: f64) -> Vec<f64> {
-    let mut state = command.first().copied().unwrap_or(0.0);
+    let mut position = 0;
+    let mut delayed = |at: f64| {
+        while position + 2 < time.len() && time[position + 1] < at {
+            position += 1;
+        }
+        let fraction = ((at - time[position]) / (time[position + 1] - time[position])).clamp(0.0, 1.0);
+        command[position] + fraction * (command[position + 1] - command[position])
+    };
+    let mut from = delayed(time[0] - delay);
+    let mut state = from;
     let mut result = Vec::with_capacity(time.len());
     result.push(state);
     for pair in time.windows(2) {
         // Straight lines between commands, exactly integrated: a held command is the same with half a sample's delay,
         // which the delay takes up.
-        let (from, to) = (linear(time, command, pair[0] - delay), linear(time, command, pair[1] - delay));
+        let to = delayed(pair[1] - delay);
         let step = pair[1] - pair[0];
         let slope = (to - from) / step;
         state = to - slope * lag + (state - from + slope * lag) * (-step / lag).exp();
         result.push(state);
+        from = to;
     }
     result
 }

@@ -1,0 +1,127 @@
+//! How much faster than real time the simulation is, beside `diffsol` on the same trajectory.
+//!
+//! 38 s of the arm at 1 kHz: the sine of [A] for 24 s, then trapezoids, each as a recording would give it. The target is
+//! 300 times real time.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+#[path = "../tests/common/diffsol_reference.rs"]
+mod diffsol_reference;
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use diffsol_reference::{Method, solve};
+use excavator_model::Model;
+use excavator_model::document::built_in;
+use excavator_model::energy::ledger;
+use excavator_model::equations::{Inputs, System};
+use excavator_model::simulation::{InputSignals, Integrator, Linearisation, Sensitivity, Tolerances};
+
+const DURATION: f64 = 38.0;
+const INTERVAL: f64 = 1e-3;
+
+fn area(number: usize, time: f64) -> f64 {
+    if time < 24.0 {
+        return 1e-4 * (std::f64::consts::TAU * 0.5 * time + number as f64).sin();
+    }
+    let (into, count) = ((time - 24.0) % 3.5, ((time - 24.0) / 3.5) as usize + number);
+    let height = (into / 0.5).min((3.0 - into) / 0.5).clamp(0.0, 1.0);
+    6e-5 * height * if count % 2 == 0 { 1.0 } else { -1.0 }
+}
+
+fn signals(model: &Model) -> InputSignals {
+    let recording = common::driven(model, DURATION, INTERVAL, area, |_| 0.0);
+    InputSignals::from_recording(model, &recording).unwrap()
+}
+
+/// The whole trajectory; with sensitivities to all unknown parameters if asked.
+fn run(model: &Model, signals: &InputSignals, with_sensitivities: bool) -> Vec<f64> {
+    let system = System::new(model);
+    let wanted = if with_sensitivities { model.unknown_parameters() } else { Vec::new() };
+    let mut integrator = Integrator::new(&system, &model.parameter_values(), &wanted, Tolerances::default());
+    let mut state = common::at_rest(&system);
+    let mut sensitivity = with_sensitivities.then(|| Sensitivity::at_start(state.len(), wanted.len()));
+    for index in 0..signals.len() - 1 {
+        integrator.advance(signals, index, &mut state, sensitivity.as_mut()).unwrap();
+    }
+    state
+}
+
+/// The same trajectory by diffsol at the same relative tolerance.
+fn run_diffsol(model: &Model, signals: &InputSignals, method: Method) -> Result<(), String> {
+    let inputs_at = |time: f64, inputs: &mut Inputs<f64>| {
+        let index = ((time / INTERVAL) as usize).min(signals.len() - 2);
+        signals.between(index, ((time - signals.time[index]) / INTERVAL).clamp(0.0, 1.0), inputs);
+    };
+    let start = common::at_rest(&System::new(model));
+    solve(model, &start, &signals.time, inputs_at, method, 1e-4).map(drop)
+}
+
+fn best_of(repeats: usize, mut work: impl FnMut()) -> f64 {
+    let time = |work: &mut dyn FnMut()| {
+        let start = Instant::now();
+        work();
+        start.elapsed().as_secs_f64()
+    };
+    (0..repeats).map(|_| time(&mut work)).fold(f64::INFINITY, f64::min)
+}
+
+fn figures() {
+    for name in ["zx30u-arm", "zx30u"] {
+        let model = built_in(name).unwrap();
+        let signals = signals(&model);
+        let plain = best_of(5, || drop(black_box(run(&model, &signals, false))));
+        let sensitive = best_of(5, || drop(black_box(run(&model, &signals, true))));
+        println!(
+            "{name}: {:.0} times real time, with sensitivities to {} parameters and {} initial states {:.0} times",
+            DURATION / plain,
+            model.unknown_parameters().len(),
+            System::new(&model).layout().len,
+            DURATION / sensitive
+        );
+        for method in [Method::Bdf, Method::TrBdf2, Method::Esdirk34] {
+            if let Err(reason) = run_diffsol(&model, &signals, method) {
+                println!("    diffsol {method:?} does not get through: {reason}");
+                continue;
+            }
+            let theirs = best_of(2, || drop(black_box(run_diffsol(&model, &signals, method))));
+            println!("    diffsol {method:?} takes {:.1} times as long", theirs / plain);
+        }
+    }
+}
+
+fn simulation(criterion: &mut Criterion) {
+    figures();
+    let mut group = criterion.benchmark_group("simulation");
+    group.sample_size(10).measurement_time(Duration::from_secs(4)).warm_up_time(Duration::from_secs(1));
+    for name in ["zx30u-arm", "zx30u"] {
+        let model = built_in(name).unwrap();
+        let signals = signals(&model);
+        group.bench_function(format!("{name} 38 s"), |b| b.iter(|| run(&model, &signals, false)));
+        group.bench_function(format!("{name} 38 s with sensitivities"), |b| b.iter(|| run(&model, &signals, true)));
+        let system = System::new(&model);
+        let (state, parameters) = (common::at_rest(&system), model.parameter_values());
+        let mut inputs = Inputs::zero(system.layout().joints);
+        signals.between(300, 0.0, &mut inputs);
+        let (mut workspace, mut rates) = (system.workspace(), vec![0.0; state.len()]);
+        group.bench_function(format!("{name} rates"), |b| {
+            b.iter(|| system.rates(&mut workspace, &parameters, black_box(&state), &inputs, &mut rates));
+        });
+        for (what, wanted) in [("states", Vec::new()), ("states and parameters", model.unknown_parameters())] {
+            let mut linearisation = Linearisation::new(&system, &wanted);
+            group.bench_function(format!("{name} linearisation by {what}"), |b| {
+                b.iter(|| linearisation.evaluate(&system, &parameters, black_box(&state), &inputs));
+            });
+        }
+        group.bench_function(format!("{name} ledger"), |b| {
+            b.iter(|| ledger(&system, &parameters, black_box(&state), &inputs));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, simulation);
+criterion_main!(benches);
