@@ -6,5 +6,6 @@
 
 pub mod diagnosis;
 pub mod fit;
+pub mod refinement;
 pub mod regression;
 pub mod validation;

@@ -32,32 +32,52 @@ fn area(number: usize, time: f64) -> f64 {
     6e-5 * height * if count % 2 == 0 { 1.0 } else { -1.0 }
 }
 
-fn signals(model: &Model) -> InputSignals {
-    let recording = common::driven(model, DURATION, INTERVAL, area, |_| 0.0);
+/// The inputs; `noise` (m²) is the standard deviation of a spool sensor, of which what denoising leaves stays in.
+fn signals(model: &Model, noise: f64) -> InputSignals {
+    let mut recording = common::driven(model, DURATION, INTERVAL, area, |_| 0.0);
+    let mut random = common::Random(7);
+    for area in recording.cylinders.iter_mut().flat_map(|cylinder| &mut cylinder.orifice_area) {
+        *area += noise * random.normal();
+    }
     InputSignals::from_recording(model, &recording).unwrap()
 }
 
-/// The whole trajectory; with sensitivities to all unknown parameters if asked.
-fn run(model: &Model, signals: &InputSignals, with_sensitivities: bool) -> Vec<f64> {
+/// The states at all samples; with sensitivities to all unknown parameters if asked.
+fn run(model: &Model, signals: &InputSignals, with_sensitivities: bool) -> Vec<Vec<f64>> {
     let system = System::new(model);
     let wanted = if with_sensitivities { model.unknown_parameters() } else { Vec::new() };
     let mut integrator = Integrator::new(&system, &model.parameter_values(), &wanted, Tolerances::default());
     let mut state = common::at_rest(&system);
     let mut sensitivity = with_sensitivities.then(|| Sensitivity::at_start(state.len(), wanted.len()));
+    let mut states = Vec::with_capacity(signals.len());
+    states.push(state.clone());
     for index in 0..signals.len() - 1 {
         integrator.advance(signals, index, &mut state, sensitivity.as_mut()).unwrap();
+        states.push(state.clone());
     }
-    state
+    states
 }
 
-/// The same trajectory by diffsol at the same relative tolerance.
-fn run_diffsol(model: &Model, signals: &InputSignals, method: Method) -> Result<(), String> {
+/// Root mean square distance of the pressures of two trajectories, Pa.
+fn distance(model: &Model, a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let first = 2 * System::new(model).layout().joints;
+    let squares = a.iter().zip(b).flat_map(|(a, b)| a[first..].iter().zip(&b[first..]).map(|(a, b)| (a - b).powi(2)));
+    (squares.sum::<f64>() / (a.len() * (a[0].len() - first)) as f64).sqrt()
+}
+
+/// The same trajectory by diffsol.
+fn run_diffsol(
+    model: &Model,
+    signals: &InputSignals,
+    method: Method,
+    tolerance: f64,
+) -> Result<Vec<Vec<f64>>, String> {
     let inputs_at = |time: f64, inputs: &mut Inputs<f64>| {
         let index = ((time / INTERVAL) as usize).min(signals.len() - 2);
         signals.between(index, ((time - signals.time[index]) / INTERVAL).clamp(0.0, 1.0), inputs);
     };
     let start = common::at_rest(&System::new(model));
-    solve(model, &start, &signals.time, inputs_at, method, 1e-4).map(drop)
+    solve(model, &start, &signals.time, inputs_at, method, tolerance)
 }
 
 fn best_of(repeats: usize, mut work: impl FnMut()) -> f64 {
@@ -72,23 +92,34 @@ fn best_of(repeats: usize, mut work: impl FnMut()) -> f64 {
 fn figures() {
     for name in ["zx30u-arm", "zx30u"] {
         let model = built_in(name).unwrap();
-        let signals = signals(&model);
-        let plain = best_of(5, || drop(black_box(run(&model, &signals, false))));
-        let sensitive = best_of(5, || drop(black_box(run(&model, &signals, true))));
-        println!(
-            "{name}: {:.0} times real time, with sensitivities to {} parameters and {} initial states {:.0} times",
-            DURATION / plain,
-            model.unknown_parameters().len(),
-            System::new(&model).layout().len,
-            DURATION / sensitive
-        );
-        for method in [Method::Bdf, Method::TrBdf2, Method::Esdirk34] {
-            if let Err(reason) = run_diffsol(&model, &signals, method) {
-                println!("    diffsol {method:?} does not get through: {reason}");
-                continue;
+        for (input, noise) in [("computed input", 0.0), ("measured input", 5e-7)] {
+            let signals = signals(&model, noise);
+            let plain = best_of(5, || drop(black_box(run(&model, &signals, false))));
+            let sensitive = best_of(5, || drop(black_box(run(&model, &signals, true))));
+            println!(
+                "{name}, {input}: {:.0} times real time, with sensitivities to {} parameters and {} initial states {:.0} times",
+                DURATION / plain,
+                model.unknown_parameters().len(),
+                System::new(&model).layout().len,
+                DURATION / sensitive
+            );
+            let reference = run_diffsol(&model, &signals, Method::Bdf, 1e-8).unwrap();
+            println!("    error of pressures {:.1} Pa", distance(&model, &run(&model, &signals, false), &reference));
+            for method in [Method::Bdf, Method::TrBdf2, Method::Esdirk34] {
+                let theirs = match run_diffsol(&model, &signals, method, 1e-4) {
+                    Ok(theirs) => theirs,
+                    Err(reason) => {
+                        println!("    diffsol {method:?} does not get through: {reason}");
+                        continue;
+                    }
+                };
+                let time = best_of(2, || drop(black_box(run_diffsol(&model, &signals, method, 1e-4))));
+                println!(
+                    "    diffsol {method:?} takes {:.2} times as long, error of pressures {:.1} Pa",
+                    time / plain,
+                    distance(&model, &theirs, &reference)
+                );
             }
-            let theirs = best_of(2, || drop(black_box(run_diffsol(&model, &signals, method))));
-            println!("    diffsol {method:?} takes {:.1} times as long", theirs / plain);
         }
     }
 }
@@ -99,7 +130,7 @@ fn simulation(criterion: &mut Criterion) {
     group.sample_size(10).measurement_time(Duration::from_secs(4)).warm_up_time(Duration::from_secs(1));
     for name in ["zx30u-arm", "zx30u"] {
         let model = built_in(name).unwrap();
-        let signals = signals(&model);
+        let signals = signals(&model, 0.0);
         group.bench_function(format!("{name} 38 s"), |b| b.iter(|| run(&model, &signals, false)));
         group.bench_function(format!("{name} 38 s with sensitivities"), |b| b.iter(|| run(&model, &signals, true)));
         let system = System::new(&model);

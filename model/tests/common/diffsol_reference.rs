@@ -62,7 +62,7 @@ pub fn solve(
     for &(first, states) in &layout.effect_states {
         absolute[first..first + states].fill(1e-5 * relative);
     }
-    let problem = OdeBuilder::<NalgebraMat<f64>>::new()
+    let mut problem = OdeBuilder::<NalgebraMat<f64>>::new()
         .rtol(relative)
         .atol(absolute)
         .h0(1e-6)
@@ -70,6 +70,9 @@ pub fn solve(
         .init(|_: &[f64], _: f64, state: &mut [f64]| state.copy_from_slice(start), layout.len)
         .build()
         .unwrap();
+    // diffsol counts these over the whole trajectory and gives up after 50; each corner of the physics costs a few.
+    problem.ode_options.max_nonlinear_solver_failures = 1_000_000;
+    problem.ode_options.max_error_test_failures = 1_000_000;
     let (values, _) = match method {
         Method::Bdf => problem.bdf::<NalgebraLU<f64>>().unwrap().solve_dense(times),
         Method::TrBdf2 => problem.tr_bdf2::<NalgebraLU<f64>>().unwrap().solve_dense(times),

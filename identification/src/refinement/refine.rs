@@ -1,0 +1,160 @@
+//! From a model that is missing something to one that is not.
+
+use excavator_model::effects::{Effect, Site};
+use excavator_model::recording::Recording;
+use excavator_model::simulation::RunError;
+use excavator_model::{HistoryEntry, Model, ModelError, site_name};
+
+use crate::diagnosis::{CandidateError, Diagnosis, DiagnosisError, DiagnosisSettings, Verdict, diagnose, fit_addition, fit_nominal};
+use crate::fit::{Fit, FitError};
+use crate::validation::{Comparison, compare};
+
+/// What is to be added.
+#[derive(Debug, Clone)]
+pub enum Additions {
+    /// Whatever the diagnosis finds, one after the other.
+    Auto,
+    /// These effects, one after the other.
+    Named(Vec<(&'static dyn Effect, Site)>),
+}
+
+/// The model after one addition.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// What was added, `effect@place`; `None` for the model as it was given, refitted.
+    pub added: Option<String>,
+    /// The model, fitted to the identification recordings.
+    pub fit: Fit,
+    /// Its comparison with each validation recording.
+    pub comparisons: Vec<Comparison>,
+}
+
+impl Step {
+    /// Mean normalised squared error over signals and validation recordings.
+    pub fn mean_error(&self) -> f64 {
+        self.comparisons.iter().map(Comparison::mean_error).sum::<f64>() / self.comparisons.len() as f64
+    }
+}
+
+/// A refined model and how it came about.
+#[derive(Debug, Clone)]
+pub struct Refinement {
+    /// The model as it was given with its own numbers, on the validation recordings, where it can be simulated.
+    pub given: Vec<Comparison>,
+    /// Step 0 is before anything is added.
+    pub steps: Vec<Step>,
+    /// The final model, its history extended.
+    pub model: Model,
+    /// The diagnosis behind automatic additions.
+    pub diagnosis: Option<Diagnosis>,
+}
+
+impl Refinement {
+    /// The verdict on the given model; for named additions, whether they lowered the error.
+    pub fn verdict(&self) -> Verdict {
+        match &self.diagnosis {
+            Some(diagnosis) => diagnosis.verdict,
+            None if self.steps.len() > 1 && self.last_error() < self.first_error() => Verdict::MissingEffect,
+            None => Verdict::Adequate,
+        }
+    }
+
+    fn first_error(&self) -> f64 {
+        self.steps.first().map_or(f64::NAN, Step::mean_error)
+    }
+
+    fn last_error(&self) -> f64 {
+        self.steps.last().map_or(f64::NAN, Step::mean_error)
+    }
+}
+
+/// Why there is no refined model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RefineError {
+    /// No diagnosis.
+    #[error(transparent)]
+    Diagnosis(#[from] DiagnosisError),
+    /// An effect does not fit the model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A fit failed.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// A simulation failed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+impl From<CandidateError> for RefineError {
+    fn from(error: CandidateError) -> Self {
+        match error {
+            CandidateError::Model(error) => RefineError::Model(error),
+            CandidateError::Fit(error) => RefineError::Fit(error),
+        }
+    }
+}
+
+/// Refines `model`. `when` (ISO 8601) goes into the model's history; `progress` is told what is being done.
+///
+/// # Errors
+/// [`RefineError`].
+pub fn refine(
+    model: &Model,
+    identification: &[&Recording],
+    validation: &[&Recording],
+    additions: &Additions,
+    settings: &DiagnosisSettings,
+    when: &str,
+    progress: &dyn Fn(&str, f64),
+) -> Result<Refinement, RefineError> {
+    if validation.is_empty() {
+        return Err(DiagnosisError::NoValidation.into());
+    }
+    let given = validation.iter().map(|recording| compare(model, recording)).collect::<Result<_, _>>().unwrap_or_default();
+    let mut fits: Vec<(Option<String>, Fit)> = Vec::new();
+    let diagnosis = match additions {
+        Additions::Auto => {
+            let diagnosis = diagnose(model, identification, validation, settings, progress)?;
+            fits.push((None, diagnosis.nominal.clone()));
+            for candidate in &diagnosis.chain {
+                fits.push((Some(format!("{}@{}", candidate.name(), candidate.place)), candidate.fit.clone()));
+            }
+            Some(diagnosis)
+        }
+        Additions::Named(named) => {
+            progress("fit of the given model", 0.0);
+            let mut current = fit_nominal(model, identification, settings)?;
+            fits.push((None, current.clone()));
+            for (number, &(physics, site)) in named.iter().enumerate() {
+                let name = format!("{}@{}", physics.card().name, site_name(&model.machine, site));
+                progress(&name, (number + 1) as f64 / (named.len() + 1) as f64);
+                current = fit_addition(&current.model, physics, site, identification, &settings.fit).map_err(RefineError::from)?;
+                fits.push((Some(name), current.clone()));
+            }
+            None
+        }
+    };
+    let mut steps: Vec<Step> = Vec::new();
+    for (added, fit) in fits {
+        let comparisons =
+            validation.iter().map(|recording| compare(&fit.model, recording)).collect::<Result<Vec<_>, _>>()?;
+        steps.push(Step { added, fit, comparisons });
+    }
+    let mut final_model = steps.last().map_or_else(|| model.clone(), |step| step.fit.model.clone());
+    final_model.history.clone_from(&model.history);
+    let recordings: Vec<String> = identification.iter().chain(validation).map(|r| r.source.clone()).collect();
+    for (number, step) in steps.iter().enumerate() {
+        let before = number.checked_sub(1).map(|previous| steps[previous].mean_error());
+        final_model.history.push(HistoryEntry {
+            when: when.to_string(),
+            what: step.added.as_ref().map_or_else(|| "parameters identified".to_string(), |name| format!("added {name}")),
+            recordings: recordings.clone(),
+            validation_error_before: before,
+            validation_error_after: Some(step.mean_error()),
+        });
+    }
+    for parameter in final_model.parameters_mut().filter(|parameter| !parameter.known) {
+        parameter.source = "identified".into();
+    }
+    Ok(Refinement { given, steps, model: final_model, diagnosis })
+}
