@@ -6,6 +6,8 @@
 
 pub mod diagnosis;
 pub mod fit;
+pub mod gate;
 pub mod refinement;
 pub mod regression;
+pub mod report;
 pub mod validation;

@@ -4,12 +4,12 @@
 mod common;
 
 use common::Random;
+use excavator_model::Model;
 use excavator_model::effects::Kind;
 use excavator_model::energy::ledger;
 use excavator_model::equations::{Inputs, Rows, System};
 use excavator_model::scalar::{DIRECTIONS, Dual, constant, derivative, variable};
 use excavator_model::simulation::Linearisation;
-use excavator_model::Model;
 
 const STATES_PER_CASE: usize = 20;
 
@@ -144,11 +144,8 @@ fn powers_add_up_to_the_rate_of_the_storage() {
             let inputs = common::random_inputs(&model.machine, &mut random);
             let mut rates = vec![0.0; state.len()];
             system.rates(&mut system.workspace(), &parameters, &state, &inputs, &mut rates);
-            let along: Vec<Dual> = state
-                .iter()
-                .zip(&rates)
-                .map(|(&value, &rate)| constant(value) + variable(0.0, 0) * rate)
-                .collect();
+            let along: Vec<Dual> =
+                state.iter().zip(&rates).map(|(&value, &rate)| constant(value) + variable(0.0, 0) * rate).collect();
             let parameters: Vec<Dual> = parameters.iter().map(|&value| constant(value)).collect();
             let book = ledger(&system, &parameters, &along, &lift(&inputs));
 
@@ -166,8 +163,8 @@ fn powers_add_up_to_the_rate_of_the_storage() {
                     .map(|part| derivative(&part, 0).abs())
                     .sum::<f64>();
             let rate = |stored: Dual| derivative(&stored, 0);
-            let into_line = book.pump_power - book.bypass_loss() - book.metering_loss() - book.supply()
-                + book.rod_force_power;
+            let into_line =
+                book.pump_power - book.bypass_loss() - book.metering_loss() - book.supply() + book.rod_force_power;
             let pairs = [
                 ("all", rate(book.stored()), book.balance().re),
                 ("cylinders", rate(book.stored_in_cylinders()), (book.supply() + book.dissipation()).re),

@@ -67,10 +67,8 @@ fn jumps_of_a_held_command_do_not_stall() {
     let mut recording = common::driven(&model, 6.0, 1e-2, |_, _| f64::NAN, |_| 0.0);
     let time = recording.time.clone();
     for (number, cylinder) in recording.cylinders.iter_mut().enumerate() {
-        cylinder.orifice_command = time
-            .iter()
-            .map(|t| [1.1e-4, 0.0, -1.1e-4, 0.0][((t * 2.0 + 0.5 * number as f64) as usize) % 4])
-            .collect();
+        cylinder.orifice_command =
+            time.iter().map(|t| [1.1e-4, 0.0, -1.1e-4, 0.0][((t * 2.0 + 0.5 * number as f64) as usize) % 4]).collect();
     }
     let (states, steps) = run(&model, &recording, &common::at_rest(&System::new(&model)));
     println!("jumps: {steps} steps for {} samples", states.len());

@@ -48,10 +48,9 @@ fn mass_and_damper_under_a_ramp_of_force() {
         let settled = time_constant * t - time_constant.powi(2) * (1.0 - (-t / time_constant).exp());
         slope / damping * (t * t / 2.0 - settled)
     };
-    for (tolerances, position_error, velocity_error) in [
-        (Tolerances::default(), 1e-6, 1e-6),
-        (Tolerances::default().scaled(1e-6), 1e-10, 1e-10),
-    ] {
+    for (tolerances, position_error, velocity_error) in
+        [(Tolerances::default(), 1e-6, 1e-6), (Tolerances::default().scaled(1e-6), 1e-10, 1e-10)]
+    {
         let states = trajectory(&model, &recording, &[0.0, 0.0], tolerances);
         let worst = |state: usize, exact: &dyn Fn(f64) -> f64| {
             let errors = states.iter().zip(&recording.time).map(|(found, &t)| (found[state] - exact(t)).abs());
@@ -88,10 +87,8 @@ fn closed_valve_leaks_as_its_eigenvalues_say() {
     let modulus = 9.6e8;
     let (cap, rod) = (chambers.cap_volume(0.6, 0.0) / modulus, chambers.rod_volume(0.6, 0.0) / modulus);
     // d/dt (p+, p-) = matrix (p+, p-)
-    let matrix: [[f64; 2]; 2] = [
-        [-(internal + external_cap) / cap, internal / cap],
-        [internal / rod, -(internal + external_rod) / rod],
-    ];
+    let matrix: [[f64; 2]; 2] =
+        [[-(internal + external_cap) / cap, internal / cap], [internal / rod, -(internal + external_rod) / rod]];
     let (mean, half) = ((matrix[0][0] + matrix[1][1]) / 2.0, (matrix[0][0] - matrix[1][1]) / 2.0);
     let root = (half * half + matrix[0][1] * matrix[1][0]).sqrt();
     let start = [5e6, 1e6];
@@ -191,7 +188,9 @@ fn the_arm_moves_as_diffsol_says() {
     for (state, (unit, noise)) in STATES.iter().enumerate() {
         let agreement = distance(&reference, &second, state);
         let (default, tight) = (distance(&ours, &reference, state), distance(&tight, &reference, state));
-        println!("state {state}: default {default:.1e} {unit}, tight {tight:.1e} {unit}, solvers agree {agreement:.1e}");
+        println!(
+            "state {state}: default {default:.1e} {unit}, tight {tight:.1e} {unit}, solvers agree {agreement:.1e}"
+        );
         let mean = mean_distance(&ours, &reference, state);
         println!("         default, root mean square {mean:.1e} {unit}");
         assert!(default < DEFAULT_LARGEST * noise, "default tolerance, state {state}: {default} {unit}");
@@ -211,7 +210,11 @@ fn errors_shrink_with_the_tolerance() {
     let reference = solve(&model, &start, &recording.time, &inputs_at, Method::Bdf, 1e-11).unwrap();
     let error = |factor: f64| {
         let states = trajectory(&model, &recording, &start, Tolerances::default().scaled(factor));
-        STATES.iter().enumerate().map(|(state, (_, noise))| distance(&states, &reference, state) / noise).fold(0.0, f64::max)
+        STATES
+            .iter()
+            .enumerate()
+            .map(|(state, (_, noise))| distance(&states, &reference, state) / noise)
+            .fold(0.0, f64::max)
     };
     let errors: Vec<f64> = [1.0, 1e-2, 1e-4, 1e-6].into_iter().map(error).collect();
     println!("errors in units of sensor noise, tolerances 1, 1e-2, 1e-4, 1e-6: {errors:?}");

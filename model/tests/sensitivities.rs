@@ -5,9 +5,7 @@ mod common;
 
 use excavator_model::Model;
 use excavator_model::equations::System;
-use excavator_model::simulation::{
-    InputSignals, Integrator, OutputSensitivity, Sensitivity, Tolerances,
-};
+use excavator_model::simulation::{InputSignals, Integrator, OutputSensitivity, Sensitivity, Tolerances};
 
 const SAMPLES: usize = 800;
 
@@ -41,8 +39,7 @@ fn relative_distance(found: &[f64], wanted: &[f64], states: usize, scale: &[f64]
 /// that they are for.
 fn errors(model: &Model, settings: Tolerances) -> Vec<(String, f64)> {
     let area = |number: usize, t: f64| 6e-5 * (std::f64::consts::TAU * 0.9 * t + 0.5 + number as f64).sin();
-    let recording =
-        common::driven(model, 1.0, 1e-3, area, |t| 300.0 * (std::f64::consts::TAU * 2.0 * t).sin() + 60.0);
+    let recording = common::driven(model, 1.0, 1e-3, area, |t| 300.0 * (std::f64::consts::TAU * 2.0 * t).sin() + 60.0);
     let signals = InputSignals::from_recording(model, &recording).unwrap();
     let system = System::new(model);
     let layout = system.layout();
@@ -110,13 +107,13 @@ fn check(model: &Model, settings: Tolerances, median: f64, largest: f64) {
     assert!(*error < largest, "{name}: {error} by {worst}");
 }
 
-/// With one step per sample of 1 ms: two hundredths for most, and 15 % for what one step does not resolve: initial
+/// With one step per sample of 1 ms: two hundredths for most, and 20 % for what one step does not resolve: initial
 /// pressures out of balance, which settle within the first millisecond, and chambers that leave cavitation as the valve
 /// changes direction. With steps of 0.1 ms: a hundredth for all, so the sensitivities converge to the slopes.
 #[test]
 fn sensitivities_are_the_slopes_of_simulations() {
     for model in common::machines() {
-        check(&model, Tolerances::default(), 0.02, 0.15);
+        check(&model, Tolerances::default(), 0.02, 0.2);
         check(&model, fine(), 1e-3, 0.01);
     }
 }

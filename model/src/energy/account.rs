@@ -6,12 +6,7 @@ use crate::equations::{Inputs, Situation, System, Workspace};
 use crate::machine::Supply;
 
 /// Storage and powers of a model at one instant: parameters in the model's order, state in the order of its layout.
-pub fn ledger<'m, T: Number>(
-    system: &System<'m>,
-    parameters: &[T],
-    state: &[T],
-    inputs: &Inputs<T>,
-) -> Ledger<T> {
+pub fn ledger<'m, T: Number>(system: &System<'m>, parameters: &[T], state: &[T], inputs: &Inputs<T>) -> Ledger<T> {
     let zero = T::from(0.0);
     let mut workspace = system.workspace();
     let mut rates = vec![zero; state.len()];
@@ -47,9 +42,7 @@ pub fn ledger<'m, T: Number>(
 
     let pump_power = match system.model().machine.supply {
         Supply::PumpLine(_) => pump_potential * inputs.pump_flow,
-        Supply::MeasuredPressure | Supply::None => {
-            effects.iter().fold(zero, |sum, effect| sum - effect.pump_line)
-        }
+        Supply::MeasuredPressure | Supply::None => effects.iter().fold(zero, |sum, effect| sum - effect.pump_line),
     };
     let pistons = account.workspace.situation.pistons.iter().zip(&system.model().machine.cylinders);
     let rod_force_power = pistons
@@ -122,7 +115,8 @@ impl<T: Number> Account<'_, '_, T> {
                 springs.push(number);
             }
         }
-        let constant = springs.iter().all(|&number| self.system.model().effects[number].name() == "oil_compressibility");
+        let constant =
+            springs.iter().all(|&number| self.system.model().effects[number].name() == "oil_compressibility");
         let mut compressibility = |pressure: T| {
             oil.set_pressure(&mut self.workspace.situation, pressure);
             springs.iter().fold(T::from(0.0), |sum, &number| {

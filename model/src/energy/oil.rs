@@ -131,8 +131,9 @@ mod tests {
     /// Runge-Kutta method.
     #[test]
     fn bubbles_are_integrated_exactly() {
-        let compressibility = |pressure: f64| 1.0 / 9.6e8 + 0.02 / 1.4 * 101_325.0_f64.powf(1.0 / 1.4)
-            / (101_325.0 + pressure).powf(1.0 + 1.0 / 1.4);
+        let compressibility = |pressure: f64| {
+            1.0 / 9.6e8 + 0.02 / 1.4 * 101_325.0_f64.powf(1.0 / 1.4) / (101_325.0 + pressure).powf(1.0 + 1.0 / 1.4)
+        };
         for pressure in [-8.0e4, 3.0e5, 5.0e6] {
             let steps = 100_000;
             let step = pressure / f64::from(steps);

@@ -104,6 +104,11 @@ impl InputSignals {
         &self.orifice_area[cylinder].1
     }
 
+    /// Sets the opening of one cylinder's valve at one sample, m²: for simulations in which somebody steers.
+    pub fn set_orifice_area(&mut self, cylinder: usize, sample: usize, area: f64) {
+        self.orifice_area[cylinder].1[sample] = area;
+    }
+
     /// Tank pressure at each sample, Pa.
     pub fn tank_pressure(&self) -> &[f64] {
         &self.tank_pressure

@@ -18,7 +18,9 @@ use crate::equations::{Inputs, System, Workspace};
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SimulationError {
     /// The step size fell below what can carry the solution on.
-    #[error("the simulation of {model} cannot go on at {time:.3} s: step {step:.1e} s is below {minimum:.1e} s; state {state:?}")]
+    #[error(
+        "the simulation of {model} cannot go on at {time:.3} s: step {step:.1e} s is below {minimum:.1e} s; state {state:?}"
+    )]
     StepTooSmall {
         /// Machine of the model.
         model: String,
@@ -64,14 +66,7 @@ pub struct Tolerances {
 
 impl Default for Tolerances {
     fn default() -> Self {
-        Tolerances {
-            relative: 1e-4,
-            joint: 5e-7,
-            rate: 5e-5,
-            pressure: 200.0,
-            minimum_step: 1e-9,
-            maximum_step: 5e-3,
-        }
+        Tolerances { relative: 1e-4, joint: 5e-7, rate: 5e-5, pressure: 200.0, minimum_step: 1e-9, maximum_step: 5e-3 }
     }
 }
 
@@ -270,8 +265,8 @@ impl<'m, 's> Integrator<'m, 's> {
         let mut sum = 0.0;
         for index in 0..states {
             self.trial[index] += k4[index];
-            let scale = self.tolerances[index]
-                + self.settings.relative * state[index].abs().max(self.trial[index].abs());
+            let scale =
+                self.tolerances[index] + self.settings.relative * state[index].abs().max(self.trial[index].abs());
             let error = k4[index] / scale;
             sum += error * error;
         }

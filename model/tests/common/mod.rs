@@ -41,8 +41,7 @@ pub fn closed_centre() -> Model {
 }
 
 pub fn machines() -> Vec<Model> {
-    let mut models: Vec<Model> =
-        ["zx30u-arm", "zx30u", "emps"].iter().map(|name| built_in(name).unwrap()).collect();
+    let mut models: Vec<Model> = ["zx30u-arm", "zx30u", "emps"].iter().map(|name| built_in(name).unwrap()).collect();
     models.push(closed_centre());
     models
 }

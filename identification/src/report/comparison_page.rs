@@ -1,0 +1,58 @@
+//! A model beside recordings.
+
+use excavator_model::Model;
+use maud::{Markup, html};
+
+use super::error_plots::{Errors, error_plots};
+use super::numbers::significant;
+use super::page::{Section, page, tile};
+use super::time_plots::{MODEL, hint, time_plots};
+use super::{parameter_table, signal_tables};
+use crate::validation::Comparison;
+
+/// A page that shows how far `model` is from recordings: measures, every signal over time, and every signal's error
+/// against command, speed, pressure and position.
+pub fn comparison_page(model: &Model, comparisons: &[Comparison]) -> String {
+    let mean = comparisons.iter().map(Comparison::mean_error).sum::<f64>() / comparisons.len() as f64;
+    let duration: f64 = comparisons.iter().map(|comparison| comparison.measured.duration()).sum();
+    let lead = html! {
+        p.about { (model.machine.description) }
+        div.tiles {
+            (tile(&significant(mean, 3), "NMSE, mean over signals"))
+            (tile(&comparisons.len().to_string(), if comparisons.len() == 1 { "recording" } else { "recordings" }))
+            (tile(&format!("{duration:.1} s"), "duration"))
+            (tile(&model.effects.len().to_string(), "effects in the model"))
+        }
+    };
+    let mut sections = vec![
+        Section { anchor: "measures", title: "Errors".into(), body: measures(comparisons) },
+        Section { anchor: "time", title: "Over time".into(), body: over_time(comparisons) },
+        Section {
+            anchor: "errors",
+            title: "What the error depends on".into(),
+            body: error_plots(model, &[Errors { line: MODEL, comparisons }]),
+        },
+    ];
+    sections.push(Section {
+        anchor: "parameters",
+        title: "Parameters".into(),
+        body: parameter_table::of_model(model, &[]),
+    });
+    page("Comparison", &model.machine.name, &lead, &sections)
+}
+
+/// Recordings and measures.
+pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
+    html! { (signal_tables::recordings(comparisons)) (signal_tables::measures(comparisons)) }
+}
+
+/// All recordings over time.
+pub(super) fn over_time(comparisons: &[Comparison]) -> Markup {
+    html! {
+        @if comparisons.is_empty() { p.empty { "No recording." } } @else { (hint()) }
+        @for (number, comparison) in comparisons.iter().enumerate() {
+            @if comparisons.len() > 1 { h3 { "Recording " (number + 1) ": " (comparison.measured.source) } }
+            (time_plots(&[(MODEL, comparison)], number, comparisons.len()))
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! What a model is missing.
+
+use excavator_model::Model;
+use maud::{Markup, html};
+
+use super::comparison_page::{measures, over_time};
+use super::effect_cards::effect_card;
+use super::error_plots::{Errors, error_plots};
+use super::evidence_tables::{evidence, regimes};
+use super::page::{Section, page};
+use super::time_plots::MODEL;
+use super::unexplained_plot::unexplained_plot;
+use super::verdict_text::{tied, verdict_sentence};
+use super::parameter_table;
+use crate::diagnosis::{Candidate, Diagnosis, Verdict};
+use crate::validation::Comparison;
+
+/// A page with a diagnosis: the verdict, the evidence, and where the model fails. `comparisons_before` are the model
+/// without additions on the validation recordings.
+pub fn diagnosis_page(model: &Model, diagnosis: &Diagnosis, comparisons_before: &[Comparison]) -> String {
+    let lead = html! {
+        p.about { (model.machine.description) }
+        (verdict(model, diagnosis))
+    };
+    let mut sections = diagnosis_sections(diagnosis, comparisons_before);
+    sections.push(Section { anchor: "measures", title: "Errors of the model".into(), body: measures(comparisons_before) });
+    sections.push(Section { anchor: "time", title: "Over time".into(), body: over_time(comparisons_before) });
+    sections.push(Section {
+        anchor: "errors",
+        title: "What the error depends on".into(),
+        body: error_plots(model, &[Errors { line: MODEL, comparisons: comparisons_before }]),
+    });
+    sections.push(Section {
+        anchor: "parameters",
+        title: "Parameters of the refitted model".into(),
+        body: parameter_table::of_model(&diagnosis.nominal.model, &[]),
+    });
+    page("Diagnosis", &model.machine.name, &lead, &sections)
+}
+
+/// The verdict in its box.
+pub(super) fn verdict(model: &Model, diagnosis: &Diagnosis) -> Markup {
+    html! { p class={ "verdict " (diagnosis.verdict.name()) } { (verdict_sentence(model, diagnosis)) } }
+}
+
+/// Named effects, what is left, evidence, and where the model fails.
+pub(super) fn diagnosis_sections(diagnosis: &Diagnosis, comparisons: &[Comparison]) -> Vec<Section> {
+    let mut sections = Vec::new();
+    let named = named(diagnosis);
+    if !named.is_empty() {
+        let title = if named.len() == 1 { "The effect" } else { "The effects" };
+        let body = html! { @for candidate in &named { (effect_card(candidate)) } };
+        sections.push(Section { anchor: "effects", title: title.into(), body });
+    }
+    if let Some(left) = &diagnosis.unexplained {
+        sections.push(Section { anchor: "unexplained", title: "What is left".into(), body: unexplained_plot(left) });
+    }
+    sections.push(Section { anchor: "evidence", title: "Evidence".into(), body: evidence(diagnosis, comparisons) });
+    sections.push(Section { anchor: "where", title: "Where the model fails".into(), body: regimes(&diagnosis.map) });
+    sections
+}
+
+/// Effects that the verdict names: the first with its ties, then those added after it.
+fn named(diagnosis: &Diagnosis) -> Vec<&Candidate> {
+    if diagnosis.verdict == Verdict::Adequate {
+        return Vec::new();
+    }
+    let Some(first) = diagnosis.chain.first().or(diagnosis.candidates.first()) else { return Vec::new() };
+    let mut named = tied(diagnosis, first);
+    named.extend(diagnosis.chain.iter().skip(1));
+    named
+}

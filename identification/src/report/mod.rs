@@ -1,0 +1,33 @@
+//! The HTML report: what was measured, what the model does, and what it is missing, on one page that a browser opens
+//! from disk without a network.
+//!
+//! Each function returns a whole page as text; writing it to a file is left to the caller. Plots over time are drawn by
+//! uPlot, which is part of the page; all others are inline pictures. All text from models and recordings is escaped.
+
+mod assets;
+mod comparison_page;
+mod diagnosis_page;
+mod effect_cards;
+mod error_plots;
+mod evidence_tables;
+mod numbers;
+mod page;
+mod parameter_table;
+mod refinement_page;
+mod signal_tables;
+mod step_plot;
+mod svg;
+mod thinning;
+mod time_plots;
+mod unexplained_plot;
+mod units;
+mod verdict_text;
+mod words;
+
+#[cfg(test)]
+mod tests;
+
+pub use comparison_page::comparison_page;
+pub use diagnosis_page::diagnosis_page;
+pub use refinement_page::refinement_page;
+pub use verdict_text::verdict_sentence;

@@ -1,0 +1,96 @@
+//! Numbers for people.
+
+/// What stands where there is no number.
+pub(super) const NOTHING: &str = "–";
+
+/// `value` with `digits` significant digits; a power of ten where plain digits would be hard to read.
+pub(super) fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return NOTHING.to_string();
+    }
+    if value == 0.0 {
+        return "0".to_string();
+    }
+    let scientific = format!("{:.*e}", digits.saturating_sub(1), value);
+    let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    if (-4..=5).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        return with_minus(&format!("{value:.decimals$}"));
+    }
+    format!("{} × 10{}", with_minus(mantissa), superscript(exponent))
+}
+
+/// A value with its standard error to two digits, rounded alike: `4.21 ± 0.13`; both with one power of ten.
+pub(super) fn with_error(value: f64, error: f64) -> String {
+    if !(error.is_finite() && error > 0.0) {
+        return significant(value, 4);
+    }
+    let larger = value.abs().max(error);
+    let exponent = larger.log10().floor() as i32;
+    let shift = if (-3..=5).contains(&exponent) { 0 } else { exponent };
+    let scale = 10_f64.powi(shift);
+    let last = error.log10().floor() as i32 - 1 - shift;
+    let decimals = (-last).clamp(0, 9) as usize;
+    let pair = format!("{} ± {:.decimals$}", with_minus(&format!("{:.decimals$}", value / scale)), error / scale);
+    if shift == 0 { pair } else { format!("({pair}) × 10{}", superscript(shift)) }
+}
+
+/// A fraction in percent.
+pub(super) fn percent(fraction: f64) -> String {
+    match 100.0 * fraction {
+        value if !value.is_finite() => NOTHING.to_string(),
+        value if value.abs() < 10.0 && value != 0.0 => format!("{} %", with_minus(&format!("{value:.1}"))),
+        value => format!("{} %", with_minus(&format!("{value:.0}"))),
+    }
+}
+
+/// By how much a squared error falls: "12 times less".
+pub(super) fn ratio(times: f64) -> String {
+    match times {
+        times if !times.is_finite() => NOTHING.to_string(),
+        times if times >= 100.0 => format!("{times:.0}"),
+        times if times >= 10.0 => format!("{times:.1}"),
+        times => format!("{times:.2}"),
+    }
+}
+
+fn with_minus(text: &str) -> String {
+    text.replace('-', "−")
+}
+
+fn superscript(exponent: i32) -> String {
+    exponent
+        .to_string()
+        .chars()
+        .map(|digit| match digit {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            '9' => '⁹',
+            _ => '⁰',
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_rounded_to_what_is_known() {
+        assert_eq!(significant(0.001234, 3), "0.00123");
+        assert_eq!(significant(-1.2345e-12, 3), "−1.23 × 10⁻¹²");
+        assert_eq!(significant(f64::NAN, 3), NOTHING);
+        assert_eq!(with_error(4.2134, 0.134), "4.21 ± 0.13");
+        assert_eq!(with_error(1.2345e-12, 3.4e-14), "(1.234 ± 0.034) × 10⁻¹²");
+        assert_eq!(with_error(2.0, f64::INFINITY), "2.000");
+        assert_eq!(percent(0.0123), "1.2 %");
+    }
+}

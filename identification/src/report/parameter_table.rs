@@ -1,0 +1,71 @@
+//! Parameters with units and standard errors.
+
+use excavator_model::effects::Site;
+use excavator_model::{Model, ModelEffect, Parameter, site_name};
+use maud::{Markup, html};
+
+use super::numbers::{NOTHING, percent, with_error};
+use super::{units, words};
+
+/// Standard error over value from which on a number is called poorly known.
+const POORLY_KNOWN: f64 = 0.5;
+
+/// All parameters of a model, effect by effect; effects in `added` (`effect@place`) are marked.
+pub(super) fn of_model(model: &Model, added: &[String]) -> Markup {
+    let effects: Vec<&ModelEffect> = model.effects.iter().filter(|effect| !effect.parameters.is_empty()).collect();
+    table(model, &effects, added)
+}
+
+/// Parameters of one effect of a model.
+pub(super) fn of_effect(model: &Model, name: &str, site: Site) -> Markup {
+    let effects: Vec<&ModelEffect> =
+        model.effects.iter().filter(|effect| effect.name() == name && effect.site == site).collect();
+    table(model, &effects, &[])
+}
+
+fn table(model: &Model, effects: &[&ModelEffect], added: &[String]) -> Markup {
+    let poor = effects.iter().flat_map(|effect| &effect.parameters).any(|p| relative_error(p).is_some_and(|r| r > POORLY_KNOWN));
+    html! {
+        @if effects.is_empty() { p.empty { "No parameters." } } @else {
+            div.wide { table.data {
+                thead { tr {
+                    th { "Parameter" } th { "Symbol" } th.n { "Value ± standard error" } th { "Unit" } th.n { "Relative" } th { "Meaning" } th { "From" }
+                } }
+                tbody { @for effect in effects {
+                    @let place = site_name(&model.machine, effect.site);
+                    tr.group { td colspan="7" {
+                        (words::spoken(effect.name())) ", " (place)
+                        @if added.contains(&format!("{}@{place}", effect.name())) { " " span.chip.also { "added" } }
+                    } }
+                    @for parameter in &effect.parameters { (row(place, parameter)) }
+                } }
+            } }
+            @if poor {
+                p.note { "Grey: the standard error is more than half the value; these recordings hardly show this parameter." }
+            }
+        }
+    }
+}
+
+fn row(place: &str, parameter: &Parameter) -> Markup {
+    let unit = units::of_parameter(parameter.card.unit);
+    let relative = relative_error(parameter);
+    let error = parameter.standard_error.filter(|_| !parameter.known).unwrap_or(f64::NAN);
+    html! {
+        tr.weak[relative.is_some_and(|relative| relative > POORLY_KNOWN)] {
+            td { code { (place) "." (parameter.card.name) } }
+            td { (parameter.card.symbol) }
+            td.n { (with_error(parameter.value * unit.factor, error * unit.factor)) }
+            td { (unit.symbol) }
+            td.n { @match relative { Some(relative) if relative < 10.0 => (percent(relative)), Some(_) => "> 1000 %", None => (NOTHING) } }
+            td { (parameter.card.meaning) }
+            td { @if parameter.known { "known" @if !parameter.source.is_empty() { ": " (parameter.source) } } @else if parameter.standard_error.is_some() { "identified" } @else { (parameter.source) } }
+        }
+    }
+}
+
+/// Standard error over value of an identified parameter.
+fn relative_error(parameter: &Parameter) -> Option<f64> {
+    let error = parameter.standard_error.filter(|error| !parameter.known && error.is_finite())?;
+    (parameter.value != 0.0).then(|| (error / parameter.value).abs())
+}

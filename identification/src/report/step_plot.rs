@@ -1,0 +1,102 @@
+//! Errors falling from step to step.
+
+use maud::{Markup, html};
+
+use super::signal_tables::Stages;
+use super::svg::{Frame, picture, short};
+use super::words;
+
+/// Colours that people with any colour vision tell apart (Okabe and Ito), darkest first.
+const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b07d00", "#3a97cf", "#7b4a9a", "#6b7680"];
+
+/// Least distance between two labels, px.
+const LABEL_HEIGHT: f64 = 15.0;
+
+/// One line per signal, the error on a logarithmic scale.
+pub(super) fn step_plot(stages: &Stages) -> Markup {
+    let positive = || stages.signals.iter().flat_map(|(_, errors)| errors).filter(|error| error.is_finite() && **error > 0.0);
+    if stages.names.len() < 2 || positive().next().is_none() {
+        return html! { p.empty { "Nothing was changed, so there are no steps to draw." } };
+    }
+    let low = positive().copied().fold(f64::INFINITY, f64::min).log10().floor();
+    let high = positive().copied().fold(0.0, f64::max).log10().ceil().max(low + 1.0);
+    let size = (900.0, 300.0);
+    let last = (stages.names.len() - 1) as f64;
+    let frame = Frame { size, margins: (64.0, 200.0, 26.0, 34.0), x: (-0.15, last + 0.1), y: (low, high) };
+    let decades = (low as i32)..=(high as i32);
+    let content = html! {
+        text.label x="2" y="12" { "NMSE on validation, logarithmic" }
+        @for decade in decades {
+            @let y = short(frame.at_y(f64::from(decade)));
+            line.grid x1="64" x2=(size.0 - 200.0) y1=(y) y2=(y) {}
+            text x="58" y=(y + 3.5) text-anchor="end" { (decade_text(decade)) }
+        }
+        @for (index, name) in stages.names.iter().enumerate() {
+            @let x = short(frame.at_x(index as f64));
+            line.grid x1=(x) x2=(x) y1="26" y2=(size.1 - 34.0) {}
+            text.label x=(x) y=(size.1 - 14.0) text-anchor="middle" { (name) }
+        }
+        @for (number, (_, errors)) in stages.signals.iter().enumerate() {
+            @let points = points(errors);
+            (frame.line(&points, colour(number), false))
+            @for (x, y) in &points { (marker(number, frame.at_x(*x), frame.at_y(*y))) }
+        }
+        @for (number, y) in label_heights(stages, &frame) {
+            text.label x=(size.0 - 188.0) y=(short(y + 4.0)) style={ "fill:" (colour(number)) } {
+                (stages.signals.get(number).map_or(String::new(), |(name, _)| words::signal(name)))
+            }
+        }
+    };
+    picture(size, "error of each signal at each step", &content)
+}
+
+fn points(errors: &[f64]) -> Vec<(f64, f64)> {
+    let logarithms = errors.iter().enumerate().map(|(index, error)| (index as f64, error.log10()));
+    logarithms.filter(|(_, y)| y.is_finite()).collect()
+}
+
+/// Heights of the labels at the lines' ends, moved apart where they would overlap.
+fn label_heights(stages: &Stages, frame: &Frame) -> Vec<(usize, f64)> {
+    let mut labels: Vec<(usize, f64)> = stages
+        .signals
+        .iter()
+        .enumerate()
+        .filter_map(|(number, (_, errors))| Some((number, frame.at_y(points(errors).last()?.1))))
+        .collect();
+    labels.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let mut free = f64::NEG_INFINITY;
+    for label in &mut labels {
+        label.1 = label.1.max(free);
+        free = label.1 + LABEL_HEIGHT;
+    }
+    // Pushed out at the bottom: move up again.
+    let mut limit = frame.size.1 - frame.margins.3;
+    for label in labels.iter_mut().rev() {
+        label.1 = label.1.min(limit);
+        limit = label.1 - LABEL_HEIGHT;
+    }
+    labels
+}
+
+fn colour(number: usize) -> &'static str {
+    COLOURS.get(number % COLOURS.len()).copied().unwrap_or("#2b2f33")
+}
+
+fn marker(number: usize, x: f64, y: f64) -> Markup {
+    let (x, y) = (short(x), short(y));
+    html! {
+        @match number % 4 {
+            0 => circle cx=(x) cy=(y) r="4" fill=(colour(number)) {},
+            1 => rect x=(x - 3.5) y=(y - 3.5) width="7" height="7" fill=(colour(number)) {},
+            2 => polygon points=(format!("{x},{} {},{} {},{}", y - 5.0, x - 4.5, y + 3.5, x + 4.5, y + 3.5)) fill=(colour(number)) {},
+            _ => polygon points=(format!("{x},{} {},{y} {x},{} {},{y}", y - 5.0, x + 5.0, y + 5.0, x - 5.0)) fill=(colour(number)) {},
+        }
+    }
+}
+
+fn decade_text(decade: i32) -> String {
+    match decade {
+        -4..=3 => format!("{}", 10_f64.powi(decade)),
+        _ => super::numbers::significant(10_f64.powi(decade), 1),
+    }
+}

@@ -1,0 +1,267 @@
+//! Pages as a whole, made from a simulation instead of a recording.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use excavator_model::Model;
+use excavator_model::document::built_in;
+use excavator_model::effects::{self, Site};
+use excavator_model::recording::Recording;
+use nalgebra::DMatrix;
+
+use super::{comparison_page, diagnosis_page, refinement_page, verdict_sentence};
+use crate::diagnosis::{Candidate, Diagnosis, Evidence, Share, Unexplained, Verdict};
+use crate::fit::{Fit, Instrument, Quantity};
+use crate::refinement::{Refinement, Step};
+use crate::validation::{Comparison, SignalComparison};
+
+const HOSTILE: &str = "</script><b>bag & \"co\"</b>";
+const SIGNALS: [&str; 5] =
+    ["arm.displacement", "arm.velocity", "arm.cap_pressure", "arm.rod_pressure", "pump_pressure"];
+
+fn model() -> Model {
+    let mut model = built_in("zx30u-arm").unwrap();
+    model.machine.description = HOSTILE.into();
+    model
+}
+
+fn recording(source: &str, error: f64) -> Recording {
+    let time: Vec<f64> = (0..6000).map(|index| index as f64 * 0.002).collect();
+    let wave = |size: f64| time.iter().map(|t| size * (1.0 + error) * (3.0 * t).sin()).collect::<Vec<f64>>();
+    let mut recording = Recording::unmeasured(source, time.clone(), &["arm"]);
+    let arm = &mut recording.cylinders[0];
+    (arm.displacement, arm.velocity) = (wave(0.1), wave(0.3));
+    (arm.cap_pressure, arm.rod_pressure, arm.orifice_area) = (wave(4e6), wave(3e6), wave(3e-5));
+    recording.pump_pressure = wave(8e6);
+    recording
+}
+
+fn comparison(error: f64) -> Comparison {
+    let mut measured = recording(HOSTILE, 0.0);
+    measured.cylinders[0].cap_pressure[100..200].fill(f64::NAN);
+    let signals = SIGNALS
+        .map(|name| SignalComparison {
+            name: name.to_string(),
+            normalised_error: error * error,
+            fit: 100.0 * (1.0 - error),
+            phase_delay_degrees: (name != "arm.velocity").then_some(-1.25),
+        })
+        .to_vec();
+    Comparison { measured, simulated: recording("simulated", error), signals, excitation_frequency: Some(0.48) }
+}
+
+fn fit_of(model: &Model, error: f64) -> Fit {
+    let mut model = model.clone();
+    for parameter in model.parameters_mut() {
+        parameter.standard_error = Some(parameter.value.abs() * 0.02);
+    }
+    Fit {
+        model,
+        fitted: Vec::new(),
+        covariance: DMatrix::zeros(0, 0),
+        instruments: vec![Instrument {
+            name: "arm.displacement".into(),
+            unit: "m",
+            quantity: Quantity::Displacement(0),
+            noise: 1e-4,
+        }],
+        errors: vec![error],
+        block_errors: Vec::new(),
+        steps: 3,
+        converged: true,
+    }
+}
+
+fn candidate(name: &str, gain: f64, accepted: bool, tied: bool) -> Candidate {
+    let physics = effects::find(name).unwrap();
+    let site = model().free_sites(physics)[0];
+    let extended = model().with_effect(physics, site).unwrap();
+    let place = if site == Site::PumpLine { "pump" } else { "arm" };
+    Candidate {
+        physics,
+        site,
+        place: place.into(),
+        fit: fit_of(&extended, 1e-3),
+        validation: fit_of(&extended, 1e-3),
+        evidence: Evidence { gain, significance: 9.0 },
+        identification_gain: gain,
+        accepted,
+        tied_with_first: tied,
+    }
+}
+
+fn diagnosis(verdict: Verdict, candidates: Vec<Candidate>) -> Diagnosis {
+    let share = |equation: &str, share| Share {
+        equation: equation.into(),
+        regime: "valve closed",
+        share_of_residual: share,
+        share_of_time: 0.2,
+    };
+    Diagnosis {
+        verdict,
+        nominal: fit_of(&model(), 1e-2),
+        nominal_validation: fit_of(&model(), 1e-2),
+        chain: candidates.first().cloned().into_iter().collect(),
+        candidates,
+        rejected: vec![candidate("hose_loss", -0.01, false, false)],
+        failed: Vec::new(),
+        map: vec![share("arm.cap_continuity", 0.7), share("arm.motion", 0.3)],
+        unexplained: (verdict == Verdict::Unexplained).then(|| Unexplained {
+            equation: "arm.motion".into(),
+            variable: "position",
+            share_of_residual: 0.6,
+            curve: vec![[-0.1, 20.0, 2.0], [0.0, f64::NAN, 1.0], [0.1, -30.0, 2.5]],
+            unit: "N m",
+        }),
+    }
+}
+
+fn refinement() -> Refinement {
+    let found = candidate("valve_dead_zone", 2.0, true, false);
+    let step = |added: Option<&str>, fit: Fit, error| Step {
+        added: added.map(str::to_string),
+        fit,
+        comparisons: vec![comparison(error)],
+    };
+    let mut last = found.fit.model.clone();
+    last.history.push(excavator_model::HistoryEntry {
+        when: "2025-01-01T00:00:00Z".into(),
+        what: "added valve_dead_zone@arm".into(),
+        recordings: vec![HOSTILE.into()],
+        validation_error_before: Some(0.04),
+        validation_error_after: None,
+    });
+    Refinement {
+        given: vec![comparison(0.4)],
+        steps: vec![
+            step(None, fit_of(&model(), 1e-2), 0.2),
+            step(Some("valve_dead_zone@arm"), found.fit.clone(), 0.01),
+        ],
+        model: last,
+        diagnosis: Some(diagnosis(Verdict::MissingEffect, vec![found])),
+    }
+}
+
+/// Every opened element is closed in order, nothing is loaded, and user text is escaped.
+fn assert_sound(page: &str) {
+    assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>"));
+    assert!(!page.contains("http://") && !page.contains("https://"), "a page must not point to the network");
+    assert!(!page.contains(HOSTILE) && !page.contains("<b>bag"), "text of recordings must be escaped");
+    assert!(!page.contains("NaN<") && !page.contains("NaN,") && !page.contains("inf<") && !page.contains("\"NaN"));
+    let void = ["meta", "link", "br", "!DOCTYPE"];
+    let mut open: Vec<String> = Vec::new();
+    let mut rest = page;
+    while let Some(start) = rest.find('<') {
+        rest = &rest[start..];
+        let end = rest.find('>').unwrap();
+        let tag = &rest[1..end];
+        let name: String = tag.trim_start_matches('/').chars().take_while(|c| !c.is_whitespace()).collect();
+        rest = &rest[end + 1..];
+        if let Some(closed) = tag.strip_prefix('/') {
+            assert_eq!(open.pop().as_deref(), Some(closed));
+        } else if !void.contains(&name.as_str()) {
+            if name == "script" || name == "style" {
+                rest = &rest[rest.find(&format!("</{name}>")).unwrap()..];
+            }
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty(), "left open: {open:?}");
+}
+
+/// The data of all plots over time.
+fn plots(page: &str) -> Vec<serde_json::Value> {
+    page.split("<script type=\"application/json\">")
+        .skip(1)
+        .map(|part| serde_json::from_str(part.split("</script>").next().unwrap()).unwrap())
+        .collect()
+}
+
+#[test]
+fn comparison_has_every_signal_and_its_error() {
+    let page = comparison_page(&model(), &[comparison(0.1), comparison(0.2)]);
+    assert_sound(&page);
+    assert!(SIGNALS.iter().all(|signal| page.contains(signal)));
+    let plots = plots(&page);
+    assert_eq!(plots.len(), 2 * 2 * SIGNALS.len());
+    for plot in &plots {
+        let samples = plot["time"].as_array().unwrap().len();
+        assert!(samples > 100 && samples <= 2050, "{samples}");
+        for series in plot["series"].as_array().unwrap() {
+            assert_eq!(series["values"].as_array().unwrap().len(), samples);
+        }
+    }
+    let gap = plots.iter().find(|plot| plot["label"] == "cap pressure").unwrap();
+    assert!(gap["series"][0]["values"].as_array().unwrap().iter().any(serde_json::Value::is_null));
+    assert!(page.contains("valve opening (mm²)") && page.contains("error (MPa)"));
+}
+
+#[test]
+fn pages_without_data_are_sound() {
+    assert_sound(&comparison_page(&model(), &[]));
+    let mut empty = comparison(0.1);
+    empty.measured = Recording::unmeasured(HOSTILE, vec![], &["arm"]);
+    empty.simulated = empty.measured.clone();
+    assert_sound(&comparison_page(&model(), &[empty.clone()]));
+    empty.signals.clear();
+    assert_sound(&comparison_page(&model(), &[empty]));
+    let mut nothing = refinement();
+    (nothing.given, nothing.diagnosis) = (Vec::new(), None);
+    nothing.steps.truncate(1);
+    nothing.steps[0].comparisons.clear();
+    assert_sound(&refinement_page(&nothing));
+    nothing.steps.clear();
+    assert_sound(&refinement_page(&nothing));
+}
+
+#[test]
+fn verdicts_name_effect_and_place_and_admit_ties() {
+    let sentence = |diagnosis: &Diagnosis| verdict_sentence(&model(), diagnosis);
+    let named = diagnosis(Verdict::MissingEffect, vec![candidate("valve_dead_zone", 2.0, true, false)]);
+    assert_eq!(
+        sentence(&named),
+        "Missing in zx30u-arm: valve dead zone at the arm valve section. With it the squared error on recordings it was \
+         not fitted to falls 7.39 times."
+    );
+    let tied = diagnosis(
+        Verdict::MissingEffect,
+        vec![candidate("valve_dead_zone", 2.0, true, true), candidate("relief_valve", 1.9, true, true)],
+    );
+    assert!(sentence(&tied).contains("valve dead zone at the arm valve section or relief valve at the pump line: these recordings cannot tell the two apart"));
+    assert!(sentence(&diagnosis(Verdict::Adequate, vec![])).starts_with("Nothing is missing"));
+    let left = sentence(&diagnosis(Verdict::Unexplained, vec![]));
+    assert!(left.contains("none of the effects in the catalogue"), "{left}");
+    assert!(left.contains("force balance of the arm does not close") && left.contains("piston position"), "{left}");
+}
+
+#[test]
+fn diagnosis_shows_evidence_cards_and_what_is_left() {
+    let first = candidate("valve_dead_zone", 2.0, true, true);
+    let page = diagnosis_page(
+        &model(),
+        &diagnosis(Verdict::MissingEffect, vec![first, candidate("valve_leakage", 1.95, true, true)]),
+        &[comparison(0.2)],
+    );
+    assert_sound(&page);
+    for text in ["valve_dead_zone", "valve_leakage", "hose_loss", "not told apart", "arm.cap_continuity", "valve closed"] {
+        assert!(page.contains(text), "{text}");
+    }
+    let experiment = effects::find("valve_dead_zone").unwrap().card().experiment;
+    assert!(page.contains(experiment) && page.contains("arm.dead_zone_positive"));
+    let page = diagnosis_page(&model(), &diagnosis(Verdict::Unexplained, vec![]), &[]);
+    assert_sound(&page);
+    assert!(page.contains("piston position (mm)") && page.contains("residual (N m)"));
+    assert_sound(&diagnosis_page(&model(), &diagnosis(Verdict::Adequate, vec![]), &[comparison(0.0)]));
+}
+
+#[test]
+fn refinement_tells_the_story() {
+    let page = refinement_page(&refinement());
+    assert_sound(&page);
+    for text in ["as given", "refitted", "+ valve dead zone, arm", "added valve_dead_zone@arm", "Evidence"] {
+        assert!(page.contains(text), "{text}");
+    }
+    assert!(SIGNALS.iter().all(|signal| page.contains(signal)));
+    assert_eq!(plots(&page).len(), 2 * SIGNALS.len());
+    assert_eq!(plots(&page)[0]["series"].as_array().unwrap().len(), 3);
+    assert!(page.len() < 3_000_000);
+}

@@ -1,0 +1,64 @@
+//! The residual that no effect of the catalogue explains, as a curve.
+
+use maud::{Markup, html};
+
+use super::numbers::percent;
+use super::svg::{Frame, picture, range_of};
+use super::units::{self, Unit};
+use super::words;
+use crate::diagnosis::Unexplained;
+
+/// Half width of a 95 % band in standard errors.
+const BAND: f64 = 1.96;
+
+/// What is left, with its band.
+pub(super) fn unexplained_plot(left: &Unexplained) -> Markup {
+    let (x_unit, y_unit) = (unit_of_variable(left.variable), unit_of_residual(left.unit));
+    let points: Vec<(f64, f64, f64)> = left
+        .curve
+        .iter()
+        .map(|[x, mean, error]| (x * x_unit.factor, mean * y_unit.factor, error * y_unit.factor))
+        .filter(|(x, mean, error)| x.is_finite() && mean.is_finite() && error.is_finite())
+        .collect();
+    let band: Vec<(f64, f64, f64)> = points.iter().map(|&(x, mean, e)| (x, mean - BAND * e, mean + BAND * e)).collect();
+    let line: Vec<(f64, f64)> = points.iter().map(|&(x, mean, _)| (x, mean)).collect();
+    let size = (760.0, 340.0);
+    let frame = Frame {
+        size,
+        margins: (64.0, 12.0, 24.0, 40.0),
+        x: range_of(points.iter().map(|point| point.0)),
+        y: range_of(band.iter().flat_map(|&(_, low, high)| [low, high, 0.0])),
+    };
+    let x_label = format!("{} ({})", words::variable(left.variable), x_unit.symbol);
+    let y_label = format!("residual ({})", y_unit.symbol);
+    let content = html! {
+        (frame.axes(&x_label, &y_label))
+        (frame.band(&band, "#7b4a9a"))
+        (frame.line(&line, "#7b4a9a", false))
+        @for (x, y) in &line { circle cx=(frame.at_x(*x)) cy=(frame.at_y(*y)) r="2.6" fill="#7b4a9a" {} }
+    };
+    html! {
+        p {
+            "The " (words::equation(&left.equation)) " (" code { (left.equation) } ") is off, and " (percent(left.share_of_residual))
+            " of its squared residual follows the " (words::variable(left.variable))
+            ". The curve is the mean residual, measured side minus model, with a 95 % band: whatever is missing has this shape."
+        }
+        @if line.is_empty() { p.empty { "The curve has no points." } } @else {
+            (picture(size, &format!("{y_label} against {x_label}"), &content))
+        }
+    }
+}
+
+fn unit_of_variable(variable: &str) -> Unit {
+    match variable {
+        "command" => units::SQUARE_MILLIMETRE,
+        "speed" => units::MILLIMETRE_PER_SECOND,
+        "position" => units::MILLIMETRE,
+        "time" => units::SECOND,
+        _ => units::MEGAPASCAL,
+    }
+}
+
+fn unit_of_residual(si: &'static str) -> Unit {
+    if si == "m3/s" { units::LITRE_PER_MINUTE } else { Unit { factor: 1.0, symbol: si } }
+}

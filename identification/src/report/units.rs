@@ -1,0 +1,63 @@
+//! SI to the units that people read off gauges.
+
+/// A unit for display.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Unit {
+    /// Displayed value = SI value times this.
+    pub factor: f64,
+    /// Symbol.
+    pub symbol: &'static str,
+}
+
+const fn unit(factor: f64, symbol: &'static str) -> Unit {
+    Unit { factor, symbol }
+}
+
+/// Displacements.
+pub(super) const MILLIMETRE: Unit = unit(1e3, "mm");
+/// Speeds.
+pub(super) const MILLIMETRE_PER_SECOND: Unit = unit(1e3, "mm/s");
+/// Pressures.
+pub(super) const MEGAPASCAL: Unit = unit(1e-6, "MPa");
+/// Openings.
+pub(super) const SQUARE_MILLIMETRE: Unit = unit(1e6, "mm²");
+/// Forces of cylinders.
+pub(super) const KILONEWTON: Unit = unit(1e-3, "kN");
+/// Flows.
+pub(super) const LITRE_PER_MINUTE: Unit = unit(6e4, "l/min");
+/// Times.
+pub(super) const SECOND: Unit = unit(1.0, "s");
+
+/// Unit in which a signal of this contract name is shown.
+pub(super) fn of_signal(name: &str) -> Unit {
+    match name.rsplit('.').next().unwrap_or(name) {
+        "joint_angle" => unit(180.0 / std::f64::consts::PI, "°"),
+        "displacement" => MILLIMETRE,
+        "velocity" => MILLIMETRE_PER_SECOND,
+        "orifice_area" | "orifice_command" => SQUARE_MILLIMETRE,
+        "rod_force" => KILONEWTON,
+        "pump_flow" => LITRE_PER_MINUTE,
+        "oil_temperature" => unit(1.0, "°C"),
+        pressure if pressure.ends_with("pressure") => MEGAPASCAL,
+        _ => unit(1.0, "SI"),
+    }
+}
+
+/// Unit in which a parameter with this SI unit is shown.
+pub(super) fn of_parameter(si: &'static str) -> Unit {
+    match si {
+        "m" => MILLIMETRE,
+        "m2" => SQUARE_MILLIMETRE,
+        "m/s" => MILLIMETRE_PER_SECOND,
+        "Pa" => MEGAPASCAL,
+        "s" => unit(1e3, "ms"),
+        "-" => unit(1.0, ""),
+        "kg m2" => unit(1.0, "kg m²"),
+        "N s2/m2" => unit(1.0, "N s²/m²"),
+        "m3/(s Pa)" => unit(1.0, "m³/(s Pa)"),
+        "m/(s sqrt(Pa))" => unit(1.0, "m/(s √Pa)"),
+        "m3" => unit(1.0, "m³"),
+        "m3/s" => LITRE_PER_MINUTE,
+        other => unit(1.0, other),
+    }
+}

@@ -1,0 +1,78 @@
+//! The verdict in plain sentences.
+
+use excavator_model::Model;
+
+use super::numbers::{percent, ratio};
+use super::words;
+use crate::diagnosis::{Candidate, Diagnosis, Verdict};
+
+/// What a diagnosis found, in one or two plain sentences. Effects that the recordings cannot tell apart are all named.
+pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
+    let machine = &model.machine.name;
+    match diagnosis.verdict {
+        Verdict::Adequate => format!(
+            "Nothing is missing in {machine} that these recordings can show: what is left of the error is noise, or too \
+             small to act on."
+        ),
+        Verdict::MissingEffect => missing(machine, diagnosis),
+        Verdict::Unexplained => unexplained(machine, diagnosis),
+    }
+}
+
+fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
+    let Some(first) = diagnosis.chain.first().or(diagnosis.candidates.first()) else {
+        return format!("An effect of the catalogue is missing in {machine}.");
+    };
+    let names: Vec<String> = tied(diagnosis, first).into_iter().map(place_of).collect();
+    let mut text = format!("Missing in {machine}: {}", words::list(&names, "or"));
+    text += match names.len() {
+        1 => ". ",
+        2 => ": these recordings cannot tell the two apart. ",
+        _ => ": these recordings cannot tell them apart. ",
+    };
+    let times = ratio(first.evidence.gain.exp());
+    let found = format!("the squared error on recordings it was not fitted to falls {times} times");
+    text += &match names.len() {
+        1 => format!("With it {found}."),
+        _ => format!("With the first of them {found}."),
+    };
+    let further: Vec<String> = diagnosis.chain.iter().skip(1).map(place_of).collect();
+    if !further.is_empty() {
+        text += &format!(" Beyond it: {}.", words::list(&further, "and"));
+    }
+    text
+}
+
+fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
+    let mut text = format!("Something is missing in {machine}, and it is none of the effects in the catalogue");
+    if let Some(left) = &diagnosis.unexplained {
+        text += &format!(
+            ": the {} does not close; {} of its residual follows the {}",
+            words::equation(&left.equation),
+            percent(left.share_of_residual),
+            words::variable(left.variable)
+        );
+    }
+    text += ".";
+    let helpful: Vec<String> = diagnosis.chain.iter().map(place_of).collect();
+    if !helpful.is_empty() {
+        let verb = if helpful.len() == 1 { "lowers" } else { "lower" };
+        text += &format!(" Of the catalogue, {} {verb} the error but does not explain it.", words::list(&helpful, "and"));
+        if helpful.len() > 1 {
+            text = text.replace(" but does not explain it.", " but do not explain it.");
+        }
+    }
+    text
+}
+
+/// The first candidate and those tied with it.
+pub(super) fn tied<'a>(diagnosis: &'a Diagnosis, first: &'a Candidate) -> Vec<&'a Candidate> {
+    let same = |other: &Candidate| other.name() == first.name() && other.site == first.site;
+    let others = diagnosis.candidates.iter().filter(|other| other.tied_with_first && !same(other));
+    std::iter::once(first).chain(others).collect()
+}
+
+/// "valve dead zone at the arm valve section".
+pub(super) fn place_of(candidate: &Candidate) -> String {
+    words::effect_at(candidate.physics.card(), &candidate.place)
+}

@@ -1,0 +1,48 @@
+//! A machine at rest.
+
+use crate::effects::Site;
+use crate::equations::{Inputs, System};
+
+/// Pressure above tank of the less loaded chamber of a cylinder at rest, Pa: enough that small motions do not cavitate.
+const PRELOAD: f64 = 3e5;
+
+/// State of a machine at rest with these piston displacements (m): velocities zero, chamber pressures in balance with
+/// gravity, pump pressure a little above tank. `NaN` joints where the linkage cannot reach a displacement.
+pub fn rest_state(system: &System<'_>, displacements: &[f64], inputs: &Inputs<f64>) -> Vec<f64> {
+    let layout = system.layout();
+    let machine = &system.model().machine;
+    let mut state = vec![0.0; layout.len];
+    for (index, cylinder) in machine.cylinders.iter().enumerate() {
+        let displacement = displacements.get(index).copied().unwrap_or(0.0);
+        state[layout.joint(index)] = cylinder.linkage.joint(displacement);
+    }
+    if let Some(pump) = layout.pump {
+        state[pump] = inputs.tank_pressure + PRELOAD / 2.0;
+    }
+    for (effect, &(first, states)) in system.model().effects.iter().zip(&layout.effect_states) {
+        if let Site::Cylinder(cylinder) = effect.site {
+            state[first..first + states].fill(inputs.orifice_area[cylinder]);
+        }
+    }
+    let mut workspace = system.workspace();
+    let mut rates = vec![0.0; layout.len];
+    system.rates(&mut workspace, &system.model().parameter_values(), &state, inputs, &mut rates);
+    for (index, cylinder) in machine.cylinders.iter().enumerate() {
+        let (Some(chambers), Some(cap), Some(rod)) =
+            (cylinder.chambers, layout.cap_pressure(index), layout.rod_pressure(index))
+        else {
+            continue;
+        };
+        let piston = &workspace.situation.pistons[index];
+        let needed = -workspace.rows.torque[index] / piston.lever;
+        let preload = inputs.tank_pressure + PRELOAD;
+        if needed >= preload * (chambers.cap_area - chambers.rod_area) {
+            state[rod] = preload;
+            state[cap] = (needed + chambers.rod_area * preload) / chambers.cap_area;
+        } else {
+            state[cap] = preload;
+            state[rod] = (chambers.cap_area * preload - needed) / chambers.rod_area;
+        }
+    }
+    state
+}

@@ -1,0 +1,91 @@
+//! The hidden effect and the machine around it, drawn from a seed.
+
+use excavator_model::Model;
+use excavator_model::document::{DocumentError, built_in};
+use excavator_model::effects::{self, Kind, Site};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use crate::error::VerbError;
+
+/// A machine whose parameters and hidden effect nobody outside has seen.
+pub struct Sealed {
+    /// The machine as it really is.
+    pub truth: Model,
+    /// Name of the hidden effect.
+    pub effect: &'static str,
+    /// Where it sits.
+    pub site: Site,
+}
+
+/// Hidden effects and the ranges (uniform, in the parameters' units) from which their strengths are drawn: from well
+/// visible to strong on this machine.
+const HIDDEN: &[(&str, &[(f64, f64)])] = &[
+    ("valve_dead_zone", &[(7e-6, 1.4e-5), (7e-6, 1.4e-5)]),
+    ("valve_leakage", &[(1e-11, 3e-11), (1e-11, 3e-11), (1e-11, 3e-11), (1e-11, 4e-11)]),
+    ("valve_lag", &[(0.02, 0.05)]),
+    ("hose_loss", &[(3e5, 7e5)]),
+    ("stribeck_friction", &[(5e2, 1e3), (0.008, 0.02)]),
+    ("entrained_air", &[(0.02, 0.05)]),
+    ("relief_valve", &[(1.1e6, 1.5e6), (5e-10, 2e-9)]),
+];
+
+/// How far the machine's own parameters are from the model's, at most: what a type sheet is worth.
+const PARAMETER_SPREAD: f64 = 0.2;
+
+impl Sealed {
+    /// Draws a machine.
+    pub fn draw(generator: &mut ChaCha8Rng) -> Result<Sealed, VerbError> {
+        let mut truth = built_in("zx30u-arm")?;
+        for parameter in truth.parameters_mut().filter(|parameter| !parameter.known) {
+            parameter.value *= generator.random_range(1.0 - PARAMETER_SPREAD..1.0 + PARAMETER_SPREAD);
+        }
+        let (effect, ranges) = HIDDEN[generator.random_range(0..HIDDEN.len())];
+        let physics = effects::find(effect)?;
+        let site = truth.free_sites(physics).first().copied().ok_or_else(|| DocumentError::Inconsistent {
+            name: truth.machine.name.clone(),
+            reason: format!("{effect} has no place"),
+        })?;
+        truth = truth.with_effect(physics, site)?;
+        if let Some(hidden) = truth.effects.last_mut() {
+            for (parameter, &(low, high)) in hidden.parameters.iter_mut().zip(ranges) {
+                parameter.value = generator.random_range(low..high);
+            }
+        }
+        Ok(Sealed { truth, effect, site })
+    }
+
+    /// Whether the spool has a sensor: a lag of the valve only shows against the command.
+    pub fn has_spool_sensor(&self) -> bool {
+        self.effect != "valve_lag"
+    }
+
+    /// Value, name and unit of the hidden effect's parameters, with what was found for them.
+    pub fn opened(&self, found: &Model) -> Vec<(String, f64, Option<f64>, &'static str)> {
+        let Some(hidden) = self.truth.effects.last() else { return Vec::new() };
+        let place = excavator_model::site_name(&self.truth.machine, self.site);
+        hidden
+            .parameters
+            .iter()
+            .map(|parameter| {
+                let name = format!("{place}.{}", parameter.card.name);
+                let value = found.value_of(&name);
+                (name, parameter.value, value, parameter.card.unit)
+            })
+            .collect()
+    }
+
+    /// Mean relative error of the machine's own linear parameters in `found`.
+    pub fn base_error(&self, found: &Model) -> f64 {
+        let names = self.truth.parameter_names();
+        let mut errors: Vec<f64> = self
+            .truth
+            .parameters()
+            .zip(&names)
+            .filter(|((_, parameter), _)| !parameter.known && parameter.card.kind != Kind::Shape)
+            .filter_map(|((_, parameter), name)| Some((found.value_of(name)? / parameter.value - 1.0).abs()))
+            .collect();
+        errors.sort_by(f64::total_cmp);
+        errors.get(errors.len() / 2).copied().unwrap_or(f64::NAN)
+    }
+}

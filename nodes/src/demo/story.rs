@@ -1,0 +1,86 @@
+//! The story, told on the terminal.
+
+use std::path::{Path, PathBuf};
+
+use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_identification::diagnosis::DiagnosisSettings;
+use excavator_identification::refinement::{Additions, refine};
+use excavator_identification::report::{refinement_page, verdict_sentence};
+use excavator_model::document::{built_in, to_text};
+use excavator_model::recording::Recording;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::sealed::Sealed;
+use super::{manoeuvre, plant};
+use crate::cli::DemoArguments;
+use crate::error::VerbError;
+use crate::output::{Progress, candidate_table, number, step_table};
+use crate::sources;
+use crate::verbs::print;
+
+/// Runs the demo.
+pub fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
+    let folder = free_folder(&arguments.output);
+    std::fs::create_dir_all(&folder).map_err(|source| VerbError::Write { path: folder.clone(), source })?;
+    let mut generator = ChaCha8Rng::seed_from_u64(arguments.seed);
+    let sealed = Sealed::draw(&mut generator)?;
+    print("1  A machine: the arm of a 3 t excavator, its parameters up to 20 % off the data sheet, and one physical");
+    print("   effect that the model does not know. Which one is sealed until the end.");
+    let mut recordings = Vec::new();
+    for (name, profile) in [("identification", manoeuvre::identification()), ("validation", manoeuvre::validation())] {
+        let recording = plant::record(&sealed, &profile, &mut generator)?;
+        let path = folder.join(name);
+        write_recording(&path, &recording, &Topics::default(), &WriteOptions::default())?;
+        let (read, _) = excavator_bags::read_recording(&path, &Topics::default())?;
+        print(&format!("   recorded {:4.0} s with noisy sensors: {}", read.duration(), path.display()));
+        recordings.push(read);
+    }
+    let (identification, validation) = (&recordings[0], &recordings[1]);
+
+    print("\n2  The model of the data sheet against the recordings: identify, look where it fails, try every effect ...");
+    let model = built_in("zx30u-arm")?;
+    let progress = Progress::new();
+    let when = jiff::Timestamp::now().to_string();
+    let settings = DiagnosisSettings::default();
+    let validation_only: [&Recording; 1] = [validation];
+    let refinement =
+        refine(&model, &[identification], &validation_only, &Additions::Auto, &settings, &when, &|what, done| {
+            progress.tell(what, done);
+        })?;
+    drop(progress);
+    if let Some(diagnosis) = &refinement.diagnosis {
+        let all: Vec<_> = diagnosis.candidates.iter().chain(&diagnosis.rejected).collect();
+        print(&candidate_table(&all, &diagnosis.nominal_validation, &validation_only).to_string());
+        print(&format!("\n3  {}", verdict_sentence(&model, diagnosis)));
+    }
+    print("\n4  Added, refitted, simulated again on the recording that was never fitted:");
+    print(&step_table(&refinement).to_string());
+
+    print(&format!("\n5  The seal is opened: the hidden effect is {}.", sealed.effect));
+    for (name, truth, found, unit) in sealed.opened(&refinement.model) {
+        let found = found.map_or("not found".to_string(), number);
+        print(&format!("   {name:32} true {:>10}   found {found:>10}   {unit}", number(truth)));
+    }
+    print(&format!(
+        "   the machine's own parameters are found to within {:.2} % (median)",
+        100.0 * sealed.base_error(&refinement.model)
+    ));
+    let model_file = folder.join("refined-model.toml");
+    sources::write_text(&model_file, &to_text(&refinement.model)?)?;
+    sources::write_text(&folder.join("true-machine.toml"), &to_text(&sealed.truth)?)?;
+    let report = folder.join("report.html");
+    sources::write_text(&report, &refinement_page(&refinement))?;
+    print(&format!("\nOpen {} to see every signal before and after.", report.display()));
+    Ok(())
+}
+
+/// The folder asked for, or the first of folder-2, folder-3, ... that holds no recording yet: nothing is overwritten.
+fn free_folder(wanted: &Path) -> PathBuf {
+    let taken = |path: &Path| path.join("identification").exists() || path.join("validation").exists();
+    if !taken(wanted) {
+        return wanted.to_path_buf();
+    }
+    let numbered = |number: usize| PathBuf::from(format!("{}-{number}", wanted.display()));
+    (2..1000).map(numbered).find(|path| !taken(path)).unwrap_or_else(|| numbered(1000))
+}

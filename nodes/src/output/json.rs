@@ -1,0 +1,163 @@
+//! Results for programs.
+
+use std::path::Path;
+
+use excavator_identification::diagnosis::{Candidate, Diagnosis, normalised_error};
+use excavator_identification::refinement::Refinement;
+use excavator_identification::regression::ConditionNumber;
+use excavator_identification::validation::Comparison;
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+use serde_json::{Map, Value, json};
+
+use crate::error::VerbError;
+
+/// Writes JSON to a file, or to standard output for "-".
+pub fn write_json(path: &Path, value: &Value) -> Result<(), VerbError> {
+    let text = serde_json::to_string_pretty(value)?;
+    if path == Path::new("-") {
+        use std::io::Write;
+        writeln!(std::io::stdout(), "{text}")?;
+        return Ok(());
+    }
+    crate::sources::write_text(path, &(text + "\n"))
+}
+
+/// JSON has no NaN: what is not a number is null.
+fn finite(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { Value::Null }
+}
+
+fn parameters(model: &Model, fitted: &[usize]) -> Vec<Value> {
+    let names = model.parameter_names();
+    model
+        .parameters()
+        .enumerate()
+        .filter(|(index, _)| fitted.contains(index))
+        .map(|(index, (_, parameter))| {
+            json!({
+                "name": names[index],
+                "value": finite(parameter.value),
+                "std_error": parameter.standard_error.map_or(Value::Null, finite),
+                "unit": parameter.card.unit,
+            })
+        })
+        .collect()
+}
+
+/// Result of `identify`.
+pub fn identification_json(
+    model: &Model,
+    fitted: &[usize],
+    conditions: &[ConditionNumber],
+    rows: usize,
+    equations: Vec<Value>,
+    not_identified: &[(usize, String)],
+) -> Value {
+    let names = model.parameter_names();
+    let conditions: Map<String, Value> = conditions
+        .iter()
+        .map(|c| (c.group.to_string(), json!({"unscaled": finite(c.unscaled), "scaled": finite(c.scaled)})))
+        .collect();
+    let not_identified: Vec<Value> =
+        not_identified.iter().map(|(index, reason)| json!({"name": names[*index], "reason": reason})).collect();
+    json!({
+        "parameters": parameters(model, fitted),
+        "condition_numbers": conditions,
+        "rows": rows,
+        "equations": equations,
+        "not_identified": not_identified,
+    })
+}
+
+fn signals(comparisons: &[Comparison]) -> Value {
+    let Some(first) = comparisons.first() else { return json!({}) };
+    let count = comparisons.len() as f64;
+    let entries = first.signals.iter().enumerate().map(|(index, signal)| {
+        let own = || comparisons.iter().filter_map(move |comparison| comparison.signals.get(index));
+        let nmse = own().map(|s| s.normalised_error).sum::<f64>() / count;
+        let fit = own().map(|s| s.fit).sum::<f64>() / count;
+        let delays: Vec<f64> = own().filter_map(|s| s.phase_delay_degrees).collect();
+        let delay = delays.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).map_or(Value::Null, finite);
+        (signal.name.clone(), json!({"nmse": finite(nmse), "fit": finite(fit), "phase_delay_deg": delay}))
+    });
+    Value::Object(entries.collect())
+}
+
+/// Result of `compare`.
+pub fn comparison_json(comparison: &Comparison) -> Value {
+    json!({
+        "signals": signals(std::slice::from_ref(comparison)),
+        "excitation_frequency_hz": comparison.excitation_frequency,
+    })
+}
+
+fn candidate_json(candidate: &Candidate, before: f64, validation: &[&Recording]) -> Value {
+    let range = candidate.fit.model.effects.last().map_or(0, |effect| effect.parameters.len());
+    let count = candidate.fit.model.parameters().count();
+    let own: Vec<usize> = (count - range..count).collect();
+    json!({
+        "effect": candidate.name(),
+        "cylinder": candidate.place,
+        "validation_error_before": finite(before),
+        "validation_error_after": finite(normalised_error(&candidate.validation, validation)),
+        "evidence": finite(candidate.evidence.gain),
+        "significance": finite(candidate.evidence.significance),
+        "tied_with_first": candidate.tied_with_first,
+        "parameters": parameters(&candidate.fit.model, &own),
+    })
+}
+
+/// Result of `diagnose`.
+pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value {
+    let before = normalised_error(&diagnosis.nominal_validation, validation);
+    let candidates = |list: &[Candidate]| -> Vec<Value> {
+        list.iter().map(|candidate| candidate_json(candidate, before, validation)).collect()
+    };
+    let places: Vec<Value> = diagnosis
+        .map
+        .iter()
+        .map(|share| {
+            json!({
+                "equation": share.equation,
+                "regime": share.regime,
+                "share_of_residual": finite(share.share_of_residual),
+                "share_of_time": finite(share.share_of_time),
+            })
+        })
+        .collect();
+    let chain: Vec<Value> = diagnosis
+        .chain
+        .iter()
+        .map(|c| json!({"effect": c.name(), "cylinder": c.place, "loss_after": finite(c.validation.loss())}))
+        .collect();
+    json!({
+        "verdict": diagnosis.verdict.name(),
+        "candidates": candidates(&diagnosis.candidates),
+        "rejected": candidates(&diagnosis.rejected),
+        "together": chain,
+        "where": places,
+        "unexplained": diagnosis.unexplained.as_ref().map(|rest| json!({
+            "equation": rest.equation,
+            "variable": rest.variable,
+            "share_of_residual": finite(rest.share_of_residual),
+            "unit": rest.unit,
+            "curve": rest.curve,
+        })),
+        "loss": {"nominal": finite(diagnosis.nominal_validation.loss())},
+    })
+}
+
+/// Result of `refine`.
+pub fn refinement_json(refinement: &Refinement, model_file: &Path) -> Value {
+    let steps: Vec<Value> = refinement
+        .steps
+        .iter()
+        .map(|step| json!({"added": step.added, "signals": signals(&step.comparisons)}))
+        .collect();
+    json!({
+        "verdict": refinement.verdict().name(),
+        "steps": steps,
+        "model": model_file.display().to_string(),
+    })
+}

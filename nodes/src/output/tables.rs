@@ -1,0 +1,119 @@
+//! Tables for people.
+
+use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
+use comfy_table::{Attribute, Cell, CellAlignment, Table};
+use excavator_identification::diagnosis::{Candidate, normalised_error};
+use excavator_identification::fit::Fit;
+use excavator_identification::refinement::Refinement;
+use excavator_identification::validation::Comparison;
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+
+/// A number with four significant digits, short.
+pub fn number(value: f64) -> String {
+    if !value.is_finite() {
+        return "-".to_string();
+    }
+    let size = value.abs();
+    if size == 0.0 {
+        "0".to_string()
+    } else if (0.01..1e5).contains(&size) {
+        let digits = (3 - size.log10().floor() as i32).clamp(0, 6) as usize;
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+fn table(header: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_preset(UTF8_HORIZONTAL_ONLY);
+    table.set_header(header.iter().map(|text| Cell::new(text).add_attribute(Attribute::Bold)));
+    table
+}
+
+fn right(text: impl ToString) -> Cell {
+    Cell::new(text.to_string()).set_alignment(CellAlignment::Right)
+}
+
+/// Identified parameters with 95 % intervals.
+pub fn parameter_table(model: &Model, fitted: &[usize]) -> Table {
+    let mut table = table(&["parameter", "value", "± 95 %", "unit"]);
+    let names = model.parameter_names();
+    for (index, (_, parameter)) in model.parameters().enumerate() {
+        if fitted.contains(&index) {
+            let margin = parameter.standard_error.map_or("-".into(), |error| number(1.96 * error));
+            table.add_row([
+                Cell::new(&names[index]),
+                right(number(parameter.value)),
+                right(margin),
+                Cell::new(parameter.card.unit),
+            ]);
+        }
+    }
+    table
+}
+
+/// Errors of every signal.
+pub fn comparison_table(comparison: &Comparison) -> Table {
+    let mut table = table(&["signal", "NMSE", "FIT %", "phase delay °"]);
+    for signal in &comparison.signals {
+        table.add_row([
+            Cell::new(&signal.name),
+            right(number(signal.normalised_error)),
+            right(format!("{:.1}", signal.fit)),
+            right(signal.phase_delay_degrees.map_or("-".into(), |degrees| format!("{degrees:.1}"))),
+        ]);
+    }
+    table
+}
+
+/// Candidates with what they gain on the validation recordings.
+pub fn candidate_table(candidates: &[&Candidate], before: &Fit, validation: &[&Recording]) -> Table {
+    let mut table = table(&["effect", "at", "error before", "error after", "gain", "significance", "verdict"]);
+    for candidate in candidates {
+        let verdict = match (candidate.accepted, candidate.tied_with_first) {
+            (true, true) => "tied",
+            (true, false) => "evidence",
+            (false, _) => "no evidence",
+        };
+        table.add_row([
+            Cell::new(candidate.name()),
+            Cell::new(&candidate.place),
+            right(number(normalised_error(before, validation))),
+            right(number(normalised_error(&candidate.validation, validation))),
+            right(format!("{:.2}", candidate.evidence.gain)),
+            right(format!("{:.1}", candidate.evidence.significance)),
+            Cell::new(verdict),
+        ]);
+    }
+    table
+}
+
+/// Normalised mean squared error of every signal, step by step.
+pub fn step_table(refinement: &Refinement) -> Table {
+    let Some(first) = refinement.steps.first().and_then(|step| step.comparisons.first()) else { return table(&["step"]) };
+    let mut header: Vec<&str> = vec!["NMSE on validation"];
+    header.extend(first.signals.iter().map(|signal| signal.name.as_str()));
+    header.push("mean");
+    let mut table = table(&header);
+    let mut row = |name: String, comparisons: &[Comparison]| {
+        let count = comparisons.len() as f64;
+        let mean = |of: &dyn Fn(&Comparison) -> f64| comparisons.iter().map(of).sum::<f64>() / count;
+        let mut cells = vec![Cell::new(name)];
+        for index in 0..first.signals.len() {
+            let of = |comparison: &Comparison| comparison.signals.get(index).map_or(f64::NAN, |s| s.normalised_error);
+            cells.push(right(number(mean(&of))));
+        }
+        cells.push(right(number(mean(&Comparison::mean_error))).add_attribute(Attribute::Bold));
+        table.add_row(cells);
+    };
+    if !refinement.given.is_empty() {
+        row("as given".into(), &refinement.given);
+    }
+    for step in &refinement.steps {
+        let name = step.added.as_ref().map_or("identified".to_string(), |added| format!("+ {added}"));
+        row(name, &step.comparisons);
+    }
+    table
+}

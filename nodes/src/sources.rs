@@ -1,0 +1,42 @@
+//! Models and recordings by what a person calls them.
+
+use std::path::Path;
+
+use excavator_bags::{Topics, read_recording};
+use excavator_identification::gate;
+use excavator_model::Model;
+use excavator_model::document::{DocumentError, built_in, parse};
+use excavator_model::recording::Recording;
+
+use crate::error::VerbError;
+
+/// A model by its built-in name or file.
+pub fn model(name: &str) -> Result<Model, VerbError> {
+    let path = Path::new(name);
+    if !path.exists() && !name.ends_with(".toml") {
+        return Ok(built_in(name)?);
+    }
+    let text =
+        std::fs::read_to_string(path).map_err(|source| VerbError::Read { path: path.to_path_buf(), source })?;
+    Ok(parse(name, &text)?)
+}
+
+/// A recording, with what was wrong in its bag told on standard error, checked against the model.
+pub fn recording(path: &Path, model: &Model) -> Result<Recording, VerbError> {
+    let (recording, report) = read_recording(path, &Topics::default())?;
+    for problem in report.problems() {
+        eprintln!("{}: {problem}", path.display());
+    }
+    gate::check(model, &recording)?;
+    Ok(recording)
+}
+
+/// Several recordings.
+pub fn recordings(paths: &[impl AsRef<Path>], model: &Model) -> Result<Vec<Recording>, VerbError> {
+    paths.iter().map(|path| recording(path.as_ref(), model)).collect()
+}
+
+/// Writes a text file.
+pub fn write_text(path: &Path, text: &str) -> Result<(), VerbError> {
+    std::fs::write(path, text).map_err(|source| VerbError::Write { path: path.to_path_buf(), source })
+}

@@ -1,0 +1,29 @@
+//! `excavator compare`
+
+use std::path::Path;
+
+use excavator_identification::report::comparison_page;
+use excavator_identification::validation::compare;
+
+use super::print;
+use crate::cli::CompareArguments;
+use crate::error::VerbError;
+use crate::output::{comparison_json, comparison_table, write_json};
+use crate::sources;
+
+pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
+    let model = sources::model(&arguments.model)?;
+    let recording = sources::recording(&arguments.bag, &model)?;
+    let comparison = compare(&model, &recording)?;
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        print(&format!("{} simulated with the input of {}", model.machine.name, recording.source));
+        print(&comparison_table(&comparison).to_string());
+    }
+    if let Some(path) = &arguments.report {
+        sources::write_text(path, &comparison_page(&model, std::slice::from_ref(&comparison)))?;
+    }
+    if let Some(path) = &arguments.json.json {
+        write_json(path, &comparison_json(&comparison))?;
+    }
+    Ok(())
+}

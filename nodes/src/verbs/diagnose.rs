@@ -1,0 +1,59 @@
+//! `excavator diagnose`
+
+use std::path::Path;
+
+use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
+use excavator_identification::report::{diagnosis_page, verdict_sentence};
+use excavator_identification::validation::{Comparison, compare};
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+
+use super::print;
+use crate::cli::DiagnoseArguments;
+use crate::error::VerbError;
+use crate::output::{Progress, candidate_table, diagnosis_json, write_json};
+use crate::sources;
+
+pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
+    let model = sources::model(&arguments.model)?;
+    let identification = sources::recordings(&arguments.recordings.identification, &model)?;
+    let validation = sources::recordings(&arguments.recordings.validation, &model)?;
+    let identification: Vec<&Recording> = identification.iter().collect();
+    let validation: Vec<&Recording> = validation.iter().collect();
+    let progress = Progress::new();
+    let settings = DiagnosisSettings::default();
+    let diagnosis = diagnose(&model, &identification, &validation, &settings, &|what, done| progress.tell(what, done))?;
+    drop(progress);
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        show(&model, &diagnosis, &validation);
+    }
+    if let Some(path) = &arguments.report {
+        let comparisons = validation
+            .iter()
+            .map(|recording| compare(&diagnosis.nominal.model, recording))
+            .collect::<Result<Vec<Comparison>, _>>()?;
+        sources::write_text(path, &diagnosis_page(&model, &diagnosis, &comparisons))?;
+    }
+    if let Some(path) = &arguments.json.json {
+        write_json(path, &diagnosis_json(&diagnosis, &validation))?;
+    }
+    Ok(())
+}
+
+/// Shares of the residual that are worth a line.
+const LEAST_SHARE: f64 = 0.05;
+
+/// Prints a diagnosis for people.
+pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
+    print(&verdict_sentence(model, diagnosis));
+    let all: Vec<_> = diagnosis.candidates.iter().chain(&diagnosis.rejected).collect();
+    print(&candidate_table(&all, &diagnosis.nominal_validation, validation).to_string());
+    for (name, error) in &diagnosis.failed {
+        print(&format!("{name} could not be tried: {error}"));
+    }
+    print("Where the fitted model fails (share of the squared residual, in units of sensor noise):");
+    for share in diagnosis.map.iter().filter(|share| share.share_of_residual >= LEAST_SHARE).take(6) {
+        let (residual, time) = (100.0 * share.share_of_residual, 100.0 * share.share_of_time);
+        print(&format!("  {:4.0} %  {}, {} ({time:.0} % of the time)", residual, share.equation, share.regime));
+    }
+}

@@ -1,0 +1,107 @@
+//! `excavator effects`
+
+use std::path::Path;
+
+use excavator_model::document::built_in;
+use excavator_model::effects::{self, ActsOn, Effect, Family, Kind, ParameterCard, Site};
+use serde_json::{Value, json};
+
+use super::print;
+use crate::cli::EffectsArguments;
+use crate::error::VerbError;
+use crate::output::{number, write_json};
+
+pub fn run(arguments: &EffectsArguments) -> Result<(), VerbError> {
+    let wanted: Vec<&'static dyn Effect> = match &arguments.name {
+        Some(name) => vec![effects::find(name)?],
+        None => effects::CATALOGUE.to_vec(),
+    };
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        match wanted.as_slice() {
+            [one] if arguments.name.is_some() => page(*one)?,
+            all => list(all),
+        }
+    }
+    if let Some(path) = &arguments.json.json {
+        let cards = wanted.iter().map(|effect| card_json(*effect)).collect::<Result<Vec<Value>, _>>()?;
+        write_json(path, &json!({ "effects": cards }))?;
+    }
+    Ok(())
+}
+
+fn place(acts_on: ActsOn) -> &'static str {
+    match acts_on {
+        ActsOn::Cylinder => "cylinder",
+        ActsOn::Valve => "valve",
+        ActsOn::PumpLine => "pump line",
+        ActsOn::CylinderOrPumpLine => "chambers, pump line",
+    }
+}
+
+fn list(all: &[&'static dyn Effect]) {
+    for (family, title) in [(Family::Base, "In the nominal model"), (Family::Candidate, "Candidates beyond it")] {
+        print(title);
+        for effect in all.iter().filter(|effect| effect.card().family == family) {
+            let card = effect.card();
+            print(&format!("  {:22} {:20} {}", card.name, place(card.acts_on), card.summary));
+        }
+    }
+    print("`excavator effects NAME` describes one.");
+}
+
+/// The parameters of an effect on the machine where it looks most usual.
+fn parameters(effect: &dyn Effect) -> Result<&'static [ParameterCard], VerbError> {
+    let machine = built_in("zx30u-arm")?.machine;
+    let site = if effect.card().acts_on == ActsOn::PumpLine { Site::PumpLine } else { Site::Cylinder(0) };
+    Ok(effect.parameters(&machine, site))
+}
+
+fn page(effect: &dyn Effect) -> Result<(), VerbError> {
+    let card = effect.card();
+    print(&format!("{} ({})\n{}\n", card.name, place(card.acts_on), card.summary));
+    for (title, text) in [
+        ("equation", card.equation),
+        ("source", card.source),
+        ("shows as", card.shows),
+        ("experiment", card.experiment),
+        ("energy", card.energy),
+    ] {
+        print(&format!("{title:12}{text}"));
+    }
+    print("parameters");
+    for parameter in parameters(effect)? {
+        print(&format!(
+            "  {:24} {:6} {:18} {}; {} to {}",
+            parameter.name,
+            parameter.symbol,
+            parameter.unit,
+            parameter.meaning,
+            number(parameter.minimum),
+            number(parameter.maximum)
+        ));
+    }
+    Ok(())
+}
+
+fn card_json(effect: &dyn Effect) -> Result<Value, VerbError> {
+    let card = effect.card();
+    let parameters: Vec<Value> = parameters(effect)?
+        .iter()
+        .map(|parameter| {
+            let kind = match parameter.kind {
+                Kind::Linear => "linear",
+                Kind::Reciprocal => "reciprocal",
+                Kind::Shape => "shape",
+            };
+            json!({
+                "name": parameter.name, "symbol": parameter.symbol, "unit": parameter.unit, "kind": kind,
+                "meaning": parameter.meaning, "minimum": parameter.minimum, "maximum": parameter.maximum,
+            })
+        })
+        .collect();
+    Ok(json!({
+        "name": card.name, "acts_on": place(card.acts_on), "summary": card.summary, "equation": card.equation,
+        "source": card.source, "shows": card.shows, "experiment": card.experiment, "energy": card.energy,
+        "candidate": card.family == Family::Candidate, "parameters": parameters,
+    }))
+}

@@ -1,0 +1,71 @@
+//! `excavator refine`
+
+use std::path::Path;
+
+use excavator_identification::diagnosis::DiagnosisSettings;
+use excavator_identification::refinement::{Additions, Refinement, refine};
+use excavator_identification::report::{refinement_page, verdict_sentence};
+use excavator_model::Model;
+use excavator_model::document::to_text;
+use excavator_model::recording::Recording;
+
+use super::print;
+use crate::cli::RefineArguments;
+use crate::error::VerbError;
+use crate::output::{Progress, parameter_table, refinement_json, step_table, write_json};
+use crate::sources;
+
+pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
+    let model = sources::model(&arguments.model)?;
+    let additions = if arguments.auto { Additions::Auto } else { named(&model, &arguments.add)? };
+    let identification = sources::recordings(&arguments.recordings.identification, &model)?;
+    let validation = sources::recordings(&arguments.recordings.validation, &model)?;
+    let identification: Vec<&Recording> = identification.iter().collect();
+    let validation: Vec<&Recording> = validation.iter().collect();
+    let progress = Progress::new();
+    let settings = DiagnosisSettings::default();
+    let when = jiff::Timestamp::now().to_string();
+    let refinement = refine(&model, &identification, &validation, &additions, &settings, &when, &|what, done| {
+        progress.tell(what, done);
+    })?;
+    drop(progress);
+    sources::write_text(&arguments.output, &to_text(&refinement.model)?)?;
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        show(&model, &refinement);
+        print(&format!("written: {}", arguments.output.display()));
+    }
+    if let Some(path) = &arguments.report {
+        sources::write_text(path, &refinement_page(&refinement))?;
+    }
+    if let Some(path) = &arguments.json.json {
+        write_json(path, &refinement_json(&refinement, &arguments.output))?;
+    }
+    Ok(())
+}
+
+/// What the user named, each at every place it can act unless a place is given.
+fn named(model: &Model, names: &[String]) -> Result<Additions, VerbError> {
+    let mut additions = Vec::new();
+    for name in names {
+        for (physics, site) in model.parse_addition(name)? {
+            if additions.iter().any(|&(other, place): &(&dyn excavator_model::effects::Effect, _)| {
+                other.card().name == physics.card().name && place == site
+            }) {
+                return Err(VerbError::AddedTwice(name.clone()));
+            }
+            additions.push((physics, site));
+        }
+    }
+    Ok(Additions::Named(additions))
+}
+
+/// Prints a refinement for people.
+pub fn show(model: &Model, refinement: &Refinement) {
+    if let Some(diagnosis) = &refinement.diagnosis {
+        print(&verdict_sentence(model, diagnosis));
+    }
+    print(&step_table(refinement).to_string());
+    if let Some(last) = refinement.steps.last() {
+        print(&parameter_table(&last.fit.model, &last.fit.fitted).to_string());
+    }
+}
