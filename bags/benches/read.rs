@@ -27,11 +27,7 @@ fn bare(file: &Path) -> usize {
 }
 
 fn raw(file: &Path) -> usize {
-    RawMessages::open(file)
-        .unwrap()
-        .map(|message| message.unwrap().data.len())
-        .filter(|&length| length > 0)
-        .count()
+    RawMessages::open(file).unwrap().map(|message| message.unwrap().data.len()).filter(|&length| length > 0).count()
 }
 
 fn decoded(file: &Path) -> usize {
@@ -52,19 +48,11 @@ fn median_time(run: impl Fn() -> usize) -> Duration {
 
 fn read(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().unwrap();
-    let file = std::env::var_os("EXCAVATOR_BENCH_BAG")
-        .map(PathBuf::from)
-        .unwrap_or_else(|| {
-            let bag = folder.path().join("bag");
-            write_recording(
-                &bag,
-                &support::recording(40_000),
-                &Topics::default(),
-                &WriteOptions::default(),
-            )
-            .unwrap();
-            support::mcap_file(&bag)
-        });
+    let file = std::env::var_os("EXCAVATOR_BENCH_BAG").map(PathBuf::from).unwrap_or_else(|| {
+        let bag = folder.path().join("bag");
+        write_recording(&bag, &support::recording(40_000), &Topics::default(), &WriteOptions::default()).unwrap();
+        support::mcap_file(&bag)
+    });
     let messages = bare(&file);
     let (bare_time, decoded_time) = (median_time(|| bare(&file)), median_time(|| decoded(&file)));
     println!(
@@ -74,12 +62,8 @@ fn read(criterion: &mut Criterion) {
         bare_time.as_secs_f64() / decoded_time.as_secs_f64()
     );
     let mut group = criterion.benchmark_group("read");
-    group
-        .sample_size(20)
-        .throughput(Throughput::Elements(messages as u64));
-    group.bench_function("mcap_message_stream", |bencher| {
-        bencher.iter(|| bare(&file))
-    });
+    group.sample_size(20).throughput(Throughput::Elements(messages as u64));
+    group.bench_function("mcap_message_stream", |bencher| bencher.iter(|| bare(&file)));
     group.bench_function("raw_messages", |bencher| bencher.iter(|| raw(&file)));
     group.bench_function("recording", |bencher| bencher.iter(|| decoded(&file)));
     group.finish();

@@ -56,16 +56,11 @@ pub fn decode<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, CdrError> {
         1 => cdr_encoding::from_bytes::<M, LittleEndian>(content),
         other => return Err(CdrError::OtherEncapsulation(other)),
     };
-    let (message, used) = decoded.map_err(|error| CdrError::Malformed {
-        bytes: content.len(),
-        reason: error.to_string(),
-    })?;
+    let (message, used) =
+        decoded.map_err(|error| CdrError::Malformed { bytes: content.len(), reason: error.to_string() })?;
     let left = content.len().saturating_sub(used);
     if left > PADDING_LIMIT {
-        return Err(CdrError::LeftOver {
-            bytes: content.len(),
-            left,
-        });
+        return Err(CdrError::LeftOver { bytes: content.len(), left });
     }
     Ok(message)
 }
@@ -75,8 +70,8 @@ pub fn decode<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, CdrError> {
 /// # Errors
 /// [`CdrError::Unencodable`] for types that CDR has no form for; none of `excavator_msgs` is.
 pub fn encode<M: Serialize>(message: &M) -> Result<Vec<u8>, CdrError> {
-    let content = cdr_encoding::to_vec::<M, LittleEndian>(message)
-        .map_err(|error| CdrError::Unencodable(error.to_string()))?;
+    let content =
+        cdr_encoding::to_vec::<M, LittleEndian>(message).map_err(|error| CdrError::Unencodable(error.to_string()))?;
     let mut bytes = Vec::with_capacity(LITTLE_ENDIAN.len() + content.len());
     bytes.extend_from_slice(&LITTLE_ENDIAN);
     bytes.extend_from_slice(&content);
@@ -90,55 +85,27 @@ mod tests {
 
     #[test]
     fn alignment_counts_from_the_end_of_the_encapsulation() {
-        let term = EnergyTerm {
-            effect: "ab".into(),
-            power: 1.0,
-        };
+        let term = EnergyTerm { effect: "ab".into(), power: 1.0 };
         let bytes = encode(&term);
         // 4 encapsulation, 4 length, "ab\0", 1 padding to offset 8 of the content, 8 of the float.
-        let expected = [
-            0, 1, 0, 0, 3, 0, 0, 0, b'a', b'b', 0, 0, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f,
-        ];
+        let expected = [0, 1, 0, 0, 3, 0, 0, 0, b'a', b'b', 0, 0, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f];
         assert_eq!(bytes, Ok(expected.to_vec()));
         assert_eq!(decode::<EnergyTerm>(&expected), Ok(term));
     }
 
     #[test]
     fn big_endian_is_read_too() {
-        let bytes = [
-            0, 0, 0, 0, 0, 0, 0, 3, b'a', b'b', 0, 0, 0x3f, 0xf0, 0, 0, 0, 0, 0, 0,
-        ];
-        assert_eq!(
-            decode(&bytes),
-            Ok(EnergyTerm {
-                effect: "ab".into(),
-                power: 1.0
-            })
-        );
+        let bytes = [0, 0, 0, 0, 0, 0, 0, 3, b'a', b'b', 0, 0, 0x3f, 0xf0, 0, 0, 0, 0, 0, 0];
+        assert_eq!(decode(&bytes), Ok(EnergyTerm { effect: "ab".into(), power: 1.0 }));
     }
 
     #[test]
     fn what_is_no_message_says_why() {
-        assert_eq!(
-            decode::<EnergyTerm>(&[0, 1]),
-            Err(CdrError::NoEncapsulation(2))
-        );
-        assert_eq!(
-            decode::<EnergyTerm>(&[0, 3, 0, 0]),
-            Err(CdrError::OtherEncapsulation(3))
-        );
+        assert_eq!(decode::<EnergyTerm>(&[0, 1]), Err(CdrError::NoEncapsulation(2)));
+        assert_eq!(decode::<EnergyTerm>(&[0, 3, 0, 0]), Err(CdrError::OtherEncapsulation(3)));
         let short = [0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff];
-        assert!(matches!(
-            decode::<OrificeCommand>(&short),
-            Err(CdrError::Malformed { bytes: 4, .. })
-        ));
+        assert!(matches!(decode::<OrificeCommand>(&short), Err(CdrError::Malformed { bytes: 4, .. })));
         let long = [[0u8, 1, 0, 0].as_slice(), &[0; 32]].concat();
-        assert_eq!(
-            decode::<EnergyTerm>(&long),
-            Err(CdrError::LeftOver {
-                bytes: 32,
-                left: 16
-            })
-        );
+        assert_eq!(decode::<EnergyTerm>(&long), Err(CdrError::LeftOver { bytes: 32, left: 16 }));
     }
 }

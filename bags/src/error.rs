@@ -151,9 +151,7 @@ pub enum BagError {
     #[error("the recording cannot be written: {0}")]
     InvalidRecording(#[from] RecordingError),
     /// The stamp of a sample cannot be a ROS time.
-    #[error(
-        "sample {index} cannot be written: its stamp of {nanoseconds} ns is outside 1970 to 2038"
-    )]
+    #[error("sample {index} cannot be written: its stamp of {nanoseconds} ns is outside 1970 to 2038")]
     StampOutOfRange {
         /// Index of the sample.
         index: usize,
@@ -199,26 +197,14 @@ pub enum BagError {
 impl BagError {
     /// For `map_err` after an operation on `path`.
     pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> BagError {
-        move |source| BagError::Io {
-            action,
-            path: path.to_path_buf(),
-            source,
-        }
+        move |source| BagError::Io { action, path: path.to_path_buf(), source }
     }
 }
 
 fn listed(topics: &[String]) -> String {
-    if topics.is_empty() {
-        "no topics at all".to_string()
-    } else {
-        topics.join(", ")
-    }
+    if topics.is_empty() { "no topics at all".to_string() } else { topics.join(", ") }
 }
 
 fn because(damage: &[String]) -> String {
-    if damage.is_empty() {
-        String::new()
-    } else {
-        format!(" ({})", damage.join("; "))
-    }
+    if damage.is_empty() { String::new() } else { format!(" ({})", damage.join("; ")) }
 }

@@ -51,10 +51,7 @@ pub struct TopicInfo {
 impl TopicInfo {
     /// Mean number of messages per second, Hz; `None` for fewer than two messages or all at one time.
     pub fn mean_rate(&self) -> Option<f64> {
-        let nanoseconds = self
-            .last?
-            .checked_sub(self.first?)
-            .filter(|&nanoseconds| nanoseconds > 0)?;
+        let nanoseconds = self.last?.checked_sub(self.first?).filter(|&nanoseconds| nanoseconds > 0)?;
         let intervals = self.message_count.checked_sub(1)?;
         Some(intervals as f64 / (nanoseconds as f64 / 1e9))
     }
@@ -75,9 +72,7 @@ pub fn info(path: &Path) -> Result<BagInfo, BagError> {
     let files = BagFiles::locate(path)?.files;
     let mut size = 0;
     for file in &files {
-        size += std::fs::metadata(file)
-            .map_err(BagError::io("read", file))?
-            .len();
+        size += std::fs::metadata(file).map_err(BagError::io("read", file))?.len();
     }
     let mut messages = RawMessages::open(path)?;
     let mut topics: BTreeMap<String, TopicInfo> = BTreeMap::new();
@@ -93,9 +88,7 @@ pub fn info(path: &Path) -> Result<BagInfo, BagError> {
         }
     }
     for topic in messages.topics() {
-        topics
-            .entry(topic.name.clone())
-            .or_insert_with(|| TopicInfo::empty(&topic));
+        topics.entry(topic.name.clone()).or_insert_with(|| TopicInfo::empty(&topic));
     }
     let topics: Vec<TopicInfo> = topics.into_values().collect();
     let message_count = topics.iter().map(|topic| topic.message_count).sum();
@@ -103,13 +96,8 @@ pub fn info(path: &Path) -> Result<BagInfo, BagError> {
     let end = topics.iter().filter_map(|topic| topic.last).max();
     let nanoseconds = start.zip(end).map_or(0, |(start, end)| end - start);
     let mut problems: Vec<String> = messages.damage().iter().map(ToString::to_string).collect();
-    if let Some(promised) = messages
-        .promised_messages()
-        .filter(|&promised| promised != message_count)
-    {
-        problems.push(format!(
-            "metadata.yaml promises {promised} messages, {message_count} were found"
-        ));
+    if let Some(promised) = messages.promised_messages().filter(|&promised| promised != message_count) {
+        problems.push(format!("metadata.yaml promises {promised} messages, {message_count} were found"));
     }
     Ok(BagInfo {
         path: path.to_path_buf(),

@@ -50,11 +50,8 @@ impl Metadata {
     /// The content of the file at `path`.
     pub fn read(path: &Path) -> Result<Metadata, BagError> {
         let text = std::fs::read(path).map_err(BagError::io("read", path))?;
-        let document: Document =
-            serde_yaml_ng::from_slice(&text).map_err(|error| BagError::BadMetadata {
-                path: path.to_path_buf(),
-                reason: error.to_string(),
-            })?;
+        let document: Document = serde_yaml_ng::from_slice(&text)
+            .map_err(|error| BagError::BadMetadata { path: path.to_path_buf(), reason: error.to_string() })?;
         Ok(document.rosbag2_bagfile_information)
     }
 }
@@ -82,12 +79,8 @@ impl Contents<'_> {
     /// The text of `metadata.yaml`, field by field in the order of rosbag2.
     pub fn to_yaml(&self) -> Result<String, serde_yaml_ng::Error> {
         let (start, end) = self.span.unwrap_or((0, 0));
-        let starting_time = StartingTime {
-            nanoseconds_since_epoch: start,
-        };
-        let duration = Duration {
-            nanoseconds: end - start,
-        };
+        let starting_time = StartingTime { nanoseconds_since_epoch: start };
+        let duration = Duration { nanoseconds: end - start };
         let message_count = self.topics.iter().map(|topic| topic.message_count).sum();
         serde_yaml_ng::to_string(&Written {
             rosbag2_bagfile_information: WrittenMetadata {
@@ -100,12 +93,7 @@ impl Contents<'_> {
                 compression_format: "",
                 compression_mode: "",
                 relative_file_paths: vec![self.file_name],
-                files: vec![WrittenFile {
-                    path: self.file_name,
-                    starting_time,
-                    duration,
-                    message_count,
-                }],
+                files: vec![WrittenFile { path: self.file_name, starting_time, duration, message_count }],
                 custom_data: (!self.custom_data.is_empty()).then_some(self.custom_data),
                 ros_distro: "jazzy",
             },

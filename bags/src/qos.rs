@@ -46,11 +46,7 @@ pub struct Qos {
 impl Qos {
     /// Reliable, volatile, keep the last `depth` samples: the contract of `/arm/state` and `/arm/orifice_command`.
     pub fn reliable(depth: u32) -> Self {
-        Qos {
-            history: History::KeepLast(depth),
-            reliability: Reliability::Reliable,
-            durability: Durability::Volatile,
-        }
+        Qos { history: History::KeepLast(depth), reliability: Reliability::Reliable, durability: Durability::Volatile }
     }
 
     /// The profiles in the YAML text of a bag's `offered_qos_profiles`, which names policies since version 9 and
@@ -71,10 +67,7 @@ impl Qos {
     }
 
     pub(crate) fn entries(profiles: &[Qos]) -> Vec<QosEntry> {
-        profiles
-            .iter()
-            .map(|&profile| QosEntry::from(profile))
-            .collect()
+        profiles.iter().map(|&profile| QosEntry::from(profile)).collect()
     }
 }
 
@@ -99,10 +92,7 @@ struct Period {
 }
 
 /// `RMW_DURATION_INFINITE`, 2⁶³ - 1 ns.
-const INFINITE: Period = Period {
-    sec: 9_223_372_036,
-    nsec: 854_775_807,
-};
+const INFINITE: Period = Period { sec: 9_223_372_036, nsec: 854_775_807 };
 
 impl From<Qos> for QosEntry {
     fn from(qos: Qos) -> Self {
@@ -139,10 +129,7 @@ fn from_value(profile: &Value) -> Option<Qos> {
             _ => None,
         }
     };
-    let depth = profile
-        .get("depth")
-        .and_then(Value::as_u64)
-        .and_then(|depth| u32::try_from(depth).ok());
+    let depth = profile.get("depth").and_then(Value::as_u64).and_then(|depth| u32::try_from(depth).ok());
     // The numbers are those of rmw/types.h.
     Some(Qos {
         history: match policy("history")?.as_str() {

@@ -70,10 +70,7 @@ impl RawMessages {
     /// [`BagError::BadMetadata`], [`BagError::MissingFile`], [`BagError::UnsupportedStorage`],
     /// [`BagError::UnsupportedCompression`], [`BagError::UnsupportedSerialization`], [`BagError::Io`].
     pub fn open(path: &Path) -> Result<Self, BagError> {
-        let BagFiles {
-            files,
-            promised_messages,
-        } = BagFiles::locate(path)?;
+        let BagFiles { files, promised_messages } = BagFiles::locate(path)?;
         let mut waiting = VecDeque::new();
         let mut unreadable = Vec::new();
         for file in &files {
@@ -82,34 +79,16 @@ impl RawMessages {
                 None => {
                     let lost_bytes = std::fs::metadata(file).map_or(0, |metadata| metadata.len());
                     let kind = DamageKind::NotMcap;
-                    unreadable.push(Damage {
-                        file: file.clone(),
-                        offset: 0,
-                        lost_bytes,
-                        readable_until: None,
-                        kind,
-                    });
+                    unreadable.push(Damage { file: file.clone(), offset: 0, lost_bytes, readable_until: None, kind });
                 }
             }
         }
         if let (Some(first), true) = (unreadable.first(), waiting.is_empty()) {
-            let reason = format!(
-                "{} ({} bytes) does not begin like an MCAP file",
-                first.file.display(),
-                first.lost_bytes
-            );
-            return Err(BagError::NotABag {
-                path: path.to_path_buf(),
-                reason,
-            });
+            let reason =
+                format!("{} ({} bytes) does not begin like an MCAP file", first.file.display(), first.lost_bytes);
+            return Err(BagError::NotABag { path: path.to_path_buf(), reason });
         }
-        Ok(RawMessages {
-            path: path.to_path_buf(),
-            waiting,
-            done: Vec::new(),
-            unreadable,
-            promised_messages,
-        })
+        Ok(RawMessages { path: path.to_path_buf(), waiting, done: Vec::new(), unreadable, promised_messages })
     }
 
     /// The path that was opened.
@@ -120,13 +99,8 @@ impl RawMessages {
     /// The topics known so far, each name once, sorted. At the start that is all of them where the files have a
     /// summary; after the last message it is certainly all.
     pub fn topics(&self) -> Vec<Arc<Topic>> {
-        let mut topics: Vec<Arc<Topic>> = self
-            .done
-            .iter()
-            .chain(&self.waiting)
-            .flat_map(McapFile::topics)
-            .cloned()
-            .collect();
+        let mut topics: Vec<Arc<Topic>> =
+            self.done.iter().chain(&self.waiting).flat_map(McapFile::topics).cloned().collect();
         topics.sort_by(|a, b| a.name.cmp(&b.name));
         topics.dedup_by(|a, b| a.name == b.name);
         topics
@@ -134,11 +108,7 @@ impl RawMessages {
 
     /// The damage met so far; complete after the last message.
     pub fn damage(&self) -> Vec<Damage> {
-        let read = self
-            .done
-            .iter()
-            .chain(&self.waiting)
-            .flat_map(McapFile::damage);
+        let read = self.done.iter().chain(&self.waiting).flat_map(McapFile::damage);
         self.unreadable.iter().chain(read).cloned().collect()
     }
 

@@ -12,9 +12,6 @@ pub struct Topics {
 impl Default for Topics {
     /// `/arm/state` and `/arm/orifice_command`.
     fn default() -> Self {
-        Topics {
-            state: "/arm/state".to_string(),
-            command: "/arm/orifice_command".to_string(),
-        }
+        Topics { state: "/arm/state".to_string(), command: "/arm/orifice_command".to_string() }
     }
 }

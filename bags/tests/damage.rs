@@ -6,9 +6,7 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{
-    BagError, BagWriter, Compression, DamageKind, ReadReport, Topics, WriteOptions, read_recording,
-};
+use excavator_bags::{BagError, BagWriter, Compression, DamageKind, ReadReport, Topics, WriteOptions, read_recording};
 use excavator_model::recording::Recording;
 use mcap::records::ChunkIndex;
 use support::{add, assert_equal, mcap_file, recording, state, write_small_chunks};
@@ -28,12 +26,7 @@ fn bag(compression: Compression) -> Bag {
     let bytes = std::fs::read(&file).unwrap();
     let mut chunks = mcap::Summary::read(&bytes).unwrap().unwrap().chunk_indexes;
     chunks.sort_by_key(|chunk| chunk.chunk_start_offset);
-    Bag {
-        _folder: folder,
-        file,
-        bytes,
-        chunks,
-    }
+    Bag { _folder: folder, file, bytes, chunks }
 }
 
 impl Bag {
@@ -85,30 +78,14 @@ fn a_cut_file_is_read_to_the_cut() {
         let cut = (third.chunk_start_offset + third.chunk_length / 2) as usize;
         let (found, report) = bag.read(&bag.bytes[..cut]).unwrap();
         assert_is_beginning(&found);
-        let last_whole_chunk_ends =
-            (bag.chunks[1].message_end_time as i64 - support::START) as f64 / 1e9;
-        assert!(
-            found.duration() >= last_whole_chunk_ends - 0.01,
-            "{compression:?}"
-        );
+        let last_whole_chunk_ends = (bag.chunks[1].message_end_time as i64 - support::START) as f64 / 1e9;
+        assert!(found.duration() >= last_whole_chunk_ends - 0.01, "{compression:?}");
         let truncated_after = report.truncated_after.unwrap();
-        assert!(
-            (truncated_after - found.duration()).abs() < 0.003,
-            "{truncated_after} {}",
-            found.duration()
-        );
-        assert!(
-            report.lost_bytes() >= third.chunk_length / 2,
-            "{compression:?} {}",
-            report.lost_bytes()
-        );
-        let [damage] = report.damage.as_slice() else {
-            panic!("{:?}", report.damage)
-        };
+        assert!((truncated_after - found.duration()).abs() < 0.003, "{truncated_after} {}", found.duration());
+        assert!(report.lost_bytes() >= third.chunk_length / 2, "{compression:?} {}", report.lost_bytes());
+        let [damage] = report.damage.as_slice() else { panic!("{:?}", report.damage) };
         assert_eq!(damage.offset, third.chunk_start_offset);
-        let DamageKind::CutOff { recovered_messages } = damage.kind else {
-            panic!("{damage}")
-        };
+        let DamageKind::CutOff { recovered_messages } = damage.kind else { panic!("{damage}") };
         // Without compression every message before the cut is there; zstd and lz4 give whole blocks only.
         if compression == Compression::None {
             assert!(recovered_messages > 10);
@@ -173,10 +150,7 @@ fn the_first_chunk_with_all_definitions_may_be_lost() {
     assert_eq!(report.bad_chunks(), 1);
     // Without the summary nobody knows what the other messages are.
     let error = bag.read(&bytes[..bag.end_of_data()]).unwrap_err();
-    assert!(
-        matches!(&error, BagError::NoMessages { damage, .. } if damage.len() == 3),
-        "{error}"
-    );
+    assert!(matches!(&error, BagError::NoMessages { damage, .. } if damage.len() == 3), "{error}");
 }
 
 #[test]
@@ -187,16 +161,9 @@ fn a_broken_record_in_the_middle_is_passed_over_with_the_index() {
         let mut bytes = bag.bytes.clone();
         bytes[broken] ^= 0x40;
         let (found, report) = bag.read(&bytes).unwrap();
-        assert!(
-            found.len() > SAMPLES / 2 && found.len() < SAMPLES,
-            "byte {broken}: {}",
-            found.len()
-        );
+        assert!(found.len() > SAMPLES / 2 && found.len() < SAMPLES, "byte {broken}: {}", found.len());
         assert!(!report.damage.is_empty());
-        assert!(
-            (found.duration() - recording(SAMPLES).duration()).abs() < 1e-9,
-            "byte {broken}"
-        );
+        assert!((found.duration() - recording(SAMPLES).duration()).abs() < 1e-9, "byte {broken}");
     }
 }
 
@@ -215,21 +182,14 @@ fn split_bags_are_read_in_order_and_with_one_broken_part() {
     }
     let read = |path: &Path| read_recording(path, &Topics::default()).unwrap();
     let (found, report) = read(&path);
-    assert_eq!(
-        (found.len(), report.reordered),
-        (11, 0),
-        "files must be read in the order of their numbers"
-    );
+    assert_eq!((found.len(), report.reordered), (11, 0), "files must be read in the order of their numbers");
     let files = "[bag_3.mcap, bag_1.mcap]";
     let text = format!(
         "rosbag2_bagfile_information:\n  storage_identifier: mcap\n  message_count: 3\n  relative_file_paths: {files}\n"
     );
     std::fs::write(path.join("metadata.yaml"), text).unwrap();
     let (found, report) = read(&path);
-    assert_eq!(
-        (found.len(), report.reordered, report.missing_messages),
-        (2, 1, 1)
-    );
+    assert_eq!((found.len(), report.reordered, report.missing_messages), (2, 1, 1));
     std::fs::write(path.join("bag_3.mcap"), "").unwrap();
     let (found, report) = read(&path);
     assert_eq!(found.len(), 1);

@@ -32,20 +32,10 @@ fn python() -> Option<PathBuf> {
 }
 
 fn run(python: &Path, script: &str, arguments: &[&Path]) -> Vec<u8> {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/interop")
-        .join(script);
-    let output = Command::new(python)
-        .arg(&script)
-        .args(arguments)
-        .output()
-        .unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/interop").join(script);
+    let output = Command::new(python).arg(&script).args(arguments).output().unwrap();
     let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        output.status.success(),
-        "{} failed:\n{errors}",
-        script.display()
-    );
+    assert!(output.status.success(), "{} failed:\n{errors}", script.display());
     output.stdout
 }
 
@@ -54,12 +44,7 @@ fn bits(value: f64) -> String {
 }
 
 fn strings(value: &Value) -> Vec<String> {
-    value
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|item| item.as_str().unwrap().to_string())
-        .collect()
+    value.as_array().unwrap().iter().map(|item| item.as_str().unwrap().to_string()).collect()
 }
 
 /// Panics unless the messages that a Python reader saw are those of the recording.
@@ -71,38 +56,19 @@ fn assert_seen(topics: &Value, recording: &Recording, reader: &str) {
     for (i, state) in states.iter().enumerate() {
         let stamp = recording.start_nanoseconds + (recording.time[i] * 1e9).round() as i64;
         assert_eq!(state["stamp"].as_i64(), Some(stamp), "{reader}");
-        let shared = [
-            &recording.pump_pressure,
-            &recording.tank_pressure,
-            &recording.pump_flow,
-            &recording.oil_temperature,
-        ];
-        assert_eq!(
-            strings(&state["shared"]),
-            shared.map(|signal| bits(signal[i])),
-            "{reader}"
-        );
-        for (cylinder, seen) in recording
-            .cylinders
-            .iter()
-            .zip(state["cylinders"].as_array().unwrap())
-        {
+        let shared =
+            [&recording.pump_pressure, &recording.tank_pressure, &recording.pump_flow, &recording.oil_temperature];
+        assert_eq!(strings(&state["shared"]), shared.map(|signal| bits(signal[i])), "{reader}");
+        for (cylinder, seen) in recording.cylinders.iter().zip(state["cylinders"].as_array().unwrap()) {
             assert_eq!(seen["name"], cylinder.name, "{reader}");
             let measured = &cylinder.signals()[..7];
-            let expected: Vec<String> =
-                measured.iter().map(|(_, values)| bits(values[i])).collect();
+            let expected: Vec<String> = measured.iter().map(|(_, values)| bits(values[i])).collect();
             assert_eq!(strings(&seen["values"]), expected, "{reader}");
         }
     }
     let mut held: Vec<(String, Value)> = Vec::new();
-    for command in topics["/arm/orifice_command"]["messages"]
-        .as_array()
-        .unwrap()
-    {
-        for (name, area) in strings(&command["names"])
-            .into_iter()
-            .zip(command["areas"].as_array().unwrap())
-        {
+    for command in topics["/arm/orifice_command"]["messages"].as_array().unwrap() {
+        for (name, area) in strings(&command["names"]).into_iter().zip(command["areas"].as_array().unwrap()) {
             held.retain(|(known, _)| *known != name);
             held.push((name, area.clone()));
         }
@@ -120,13 +86,7 @@ fn python_reads_what_we_write() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("bag");
     let original = recording(400);
-    write_recording(
-        &bag,
-        &original,
-        &Topics::default(),
-        &WriteOptions::default(),
-    )
-    .unwrap();
+    write_recording(&bag, &original, &Topics::default(), &WriteOptions::default()).unwrap();
     let output = run(&python, "read_bag.py", &[&bag, &mcap_file(&bag)]);
     let seen: Value = serde_json::from_slice(&output).unwrap();
     for reader in ["rosbags", "mcap"] {

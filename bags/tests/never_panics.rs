@@ -27,11 +27,7 @@ fn flipped_bytes_and_cuts_anywhere_never_panic() {
     let folder = tempfile::tempdir().unwrap();
     let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
     for compression in [Compression::None, Compression::Lz4, Compression::Zstd] {
-        let file = write_small_chunks(
-            &folder.path().join(format!("{compression:?}")),
-            &recording(150),
-            compression,
-        );
+        let file = write_small_chunks(&folder.path().join(format!("{compression:?}")), &recording(150), compression);
         let good = std::fs::read(&file).unwrap();
         let broken = folder.path().join("broken.mcap");
         let mut read = 0;
@@ -55,10 +51,7 @@ fn flipped_bytes_and_cuts_anywhere_never_panic() {
                 read += 1;
             }
         }
-        assert!(
-            read > ROUNDS / 4,
-            "only {read} of {ROUNDS} broken bags gave any data"
-        );
+        assert!(read > ROUNDS / 4, "only {read} of {ROUNDS} broken bags gave any data");
     }
 }
 
@@ -72,11 +65,7 @@ fn every_single_cut_near_the_end_and_the_start_never_panics() {
         std::fs::write(&broken, &good[..length]).unwrap();
         if let Ok((recording, report)) = read_recording(&broken, &Topics::default()) {
             recording.validate().unwrap();
-            assert!(
-                !report.damage.is_empty(),
-                "nobody noticed that {} bytes are missing",
-                good.len() - length
-            );
+            assert!(!report.damage.is_empty(), "nobody noticed that {} bytes are missing", good.len() - length);
         }
         let _ = info(&broken);
     }

@@ -4,9 +4,7 @@
 
 mod support;
 
-use excavator_bags::{
-    BagError, Compression, Topics, WriteOptions, info, read_recording, write_recording,
-};
+use excavator_bags::{BagError, Compression, Topics, WriteOptions, info, read_recording, write_recording};
 use excavator_model::recording::Recording;
 use support::{assert_equal, mcap_file, recording, write_small_chunks};
 
@@ -30,18 +28,12 @@ fn every_compression_gives_the_recording_back() {
 fn other_topic_names_are_written_and_read() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("bag");
-    let topics = Topics {
-        state: "/rig/state".into(),
-        command: "/rig/command".into(),
-    };
+    let topics = Topics { state: "/rig/state".into(), command: "/rig/command".into() };
     let original = recording(100);
     write_recording(&bag, &original, &topics, &WriteOptions::default()).unwrap();
     assert_equal(&read_recording(&bag, &topics).unwrap().0, &original);
     let error = read_recording(&bag, &Topics::default()).unwrap_err();
-    assert!(
-        matches!(&error, BagError::NoTopic { existing, .. } if existing.len() == 2),
-        "{error}"
-    );
+    assert!(matches!(&error, BagError::NoTopic { existing, .. } if existing.len() == 2), "{error}");
 }
 
 #[test]
@@ -49,13 +41,7 @@ fn an_existing_folder_is_not_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("bag");
     std::fs::create_dir(&bag).unwrap();
-    let error = write_recording(
-        &bag,
-        &recording(3),
-        &Topics::default(),
-        &WriteOptions::default(),
-    )
-    .unwrap_err();
+    let error = write_recording(&bag, &recording(3), &Topics::default(), &WriteOptions::default()).unwrap_err();
     assert!(matches!(error, BagError::AlreadyExists { .. }), "{error}");
     assert_eq!(std::fs::read_dir(&bag).unwrap().count(), 0);
 }
@@ -64,13 +50,7 @@ fn an_existing_folder_is_not_overwritten() {
 fn missing_parent_folders_are_made() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("of/today/bag");
-    write_recording(
-        &bag,
-        &recording(3),
-        &Topics::default(),
-        &WriteOptions::default(),
-    )
-    .unwrap();
+    write_recording(&bag, &recording(3), &Topics::default(), &WriteOptions::default()).unwrap();
     assert!(mcap_file(&bag).is_file());
 }
 
@@ -79,29 +59,14 @@ fn stamps_that_a_bag_cannot_hold_are_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("bag");
     let write = |recording: &Recording| {
-        write_recording(
-            &bag,
-            recording,
-            &Topics::default(),
-            &WriteOptions::default(),
-        )
-        .unwrap_err()
+        write_recording(&bag, recording, &Topics::default(), &WriteOptions::default()).unwrap_err()
     };
     let mut early = recording(3);
     early.start_nanoseconds = -1;
-    assert!(matches!(
-        write(&early),
-        BagError::StampOutOfRange {
-            index: 0,
-            nanoseconds: -1
-        }
-    ));
+    assert!(matches!(write(&early), BagError::StampOutOfRange { index: 0, nanoseconds: -1 }));
     let mut dense = recording(3);
     dense.time[2] = dense.time[1] + 1e-10;
-    assert!(matches!(
-        write(&dense),
-        BagError::StampsCoincide { index: 2, .. }
-    ));
+    assert!(matches!(write(&dense), BagError::StampsCoincide { index: 2, .. }));
     let mut uneven = recording(3);
     uneven.pump_flow.pop();
     assert!(matches!(write(&uneven), BagError::InvalidRecording(_)));
@@ -113,25 +78,12 @@ fn info_counts_what_was_written() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("bag");
     let original = recording(501);
-    write_recording(
-        &bag,
-        &original,
-        &Topics::default(),
-        &WriteOptions::default(),
-    )
-    .unwrap();
+    write_recording(&bag, &original, &Topics::default(), &WriteOptions::default()).unwrap();
     let found = info(&bag).unwrap();
     assert_eq!(found.problems, Vec::<String>::new());
     assert!((found.duration - original.duration()).abs() < 1e-9);
-    assert_eq!(
-        found.size,
-        std::fs::metadata(mcap_file(&bag)).unwrap().len()
-    );
-    let names: Vec<&str> = found
-        .topics
-        .iter()
-        .map(|topic| topic.name.as_str())
-        .collect();
+    assert_eq!(found.size, std::fs::metadata(mcap_file(&bag)).unwrap().len());
+    let names: Vec<&str> = found.topics.iter().map(|topic| topic.name.as_str()).collect();
     assert_eq!(names, ["/arm/orifice_command", "/arm/state"]);
     assert_eq!(found.topics[1].type_name, "excavator_msgs/msg/ArmState");
     assert_eq!(found.topics[1].message_count, 501);
@@ -141,11 +93,7 @@ fn info_counts_what_was_written() {
 #[test]
 fn the_library_that_wrote_the_format_finds_nothing_wrong() {
     let folder = tempfile::tempdir().unwrap();
-    let file = write_small_chunks(
-        &folder.path().join("bag"),
-        &recording(1000),
-        Compression::Zstd,
-    );
+    let file = write_small_chunks(&folder.path().join("bag"), &recording(1000), Compression::Zstd);
     let bytes = std::fs::read(file).unwrap();
     let states = mcap::MessageStream::new(&bytes)
         .unwrap()

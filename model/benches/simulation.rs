@@ -1,6 +1,6 @@
 //! How much faster than real time the simulation is, beside `diffsol` on the same trajectory.
 //!
-//! 38 s of the arm at 1 kHz: the sine of [A] for 24 s, then trapezoids, each as a recording would give it. The target is
+//! 38 s of the arm at 1 kHz: the sine of \[A\] for 24 s, then trapezoids, each as a recording would give it. The target is
 //! 300 times real time.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 

@@ -4,7 +4,7 @@
 //! [`effects`], written once for any [`scalar::Scalar`], and everything else is derived from it: what it adds in
 //! simulation, its regressor, its power in the energy balance, and how it shows in data.
 //!
-//! Equations are those of [A] Arai, Sakai, Tatsuoka, Zhang, Energies 14 (2021) 6210 and [B] "Accurate Dynamic Modelling
+//! Equations are those of \[A\] Arai, Sakai, Tatsuoka, Zhang, Energies 14 (2021) 6210 and \[B\] "Accurate Dynamic Modelling
 //! of Hydraulic Servomechanisms"; `docs/physics.md` lists where the code departs from print, and why. SI units
 //! everywhere, pressures are gauge. This crate reads no files, knows no ROS and does no statistics.
 

@@ -1,4 +1,4 @@
-//! The energy balance along simulated trajectories, and the formulas of [A] Eq. 11.
+//! The energy balance along simulated trajectories, and the formulas of \[A\] Eq. 11.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
@@ -91,7 +91,7 @@ fn power<'a>(book: &'a Ledger, effect: &str) -> &'a EffectPower {
     book.effects.iter().find(|power| power.effect == effect).unwrap()
 }
 
-/// [A] Eq. 9 and 11, written out once more by hand for the arm.
+/// \[A\] Eq. 9 and 11, written out once more by hand for the arm.
 #[test]
 fn the_arm_has_the_energies_of_the_paper() {
     let model = built_in("zx30u-arm").unwrap();

@@ -61,7 +61,7 @@ fn a_direct_load_is_the_piston() {
 }
 
 /// With la = 1.1 m and lb = 0.33 m the cosine law allows pin-to-pin lengths from 0.77 m to 1.43 m: 0.28 m as printed in
-/// Table 1 of [A] is none, 1.10 m is the middle and leaves room for a stroke of 0.6 m.
+/// Table 1 of \[A\] is none, 1.10 m is the middle and leaves room for a stroke of 0.6 m.
 #[test]
 fn the_cosine_law_bounds_the_length() {
     let at = |mid_stroke_length| Linkage::Triangle { foot_arm: 1.1, rod_arm: 0.33, mid_stroke_length, mirrored: true };
@@ -74,7 +74,7 @@ fn the_cosine_law_bounds_the_length() {
     }
 }
 
-/// Table 1 of [A], and [A]'s start values.
+/// Table 1 of \[A\], and \[A\]'s start values.
 #[test]
 fn the_built_in_arm_is_that_of_the_paper() {
     let model = built_in("zx30u-arm").unwrap();

@@ -123,7 +123,7 @@ fn closed_valve_leaks_as_its_eigenvalues_say() {
     }
 }
 
-/// A chamber that fills through leakage from a constant supply: `p = ps (1 - exp(-t/T))`, [B] Eq. 12.
+/// A chamber that fills through leakage from a constant supply: `p = ps (1 - exp(-t/T))`, \[B\] Eq. 12.
 #[test]
 fn pressure_builds_up_with_its_time_constant() {
     let mut model = common::closed_centre();
@@ -144,7 +144,7 @@ fn pressure_builds_up_with_its_time_constant() {
     assert!(states.last().unwrap()[2] > 4.9e6);
 }
 
-/// The identification motion of [A], its sine given to both solvers as the same straight lines between 1 ms samples.
+/// The identification motion of \[A\], its sine given to both solvers as the same straight lines between 1 ms samples.
 fn arm_and_reference(duration: f64) -> (Model, Recording, Vec<f64>, impl Fn(f64, &mut Inputs<f64>)) {
     let model = built_in("zx30u-arm").unwrap();
     // Not starting at zero, so that the opening crosses zero inside a step of any size.

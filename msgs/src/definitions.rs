@@ -3,39 +3,17 @@
 use crate::layout;
 
 /// What separates the definitions of a schema: exactly 80 `=`. Other lengths make `mcap-ros2-support` fail.
-pub const SEPARATOR: &str =
-    "================================================================================";
+pub const SEPARATOR: &str = "================================================================================";
 
 /// Every definition that this package uses: name as `package/Type`, text of the `.msg` file.
 const TEXTS: [(&str, &str); 8] = [
-    (
-        "excavator_msgs/ArmState",
-        include_str!("../msg/ArmState.msg"),
-    ),
-    (
-        "excavator_msgs/CylinderEnergy",
-        include_str!("../msg/CylinderEnergy.msg"),
-    ),
-    (
-        "excavator_msgs/CylinderState",
-        include_str!("../msg/CylinderState.msg"),
-    ),
-    (
-        "excavator_msgs/EnergyState",
-        include_str!("../msg/EnergyState.msg"),
-    ),
-    (
-        "excavator_msgs/EnergyTerm",
-        include_str!("../msg/EnergyTerm.msg"),
-    ),
-    (
-        "excavator_msgs/OrificeCommand",
-        include_str!("../msg/OrificeCommand.msg"),
-    ),
-    (
-        "std_msgs/Header",
-        "builtin_interfaces/Time stamp\nstring frame_id\n",
-    ),
+    ("excavator_msgs/ArmState", include_str!("../msg/ArmState.msg")),
+    ("excavator_msgs/CylinderEnergy", include_str!("../msg/CylinderEnergy.msg")),
+    ("excavator_msgs/CylinderState", include_str!("../msg/CylinderState.msg")),
+    ("excavator_msgs/EnergyState", include_str!("../msg/EnergyState.msg")),
+    ("excavator_msgs/EnergyTerm", include_str!("../msg/EnergyTerm.msg")),
+    ("excavator_msgs/OrificeCommand", include_str!("../msg/OrificeCommand.msg")),
+    ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"),
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"),
 ];
 
@@ -44,10 +22,7 @@ const TEXTS: [(&str, &str); 8] = [
 /// The name may be written `package/msg/Type` or `package/Type`.
 pub fn message_text(type_name: &str) -> Option<&'static str> {
     let wanted = layout::short_name(type_name);
-    TEXTS
-        .iter()
-        .find(|(name, _)| *name == wanted)
-        .map(|(_, text)| *text)
+    TEXTS.iter().find(|(name, _)| *name == wanted).map(|(_, text)| *text)
 }
 
 /// The `ros2msg` schema of a type: its definition followed by those of all types that it contains, each once and
@@ -70,10 +45,7 @@ pub fn schema(type_name: &str) -> Option<String> {
             }
             let dependency = layout::resolve(field.base_type(), &package);
             if !included.contains(&dependency) {
-                text.push_str(&format!(
-                    "\n{SEPARATOR}\nMSG: {dependency}\n{}",
-                    message_text(&dependency)?
-                ));
+                text.push_str(&format!("\n{SEPARATOR}\nMSG: {dependency}\n{}", message_text(&dependency)?));
                 included.push(dependency);
             }
         }
@@ -95,13 +67,8 @@ mod tests {
 
     #[test]
     fn a_schema_contains_every_type_once() {
-        let Some(schema) = schema("excavator_msgs/msg/EnergyState") else {
-            panic!("no schema")
-        };
-        let headings: Vec<&str> = schema
-            .lines()
-            .filter(|line| line.starts_with("MSG: "))
-            .collect();
+        let Some(schema) = schema("excavator_msgs/msg/EnergyState") else { panic!("no schema") };
+        let headings: Vec<&str> = schema.lines().filter(|line| line.starts_with("MSG: ")).collect();
         assert_eq!(
             headings,
             [

@@ -14,8 +14,8 @@ const DEPTH_LIMIT: usize = 32;
 
 /// The types that contain no other.
 const PRIMITIVES: [&str; 15] = [
-    "bool", "byte", "char", "float32", "float64", "int8", "uint8", "int16", "uint16", "int32",
-    "uint32", "int64", "uint64", "string", "wstring",
+    "bool", "byte", "char", "float32", "float64", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64",
+    "uint64", "string", "wstring",
 ];
 
 /// One field of a message definition.
@@ -35,9 +35,7 @@ impl Field {
 
     /// The array suffix, `""` for a single value: `[]`, `[3]`, `[<=5]`.
     pub fn array_suffix(&self) -> &str {
-        self.type_name
-            .find('[')
-            .map_or("", |at| &self.type_name[at..])
+        self.type_name.find('[').map_or("", |at| &self.type_name[at..])
     }
 
     /// Whether the type contains no other type.
@@ -53,18 +51,12 @@ pub fn short_name(type_name: &str) -> String {
 
 /// The package of `package/Type`, `""` when there is none.
 pub fn package(short_name: &str) -> &str {
-    short_name
-        .split_once('/')
-        .map_or("", |(package, _)| package)
+    short_name.split_once('/').map_or("", |(package, _)| package)
 }
 
 /// Full short name of the type that a definition of `package` refers to.
 pub fn resolve(type_name: &str, package: &str) -> String {
-    if type_name.contains('/') {
-        short_name(type_name)
-    } else {
-        format!("{package}/{type_name}")
-    }
+    if type_name.contains('/') { short_name(type_name) } else { format!("{package}/{type_name}") }
 }
 
 /// The fields of one definition in order; comments, blank lines and constants are left out.
@@ -78,10 +70,7 @@ pub fn fields(text: &str) -> Vec<Field> {
         };
         let constant = name.contains('=') || words.next().is_some_and(|word| word.starts_with('='));
         if !constant {
-            fields.push(Field {
-                type_name: type_name.to_string(),
-                name: name.to_string(),
-            });
+            fields.push(Field { type_name: type_name.to_string(), name: name.to_string() });
         }
     }
     fields
@@ -103,14 +92,7 @@ pub fn flat_fields(type_name: &str, schema: &str) -> Vec<Field> {
         }
     }
     let mut flat = Vec::new();
-    flatten(
-        &sections,
-        root,
-        package(&short_name(type_name)),
-        "",
-        0,
-        &mut flat,
-    );
+    flatten(&sections, root, package(&short_name(type_name)), "", 0, &mut flat);
     flat
 }
 
@@ -128,19 +110,13 @@ fn flatten(
         }
         let name = format!("{path}{}", field.name);
         let contained = resolve(field.base_type(), package_name);
-        let text = sections
-            .get(&contained)
-            .copied()
-            .or_else(|| definitions::message_text(&contained));
+        let text = sections.get(&contained).copied().or_else(|| definitions::message_text(&contained));
         match text {
             Some(text) if !field.is_primitive() && depth < DEPTH_LIMIT => {
                 let path = format!("{name}{}.", field.array_suffix());
                 flatten(sections, text, package(&contained), &path, depth + 1, flat);
             }
-            _ => flat.push(Field {
-                type_name: field.type_name,
-                name,
-            }),
+            _ => flat.push(Field { type_name: field.type_name, name }),
         }
     }
 }
@@ -167,10 +143,7 @@ mod tests {
     use super::*;
 
     fn names(fields: &[Field]) -> Vec<String> {
-        fields
-            .iter()
-            .map(|field| format!("{} {}", field.type_name, field.name))
-            .collect()
+        fields.iter().map(|field| format!("{} {}", field.type_name, field.name)).collect()
     }
 
     #[test]
@@ -189,12 +162,7 @@ mod tests {
         let flat = flat_fields("a_msgs/msg/A", schema);
         assert_eq!(
             names(&flat),
-            [
-                "bool many[].c.yes",
-                "int32 header.stamp.sec",
-                "uint32 header.stamp.nanosec",
-                "string header.frame_id"
-            ]
+            ["bool many[].c.yes", "int32 header.stamp.sec", "uint32 header.stamp.nanosec", "string header.frame_id"]
         );
     }
 

@@ -7,9 +7,7 @@ use crate::Message;
 const NANOSECONDS_PER_SECOND: i64 = 1_000_000_000;
 
 /// A point in time since the Unix epoch (or since the start, for simulated clocks).
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 pub struct Time {
     /// Whole seconds, s; negative before the epoch.
     pub sec: i32,
@@ -41,28 +39,14 @@ mod tests {
 
     #[test]
     fn nanoseconds_survive_the_round_trip_on_both_sides_of_the_epoch() {
-        for nanoseconds in [
-            0,
-            1,
-            -1,
-            999_999_999,
-            1_000_000_000,
-            -1_000_000_001,
-            1_790_000_000_000_024_320,
-        ] {
-            assert_eq!(
-                Time::from_nanoseconds(nanoseconds).map(Time::nanoseconds),
-                Some(nanoseconds)
-            );
+        for nanoseconds in [0, 1, -1, 999_999_999, 1_000_000_000, -1_000_000_001, 1_790_000_000_000_024_320] {
+            assert_eq!(Time::from_nanoseconds(nanoseconds).map(Time::nanoseconds), Some(nanoseconds));
         }
     }
 
     #[test]
     fn a_time_after_2038_has_no_stamp() {
-        assert_eq!(
-            Time::from_nanoseconds((i64::from(i32::MAX) + 1) * NANOSECONDS_PER_SECOND),
-            None
-        );
+        assert_eq!(Time::from_nanoseconds((i64::from(i32::MAX) + 1) * NANOSECONDS_PER_SECOND), None);
         assert_eq!(Time::from_nanoseconds(i64::MAX), None);
     }
 }

@@ -7,8 +7,8 @@
 
 use excavator_msgs::layout::{Field, flat_fields};
 use excavator_msgs::{
-    ArmState, CylinderEnergy, CylinderState, EnergyState, EnergyTerm, Header, Message,
-    OrificeCommand, Time, definitions,
+    ArmState, CylinderEnergy, CylinderState, EnergyState, EnergyTerm, Header, Message, OrificeCommand, Time,
+    definitions,
 };
 use serde::de::value::Error;
 use serde::de::{self, DeserializeSeed, SeqAccess, Visitor};
@@ -22,10 +22,7 @@ struct Probe<'p> {
 impl Probe<'_> {
     fn note(&mut self, type_name: &str) {
         let type_name = format!("{type_name}{}", self.array);
-        self.found.push(Field {
-            type_name,
-            name: self.path.clone(),
-        });
+        self.found.push(Field { type_name, name: self.path.clone() });
     }
 }
 
@@ -47,12 +44,7 @@ impl<'de> de::Deserializer<'de> for Probe<'_> {
     primitive!(deserialize_string, visit_string, "string", String::new());
 
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        visitor.visit_seq(Members {
-            path: self.path,
-            names: None,
-            next: 0,
-            found: self.found,
-        })
+        visitor.visit_seq(Members { path: self.path, names: None, next: 0, found: self.found })
     }
 
     fn deserialize_struct<V: Visitor<'de>>(
@@ -61,24 +53,12 @@ impl<'de> de::Deserializer<'de> for Probe<'_> {
         fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        let path = if self.path.is_empty() {
-            String::new()
-        } else {
-            format!("{}{}.", self.path, self.array)
-        };
-        visitor.visit_seq(Members {
-            path,
-            names: Some(fields),
-            next: 0,
-            found: self.found,
-        })
+        let path = if self.path.is_empty() { String::new() } else { format!("{}{}.", self.path, self.array) };
+        visitor.visit_seq(Members { path, names: Some(fields), next: 0, found: self.found })
     }
 
     fn deserialize_any<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, Error> {
-        Err(de::Error::custom(format!(
-            "{} has a type that no message of this package uses",
-            self.path
-        )))
+        Err(de::Error::custom(format!("{} has a type that no message of this package uses", self.path)))
     }
 
     serde::forward_to_deserialize_any! {
@@ -98,24 +78,13 @@ struct Members<'p> {
 impl<'de> SeqAccess<'de> for Members<'_> {
     type Error = Error;
 
-    fn next_element_seed<T: DeserializeSeed<'de>>(
-        &mut self,
-        seed: T,
-    ) -> Result<Option<T::Value>, Error> {
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Error> {
         let probe = match self.names {
             Some(names) => match names.get(self.next) {
-                Some(name) => Probe {
-                    path: format!("{}{name}", self.path),
-                    array: "",
-                    found: self.found,
-                },
+                Some(name) => Probe { path: format!("{}{name}", self.path), array: "", found: self.found },
                 None => return Ok(None),
             },
-            None if self.next == 0 => Probe {
-                path: self.path.clone(),
-                array: "[]",
-                found: self.found,
-            },
+            None if self.next == 0 => Probe { path: self.path.clone(), array: "[]", found: self.found },
             None => return Ok(None),
         };
         self.next += 1;
@@ -125,21 +94,10 @@ impl<'de> SeqAccess<'de> for Members<'_> {
 
 fn assert_matches<M: Message>() {
     let mut found = Vec::new();
-    let value = M::deserialize(Probe {
-        path: String::new(),
-        array: "",
-        found: &mut found,
-    });
+    let value = M::deserialize(Probe { path: String::new(), array: "", found: &mut found });
     assert!(value.is_ok(), "{}: {:?}", M::TYPE_NAME, value.err());
-    let Some(schema) = definitions::schema(M::TYPE_NAME) else {
-        panic!("{} has no definition", M::TYPE_NAME)
-    };
-    assert_eq!(
-        found,
-        flat_fields(M::TYPE_NAME, &schema),
-        "{}",
-        M::TYPE_NAME
-    );
+    let Some(schema) = definitions::schema(M::TYPE_NAME) else { panic!("{} has no definition", M::TYPE_NAME) };
+    assert_eq!(found, flat_fields(M::TYPE_NAME, &schema), "{}", M::TYPE_NAME);
 }
 
 #[test]

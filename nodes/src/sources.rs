@@ -5,7 +5,7 @@ use std::path::Path;
 use excavator_bags::{Topics, read_recording};
 use excavator_identification::gate;
 use excavator_model::Model;
-use excavator_model::document::{DocumentError, built_in, parse};
+use excavator_model::document::{built_in, parse};
 use excavator_model::recording::Recording;
 
 use crate::error::VerbError;
@@ -16,8 +16,7 @@ pub fn model(name: &str) -> Result<Model, VerbError> {
     if !path.exists() && !name.ends_with(".toml") {
         return Ok(built_in(name)?);
     }
-    let text =
-        std::fs::read_to_string(path).map_err(|source| VerbError::Read { path: path.to_path_buf(), source })?;
+    let text = std::fs::read_to_string(path).map_err(|source| VerbError::Read { path: path.to_path_buf(), source })?;
     Ok(parse(name, &text)?)
 }
 

@@ -24,11 +24,7 @@ pub(super) enum ChunkFault {
     #[error("it announces {0} bytes uncompressed, which no recorder writes")]
     TooLarge(u64),
     #[error("it decompresses to {found} bytes instead of {announced}: {reason}")]
-    Decompression {
-        announced: u64,
-        found: u64,
-        reason: String,
-    },
+    Decompression { announced: u64, found: u64, reason: String },
     #[error("its checksum is {calculated:08x} instead of {saved:08x}")]
     Checksum { saved: u32, calculated: u32 },
 }
@@ -66,31 +62,20 @@ pub(super) fn decompress(record: Bytes) -> Result<Bytes, ChunkFault> {
     let compressed = usize::try_from(head.compressed_size)
         .ok()
         .and_then(|size| head.content.get(..size))
-        .ok_or(ChunkFault::Incomplete {
-            announced: head.compressed_size,
-            available: head.content.len() as u64,
-        })?;
+        .ok_or(ChunkFault::Incomplete { announced: head.compressed_size, available: head.content.len() as u64 })?;
     let records = if head.compression.is_empty() {
         record.slice_ref(compressed)
     } else {
         let (records, fault) = inflate(head.compression, compressed, announced)?;
         if records.len() as u64 != announced {
             let reason = fault.unwrap_or_else(|| "the data ends early".to_string());
-            return Err(ChunkFault::Decompression {
-                announced,
-                found: records.len() as u64,
-                reason,
-            });
+            return Err(ChunkFault::Decompression { announced, found: records.len() as u64, reason });
         }
         Bytes::from(records)
     };
     if records.len() as u64 != announced {
         let reason = "it is not compressed".to_string();
-        return Err(ChunkFault::Decompression {
-            announced,
-            found: records.len() as u64,
-            reason,
-        });
+        return Err(ChunkFault::Decompression { announced, found: records.len() as u64, reason });
     }
     let saved = head.checksum;
     if saved != 0 {
@@ -111,11 +96,7 @@ pub(super) fn salvage(record: Bytes) -> Bytes {
     if head.compression.is_empty() {
         return record.slice_ref(head.content);
     }
-    match inflate(
-        head.compression,
-        head.content,
-        head.uncompressed_size.min(SIZE_LIMIT),
-    ) {
+    match inflate(head.compression, head.content, head.uncompressed_size.min(SIZE_LIMIT)) {
         Ok((records, _end_is_missing)) => Bytes::from(records),
         Err(_unknown_compression) => Bytes::new(),
     }
@@ -124,18 +105,12 @@ pub(super) fn salvage(record: Bytes) -> Bytes {
 /// Decompresses up to `limit` bytes, and says why when something stopped it before.
 ///
 /// The limit, not the end of the compressed data, is the end: some writers pad the data with zeros.
-fn inflate(
-    compression: &str,
-    compressed: &[u8],
-    limit: u64,
-) -> Result<(Vec<u8>, Option<String>), ChunkFault> {
-    let mut records =
-        Vec::with_capacity(usize::try_from(limit.min(FIRST_RESERVATION)).unwrap_or_default());
+fn inflate(compression: &str, compressed: &[u8], limit: u64) -> Result<(Vec<u8>, Option<String>), ChunkFault> {
+    let mut records = Vec::with_capacity(usize::try_from(limit.min(FIRST_RESERVATION)).unwrap_or_default());
     let result = match compression {
         "zstd" => zstd::stream::read::Decoder::with_buffer(compressed)
             .and_then(|decoder| decoder.take(limit).read_to_end(&mut records)),
-        "lz4" => lz4::Decoder::new(compressed)
-            .and_then(|decoder| decoder.take(limit).read_to_end(&mut records)),
+        "lz4" => lz4::Decoder::new(compressed).and_then(|decoder| decoder.take(limit).read_to_end(&mut records)),
         other => return Err(ChunkFault::UnknownCompression(other.to_string())),
     };
     Ok((records, result.err().map(|error| error.to_string())))

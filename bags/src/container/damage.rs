@@ -61,13 +61,7 @@ impl Damage {
 
 impl fmt::Display for Damage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Damage {
-            file,
-            offset,
-            lost_bytes,
-            kind,
-            ..
-        } = self;
+        let Damage { file, offset, lost_bytes, kind, .. } = self;
         let file = file.display();
         match kind {
             DamageKind::NotMcap => {
@@ -78,26 +72,16 @@ impl fmt::Display for Damage {
                 "{file} is cut off in the record at byte {offset}: {lost_bytes} bytes lost, {recovered_messages} messages \
                  recovered from the cut chunk"
             ),
-            DamageKind::NotClosed => write!(
-                f,
-                "{file} was not closed: its data ends at byte {offset} after a whole record"
-            ),
+            DamageKind::NotClosed => {
+                write!(f, "{file} was not closed: its data ends at byte {offset} after a whole record")
+            }
             DamageKind::BadChunk { reason } => {
-                write!(
-                    f,
-                    "{file}: chunk at byte {offset} left out, {lost_bytes} bytes lost: {reason}"
-                )
+                write!(f, "{file}: chunk at byte {offset} left out, {lost_bytes} bytes lost: {reason}")
             }
             DamageKind::BadRecord { reason } => {
-                write!(
-                    f,
-                    "{file}: record at byte {offset} left out, {lost_bytes} bytes lost: {reason}"
-                )
+                write!(f, "{file}: record at byte {offset} left out, {lost_bytes} bytes lost: {reason}")
             }
-            DamageKind::LostSync => write!(
-                f,
-                "{file}: no valid records at byte {offset}, {lost_bytes} bytes lost"
-            ),
+            DamageKind::LostSync => write!(f, "{file}: no valid records at byte {offset}, {lost_bytes} bytes lost"),
             DamageKind::UnknownTopic { messages } => {
                 write!(
                     f,

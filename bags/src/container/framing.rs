@@ -60,9 +60,7 @@ impl RecordFile {
     }
 
     pub fn go_to(&mut self, position: u64) -> Result<(), BagError> {
-        self.reader
-            .seek(SeekFrom::Start(position))
-            .map_err(BagError::io("read", &self.path))?;
+        self.reader.seek(SeekFrom::Start(position)).map_err(BagError::io("read", &self.path))?;
         self.position = position;
         Ok(())
     }
@@ -72,9 +70,7 @@ impl RecordFile {
         let target = self.position.saturating_add(count).min(self.length);
         // Relative seeks keep the buffer: message indexes are skipped by the thousand.
         let step = i64::try_from(target - self.position).unwrap_or(i64::MAX);
-        self.reader
-            .seek_relative(step)
-            .map_err(BagError::io("read", &self.path))?;
+        self.reader.seek_relative(step).map_err(BagError::io("read", &self.path))?;
         self.position = target;
         Ok(())
     }
@@ -83,12 +79,8 @@ impl RecordFile {
     pub fn read(&mut self, count: u64) -> Result<Vec<u8>, BagError> {
         let count = count.min(self.remaining());
         let mut bytes = Vec::with_capacity(usize::try_from(count).unwrap_or_default());
-        let read = self
-            .reader
-            .by_ref()
-            .take(count)
-            .read_to_end(&mut bytes)
-            .map_err(BagError::io("read", &self.path))?;
+        let read =
+            self.reader.by_ref().take(count).read_to_end(&mut bytes).map_err(BagError::io("read", &self.path))?;
         self.position += read as u64;
         Ok(bytes)
     }
@@ -100,16 +92,10 @@ impl RecordFile {
         }
         let offset = self.position;
         let mut head = [0; HEADER_LENGTH as usize];
-        self.reader
-            .read_exact(&mut head)
-            .map_err(BagError::io("read", &self.path))?;
+        self.reader.read_exact(&mut head).map_err(BagError::io("read", &self.path))?;
         self.position += HEADER_LENGTH;
         let [opcode, length @ ..] = head;
-        Ok(Some(RecordHead {
-            opcode,
-            offset,
-            length: u64::from_le_bytes(length),
-        }))
+        Ok(Some(RecordHead { opcode, offset, length: u64::from_le_bytes(length) }))
     }
 }
 
@@ -128,9 +114,7 @@ pub(super) fn next_in_memory(
         return Err(rest.len());
     };
     let start = *position + HEADER_LENGTH as usize;
-    let end = usize::try_from(length)
-        .ok()
-        .and_then(|length| start.checked_add(length));
+    let end = usize::try_from(length).ok().and_then(|length| start.checked_add(length));
     match end {
         Some(end) if end <= bytes.len() => {
             *position = end;

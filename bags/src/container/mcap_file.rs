@@ -130,9 +130,7 @@ impl McapFile {
 
     fn close_chunk(&mut self, chunk: OpenChunk) {
         if let Some(mut cut) = chunk.cut {
-            cut.kind = DamageKind::CutOff {
-                recovered_messages: chunk.recovered,
-            };
+            cut.kind = DamageKind::CutOff { recovered_messages: chunk.recovered };
             cut.readable_until = self.last_log_time;
             self.damage.push(cut);
             self.finish();
@@ -144,13 +142,7 @@ impl McapFile {
         let length = content.len() as u64;
         if opcode != op::MESSAGE {
             if let Err(error) = self.registry.define(opcode, &content) {
-                self.note(
-                    offset,
-                    length,
-                    DamageKind::BadRecord {
-                        reason: error.to_string(),
-                    },
-                );
+                self.note(offset, length, DamageKind::BadRecord { reason: error.to_string() });
             }
             return None;
         }
@@ -180,13 +172,7 @@ impl McapFile {
         let offset = self.file.position();
         let Some(head) = self.file.record_head()? else {
             let left = self.file.remaining();
-            let kind = if left == 0 {
-                DamageKind::NotClosed
-            } else {
-                DamageKind::CutOff {
-                    recovered_messages: 0,
-                }
-            };
+            let kind = if left == 0 { DamageKind::NotClosed } else { DamageKind::CutOff { recovered_messages: 0 } };
             self.note(offset, left, kind);
             self.finish();
             return Ok(None);
@@ -222,18 +208,11 @@ impl McapFile {
                 let record = Bytes::from(self.file.read(head.length)?);
                 match chunk::decompress(record) {
                     Ok(records) => {
-                        self.chunk = Some(OpenChunk {
-                            offset: head.offset,
-                            records,
-                            position: 0,
-                            cut: None,
-                            recovered: 0,
-                        });
+                        self.chunk =
+                            Some(OpenChunk { offset: head.offset, records, position: 0, cut: None, recovered: 0 });
                     }
                     Err(fault) => {
-                        let kind = DamageKind::BadChunk {
-                            reason: fault.to_string(),
-                        };
+                        let kind = DamageKind::BadChunk { reason: fault.to_string() };
                         self.note(head.offset, HEADER_LENGTH + head.length, kind);
                     }
                 }
@@ -247,25 +226,14 @@ impl McapFile {
     fn cut_off(&mut self, head: RecordHead) -> Result<(), BagError> {
         let available = self.file.remaining();
         // A length that no file can have was never set, so how much is missing is not known.
-        let missing = if head.length > i64::MAX as u64 {
-            0
-        } else {
-            head.length - available
-        };
-        let kind = DamageKind::CutOff {
-            recovered_messages: 0,
-        };
+        let missing = if head.length > i64::MAX as u64 { 0 } else { head.length - available };
+        let kind = DamageKind::CutOff { recovered_messages: 0 };
         if head.opcode == op::CHUNK {
             let records = chunk::salvage(Bytes::from(self.file.read(available)?));
             if !records.is_empty() {
                 let cut = self.damage_at(head.offset, missing, kind);
-                self.chunk = Some(OpenChunk {
-                    offset: head.offset,
-                    records,
-                    position: 0,
-                    cut: Some(cut),
-                    recovered: 0,
-                });
+                self.chunk =
+                    Some(OpenChunk { offset: head.offset, records, position: 0, cut: Some(cut), recovered: 0 });
                 return Ok(());
             }
         }
@@ -278,25 +246,12 @@ impl McapFile {
     fn resynchronise(&mut self, head: RecordHead) -> Result<(), BagError> {
         let (next, end) = match &self.summary {
             Some(summary) => {
-                let next = summary
-                    .chunk_offsets
-                    .partition_point(|&offset| offset <= head.offset);
-                (
-                    summary
-                        .chunk_offsets
-                        .get(next)
-                        .copied()
-                        .filter(|&next| next < summary.start),
-                    summary.start,
-                )
+                let next = summary.chunk_offsets.partition_point(|&offset| offset <= head.offset);
+                (summary.chunk_offsets.get(next).copied().filter(|&next| next < summary.start), summary.start)
             }
             None => (None, self.file.length()),
         };
-        self.note(
-            head.offset,
-            next.unwrap_or(end).saturating_sub(head.offset),
-            DamageKind::LostSync,
-        );
+        self.note(head.offset, next.unwrap_or(end).saturating_sub(head.offset), DamageKind::LostSync);
         match next {
             Some(next) => self.file.go_to(next)?,
             None => self.finish(),
@@ -305,11 +260,7 @@ impl McapFile {
     }
 
     fn finish(&mut self) {
-        let UnknownTopic {
-            messages,
-            bytes,
-            first_offset,
-        } = std::mem::take(&mut self.unknown_topic);
+        let UnknownTopic { messages, bytes, first_offset } = std::mem::take(&mut self.unknown_topic);
         if messages > 0 {
             self.note(first_offset, bytes, DamageKind::UnknownTopic { messages });
         }
@@ -322,12 +273,6 @@ impl McapFile {
     }
 
     fn damage_at(&self, offset: u64, lost_bytes: u64, kind: DamageKind) -> Damage {
-        Damage {
-            file: self.file.path().to_path_buf(),
-            offset,
-            lost_bytes,
-            readable_until: self.last_log_time,
-            kind,
-        }
+        Damage { file: self.file.path().to_path_buf(), offset, lost_bytes, readable_until: self.last_log_time, kind }
     }
 }

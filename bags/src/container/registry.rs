@@ -46,11 +46,7 @@ impl Registry {
                     encoding: header.encoding,
                     text: String::from_utf8_lossy(&data).into_owned(),
                 };
-                if self
-                    .schemas
-                    .get(&header.id)
-                    .is_none_or(|known| **known != schema)
-                {
+                if self.schemas.get(&header.id).is_none_or(|known| **known != schema) {
                     self.schemas.insert(header.id, Arc::new(schema));
                 }
             }
@@ -59,22 +55,12 @@ impl Registry {
                 let topic = Topic {
                     name: channel.topic,
                     type_name: schema.map(|schema| schema.name.clone()).unwrap_or_default(),
-                    schema_encoding: schema
-                        .map(|schema| schema.encoding.clone())
-                        .unwrap_or_default(),
+                    schema_encoding: schema.map(|schema| schema.encoding.clone()).unwrap_or_default(),
                     schema: schema.map(|schema| schema.text.clone()).unwrap_or_default(),
                     message_encoding: channel.message_encoding,
-                    offered_qos_profiles: channel
-                        .metadata
-                        .get("offered_qos_profiles")
-                        .cloned()
-                        .unwrap_or_default(),
+                    offered_qos_profiles: channel.metadata.get("offered_qos_profiles").cloned().unwrap_or_default(),
                 };
-                if self
-                    .topics
-                    .get(&channel.id)
-                    .is_none_or(|known| **known != topic)
-                {
+                if self.topics.get(&channel.id).is_none_or(|known| **known != topic) {
                     self.topics.insert(channel.id, Arc::new(topic));
                 }
             }

@@ -24,10 +24,7 @@ pub(super) struct Summary {
 impl Summary {
     /// Reads the summary and enters its definitions into the registry; `None` when the file has none that can be
     /// trusted. The position of the file is undefined afterwards.
-    pub fn read(
-        file: &mut RecordFile,
-        registry: &mut Registry,
-    ) -> Result<Option<Summary>, BagError> {
+    pub fn read(file: &mut RecordFile, registry: &mut Registry) -> Result<Option<Summary>, BagError> {
         let tail_length = HEADER_LENGTH + FOOTER_LENGTH + mcap::MAGIC.len() as u64;
         let Some(footer_offset) = file.length().checked_sub(tail_length) else {
             return Ok(None);
@@ -51,10 +48,7 @@ impl Summary {
             }
             section.truncate(records);
         }
-        Ok(Some(Summary {
-            chunk_offsets: read_section(&section, registry),
-            start,
-        }))
+        Ok(Some(Summary { chunk_offsets: read_section(&section, registry), start }))
     }
 }
 

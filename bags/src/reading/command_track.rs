@@ -39,16 +39,9 @@ impl CommandTrack {
             } else {
                 area
             };
-            match self
-                .cylinders
-                .iter_mut()
-                .find(|cylinder| cylinder.name == *name)
-            {
+            match self.cylinders.iter_mut().find(|cylinder| cylinder.name == *name) {
                 Some(cylinder) => cylinder.commands.push((stamp, area)),
-                None => self.cylinders.push(CylinderCommands {
-                    name: name.clone(),
-                    commands: vec![(stamp, area)],
-                }),
+                None => self.cylinders.push(CylinderCommands { name: name.clone(), commands: vec![(stamp, area)] }),
             }
         }
     }
@@ -60,14 +53,8 @@ impl CommandTrack {
         report.malformed_commands = self.malformed;
         report.reordered_commands = count_late(&self.stamps);
         for commanded in &mut self.cylinders {
-            let Some(cylinder) = recording
-                .cylinders
-                .iter_mut()
-                .find(|cylinder| cylinder.name == commanded.name)
-            else {
-                report
-                    .commands_without_cylinder
-                    .push(commanded.name.clone());
+            let Some(cylinder) = recording.cylinders.iter_mut().find(|cylinder| cylinder.name == commanded.name) else {
+                report.commands_without_cylinder.push(commanded.name.clone());
                 continue;
             };
             commanded.commands.sort_by_key(|&(stamp, _)| stamp);

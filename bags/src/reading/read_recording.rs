@@ -52,10 +52,7 @@ pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadRe
     report.damage = messages.damage();
     report.truncated_after = truncated_after(&report.damage, first_log_time);
     let found: u64 = report.messages.values().sum();
-    report.missing_messages = messages
-        .promised_messages()
-        .unwrap_or(0)
-        .saturating_sub(found);
+    report.missing_messages = messages.promised_messages().unwrap_or(0).saturating_sub(found);
     states.finish(&mut report)?;
     commands.finish(&mut report)?;
     if table.is_empty() {
@@ -69,35 +66,20 @@ pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadRe
 fn no_state(messages: &RawMessages, topics: &Topics, report: &ReadReport) -> BagError {
     let path = messages.path().to_path_buf();
     let topic = topics.state.clone();
-    let existing: Vec<String> = messages
-        .topics()
-        .iter()
-        .map(|topic| topic.name.clone())
-        .collect();
+    let existing: Vec<String> = messages.topics().iter().map(|topic| topic.name.clone()).collect();
     // Where there is damage, the definition of the topic itself may be lost.
     if existing.contains(&topic) || (existing.is_empty() && !report.damage.is_empty()) {
         let damage = report.damage.iter().map(ToString::to_string).collect();
-        BagError::NoMessages {
-            path,
-            topic,
-            damage,
-        }
+        BagError::NoMessages { path, topic, damage }
     } else {
-        BagError::NoTopic {
-            path,
-            topic,
-            existing,
-        }
+        BagError::NoTopic { path, topic, existing }
     }
 }
 
 /// Seconds from the first message of the bag to the last before the first missing end of a file.
 fn truncated_after(damage: &[Damage], first_log_time: Option<u64>) -> Option<f64> {
     let cut = damage.iter().find(|damage| damage.is_truncation())?;
-    let nanoseconds = cut
-        .readable_until
-        .zip(first_log_time)
-        .map_or(0, |(until, first)| until.saturating_sub(first));
+    let nanoseconds = cut.readable_until.zip(first_log_time).map_or(0, |(until, first)| until.saturating_sub(first));
     Some(nanoseconds as f64 / 1e9)
 }
 
@@ -108,11 +90,7 @@ struct TopicCounts(Vec<(Arc<Topic>, u64)>);
 
 impl TopicCounts {
     fn count(&mut self, message: &RawMessage) {
-        match self
-            .0
-            .iter_mut()
-            .find(|(topic, _)| Arc::ptr_eq(topic, &message.topic))
-        {
+        match self.0.iter_mut().find(|(topic, _)| Arc::ptr_eq(topic, &message.topic)) {
             Some((_, count)) => *count += 1,
             None => self.0.push((Arc::clone(&message.topic), 1)),
         }
@@ -155,11 +133,7 @@ impl<'r, M: Message> TopicReader<'r, M> {
         message: &RawMessage,
         decode: impl FnOnce(&[u8]) -> Result<T, CdrError>,
     ) -> Result<Option<T>, BagError> {
-        if !self
-            .checked
-            .as_ref()
-            .is_some_and(|checked| Arc::ptr_eq(checked, &message.topic))
-        {
+        if !self.checked.as_ref().is_some_and(|checked| Arc::ptr_eq(checked, &message.topic)) {
             topic_check::check::<M>(self.path, &message.topic)?;
             self.checked = Some(Arc::clone(&message.topic));
         }
@@ -169,14 +143,13 @@ impl<'r, M: Message> TopicReader<'r, M> {
             Ok(decoded) => Ok(Some(decoded)),
             Err(error) => {
                 self.undecodable += 1;
-                self.first_undecodable
-                    .get_or_insert_with(|| BagError::Undecodable {
-                        path: self.path.to_path_buf(),
-                        topic: self.topic.to_string(),
-                        index,
-                        bytes: message.data.len(),
-                        reason: error.to_string(),
-                    });
+                self.first_undecodable.get_or_insert_with(|| BagError::Undecodable {
+                    path: self.path.to_path_buf(),
+                    topic: self.topic.to_string(),
+                    index,
+                    bytes: message.data.len(),
+                    reason: error.to_string(),
+                });
                 Ok(None)
             }
         }
@@ -191,9 +164,7 @@ impl<'r, M: Message> TopicReader<'r, M> {
             return Err(error);
         }
         report.undecodable += self.undecodable;
-        report
-            .first_undecodable
-            .get_or_insert_with(|| error.to_string());
+        report.first_undecodable.get_or_insert_with(|| error.to_string());
         Ok(())
     }
 }

@@ -52,75 +52,34 @@ pub struct ReadReport {
 impl ReadReport {
     /// Bytes lost to damage, in all files together.
     pub fn lost_bytes(&self) -> u64 {
-        self.damage
-            .iter()
-            .map(|damage| damage.lost_bytes)
-            .fold(0, u64::saturating_add)
+        self.damage.iter().map(|damage| damage.lost_bytes).fold(0, u64::saturating_add)
     }
 
     /// Chunks left out because of a wrong checksum or broken content.
     pub fn bad_chunks(&self) -> usize {
-        self.damage
-            .iter()
-            .filter(|damage| matches!(damage.kind, crate::DamageKind::BadChunk { .. }))
-            .count()
+        self.damage.iter().filter(|damage| matches!(damage.kind, crate::DamageKind::BadChunk { .. })).count()
     }
 
     /// One line for people about each kind of imperfection; empty for a perfect bag.
     pub fn problems(&self) -> Vec<String> {
         let mut lines: Vec<String> = self.damage.iter().map(ToString::to_string).collect();
         if let Some(time) = self.truncated_after {
-            lines.push(format!(
-                "the recording is cut off: data is there up to {time:.3} s after its first message"
-            ));
+            lines.push(format!("the recording is cut off: data is there up to {time:.3} s after its first message"));
         }
         let counts = [
-            (
-                self.missing_messages,
-                "messages fewer than metadata.yaml promises",
-            ),
-            (
-                self.undecodable,
-                "messages that could not be decoded were left out",
-            ),
-            (
-                self.duplicates,
-                "state messages with the stamp of an earlier one were dropped",
-            ),
+            (self.missing_messages, "messages fewer than metadata.yaml promises"),
+            (self.undecodable, "messages that could not be decoded were left out"),
+            (self.duplicates, "state messages with the stamp of an earlier one were dropped"),
             (self.reordered, "state messages out of order were sorted in"),
-            (
-                self.reordered_commands,
-                "commands out of order were sorted in",
-            ),
-            (
-                self.infinite_values,
-                "infinite values were taken as not measured",
-            ),
-            (
-                self.repeated_cylinders,
-                "entries for a cylinder already in the same message were dropped",
-            ),
-            (
-                self.malformed_commands,
-                "commands without exactly one area per name were dropped",
-            ),
+            (self.reordered_commands, "commands out of order were sorted in"),
+            (self.infinite_values, "infinite values were taken as not measured"),
+            (self.repeated_cylinders, "entries for a cylinder already in the same message were dropped"),
+            (self.malformed_commands, "commands without exactly one area per name were dropped"),
         ];
-        lines.extend(
-            counts
-                .iter()
-                .filter(|(count, _)| *count > 0)
-                .map(|(count, what)| format!("{count} {what}")),
-        );
-        lines.extend(
-            self.first_undecodable
-                .iter()
-                .map(|first| format!("the first that could not be decoded: {first}")),
-        );
-        if let Some(longest) = self
-            .gaps
-            .iter()
-            .max_by(|a, b| a.length.total_cmp(&b.length))
-        {
+        lines.extend(counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")));
+        lines
+            .extend(self.first_undecodable.iter().map(|first| format!("the first that could not be decoded: {first}")));
+        if let Some(longest) = self.gaps.iter().max_by(|a, b| a.length.total_cmp(&b.length)) {
             let Gap { after, length } = longest;
             lines.push(format!(
                 "{} gaps in the state messages, the longest {length:.4} s at {after:.3} s",
@@ -129,9 +88,7 @@ impl ReadReport {
         }
         if !self.commands_without_cylinder.is_empty() {
             let names = self.commands_without_cylinder.join(", ");
-            lines.push(format!(
-                "commands for {names} are not used: no state message has such a cylinder"
-            ));
+            lines.push(format!("commands for {names} are not used: no state message has such a cylinder"));
         }
         lines
     }

@@ -46,10 +46,7 @@ impl StateDecoder {
         if !encapsulation.starts_with(&LITTLE_ENDIAN) {
             return None;
         }
-        let mut content = Content {
-            bytes: content,
-            position: 0,
-        };
+        let mut content = Content { bytes: content, position: 0 };
         let state = &mut self.state;
         state.header.stamp.sec = content.aligned::<4>().map(i32::from_le_bytes)?;
         state.header.stamp.nanosec = content.u32()?;
@@ -135,13 +132,7 @@ mod tests {
             rod_force: seed + 6.0,
         };
         ArmState {
-            header: Header {
-                stamp: Time {
-                    sec: -5,
-                    nanosec: seed as u32,
-                },
-                frame_id: "x".repeat(names.len()),
-            },
+            header: Header { stamp: Time { sec: -5, nanosec: seed as u32 }, frame_id: "x".repeat(names.len()) },
             cylinders: names.iter().map(cylinder).collect(),
             pump_pressure: seed + 7.0,
             tank_pressure: seed + 8.0,
@@ -153,21 +144,11 @@ mod tests {
     #[test]
     fn it_takes_every_message_of_our_own_and_forgets_the_one_before() -> Result<(), CdrError> {
         let mut decoder = StateDecoder::new();
-        let cases: [&[&str]; 6] = [
-            &["arm"],
-            &["boom", "arm", "bucket"],
-            &[],
-            &["löffel"],
-            &["a", ""],
-            &["arm"],
-        ];
+        let cases: [&[&str]; 6] = [&["arm"], &["boom", "arm", "bucket"], &[], &["löffel"], &["a", ""], &["arm"]];
         for (number, names) in cases.into_iter().enumerate() {
             let expected = message(names, number as f64 * 100.0);
             let bytes = cdr::encode(&expected)?;
-            assert!(
-                decoder.fill(&bytes).is_some(),
-                "{names:?} went the slow way"
-            );
+            assert!(decoder.fill(&bytes).is_some(), "{names:?} went the slow way");
             assert_eq!(decoder.state, expected);
             assert_eq!(cdr::decode::<ArmState>(&bytes)?, expected);
         }
@@ -180,21 +161,13 @@ mod tests {
         let mut decoder = StateDecoder::new();
         for length in 0..good.len() {
             let expected = cdr::decode::<ArmState>(&good[..length]);
-            assert_eq!(
-                decoder.decode(&good[..length]).cloned(),
-                expected,
-                "{length} bytes"
-            );
+            assert_eq!(decoder.decode(&good[..length]).cloned(), expected, "{length} bytes");
         }
         for position in 0..good.len() {
             let mut bytes = good.clone();
             bytes[position] ^= 0x81;
             let expected = cdr::decode::<ArmState>(&bytes);
-            assert_eq!(
-                format!("{:?}", decoder.decode(&bytes)),
-                format!("{:?}", expected.as_ref()),
-                "byte {position}"
-            );
+            assert_eq!(format!("{:?}", decoder.decode(&bytes)), format!("{:?}", expected.as_ref()), "byte {position}");
         }
         Ok(())
     }

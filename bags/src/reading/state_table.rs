@@ -39,22 +39,14 @@ impl StateTable {
 
     fn push_cylinder(&mut self, row: usize, position: usize, state: &CylinderState) {
         // Almost always the cylinders come in the same order in every message.
-        let at_position = self
-            .cylinders
-            .get(position)
-            .is_some_and(|cylinder| cylinder.name == state.name);
+        let at_position = self.cylinders.get(position).is_some_and(|cylinder| cylinder.name == state.name);
         let known = if at_position {
             Some(position)
         } else {
-            self.cylinders
-                .iter()
-                .position(|cylinder| cylinder.name == state.name)
+            self.cylinders.iter().position(|cylinder| cylinder.name == state.name)
         };
         let index = known.unwrap_or_else(|| {
-            self.cylinders.push(CylinderSignals {
-                name: state.name.clone(),
-                ..CylinderSignals::default()
-            });
+            self.cylinders.push(CylinderSignals { name: state.name.clone(), ..CylinderSignals::default() });
             self.cylinders.len() - 1
         });
         let cylinder = &mut self.cylinders[index];
@@ -84,11 +76,7 @@ impl StateTable {
     }
 
     /// The recording, its clock in ns since the epoch, and the counts of what had to be set right.
-    pub fn into_recording(
-        mut self,
-        source: &str,
-        report: &mut ReadReport,
-    ) -> (Recording, Vec<i64>) {
+    pub fn into_recording(mut self, source: &str, report: &mut ReadReport) -> (Recording, Vec<i64>) {
         report.infinite_values += self.infinite_values;
         report.repeated_cylinders = self.repeated_cylinders;
         report.reordered = count_late(&self.stamps);
@@ -103,16 +91,9 @@ impl StateTable {
         let already_in_order = order.len() == samples && report.reordered == 0;
         if !already_in_order {
             self.stamps = order.iter().map(|&row| self.stamps[row]).collect();
-            let shared = [
-                &mut self.pump_pressure,
-                &mut self.tank_pressure,
-                &mut self.pump_flow,
-                &mut self.oil_temperature,
-            ];
-            for column in shared
-                .into_iter()
-                .chain(self.cylinders.iter_mut().flat_map(measured_columns))
-            {
+            let shared =
+                [&mut self.pump_pressure, &mut self.tank_pressure, &mut self.pump_flow, &mut self.oil_temperature];
+            for column in shared.into_iter().chain(self.cylinders.iter_mut().flat_map(measured_columns)) {
                 *column = order.iter().map(|&row| column[row]).collect();
             }
         }
@@ -121,11 +102,7 @@ impl StateTable {
         }
         let start = self.stamps.first().copied().unwrap_or_default();
         // Division, not multiplication by 1e-9: it gives the double nearest to the decimal number.
-        let time: Vec<f64> = self
-            .stamps
-            .iter()
-            .map(|&stamp| (stamp - start) as f64 / NANOSECONDS_PER_SECOND)
-            .collect();
+        let time: Vec<f64> = self.stamps.iter().map(|&stamp| (stamp - start) as f64 / NANOSECONDS_PER_SECOND).collect();
         let recording = Recording {
             source: source.to_string(),
             start_nanoseconds: start,
@@ -179,9 +156,6 @@ fn rows_by_stamp(stamps: &[i64]) -> Vec<usize> {
 
 fn gaps(recording: &Recording) -> Vec<Gap> {
     let limit = GAP_FACTOR * recording.sample_interval();
-    let steps = recording.time.windows(2).map(|pair| Gap {
-        after: pair[0],
-        length: pair[1] - pair[0],
-    });
+    let steps = recording.time.windows(2).map(|pair| Gap { after: pair[0], length: pair[1] - pair[0] });
     steps.filter(|step| step.length > limit).collect()
 }

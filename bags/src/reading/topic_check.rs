@@ -12,32 +12,18 @@ use crate::{BagError, Topic};
 pub(super) fn check<M: Message>(path: &Path, topic: &Topic) -> Result<(), BagError> {
     let path = || path.to_path_buf();
     let name = || topic.name.clone();
-    if !topic.type_name.is_empty()
-        && layout::short_name(&topic.type_name) != layout::short_name(M::TYPE_NAME)
-    {
+    if !topic.type_name.is_empty() && layout::short_name(&topic.type_name) != layout::short_name(M::TYPE_NAME) {
         let found = topic.type_name.clone();
-        return Err(BagError::WrongType {
-            path: path(),
-            topic: name(),
-            found,
-            expected: M::TYPE_NAME,
-        });
+        return Err(BagError::WrongType { path: path(), topic: name(), found, expected: M::TYPE_NAME });
     }
     if topic.message_encoding != "cdr" {
         let format = topic.message_encoding.clone();
-        return Err(BagError::UnsupportedSerialization {
-            path: path(),
-            topic: name(),
-            format,
-        });
+        return Err(BagError::UnsupportedSerialization { path: path(), topic: name(), format });
     }
     match difference(M::TYPE_NAME, topic) {
-        Some(difference) => Err(BagError::OtherDefinition {
-            path: path(),
-            topic: name(),
-            type_name: M::TYPE_NAME,
-            difference,
-        }),
+        Some(difference) => {
+            Err(BagError::OtherDefinition { path: path(), topic: name(), type_name: M::TYPE_NAME, difference })
+        }
         None => Ok(()),
     }
 }
@@ -56,11 +42,5 @@ fn difference(type_name: &str, topic: &Topic) -> Option<String> {
     let longest = ours.len().max(theirs.len());
     (0..longest)
         .find(|&index| ours.get(index) != theirs.get(index))
-        .map(|index| {
-            format!(
-                "it has {} where we have {}",
-                describe(theirs.get(index)),
-                describe(ours.get(index))
-            )
-        })
+        .map(|index| format!("it has {} where we have {}", describe(theirs.get(index)), describe(ours.get(index))))
 }

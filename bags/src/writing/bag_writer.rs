@@ -68,18 +68,14 @@ impl BagWriter {
     /// # Errors
     /// [`BagError::AlreadyExists`], [`BagError::NoName`], [`BagError::Io`], [`BagError::Write`].
     pub fn create(folder: &Path, options: &WriteOptions) -> Result<Self, BagError> {
-        let name = folder.file_name().ok_or_else(|| BagError::NoName {
-            path: folder.to_path_buf(),
-        })?;
+        let name = folder.file_name().ok_or_else(|| BagError::NoName { path: folder.to_path_buf() })?;
         let file_name = format!("{}_0.mcap", name.to_string_lossy());
         if let Some(parent) = folder.parent() {
             std::fs::create_dir_all(parent).map_err(BagError::io("create", parent))?;
         }
         // Creating and looking in one step: two recorders started at once must not share a folder.
         std::fs::create_dir(folder).map_err(|error| match error.kind() {
-            std::io::ErrorKind::AlreadyExists => BagError::AlreadyExists {
-                path: folder.to_path_buf(),
-            },
+            std::io::ErrorKind::AlreadyExists => BagError::AlreadyExists { path: folder.to_path_buf() },
             _ => BagError::io("create", folder)(error),
         })?;
         let path = folder.join(&file_name);
@@ -115,11 +111,7 @@ impl BagWriter {
     /// # Errors
     /// [`BagError::TopicConflict`] when the name has another type or definition already; [`BagError::Write`].
     pub fn add_topic(&mut self, topic: &TopicToWrite) -> Result<TopicId, BagError> {
-        if let Some(index) = self
-            .topics
-            .iter()
-            .position(|known| known.topic.name == topic.name)
-        {
+        if let Some(index) = self.topics.iter().position(|known| known.topic.name == topic.name) {
             let known = &self.topics[index].topic;
             if known.type_name == topic.type_name && known.schema == topic.schema {
                 return Ok(TopicId(index));
@@ -130,19 +122,12 @@ impl BagWriter {
                 wanted: topic.type_name.clone(),
             });
         }
-        let metadata = BTreeMap::from([(
-            "offered_qos_profiles".to_string(),
-            Qos::list_to_yaml(&topic.qos),
-        )]);
+        let metadata = BTreeMap::from([("offered_qos_profiles".to_string(), Qos::list_to_yaml(&topic.qos))]);
         let channel = self.with_mcap(|mcap| {
             let schema = mcap.add_schema(&topic.type_name, "ros2msg", topic.schema.as_bytes())?;
             mcap.add_channel(schema, &topic.name, "cdr", &metadata)
         })?;
-        self.topics.push(WrittenTopic {
-            topic: topic.clone(),
-            channel,
-            messages: 0,
-        });
+        self.topics.push(WrittenTopic { topic: topic.clone(), channel, messages: 0 });
         Ok(TopicId(self.topics.len() - 1))
     }
 
@@ -150,24 +135,13 @@ impl BagWriter {
     ///
     /// # Errors
     /// [`BagError::Write`] when the file cannot be written, or the id is of another writer.
-    pub fn write(
-        &mut self,
-        topic: TopicId,
-        log_time: u64,
-        publish_time: u64,
-        data: &[u8],
-    ) -> Result<(), BagError> {
+    pub fn write(&mut self, topic: TopicId, log_time: u64, publish_time: u64, data: &[u8]) -> Result<(), BagError> {
         let Some(written) = self.topics.get_mut(topic.0) else {
             return Err(self.write_error(mcap::McapError::UnknownChannel(0, 0)));
         };
         // The recorder's own count per topic: gaps in it are gaps in the file.
         let sequence = u32::try_from(written.messages & u64::from(u32::MAX)).unwrap_or_default();
-        let header = MessageHeader {
-            channel_id: written.channel,
-            sequence,
-            log_time,
-            publish_time,
-        };
+        let header = MessageHeader { channel_id: written.channel, sequence, log_time, publish_time };
         written.messages += 1;
         self.with_mcap(|mcap| mcap.write_to_known_channel(&header, data))?;
         let (start, end) = self.span.unwrap_or((log_time, log_time));
@@ -215,12 +189,8 @@ impl BagWriter {
                 message_count: written.messages,
             })
             .collect();
-        let contents = Contents {
-            file_name: &self.file_name,
-            topics: &topics,
-            span: self.span,
-            custom_data: &self.custom_data,
-        };
+        let contents =
+            Contents { file_name: &self.file_name, topics: &topics, span: self.span, custom_data: &self.custom_data };
         let path = self.folder.join(FILE_NAME);
         let text = contents.to_yaml().map_err(|error| BagError::Io {
             action: "write",
@@ -243,10 +213,7 @@ impl BagWriter {
     }
 
     fn write_error(&self, source: mcap::McapError) -> BagError {
-        BagError::Write {
-            path: self.folder.join(&self.file_name),
-            source,
-        }
+        BagError::Write { path: self.folder.join(&self.file_name), source }
     }
 }
 

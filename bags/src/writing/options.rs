@@ -39,10 +39,6 @@ pub struct WriteOptions {
 impl Default for WriteOptions {
     /// Zstd, chunks of 768 KiB as rosbag2 writes them, no custom data.
     fn default() -> Self {
-        WriteOptions {
-            compression: Compression::default(),
-            chunk_size: 768 * 1024,
-            custom_data: BTreeMap::new(),
-        }
+        WriteOptions { compression: Compression::default(), chunk_size: 768 * 1024, custom_data: BTreeMap::new() }
     }
 }

@@ -30,25 +30,13 @@ pub fn write_recording(
     recording.validate()?;
     let stamps = stamps(recording)?;
     let mut bag = BagWriter::create(path, options)?;
-    let states = bag.add_topic(&TopicToWrite::of::<ArmState>(
-        &topics.state,
-        Qos::reliable(STATE_DEPTH),
-    ))?;
-    let commands = bag.add_topic(&TopicToWrite::of::<OrificeCommand>(
-        &topics.command,
-        Qos::reliable(COMMAND_DEPTH),
-    ))?;
+    let states = bag.add_topic(&TopicToWrite::of::<ArmState>(&topics.state, Qos::reliable(STATE_DEPTH)))?;
+    let commands = bag.add_topic(&TopicToWrite::of::<OrificeCommand>(&topics.command, Qos::reliable(COMMAND_DEPTH)))?;
     for (sample, &Stamp { time, nanoseconds }) in stamps.iter().enumerate() {
         if let Some(command) = command_at(recording, sample, time) {
             write(&mut bag, commands, &topics.command, nanoseconds, &command)?;
         }
-        write(
-            &mut bag,
-            states,
-            &topics.state,
-            nanoseconds,
-            &state_at(recording, sample, time),
-        )?;
+        write(&mut bag, states, &topics.state, nanoseconds, &state_at(recording, sample, time))?;
     }
     bag.finish()
 }
@@ -60,10 +48,8 @@ fn write<M: Message>(
     nanoseconds: u64,
     message: &M,
 ) -> Result<(), BagError> {
-    let bytes = cdr::encode(message).map_err(|error| BagError::Unencodable {
-        topic: name.to_string(),
-        reason: error.to_string(),
-    })?;
+    let bytes = cdr::encode(message)
+        .map_err(|error| BagError::Unencodable { topic: name.to_string(), reason: error.to_string() })?;
     bag.write(topic, nanoseconds, nanoseconds, &bytes)
 }
 
@@ -76,34 +62,20 @@ struct Stamp {
 fn stamps(recording: &Recording) -> Result<Vec<Stamp>, BagError> {
     let mut stamps: Vec<Stamp> = Vec::with_capacity(recording.len());
     for (index, seconds) in recording.time.iter().enumerate() {
-        let nanoseconds = recording
-            .start_nanoseconds
-            .saturating_add((seconds * 1e9).round() as i64);
-        let (Some(time), Ok(unsigned)) = (
-            Time::from_nanoseconds(nanoseconds),
-            u64::try_from(nanoseconds),
-        ) else {
+        let nanoseconds = recording.start_nanoseconds.saturating_add((seconds * 1e9).round() as i64);
+        let (Some(time), Ok(unsigned)) = (Time::from_nanoseconds(nanoseconds), u64::try_from(nanoseconds)) else {
             return Err(BagError::StampOutOfRange { index, nanoseconds });
         };
-        if stamps
-            .last()
-            .is_some_and(|previous| previous.nanoseconds == unsigned)
-        {
+        if stamps.last().is_some_and(|previous| previous.nanoseconds == unsigned) {
             return Err(BagError::StampsCoincide { index, nanoseconds });
         }
-        stamps.push(Stamp {
-            time,
-            nanoseconds: unsigned,
-        });
+        stamps.push(Stamp { time, nanoseconds: unsigned });
     }
     Ok(stamps)
 }
 
 fn header(stamp: Time) -> Header {
-    Header {
-        stamp,
-        frame_id: String::new(),
-    }
+    Header { stamp, frame_id: String::new() }
 }
 
 fn state_at(recording: &Recording, sample: usize, stamp: Time) -> ArmState {
@@ -134,16 +106,10 @@ fn state_at(recording: &Recording, sample: usize, stamp: Time) -> ArmState {
 /// The cylinders whose command is another than at the sample before; at the first sample, those that have one. A
 /// command that ends (`NaN` after a number) is written too, or it would be held.
 fn command_at(recording: &Recording, sample: usize, stamp: Time) -> Option<OrificeCommand> {
-    let mut command = OrificeCommand {
-        header: header(stamp),
-        names: Vec::new(),
-        areas: Vec::new(),
-    };
+    let mut command = OrificeCommand { header: header(stamp), names: Vec::new(), areas: Vec::new() };
     for cylinder in &recording.cylinders {
         let area = cylinder.orifice_command[sample];
-        let before = sample
-            .checked_sub(1)
-            .map_or(f64::NAN, |before| cylinder.orifice_command[before]);
+        let before = sample.checked_sub(1).map_or(f64::NAN, |before| cylinder.orifice_command[before]);
         let unchanged = area.to_bits() == before.to_bits() || (area.is_nan() && before.is_nan());
         if !unchanged {
             command.names.push(cylinder.name.clone());

@@ -4,9 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{
-    BagWriter, Compression, Qos, TopicToWrite, Topics, WriteOptions, cdr, write_recording,
-};
+use excavator_bags::{BagWriter, Compression, Qos, TopicToWrite, Topics, WriteOptions, cdr, write_recording};
 use excavator_model::recording::Recording;
 use excavator_msgs::{ArmState, CylinderState, Header, Message, OrificeCommand, Time};
 
@@ -16,19 +14,14 @@ pub const START: i64 = 1_790_000_000_000_024_320;
 /// Two cylinders, 500 Hz, with everything that makes reading hard: uneven stamps, NaN, a sensor that is not there,
 /// commands that begin late, change one at a time and end.
 pub fn recording(samples: usize) -> Recording {
-    let time: Vec<f64> = (0..samples as i64)
-        .map(|i| (i * 2_000_000 + (i * 7919 % 40_000) * i64::from(i > 0)) as f64 / 1e9)
-        .collect();
+    let time: Vec<f64> =
+        (0..samples as i64).map(|i| (i * 2_000_000 + (i * 7919 % 40_000) * i64::from(i > 0)) as f64 / 1e9).collect();
     let mut recording = Recording::unmeasured("made up", time, &["boom", "arm"]);
     recording.start_nanoseconds = START;
     for i in 0..samples {
         let t = recording.time[i];
         recording.pump_pressure[i] = 2e7 + 1e5 * (3.0 * t).sin();
-        recording.tank_pressure[i] = if i % 17 == 0 {
-            f64::NAN
-        } else {
-            2e5 + i as f64 / 3.0
-        };
+        recording.tank_pressure[i] = if i % 17 == 0 { f64::NAN } else { 2e5 + i as f64 / 3.0 };
         recording.oil_temperature[i] = 40.0 + 0.1 * t;
         for (k, cylinder) in recording.cylinders.iter_mut().enumerate() {
             let phase = t + k as f64;
@@ -50,16 +43,7 @@ pub fn recording(samples: usize) -> Recording {
 /// Panics unless the recordings are equal bit for bit, `NaN` equal to `NaN`; the source is not compared.
 pub fn assert_equal(found: &Recording, expected: &Recording) {
     let bits = |values: &[f64]| -> Vec<u64> {
-        values
-            .iter()
-            .map(|value| {
-                if value.is_nan() {
-                    f64::NAN.to_bits()
-                } else {
-                    value.to_bits()
-                }
-            })
-            .collect()
+        values.iter().map(|value| if value.is_nan() { f64::NAN.to_bits() } else { value.to_bits() }).collect()
     };
     assert_eq!(found.start_nanoseconds, expected.start_nanoseconds);
     assert_eq!(bits(&found.time), bits(&expected.time), "time");
@@ -72,26 +56,15 @@ pub fn assert_equal(found: &Recording, expected: &Recording) {
 }
 
 /// Writes a recording with small chunks and gives the path of its MCAP file.
-pub fn write_small_chunks(
-    folder: &Path,
-    recording: &Recording,
-    compression: Compression,
-) -> PathBuf {
-    let options = WriteOptions {
-        compression,
-        chunk_size: 16 * 1024,
-        ..WriteOptions::default()
-    };
+pub fn write_small_chunks(folder: &Path, recording: &Recording, compression: Compression) -> PathBuf {
+    let options = WriteOptions { compression, chunk_size: 16 * 1024, ..WriteOptions::default() };
     write_recording(folder, recording, &Topics::default(), &options).unwrap();
     mcap_file(folder)
 }
 
 /// The MCAP file of a folder that we wrote.
 pub fn mcap_file(folder: &Path) -> PathBuf {
-    folder.join(format!(
-        "{}_0.mcap",
-        folder.file_name().unwrap().to_string_lossy()
-    ))
+    folder.join(format!("{}_0.mcap", folder.file_name().unwrap().to_string_lossy()))
 }
 
 /// A state message of the given cylinders with recognisable numbers.
@@ -100,10 +73,7 @@ pub fn state(nanoseconds: i64, cylinders: &[&str]) -> ArmState {
         header: header(nanoseconds),
         cylinders: cylinders
             .iter()
-            .map(|name| CylinderState {
-                displacement: nanoseconds as f64,
-                ..CylinderState::unmeasured(name)
-            })
+            .map(|name| CylinderState { displacement: nanoseconds as f64, ..CylinderState::unmeasured(name) })
             .collect(),
         pump_pressure: 1.0,
         tank_pressure: 2.0,
@@ -123,17 +93,12 @@ pub fn command(nanoseconds: i64, names: &[&str], areas: &[f64]) -> OrificeComman
 
 /// A header with this stamp, ns.
 pub fn header(nanoseconds: i64) -> Header {
-    Header {
-        stamp: Time::from_nanoseconds(nanoseconds).unwrap(),
-        frame_id: String::new(),
-    }
+    Header { stamp: Time::from_nanoseconds(nanoseconds).unwrap(), frame_id: String::new() }
 }
 
 /// Writes one message at log time 0: what counts are the stamps.
 pub fn add<M: Message>(bag: &mut BagWriter, topic: &str, message: &M) {
-    let id = bag
-        .add_topic(&TopicToWrite::of::<M>(topic, Qos::reliable(10)))
-        .unwrap();
+    let id = bag.add_topic(&TopicToWrite::of::<M>(topic, Qos::reliable(10))).unwrap();
     bag.write(id, 0, 0, &cdr::encode(message).unwrap()).unwrap();
 }
 
@@ -147,9 +112,6 @@ pub fn shared(what: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    eprintln!(
-        "skipped: {} does not exist (set EXCAVATOR_SHARED to the folder of shared files)",
-        path.display()
-    );
+    eprintln!("skipped: {} does not exist (set EXCAVATOR_SHARED to the folder of shared files)", path.display());
     None
 }

@@ -110,7 +110,9 @@ fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     for (number, parameter) in last.parameters.iter().enumerate() {
         let values: Vec<f64> = match parameter.card.start {
             Start::At(values) => values.to_vec(),
-            Start::PumpPressureQuantiles(levels) => levels.iter().map(|&level| pump_pressure(recordings, level)).collect(),
+            Start::PumpPressureQuantiles(levels) => {
+                levels.iter().map(|&level| pump_pressure(recordings, level)).collect()
+            }
         };
         let values: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         if parameter.card.kind != Kind::Shape && values.len() < 2 || values.is_empty() {

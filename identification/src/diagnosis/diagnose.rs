@@ -1,8 +1,11 @@
 //! From recordings to a verdict.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use excavator_model::Model;
 use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
+use rayon::prelude::*;
 
 use super::candidate::{CandidateError, fit_addition};
 use super::{Candidate, DiagnosisSettings, Share, Unexplained, additions, compare_losses, residual_map, unexplained};
@@ -78,7 +81,7 @@ pub fn diagnose(
     identification: &[&Recording],
     validation: &[&Recording],
     settings: &DiagnosisSettings,
-    progress: &dyn Fn(&str, f64),
+    progress: &(dyn Fn(&str, f64) + Sync),
 ) -> Result<Diagnosis, DiagnosisError> {
     if validation.is_empty() {
         return Err(DiagnosisError::NoValidation);
@@ -90,9 +93,10 @@ pub fn diagnose(
     let map = residual_map(&nominal.model, validation)?;
 
     let mut chain: Vec<Candidate> = Vec::new();
-    let mut first_round: Option<(Vec<Candidate>, Vec<(String, CandidateError)>)> = None;
+    let mut first_round: Option<Round> = None;
     while chain.len() < settings.most_effects {
-        let (base, base_validation) = chain.last().map_or((&nominal, &nominal_validation), |last| (&last.fit, &last.validation));
+        let (base, base_validation) =
+            chain.last().map_or((&nominal, &nominal_validation), |last| (&last.fit, &last.validation));
         if !chain.is_empty() && is_adequate(base_validation, validation, settings) {
             break;
         }
@@ -158,23 +162,23 @@ fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSetting
     fit.loss() <= settings.adequate_loss || normalised_error(fit, recordings) <= settings.adequate_error
 }
 
-/// Mean over instruments of squared error over the signal's own variance.
+/// Mean over instruments of squared error over the signal's own variance; `NaN` when no signal varies.
 pub fn normalised_error(fit: &Fit, recordings: &[&Recording]) -> f64 {
-    let sum: f64 = fit
+    let errors: Vec<f64> = fit
         .instruments
         .iter()
         .zip(&fit.errors)
-        .map(|(instrument, error)| {
-            let spread = recordings
-                .iter()
-                .filter_map(|recording| recording.signal(&instrument.name))
-                .map(crate::fit::standard_deviation)
-                .fold(0.0, f64::max);
-            (error / spread).powi(2)
+        .filter_map(|(instrument, error)| {
+            let signals = recordings.iter().filter_map(|recording| recording.signal(&instrument.name));
+            let spread = signals.map(crate::fit::standard_deviation).fold(0.0, f64::max);
+            (spread > 0.0).then(|| (error / spread).powi(2))
         })
-        .sum();
-    sum / fit.instruments.len() as f64
+        .collect();
+    errors.iter().sum::<f64>() / errors.len() as f64
 }
+
+/// Candidates that were fitted, best on validation first, and those that could not be.
+type Round = (Vec<Candidate>, Vec<(String, CandidateError)>);
 
 /// Fits every addition, best on validation first.
 fn try_all(
@@ -184,46 +188,64 @@ fn try_all(
     identification: &[&Recording],
     validation: &[&Recording],
     settings: &DiagnosisSettings,
-    progress: &dyn Fn(&str, f64),
-) -> (Vec<Candidate>, Vec<(String, CandidateError)>) {
+    progress: &(dyn Fn(&str, f64) + Sync),
+) -> Round {
+    let done = AtomicUsize::new(0);
+    let results: Vec<(String, Result<Candidate, CandidateError>)> = wanted
+        .par_iter()
+        .map(|&(physics, site)| {
+            let place = excavator_model::site_name(&base.model.machine, site).to_string();
+            let name = format!("{}@{place}", physics.card().name);
+            let candidate = try_one(base, base_validation, physics, site, place, identification, validation, settings);
+            progress(&name, (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / wanted.len() as f64);
+            (name, candidate)
+        })
+        .collect();
     let mut tried = Vec::new();
     let mut failed = Vec::new();
-    for (number, &(physics, site)) in wanted.iter().enumerate() {
-        let place = excavator_model::site_name(&base.model.machine, site).to_string();
-        let name = format!("{}@{place}", physics.card().name);
-        progress(&name, number as f64 / wanted.len() as f64);
-        // A candidate that has gained nothing after a few steps will not be named; its fit need not be finished.
-        let give_up_above = base.loss() - settings.least_gain / 4.0;
-        let patience = FitSettings { give_up_above, ..settings.fit };
-        let result = fit_addition(&base.model, physics, site, identification, &patience).and_then(|fit| {
-            let validation = evaluate(&fit.model, validation, &settings.fit)?;
-            Ok((fit, validation))
-        });
+    for (name, result) in results {
         match result {
-            Ok((fit, validation)) => {
-                let evidence = compare_losses(base_validation, &validation);
-                let on_identification = compare_losses(base, &fit);
-                let accepted = evidence.gain >= settings.least_gain
-                    && evidence.significance >= settings.least_significance
-                    && on_identification.gain >= settings.least_gain / 2.0;
-                tried.push(Candidate {
-                    physics,
-                    site,
-                    place,
-                    fit,
-                    validation,
-                    evidence,
-                    identification_gain: on_identification.gain,
-                    accepted,
-                    tied_with_first: false,
-                });
-            }
+            Ok(candidate) => tried.push(candidate),
             Err(error) => failed.push((name, error)),
         }
     }
     tried.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
     mark_ties(&mut tried, settings);
     (tried, failed)
+}
+
+#[allow(clippy::too_many_arguments)]
+fn try_one(
+    base: &Fit,
+    base_validation: &Fit,
+    physics: &'static dyn Effect,
+    site: Site,
+    place: String,
+    identification: &[&Recording],
+    validation: &[&Recording],
+    settings: &DiagnosisSettings,
+) -> Result<Candidate, CandidateError> {
+    // A candidate that has gained nothing after a few steps will not be named; its fit need not be finished.
+    let give_up_above = base.loss() - settings.least_gain / 4.0;
+    let patience = FitSettings { give_up_above, ..settings.fit };
+    let fit = fit_addition(&base.model, physics, site, identification, &patience)?;
+    let validation = evaluate(&fit.model, validation, &settings.fit)?;
+    let evidence = compare_losses(base_validation, &validation);
+    let identification_gain = compare_losses(base, &fit).gain;
+    let accepted = evidence.gain >= settings.least_gain
+        && evidence.significance >= settings.least_significance
+        && identification_gain >= settings.least_gain / 2.0;
+    Ok(Candidate {
+        physics,
+        site,
+        place,
+        fit,
+        validation,
+        evidence,
+        identification_gain,
+        accepted,
+        tied_with_first: false,
+    })
 }
 
 fn mark_ties(candidates: &mut [Candidate], settings: &DiagnosisSettings) {

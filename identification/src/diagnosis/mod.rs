@@ -6,8 +6,8 @@ mod evidence;
 mod residual_map;
 mod settings;
 
-pub use candidate::{Candidate, CandidateError, additions};
 pub(crate) use candidate::fit_addition;
+pub use candidate::{Candidate, CandidateError, additions};
 pub(crate) use diagnose::fit_nominal;
 pub use diagnose::{Diagnosis, DiagnosisError, Verdict, diagnose, normalised_error};
 pub use evidence::{Evidence, compare_losses};

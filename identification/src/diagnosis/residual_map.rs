@@ -161,7 +161,8 @@ pub fn unexplained(model: &Model, recordings: &[&Recording]) -> Result<Option<Un
     let Some(worst) = kinds.into_iter().max_by(|a, b| mean_square(*a).total_cmp(&mean_square(*b))) else {
         return Ok(None);
     };
-    let variables: [(&'static str, fn(&Point) -> f64); 7] = [
+    type Variable = fn(&Point) -> f64;
+    let variables: [(&'static str, Variable); 7] = [
         ("command", |p| p.opening),
         ("speed", |p| p.velocity),
         ("position", |p| p.displacement),

@@ -92,9 +92,7 @@ impl Instrument {
         let pressure = |index: Option<usize>| index.map_or(f64::NAN, |index| state[index]);
         match self.quantity {
             Quantity::Displacement(c) => machine.cylinders[c].linkage.displacement(state[layout.joint(c)]),
-            Quantity::Velocity(c) => {
-                machine.cylinders[c].linkage.lever(state[layout.joint(c)]) * state[layout.rate(c)]
-            }
+            Quantity::Velocity(c) => machine.cylinders[c].linkage.lever(state[layout.joint(c)]) * state[layout.rate(c)],
             Quantity::JointAngle(c) => state[layout.joint(c)],
             Quantity::CapPressure(c) => pressure(layout.cap_pressure(c)),
             Quantity::RodPressure(c) => pressure(layout.rod_pressure(c)),

@@ -198,11 +198,7 @@ fn run(
         let improvement = (current.loss - loss) / current.loss.max(f64::MIN_POSITIVE);
         segmented = trial_segments;
         let new_weights = error_sizes(&sums, &noise);
-        let reweighting = new_weights
-            .iter()
-            .zip(&weights)
-            .map(|(new, old)| (new / old).ln().abs())
-            .fold(0.0, f64::max);
+        let reweighting = new_weights.iter().zip(&weights).map(|(new, old)| (new / old).ln().abs()).fold(0.0, f64::max);
         // Sums are quadratic in 1/weight per instrument only in the loss; the matrices mix instruments, so they are
         // recomputed when the weights have moved enough to steer differently.
         if reweighting > 0.05 {
@@ -227,7 +223,8 @@ fn run(
 
 /// Loss of a model whose instruments have these errors; see [`Fit::loss`].
 fn loss_per_reading(errors: &[f64], noise: &[f64]) -> f64 {
-    errors.iter().zip(noise).map(|(error, noise)| 2.0 * (error / noise).max(1e-3).ln()).sum::<f64>() / noise.len() as f64
+    errors.iter().zip(noise).map(|(error, noise)| 2.0 * (error / noise).max(1e-3).ln()).sum::<f64>()
+        / noise.len() as f64
 }
 
 /// Root mean square error of each instrument over all segments, not below its noise.

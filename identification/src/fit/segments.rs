@@ -39,12 +39,7 @@ impl SegmentedRecording {
     ///
     /// # Errors
     /// [`SignalError`] when inputs or initial states are missing.
-    pub fn new(
-        model: &Model,
-        recording: &Recording,
-        duration: f64,
-        sample_rate: f64,
-    ) -> Result<Self, SignalError> {
+    pub fn new(model: &Model, recording: &Recording, duration: f64, sample_rate: f64) -> Result<Self, SignalError> {
         let stride = (1.0 / (recording.sample_interval() * sample_rate)).round().max(1.0);
         let stride = if stride.is_finite() { stride as usize } else { 1 };
         // Inputs are freed of noise at the full rate, then thinned.
@@ -56,8 +51,8 @@ impl SegmentedRecording {
         let mut stretches = Vec::new();
         let mut first = 0;
         for index in 1..=recording.len() {
-            let ends = index == recording.len()
-                || recording.time[index] - recording.time[index - 1] > LARGEST_GAP * interval;
+            let ends =
+                index == recording.len() || recording.time[index] - recording.time[index - 1] > LARGEST_GAP * interval;
             if ends {
                 stretches.push((first, index - 1));
                 first = index;

@@ -19,7 +19,9 @@ const HIGHEST_PRESSURE: f64 = 1e8;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GateError {
     /// Too short.
-    #[error("{source_name} is too short: {duration:.2} s with {samples} samples; at least {SHORTEST} s and {FEWEST_SAMPLES} samples are needed")]
+    #[error(
+        "{source_name} is too short: {duration:.2} s with {samples} samples; at least {SHORTEST} s and {FEWEST_SAMPLES} samples are needed"
+    )]
     TooShort {
         /// The recording.
         source_name: String,
@@ -41,7 +43,9 @@ pub enum GateError {
         machine: String,
     },
     /// The arm does not move.
-    #[error("{source_name} has no motion: {signal} stays within {range:.2e} {unit}, {times:.0} times its noise of {noise:.1e} {unit}; record while the arm moves")]
+    #[error(
+        "{source_name} has no motion: {signal} stays within {range:.2e} {unit}, {times:.0} times its noise of {noise:.1e} {unit}; record while the arm moves"
+    )]
     NoMotion {
         /// The recording.
         source_name: String,
@@ -57,7 +61,9 @@ pub enum GateError {
         noise: f64,
     },
     /// A value that cannot be in SI units.
-    #[error("{source_name}: {signal} reaches {value:.3e} {unit}, but {machine} allows at most {limit:.3e} {unit}; is it in {unit}?")]
+    #[error(
+        "{source_name}: {signal} reaches {value:.3e} {unit}, but {machine} allows at most {limit:.3e} {unit}; is it in {unit}?"
+    )]
     ImpossibleValue {
         /// The recording.
         source_name: String,
@@ -73,7 +79,9 @@ pub enum GateError {
         machine: String,
     },
     /// A signal far too small to be in SI units.
-    #[error("{source_name}: {signal} never exceeds {value:.3e} {unit}, far below anything hydraulic; is it in {unit}, not in bar or MPa?")]
+    #[error(
+        "{source_name}: {signal} never exceeds {value:.3e} {unit}, far below anything hydraulic; is it in {unit}, not in bar or MPa?"
+    )]
     TooSmall {
         /// The recording.
         source_name: String,
@@ -118,7 +126,7 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
         let (low, high) = range(position);
         let noise = noise_level(position);
         let unit = if is_measured(&signals.displacement) { "m" } else { "rad" };
-        if !(high - low > LEAST_MOTION * noise) || high - low < 1e-6 {
+        if high - low <= LEAST_MOTION * noise || high - low < 1e-6 {
             return Err(GateError::NoMotion {
                 source_name: recording.source.clone(),
                 signal: name(if unit == "m" { "displacement" } else { "joint_angle" }),

@@ -5,7 +5,9 @@ use excavator_model::recording::Recording;
 use excavator_model::simulation::RunError;
 use excavator_model::{HistoryEntry, Model, ModelError, site_name};
 
-use crate::diagnosis::{CandidateError, Diagnosis, DiagnosisError, DiagnosisSettings, Verdict, diagnose, fit_addition, fit_nominal};
+use crate::diagnosis::{
+    CandidateError, Diagnosis, DiagnosisError, DiagnosisSettings, Verdict, diagnose, fit_addition, fit_nominal,
+};
 use crate::fit::{Fit, FitError};
 use crate::validation::{Comparison, compare};
 
@@ -105,12 +107,13 @@ pub fn refine(
     additions: &Additions,
     settings: &DiagnosisSettings,
     when: &str,
-    progress: &dyn Fn(&str, f64),
+    progress: &(dyn Fn(&str, f64) + Sync),
 ) -> Result<Refinement, RefineError> {
     if validation.is_empty() {
         return Err(DiagnosisError::NoValidation.into());
     }
-    let given = validation.iter().map(|recording| compare(model, recording)).collect::<Result<_, _>>().unwrap_or_default();
+    let given =
+        validation.iter().map(|recording| compare(model, recording)).collect::<Result<_, _>>().unwrap_or_default();
     let mut fits: Vec<(Option<String>, Fit)> = Vec::new();
     let diagnosis = match additions {
         Additions::Auto => {
@@ -128,7 +131,8 @@ pub fn refine(
             for (number, &(physics, site)) in named.iter().enumerate() {
                 let name = format!("{}@{}", physics.card().name, site_name(&model.machine, site));
                 progress(&name, (number + 1) as f64 / (named.len() + 1) as f64);
-                current = fit_addition(&current.model, physics, site, identification, &settings.fit).map_err(RefineError::from)?;
+                current = fit_addition(&current.model, physics, site, identification, &settings.fit)
+                    .map_err(RefineError::from)?;
                 fits.push((Some(name), current.clone()));
             }
             None
@@ -147,7 +151,10 @@ pub fn refine(
         let before = number.checked_sub(1).map(|previous| steps[previous].mean_error());
         final_model.history.push(HistoryEntry {
             when: when.to_string(),
-            what: step.added.as_ref().map_or_else(|| "parameters identified".to_string(), |name| format!("added {name}")),
+            what: step
+                .added
+                .as_ref()
+                .map_or_else(|| "parameters identified".to_string(), |name| format!("added {name}")),
             recordings: recordings.clone(),
             validation_error_before: before,
             validation_error_after: Some(step.mean_error()),

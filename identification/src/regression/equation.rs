@@ -255,7 +255,8 @@ pub fn equations(
             (EquationKind::CapContinuity(index), constants.cap_area),
             (EquationKind::RodContinuity(index), -constants.rod_area),
         ];
-        for (side, ((kind, area), (flow, compliance))) in sides.into_iter().zip(flows.into_iter().zip(compliances)).enumerate()
+        for (side, ((kind, area), (flow, compliance))) in
+            sides.into_iter().zip(flows.into_iter().zip(compliances)).enumerate()
         {
             let compliance = parameters_only(compliance);
             let (flow, rest_by_sensor) = split(flow);

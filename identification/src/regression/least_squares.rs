@@ -1,4 +1,4 @@
-//! The paper's own recipe ([A] Section 3): differences, moving averages, ordinary least squares on every sample.
+//! The paper's own recipe (\[A\] Section 3): differences, moving averages, ordinary least squares on every sample.
 
 use excavator_model::Model;
 use excavator_model::effects::Kind;
@@ -11,7 +11,7 @@ use super::solution::{ConditionNumber, condition_numbers};
 use super::weak_form::sources;
 use super::{EquationGauge, Regression, RegressionError, observe};
 
-/// Length of the moving average, samples ([A] Section 3.1: "43-order").
+/// Length of the moving average, samples (\[A\] Section 3.1: "43-order").
 const MOVING_AVERAGE: usize = 43;
 
 /// Identifies the linear coefficients of `model` by ordinary least squares on first differences smoothed by a moving
@@ -30,25 +30,27 @@ pub fn least_squares(model: &Model, recordings: &[&Recording]) -> Result<Regress
         Kind::Linear | Kind::Shape => 1.0,
     };
     let system = System::new(model);
-    let mut groups: [(&'static str, Vec<(DVector<f64>, f64)>); 2] = [("mechanical", vec![]), ("hydraulic", vec![])];
-    let mut kinds: Vec<(EquationKind, f64, f64, usize)> = Vec::new();
+    // Regressors and right-hand side of each sample.
+    type Samples = Vec<(DVector<f64>, f64)>;
+    let mut groups: [(&'static str, Samples); 2] = [("mechanical", vec![]), ("hydraulic", vec![])];
     for recording in recordings {
         let observation = averaged(observe(model, recording)?);
         let effect_states = vec![Vec::new(); recording.len()];
         for equation in equations(&system, &observation, &effect_states, &fitted) {
             let group = usize::from(!matches!(equation.kind, EquationKind::Motion(_)));
             for (regressors, residual) in samples(&equation, &observation.time, fitted.len()) {
-                let regressors =
-                    DVector::from_fn(fitted.len(), |c, _| regressors[c] * coefficient_slope(fitted[c], values[fitted[c]]));
+                let regressors = DVector::from_fn(fitted.len(), |c, _| {
+                    regressors[c] * coefficient_slope(fitted[c], values[fitted[c]])
+                });
                 let known = fitted.iter().enumerate().map(|(c, &index)| {
-                    let coefficient = if cards[index].kind == Kind::Reciprocal { 1.0 / values[index] } else { values[index] };
+                    let coefficient =
+                        if cards[index].kind == Kind::Reciprocal { 1.0 / values[index] } else { values[index] };
                     regressors[c] * coefficient
                 });
                 // Rows are linear in the coefficients, so the residual at zero coefficients is the right-hand side.
                 let right = -(residual - known.sum::<f64>());
                 groups[group].1.push((regressors, right));
             }
-            kinds.push((equation.kind, 0.0, 0.0, 0));
         }
     }
     let mut covariance = DMatrix::zeros(fitted.len(), fitted.len());

@@ -17,5 +17,5 @@ pub use equation::{Equation, EquationKind, Sensor, Term, equations};
 pub use error::RegressionError;
 pub use least_squares::least_squares;
 pub use observation::{Observation, observe};
-pub use solution::{EquationGauge, Regression};
+pub use solution::{ConditionNumber, EquationGauge, Regression};
 pub use weak_form::{WeakFormSettings, WeakResidual, weak_form, weak_residuals};

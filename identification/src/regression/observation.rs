@@ -86,6 +86,7 @@ fn parabolas(time: &[f64], signal: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let mut values = Vec::with_capacity(signal.len());
     let mut slopes = Vec::with_capacity(signal.len());
     let (mut first, mut last) = (0, 0);
+    let (start, end) = (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(0.0));
     for &centre in time {
         while time[first] < centre - SLOPE_HALF_WIDTH {
             first += 1;
@@ -95,7 +96,9 @@ fn parabolas(time: &[f64], signal: &[f64]) -> (Vec<f64>, Vec<f64>) {
         }
         let (value, slope) = parabola(&time[first..last], &signal[first..last], centre).unwrap_or((f64::NAN, f64::NAN));
         values.push(value);
-        slopes.push(slope);
+        // One-sided slopes at the ends are several times noisier; what needs them is left out there.
+        let whole = centre - SLOPE_HALF_WIDTH >= start && centre + SLOPE_HALF_WIDTH <= end;
+        slopes.push(if whole { slope } else { f64::NAN });
     }
     (values, slopes)
 }

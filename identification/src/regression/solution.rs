@@ -12,7 +12,7 @@ pub struct Regression {
     pub fitted: Vec<usize>,
     /// Their covariance, in their units.
     pub covariance: DMatrix<f64>,
-    /// Condition number of each group of equations, unscaled as in [A] and with columns scaled to length one.
+    /// Condition number of each group of equations, unscaled as in \[A\] and with columns scaled to length one.
     pub condition_numbers: Vec<ConditionNumber>,
     /// Rows of the regression.
     pub rows: usize,

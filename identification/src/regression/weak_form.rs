@@ -104,8 +104,7 @@ pub(super) fn sources(recordings: &[&Recording]) -> String {
 /// The recording as the model would have produced it, simulated piece by piece, and the states of effects along it.
 fn simulated(model: &Model, recording: &Recording) -> Result<(Recording, Vec<Vec<f64>>), RegressionError> {
     let system = System::new(model);
-    let segmented =
-        SegmentedRecording::new(model, recording, FitSettings::default().segment_duration, f64::INFINITY)?;
+    let segmented = SegmentedRecording::new(model, recording, FitSettings::default().segment_duration, f64::INFINITY)?;
     let mut copy = recording.clone();
     let own_states: usize = model.effects.iter().map(|effect| effect.physics.states()).sum();
     let mut effect_states = vec![vec![f64::NAN; own_states]; recording.len()];
@@ -114,7 +113,9 @@ fn simulated(model: &Model, recording: &Recording) -> Result<(Recording, Vec<Vec
         let mut state = segment.state.clone();
         for index in segment.first..=segment.last {
             observed(&system, &state, index, &mut copy);
-            effect_states[index].copy_from_slice(&state[state.len() - own_states..]);
+            if let Some(slot) = effect_states.get_mut(index) {
+                slot.copy_from_slice(&state[state.len() - own_states..]);
+            }
             if index < segment.last && integrator.advance(&segmented.inputs, index, &mut state, None).is_err() {
                 // The rest of the segment stays as measured: worse instruments, but still valid rows.
                 break;
@@ -127,8 +128,12 @@ fn simulated(model: &Model, recording: &Recording) -> Result<(Recording, Vec<Vec
 fn sensor_noise(recording: &Recording, model: &Model) -> Result<SensorNoise, RegressionError> {
     // A noiseless (simulated) signal would weigh its rows infinitely; rounding alone is of this size.
     let level = |signal: &[f64]| noise_level(signal).max(1e-6 * standard_deviation(signal)).max(1e-15);
-    let mut noise =
-        SensorNoise { displacement: vec![], pressures: vec![], spool: vec![], pump_pressure: level(&recording.pump_pressure) };
+    let mut noise = SensorNoise {
+        displacement: vec![],
+        pressures: vec![],
+        spool: vec![],
+        pump_pressure: level(&recording.pump_pressure),
+    };
     for cylinder in &model.machine.cylinders {
         let signals = recording.cylinder(&cylinder.name).map_err(excavator_model::SignalError::from)?;
         let lever = cylinder.linkage.lever(cylinder.linkage.joint(0.0)).abs();
@@ -169,13 +174,12 @@ pub(super) fn rows(
                 if let EquationKind::Motion(cylinder) = equation.kind {
                     let inside = window.first..window.first + window.weights.len();
                     let speeds = &observation.cylinders[cylinder].velocity[inside];
-                    if speeds.iter().any(|speed| !(speed.abs() > settings.velocity_guard)) {
+                    if speeds.iter().any(|speed| speed.is_nan() || speed.abs() <= settings.velocity_guard) {
                         continue;
                     }
                 }
-                let row = |equation, observation| {
-                    weak_row(equation, &window, observation, &noise, &linkages, unknown.len())
-                };
+                let row =
+                    |equation, observation| weak_row(equation, &window, observation, &noise, &linkages, unknown.len());
                 let Some(row_measured) = row(equation, &observation) else { continue };
                 let instruments = match &instruments {
                     None => row_measured.regressors.clone(),
@@ -222,7 +226,8 @@ fn solve(
         return Err(RegressionError::NoEquation {
             source_name: sources(recordings),
             machine: model.machine.name.clone(),
-            missing: "check which of displacement, pressures, opening and force are measured, and that the arm moves".into(),
+            missing: "check which of displacement, pressures, opening and force are measured, and that the arm moves"
+                .into(),
         });
     }
     let (half_width, step_width) = settings.widths(recordings);
@@ -314,7 +319,8 @@ fn solve(
     };
     for row in 0..seen.len() {
         for column in 0..seen.len() {
-            covariance[(row, column)] = coefficient_covariance[(row, column)] * to_parameter(row) * to_parameter(column);
+            covariance[(row, column)] =
+                coefficient_covariance[(row, column)] * to_parameter(row) * to_parameter(column);
         }
     }
     for (index, parameter) in improved.parameters_mut().enumerate() {
@@ -325,7 +331,9 @@ fn solve(
     }
     let not_identified = (0..unknown.len())
         .filter(|index| !seen.contains(index))
-        .map(|index| (unknown[index], "no equation that contains it has all its signals measured, with motion".to_string()))
+        .map(|index| {
+            (unknown[index], "no equation that contains it has all its signals measured, with motion".to_string())
+        })
         .collect();
     Ok(Regression {
         model: improved,
@@ -354,9 +362,10 @@ fn gauges(model: &Model, kinds: &[EquationKind], rows: &[Row]) -> Vec<EquationGa
         .collect()
 }
 
-/// Condition numbers of the mechanical and the hydraulic regressors, as [A] Section 3.2 reports them.
+/// Condition numbers of the mechanical and the hydraulic regressors, as \[A\] Section 3.2 reports them.
 fn group_conditions(rows: &[Row], seen: &[usize], factor: impl Fn(usize) -> f64) -> Vec<ConditionNumber> {
-    let groups: [(&'static str, fn(&EquationKind) -> bool); 2] = [
+    type Belongs = fn(&EquationKind) -> bool;
+    let groups: [(&'static str, Belongs); 2] = [
         ("mechanical", |kind| matches!(kind, EquationKind::Motion(_))),
         ("hydraulic", |kind| !matches!(kind, EquationKind::Motion(_))),
     ];

@@ -3,9 +3,9 @@
 use excavator_model::machine::Linkage;
 use nalgebra::DVector;
 
+use super::Observation;
 use super::equation::{Equation, EquationKind, Sensor, Term};
 use super::window::Window;
-use super::Observation;
 
 /// Standard deviation of each sensor's noise in one recording.
 #[derive(Debug, Clone)]

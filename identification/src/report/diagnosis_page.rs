@@ -8,10 +8,10 @@ use super::effect_cards::effect_card;
 use super::error_plots::{Errors, error_plots};
 use super::evidence_tables::{evidence, regimes};
 use super::page::{Section, page};
+use super::parameter_table;
 use super::time_plots::MODEL;
 use super::unexplained_plot::unexplained_plot;
 use super::verdict_text::{tied, verdict_sentence};
-use super::parameter_table;
 use crate::diagnosis::{Candidate, Diagnosis, Verdict};
 use crate::validation::Comparison;
 
@@ -23,7 +23,11 @@ pub fn diagnosis_page(model: &Model, diagnosis: &Diagnosis, comparisons_before: 
         (verdict(model, diagnosis))
     };
     let mut sections = diagnosis_sections(diagnosis, comparisons_before);
-    sections.push(Section { anchor: "measures", title: "Errors of the model".into(), body: measures(comparisons_before) });
+    sections.push(Section {
+        anchor: "measures",
+        title: "Errors of the model".into(),
+        body: measures(comparisons_before),
+    });
     sections.push(Section { anchor: "time", title: "Over time".into(), body: over_time(comparisons_before) });
     sections.push(Section {
         anchor: "errors",

@@ -127,7 +127,8 @@ fn panel(label: &str, clouds: &[Cloud], y: (f64, f64), y_label: &str) -> Markup 
 fn cloud(model: &Model, name: &str, index: usize, errors: &Errors<'_>, unit: Unit) -> Option<Cloud> {
     let mut points = Vec::new();
     for comparison in errors.comparisons {
-        let (Some(measured), Some(simulated)) = (comparison.measured.signal(name), comparison.simulated.signal(name)) else {
+        let (Some(measured), Some(simulated)) = (comparison.measured.signal(name), comparison.simulated.signal(name))
+        else {
             continue;
         };
         let variables = variables(model, name, &comparison.measured);
@@ -178,7 +179,9 @@ fn variables<'a>(model: &Model, name: &str, recording: &'a Recording) -> Vec<Var
     let mut found = Vec::new();
     for cylinder in model.machine.cylinders.iter().filter(|c| own.is_none_or(|own| own == c.name)) {
         let Ok(signals) = recording.cylinder(&cylinder.name) else { continue };
-        let labelled = |label: &str| if own.is_none() && several { format!("{} {label}", cylinder.name) } else { label.to_string() };
+        let labelled = |label: &str| {
+            if own.is_none() && several { format!("{} {label}", cylinder.name) } else { label.to_string() }
+        };
         let mut push = |label: &str, unit: Unit, values: &'a [f64]| {
             found.push(Variable { label: labelled(label), unit, values: Cow::Borrowed(values) });
         };

@@ -24,7 +24,7 @@ pub(super) fn significant(value: f64, digits: usize) -> String {
 /// A value with its standard error to two digits, rounded alike: `4.21 ± 0.13`; both with one power of ten.
 pub(super) fn with_error(value: f64, error: f64) -> String {
     if !(error.is_finite() && error > 0.0) {
-        return significant(value, 4);
+        return plain(value);
     }
     let larger = value.abs().max(error);
     let exponent = larger.log10().floor() as i32;
@@ -36,13 +36,28 @@ pub(super) fn with_error(value: f64, error: f64) -> String {
     if shift == 0 { pair } else { format!("({pair}) × 10{}", superscript(shift)) }
 }
 
+/// A known value, with no more digits than it has, four at most.
+fn plain(value: f64) -> String {
+    let text = significant(value, 4);
+    let (mantissa, power) = text.split_once(" × ").map_or((text.as_str(), None), |(m, p)| (m, Some(p)));
+    let mantissa = if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
+    power.map_or(mantissa.to_string(), |power| format!("{mantissa} × {power}"))
+}
+
 /// A fraction in percent.
 pub(super) fn percent(fraction: f64) -> String {
     match 100.0 * fraction {
         value if !value.is_finite() => NOTHING.to_string(),
+        value if value > 0.0 && value < 0.05 => "< 0.1 %".to_string(),
         value if value.abs() < 10.0 && value != 0.0 => format!("{} %", with_minus(&format!("{value:.1}"))),
         value => format!("{} %", with_minus(&format!("{value:.0}"))),
     }
+}
+
+/// One decimal, and no minus before zero.
+pub(super) fn decimal(value: f64) -> String {
+    let rounded = (value * 10.0).round() / 10.0;
+    with_minus(&format!("{:.1}", if rounded == 0.0 { 0.0 } else { rounded }))
 }
 
 /// By how much a squared error falls: "12 times less".
@@ -57,6 +72,11 @@ pub(super) fn ratio(times: f64) -> String {
 
 fn with_minus(text: &str) -> String {
     text.replace('-', "−")
+}
+
+/// 10 to the power of `exponent`.
+pub(super) fn power_of_ten(exponent: i32) -> String {
+    format!("10{}", superscript(exponent))
 }
 
 fn superscript(exponent: i32) -> String {
@@ -89,8 +109,11 @@ mod tests {
         assert_eq!(significant(-1.2345e-12, 3), "−1.23 × 10⁻¹²");
         assert_eq!(significant(f64::NAN, 3), NOTHING);
         assert_eq!(with_error(4.2134, 0.134), "4.21 ± 0.13");
-        assert_eq!(with_error(1.2345e-12, 3.4e-14), "(1.234 ± 0.034) × 10⁻¹²");
-        assert_eq!(with_error(2.0, f64::INFINITY), "2.000");
+        assert_eq!(with_error(1.2341e-12, 3.4e-14), "(1.234 ± 0.034) × 10⁻¹²");
+        assert_eq!(with_error(2.0, f64::INFINITY), "2");
+        assert_eq!(with_error(5e7, f64::NAN), "5 × 10⁷");
         assert_eq!(percent(0.0123), "1.2 %");
+        assert_eq!(decimal(-0.01), "0.0");
+        assert_eq!(percent(0.0001), "< 0.1 %");
     }
 }

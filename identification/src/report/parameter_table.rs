@@ -13,31 +13,45 @@ const POORLY_KNOWN: f64 = 0.5;
 /// All parameters of a model, effect by effect; effects in `added` (`effect@place`) are marked.
 pub(super) fn of_model(model: &Model, added: &[String]) -> Markup {
     let effects: Vec<&ModelEffect> = model.effects.iter().filter(|effect| !effect.parameters.is_empty()).collect();
-    table(model, &effects, added)
+    table(model, &effects, Some(added))
 }
 
 /// Parameters of one effect of a model.
 pub(super) fn of_effect(model: &Model, name: &str, site: Site) -> Markup {
     let effects: Vec<&ModelEffect> =
         model.effects.iter().filter(|effect| effect.name() == name && effect.site == site).collect();
-    table(model, &effects, &[])
+    table(model, &effects, None)
 }
 
-fn table(model: &Model, effects: &[&ModelEffect], added: &[String]) -> Markup {
-    let poor = effects.iter().flat_map(|effect| &effect.parameters).any(|p| relative_error(p).is_some_and(|r| r > POORLY_KNOWN));
+/// With a column of effects where `added` is given.
+fn table(model: &Model, effects: &[&ModelEffect], added: Option<&[String]>) -> Markup {
+    let (in_model, added) = (added.is_some(), added.unwrap_or_default());
+    let poor = effects
+        .iter()
+        .flat_map(|effect| &effect.parameters)
+        .any(|p| relative_error(p).is_some_and(|r| r > POORLY_KNOWN));
     html! {
         @if effects.is_empty() { p.empty { "No parameters." } } @else {
             div.wide { table.data {
                 thead { tr {
-                    th { "Parameter" } th { "Symbol" } th.n { "Value ± standard error" } th { "Unit" } th.n { "Relative" } th { "Meaning" } th { "From" }
+                    @if in_model { th { "Effect" } }
+                    th { "Parameter" } th { "Symbol" } th.n { "Value ± standard error" } th { "Unit" } th.n { "Relative" }
+                    th { "Meaning" } th { "From" }
                 } }
                 tbody { @for effect in effects {
                     @let place = site_name(&model.machine, effect.site);
-                    tr.group { td colspan="7" {
-                        (words::spoken(effect.name())) ", " (place)
-                        @if added.contains(&format!("{}@{place}", effect.name())) { " " span.chip.also { "added" } }
-                    } }
-                    @for parameter in &effect.parameters { (row(place, parameter)) }
+                    @for (number, parameter) in effect.parameters.iter().enumerate() {
+                        @let relative = relative_error(parameter);
+                        tr.weak[relative.is_some_and(|relative| relative > POORLY_KNOWN)].first[in_model && number == 0] {
+                            @if in_model {
+                                td { @if number == 0 {
+                                    (words::spoken(effect.name()))
+                                    @if added.contains(&format!("{}@{place}", effect.name())) { " " span.chip.also { "added" } }
+                                } }
+                            }
+                            (cells(place, parameter, relative))
+                        }
+                    }
                 } }
             } }
             @if poor {
@@ -47,20 +61,31 @@ fn table(model: &Model, effects: &[&ModelEffect], added: &[String]) -> Markup {
     }
 }
 
-fn row(place: &str, parameter: &Parameter) -> Markup {
+fn cells(place: &str, parameter: &Parameter, relative: Option<f64>) -> Markup {
     let unit = units::of_parameter(parameter.card.unit);
-    let relative = relative_error(parameter);
     let error = parameter.standard_error.filter(|_| !parameter.known).unwrap_or(f64::NAN);
+    let relative = match relative {
+        Some(relative) if relative < 10.0 => percent(relative),
+        Some(_) => "> 1000 %".to_string(),
+        None => NOTHING.to_string(),
+    };
     html! {
-        tr.weak[relative.is_some_and(|relative| relative > POORLY_KNOWN)] {
-            td { code { (place) "." (parameter.card.name) } }
-            td { (parameter.card.symbol) }
-            td.n { (with_error(parameter.value * unit.factor, error * unit.factor)) }
-            td { (unit.symbol) }
-            td.n { @match relative { Some(relative) if relative < 10.0 => (percent(relative)), Some(_) => "> 1000 %", None => (NOTHING) } }
-            td { (parameter.card.meaning) }
-            td { @if parameter.known { "known" @if !parameter.source.is_empty() { ": " (parameter.source) } } @else if parameter.standard_error.is_some() { "identified" } @else { (parameter.source) } }
-        }
+        td { code { (place) "." (parameter.card.name) } }
+        td { (parameter.card.symbol) }
+        td.n { (with_error(parameter.value * unit.factor, error * unit.factor)) }
+        td.unit { (unit.symbol) }
+        td.n { (relative) }
+        td.meaning { (parameter.card.meaning) }
+        td { (origin(parameter)) }
+    }
+}
+
+fn origin(parameter: &Parameter) -> String {
+    match (parameter.known, parameter.source.as_str()) {
+        (true, "") => "known".to_string(),
+        (true, source) => format!("known; {source}"),
+        (false, _) if parameter.standard_error.is_some() => "identified".to_string(),
+        (false, source) => source.to_string(),
     }
 }
 

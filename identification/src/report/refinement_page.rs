@@ -135,7 +135,7 @@ fn history(entries: &[HistoryEntry]) -> Markup {
                     tr {
                         td { (entry.when) } td { (entry.what) }
                         td.n { (error(entry.validation_error_before)) } td.n { (error(entry.validation_error_after)) }
-                        td { @for recording in &entry.recordings { div { code { (recording) } } } }
+                        td.source { @for recording in &entry.recordings { div { code { (recording) } } } }
                     }
                 } }
             } }

@@ -2,14 +2,21 @@
 
 use maud::{Markup, html};
 
-use super::numbers::{NOTHING, significant};
+use super::numbers::{NOTHING, decimal, significant};
 use super::{units, words};
 use crate::refinement::Refinement;
 use crate::validation::Comparison;
 
 /// Mean, largest size of the error (measured - model) of a signal, SI.
 fn error_sizes(comparison: &Comparison, name: &str) -> Option<(f64, f64)> {
-    let pairs = || comparison.measured.signal(name).into_iter().flatten().zip(comparison.simulated.signal(name).into_iter().flatten());
+    let pairs = || {
+        comparison
+            .measured
+            .signal(name)
+            .into_iter()
+            .flatten()
+            .zip(comparison.simulated.signal(name).into_iter().flatten())
+    };
     let errors = || pairs().map(|(m, s)| (m - s).abs()).filter(|error| error.is_finite());
     let count = errors().count();
     (count > 0).then(|| ((errors().map(|e| e * e).sum::<f64>() / count as f64).sqrt(), errors().fold(0.0, f64::max)))
@@ -31,8 +38,8 @@ pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
                         tr {
                             td { (words::signal(&signal.name)) " " code.code-name { (signal.name) } }
                             td.n { (significant(signal.normalised_error, 3)) }
-                            td.n { @if signal.fit.is_finite() { (format!("{:.1} %", signal.fit).replace('-', "−")) } @else { (NOTHING) } }
-                            td.n { (signal.phase_delay_degrees.map_or(NOTHING.to_string(), |d| format!("{d:.1}°").replace('-', "−"))) }
+                            td.n { @if signal.fit.is_finite() { (decimal(signal.fit)) " %" } @else { (NOTHING) } }
+                            td.n { (signal.phase_delay_degrees.map_or(NOTHING.to_string(), |d| format!("{}°", decimal(d)))) }
                             td.n { (sizes.map_or(NOTHING.to_string(), |s| format!("{} {}", significant(s.0 * unit.factor, 3), unit.symbol))) }
                             td.n { (sizes.map_or(NOTHING.to_string(), |s| format!("{} {}", significant(s.1 * unit.factor, 3), unit.symbol))) }
                         }
@@ -50,8 +57,11 @@ pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
 }
 
 fn frequencies(comparisons: &[Comparison]) -> String {
-    let found: Vec<String> =
-        comparisons.iter().filter_map(|c| c.excitation_frequency).map(|f| format!("{} Hz", significant(f, 3))).collect();
+    let found: Vec<String> = comparisons
+        .iter()
+        .filter_map(|c| c.excitation_frequency)
+        .map(|f| format!("{} Hz", significant(f, 3)))
+        .collect();
     if found.is_empty() { String::new() } else { format!(" ({})", found.join(", ")) }
 }
 
@@ -64,7 +74,7 @@ pub(super) fn recordings(comparisons: &[Comparison]) -> Markup {
                 tbody { @for comparison in comparisons {
                     @let recording = &comparison.measured;
                     tr {
-                        td { code { (recording.source) } }
+                        td.source { code { (recording.source) } }
                         td.n { (format!("{:.1} s", recording.duration())) }
                         td.n { (recording.len()) }
                         td.n { (significant(1.0 / recording.sample_interval(), 3)) " Hz" }
@@ -97,13 +107,15 @@ impl Stages {
             stages.push((name, &step.comparisons));
         }
         let mut names: Vec<&str> = Vec::new();
-        for signal in stages.iter().flat_map(|(_, comparisons)| *comparisons).flat_map(|comparison| &comparison.signals) {
+        for signal in stages.iter().flat_map(|(_, comparisons)| *comparisons).flat_map(|comparison| &comparison.signals)
+        {
             if !names.contains(&signal.name.as_str()) {
                 names.push(&signal.name);
             }
         }
         let error = |comparisons: &[Comparison], name: &str| {
-            let own = || comparisons.iter().flat_map(|c| &c.signals).filter(|s| s.name == name).map(|s| s.normalised_error);
+            let own =
+                || comparisons.iter().flat_map(|c| &c.signals).filter(|s| s.name == name).map(|s| s.normalised_error);
             own().sum::<f64>() / own().count() as f64
         };
         let mean = |comparisons: &[Comparison]| {
@@ -112,7 +124,9 @@ impl Stages {
         Stages {
             signals: names
                 .into_iter()
-                .map(|name| (name.to_string(), stages.iter().map(|(_, comparisons)| error(comparisons, name)).collect()))
+                .map(|name| {
+                    (name.to_string(), stages.iter().map(|(_, comparisons)| error(comparisons, name)).collect())
+                })
                 .collect(),
             mean: stages.iter().map(|(_, comparisons)| mean(comparisons)).collect(),
             names: stages.into_iter().map(|(name, _)| name).collect(),

@@ -14,7 +14,8 @@ const LABEL_HEIGHT: f64 = 15.0;
 
 /// One line per signal, the error on a logarithmic scale.
 pub(super) fn step_plot(stages: &Stages) -> Markup {
-    let positive = || stages.signals.iter().flat_map(|(_, errors)| errors).filter(|error| error.is_finite() && **error > 0.0);
+    let positive =
+        || stages.signals.iter().flat_map(|(_, errors)| errors).filter(|error| error.is_finite() && **error > 0.0);
     if stages.names.len() < 2 || positive().next().is_none() {
         return html! { p.empty { "Nothing was changed, so there are no steps to draw." } };
     }
@@ -97,6 +98,6 @@ fn marker(number: usize, x: f64, y: f64) -> Markup {
 fn decade_text(decade: i32) -> String {
     match decade {
         -4..=3 => format!("{}", 10_f64.powi(decade)),
-        _ => super::numbers::significant(10_f64.powi(decade), 1),
+        _ => super::numbers::power_of_ten(decade),
     }
 }

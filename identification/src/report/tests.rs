@@ -220,7 +220,7 @@ fn verdicts_name_effect_and_place_and_admit_ties() {
     assert_eq!(
         sentence(&named),
         "Missing in zx30u-arm: valve dead zone at the arm valve section. With it the squared error on recordings it was \
-         not fitted to falls 7.39 times."
+         not fitted to becomes 7.39 times smaller."
     );
     let tied = diagnosis(
         Verdict::MissingEffect,
@@ -242,7 +242,9 @@ fn diagnosis_shows_evidence_cards_and_what_is_left() {
         &[comparison(0.2)],
     );
     assert_sound(&page);
-    for text in ["valve_dead_zone", "valve_leakage", "hose_loss", "not told apart", "arm.cap_continuity", "valve closed"] {
+    for text in
+        ["valve_dead_zone", "valve_leakage", "hose_loss", "not told apart", "arm.cap_continuity", "valve closed"]
+    {
         assert!(page.contains(text), "{text}");
     }
     let experiment = effects::find("valve_dead_zone").unwrap().card().experiment;

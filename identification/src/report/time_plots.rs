@@ -35,7 +35,13 @@ pub(super) const BEFORE: Line = Line { label: "before", colour: "#d55e00", dashe
 /// The model with all effects.
 pub(super) const AFTER: Line = Line { label: "after", colour: "#0072b2", dashed: false };
 /// The measurement.
-const MEASURED: Line = Line { label: "measured", colour: "#2b2f33", dashed: false };
+const MEASURED: Line = Line { label: "measured", colour: "#9aa4ad", dashed: false };
+
+/// Width of the measured line, px: it lies under the models and must show on both sides of them.
+const MEASURED_WIDTH: f64 = 4.0;
+
+/// Width of all other lines, px.
+const MODEL_WIDTH: f64 = 1.4;
 
 /// How to use the plots.
 pub(super) fn hint() -> Markup {
@@ -117,9 +123,10 @@ impl Plot<'_> {
             .map(|(line, values)| {
                 let label = if self.error { format!("measured − {}", line.label) } else { line.label.to_string() };
                 format!(
-                    r#"{{"label":{},"colour":"{}","width":1.4{},"values":{}}}"#,
+                    r#"{{"label":{},"colour":"{}","width":{}{},"values":{}}}"#,
                     text(&label),
                     line.colour,
+                    if line.label == MEASURED.label { MEASURED_WIDTH } else { MODEL_WIDTH },
                     if line.dashed { r#","dash":[6,3]"# } else { "" },
                     array(values, self.unit.factor, kept)
                 )
@@ -170,7 +177,10 @@ mod tests {
 
     #[test]
     fn values_are_short_and_gaps_are_null() {
-        assert_eq!(array(&[1.234_567_8, f64::NAN, f64::INFINITY, -0.000_012_345_67], 1.0, &[0, 1, 2, 3]), "[1.2346,null,null,-0.000012346]");
+        assert_eq!(
+            array(&[1.234_567_8, f64::NAN, f64::INFINITY, -0.000_012_345_67], 1.0, &[0, 1, 2, 3]),
+            "[1.2346,null,null,-0.000012346]"
+        );
         assert_eq!(text("a</script>\""), r#""a\u003c/script>\"""#);
     }
 }

@@ -31,7 +31,7 @@ fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
         _ => ": these recordings cannot tell them apart. ",
     };
     let times = ratio(first.evidence.gain.exp());
-    let found = format!("the squared error on recordings it was not fitted to falls {times} times");
+    let found = format!("the squared error on recordings it was not fitted to becomes {times} times smaller");
     text += &match names.len() {
         1 => format!("With it {found}."),
         _ => format!("With the first of them {found}."),
@@ -57,7 +57,8 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
     let helpful: Vec<String> = diagnosis.chain.iter().map(place_of).collect();
     if !helpful.is_empty() {
         let verb = if helpful.len() == 1 { "lowers" } else { "lower" };
-        text += &format!(" Of the catalogue, {} {verb} the error but does not explain it.", words::list(&helpful, "and"));
+        text +=
+            &format!(" Of the catalogue, {} {verb} the error but does not explain it.", words::list(&helpful, "and"));
         if helpful.len() > 1 {
             text = text.replace(" but does not explain it.", " but do not explain it.");
         }

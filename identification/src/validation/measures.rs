@@ -1,4 +1,4 @@
-//! Measures of fit ([A] Section 4.2, [B] Table I).
+//! Measures of fit (\[A\] Section 4.2, \[B\] Table I).
 
 /// Normalised mean squared error `sum (y - yhat)² / sum (y - mean y)²` over samples where both are finite; `NaN` when
 /// nothing can be compared or the measurement never changes.

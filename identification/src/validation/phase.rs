@@ -3,7 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 /// Frequencies searched for the excitation, Hz: an arm is moved between once in ten seconds and ten times a second.
-const FREQUENCY_RANGE: (f64, f64) = (0.1, 10.0);
+/// Below that, what is strongest is drift.
+const FREQUENCY_RANGE: (f64, f64) = (0.2, 10.0);
 
 /// Complex amplitude (cosine, sine part) of a signal at `frequency` Hz under a Hann window, mean removed.
 fn amplitude(time: &[f64], signal: &[f64], frequency: f64) -> (f64, f64) {
@@ -25,7 +26,7 @@ fn amplitude(time: &[f64], signal: &[f64], frequency: f64) -> (f64, f64) {
     })
 }
 
-/// Frequency in Hz at which `signal` is strongest between 0.1 Hz and 10 Hz; `None` for less than two periods of the
+/// Frequency in Hz at which `signal` is strongest between 0.2 Hz and 10 Hz; `None` for less than a period of the
 /// slowest or a signal that does not change.
 pub fn dominant_frequency(time: &[f64], signal: &[f64]) -> Option<f64> {
     let duration = time.last()? - time.first()?;
@@ -38,14 +39,17 @@ pub fn dominant_frequency(time: &[f64], signal: &[f64]) -> Option<f64> {
     let (time, signal) = (thin(time), thin(signal));
     let step = 0.5 / duration;
     let count = ((FREQUENCY_RANGE.1 - FREQUENCY_RANGE.0) / step) as usize;
-    let strongest = (0..=count)
+    let powers: Vec<(f64, f64)> = (0..=count)
         .map(|index| FREQUENCY_RANGE.0 + index as f64 * step)
         .map(|frequency| {
             let (real, imaginary) = amplitude(&time, &signal, frequency);
             (real * real + imaginary * imaginary, frequency)
         })
-        .max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (strongest.0 > 0.0).then_some(strongest.1)
+        .collect();
+    // Only a peak counts: the strongest at the edge of the range is the foot of drift outside it.
+    let peaks = powers.windows(3).filter(|three| three[1].0 > three[0].0 && three[1].0 >= three[2].0);
+    let strongest = peaks.map(|three| three[1]).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(strongest.1)
 }
 
 /// By how many degrees the simulated signal lags behind the measured one at `frequency` Hz, between -180 and 180;

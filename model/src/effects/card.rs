@@ -22,10 +22,10 @@ pub enum Site {
     PumpLine,
 }
 
-/// Whether the nominal model of [A] has the effect.
+/// Whether the nominal model of \[A\] has the effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
-    /// Part of the nominal model of [A] or of the frame every simulation needs.
+    /// Part of the nominal model of \[A\] or of the frame every simulation needs.
     Base,
     /// A candidate for what a nominal model may be missing.
     Candidate,

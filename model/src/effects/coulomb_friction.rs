@@ -21,19 +21,17 @@ static CARD: Card = Card {
     energy: "Dissipates Fc |v|.",
 };
 
-static PARAMETERS: &[ParameterCard] = &[
-    ParameterCard {
-        name: "coulomb_friction",
-        symbol: "Fc",
-        unit: "N",
-        meaning: "friction force",
-        kind: Kind::Linear,
-        minimum: 0.0,
-        maximum: 1e6,
-        typical: 200.0,
-        start: Start::At(&[200.0]),
-    },
-];
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "coulomb_friction",
+    symbol: "Fc",
+    unit: "N",
+    meaning: "friction force",
+    kind: Kind::Linear,
+    minimum: 0.0,
+    maximum: 1e6,
+    typical: 200.0,
+    start: Start::At(&[200.0]),
+}];
 
 impl Physics for CoulombFriction {
     fn card(&self) -> &'static Card {

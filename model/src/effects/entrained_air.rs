@@ -20,19 +20,17 @@ static CARD: Card = Card {
     energy: "Stores the work of compressing the bubbles.",
 };
 
-static PARAMETERS: &[ParameterCard] = &[
-    ParameterCard {
-        name: "air_fraction",
-        symbol: "alpha",
-        unit: "-",
-        meaning: "volume of air per volume of oil at ambient pressure",
-        kind: Kind::Linear,
-        minimum: 0.0,
-        maximum: 0.5,
-        typical: 0.02,
-        start: Start::At(&[5e-3]),
-    },
-];
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "air_fraction",
+    symbol: "alpha",
+    unit: "-",
+    meaning: "volume of air per volume of oil at ambient pressure",
+    kind: Kind::Linear,
+    minimum: 0.0,
+    maximum: 0.5,
+    typical: 0.02,
+    start: Start::At(&[5e-3]),
+}];
 
 impl Physics for EntrainedAir {
     fn card(&self) -> &'static Card {

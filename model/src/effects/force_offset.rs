@@ -20,19 +20,17 @@ static CARD: Card = Card {
     energy: "Exchanges F0 v.",
 };
 
-static PARAMETERS: &[ParameterCard] = &[
-    ParameterCard {
-        name: "force_offset",
-        symbol: "F0",
-        unit: "N",
-        meaning: "constant resisting force",
-        kind: Kind::Linear,
-        minimum: -1e6,
-        maximum: 1e6,
-        typical: 10.0,
-        start: Start::At(&[0.0]),
-    },
-];
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "force_offset",
+    symbol: "F0",
+    unit: "N",
+    meaning: "constant resisting force",
+    kind: Kind::Linear,
+    minimum: -1e6,
+    maximum: 1e6,
+    typical: 10.0,
+    start: Start::At(&[0.0]),
+}];
 
 impl Physics for ForceOffset {
     fn card(&self) -> &'static Card {

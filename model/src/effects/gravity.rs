@@ -2,8 +2,8 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::machine::Mechanism;
 use crate::machine::Machine;
+use crate::machine::Mechanism;
 
 /// Weight of the links.
 pub struct Gravity;
@@ -21,33 +21,29 @@ static CARD: Card = Card {
     energy: "Stores potential energy -W g cos(q).",
 };
 
-static LINK: &[ParameterCard] = &[
-    ParameterCard {
-        name: "gravity_moment",
-        symbol: "W",
-        unit: "kg m",
-        meaning: "mass times distance of the centre of gravity",
-        kind: Kind::Linear,
-        minimum: -1e6,
-        maximum: 1e6,
-        typical: 200.0,
-        start: Start::At(&[200.0]),
-    },
-];
+static LINK: &[ParameterCard] = &[ParameterCard {
+    name: "gravity_moment",
+    symbol: "W",
+    unit: "kg m",
+    meaning: "mass times distance of the centre of gravity",
+    kind: Kind::Linear,
+    minimum: -1e6,
+    maximum: 1e6,
+    typical: 200.0,
+    start: Start::At(&[200.0]),
+}];
 
-static LOAD: &[ParameterCard] = &[
-    ParameterCard {
-        name: "weight",
-        symbol: "Fg",
-        unit: "N",
-        meaning: "weight of the load along the cylinder",
-        kind: Kind::Linear,
-        minimum: -1e6,
-        maximum: 1e6,
-        typical: 1000.0,
-        start: Start::At(&[1000.0]),
-    },
-];
+static LOAD: &[ParameterCard] = &[ParameterCard {
+    name: "weight",
+    symbol: "Fg",
+    unit: "N",
+    meaning: "weight of the load along the cylinder",
+    kind: Kind::Linear,
+    minimum: -1e6,
+    maximum: 1e6,
+    typical: 1000.0,
+    start: Start::At(&[1000.0]),
+}];
 
 impl Physics for Gravity {
     fn card(&self) -> &'static Card {
@@ -61,7 +57,7 @@ impl Physics for Gravity {
         }
     }
 
-    /// `-W g cos` of the link's absolute angle, zero at level ([A] Eq. 9); `Fg q` for a linear load.
+    /// `-W g cos` of the link's absolute angle, zero at level (\[A\] Eq. 9); `Fg q` for a linear load.
     fn potential<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>) -> Option<T> {
         let Site::Cylinder(cylinder) = site else { return None };
         let joint = now.pistons[cylinder].joint;

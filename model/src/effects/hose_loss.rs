@@ -19,19 +19,17 @@ static CARD: Card = Card {
     energy: "Dissipates zeta |v|^3.",
 };
 
-static PARAMETERS: &[ParameterCard] = &[
-    ParameterCard {
-        name: "hose_loss",
-        symbol: "zeta",
-        unit: "N s2/m2",
-        meaning: "loss coefficient",
-        kind: Kind::Linear,
-        minimum: 0.0,
-        maximum: 1e9,
-        typical: 3e5,
-        start: Start::At(&[1e5]),
-    },
-];
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "hose_loss",
+    symbol: "zeta",
+    unit: "N s2/m2",
+    meaning: "loss coefficient",
+    kind: Kind::Linear,
+    minimum: 0.0,
+    maximum: 1e9,
+    typical: 3e5,
+    start: Start::At(&[1e5]),
+}];
 
 impl Physics for HoseLoss {
     fn card(&self) -> &'static Card {

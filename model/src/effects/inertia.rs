@@ -2,8 +2,8 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::machine::Mechanism;
 use crate::machine::Machine;
+use crate::machine::Mechanism;
 
 /// Inertia of the links, or the mass of a linear load.
 pub struct Inertia;
@@ -22,19 +22,17 @@ static CARD: Card = Card {
     energy: "Stores kinetic energy 1/2 qd' J(q) qd.",
 };
 
-static SINGLE: &[ParameterCard] = &[
-    ParameterCard {
-        name: "inertia",
-        symbol: "J2",
-        unit: "kg m2",
-        meaning: "moment of inertia about the joint",
-        kind: Kind::Linear,
-        minimum: 1e-3,
-        maximum: 1e7,
-        typical: 200.0,
-        start: Start::At(&[200.0]),
-    },
-];
+static SINGLE: &[ParameterCard] = &[ParameterCard {
+    name: "inertia",
+    symbol: "J2",
+    unit: "kg m2",
+    meaning: "moment of inertia about the joint",
+    kind: Kind::Linear,
+    minimum: 1e-3,
+    maximum: 1e7,
+    typical: 200.0,
+    start: Start::At(&[200.0]),
+}];
 
 static FIRST_OF_TWO: &[ParameterCard] = &[
     ParameterCard {
@@ -61,19 +59,17 @@ static FIRST_OF_TWO: &[ParameterCard] = &[
     },
 ];
 
-static LOAD: &[ParameterCard] = &[
-    ParameterCard {
-        name: "mass",
-        symbol: "M",
-        unit: "kg",
-        meaning: "mass of the load",
-        kind: Kind::Linear,
-        minimum: 1e-3,
-        maximum: 1e6,
-        typical: 100.0,
-        start: Start::At(&[100.0]),
-    },
-];
+static LOAD: &[ParameterCard] = &[ParameterCard {
+    name: "mass",
+    symbol: "M",
+    unit: "kg",
+    meaning: "mass of the load",
+    kind: Kind::Linear,
+    minimum: 1e-3,
+    maximum: 1e6,
+    typical: 100.0,
+    start: Start::At(&[100.0]),
+}];
 
 impl Physics for Inertia {
     fn card(&self) -> &'static Card {

@@ -19,19 +19,17 @@ static CARD: Card = Card {
     energy: "Dissipates b Ci (p+ - p-) (exp(p+/b) - exp(p-/b)).",
 };
 
-static PARAMETERS: &[ParameterCard] = &[
-    ParameterCard {
-        name: "internal_leakage",
-        symbol: "Ci",
-        unit: "m3/(s Pa)",
-        meaning: "leakage coefficient",
-        kind: Kind::Linear,
-        minimum: 0.0,
-        maximum: 1e-6,
-        typical: 1e-11,
-        start: Start::At(&[1e-11]),
-    },
-];
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "internal_leakage",
+    symbol: "Ci",
+    unit: "m3/(s Pa)",
+    meaning: "leakage coefficient",
+    kind: Kind::Linear,
+    minimum: 0.0,
+    maximum: 1e-6,
+    typical: 1e-11,
+    start: Start::At(&[1e-11]),
+}];
 
 impl Physics for InternalLeakage {
     fn card(&self) -> &'static Card {

@@ -34,10 +34,10 @@ mod viscous_damping;
 pub use card::{ActsOn, Card, Family, Kind, ParameterCard, Site, Start};
 pub use physics::{Effect, Number, Physics};
 
-use crate::scalar::Scalar;
 use crate::equations::Rows;
+use crate::scalar::Scalar;
 
-/// Every effect that the program knows, base effects of [A] first, then the candidates beyond them.
+/// Every effect that the program knows, base effects of \[A\] first, then the candidates beyond them.
 pub static CATALOGUE: &[&dyn Effect] = &[
     &inertia::Inertia,
     &gravity::Gravity,

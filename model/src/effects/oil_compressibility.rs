@@ -2,8 +2,8 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::machine::Supply;
 use crate::machine::Machine;
+use crate::machine::Supply;
 
 /// Compressibility of the oil, with the walls and hoses around it.
 pub struct OilCompressibility;
@@ -20,19 +20,17 @@ static CARD: Card = Card {
     energy: "Stores V (b (exp(p/b) - 1) - p).",
 };
 
-static PARAMETERS: &[ParameterCard] = &[
-    ParameterCard {
-        name: "bulk_modulus",
-        symbol: "b",
-        unit: "Pa",
-        meaning: "bulk modulus",
-        kind: Kind::Reciprocal,
-        minimum: 1e5,
-        maximum: 1e11,
-        typical: 1e9,
-        start: Start::At(&[1e9]),
-    },
-];
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "bulk_modulus",
+    symbol: "b",
+    unit: "Pa",
+    meaning: "bulk modulus",
+    kind: Kind::Reciprocal,
+    minimum: 1e5,
+    maximum: 1e11,
+    typical: 1e9,
+    start: Start::At(&[1e9]),
+}];
 
 impl Physics for OilCompressibility {
     fn card(&self) -> &'static Card {

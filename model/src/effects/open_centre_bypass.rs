@@ -22,19 +22,17 @@ static CARD: Card = Card {
     energy: "Throttled between pump and tank, outside the cylinders.",
 };
 
-static PARAMETERS: &[ParameterCard] = &[
-    ParameterCard {
-        name: "bypass_flow_gain",
-        symbol: "Cft",
-        unit: "m/(s sqrt(Pa))",
-        meaning: "flow gain of the bypass",
-        kind: Kind::Linear,
-        minimum: 0.0,
-        maximum: 1.0,
-        typical: 1e-2,
-        start: Start::At(&[1e-2]),
-    },
-];
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "bypass_flow_gain",
+    symbol: "Cft",
+    unit: "m/(s sqrt(Pa))",
+    meaning: "flow gain of the bypass",
+    kind: Kind::Linear,
+    minimum: 0.0,
+    maximum: 1.0,
+    typical: 1e-2,
+    start: Start::At(&[1e-2]),
+}];
 
 impl Physics for OpenCentreBypass {
     fn card(&self) -> &'static Card {

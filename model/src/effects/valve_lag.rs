@@ -18,19 +18,17 @@ static CARD: Card = Card {
     energy: "Changes the supply through the valve; dissipates nothing itself.",
 };
 
-static PARAMETERS: &[ParameterCard] = &[
-    ParameterCard {
-        name: "lag_time",
-        symbol: "tau",
-        unit: "s",
-        meaning: "time constant",
-        kind: Kind::Shape,
-        minimum: 1e-4,
-        maximum: 2.0,
-        typical: 0.02,
-        start: Start::At(&[0.01]),
-    },
-];
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "lag_time",
+    symbol: "tau",
+    unit: "s",
+    meaning: "time constant",
+    kind: Kind::Shape,
+    minimum: 1e-4,
+    maximum: 2.0,
+    typical: 0.02,
+    start: Start::At(&[0.01]),
+}];
 
 impl Physics for ValveLag {
     fn card(&self) -> &'static Card {

@@ -19,19 +19,17 @@ static CARD: Card = Card {
     energy: "Dissipates Fd v^2.",
 };
 
-static PARAMETERS: &[ParameterCard] = &[
-    ParameterCard {
-        name: "viscous_damping",
-        symbol: "Fd",
-        unit: "N s/m",
-        meaning: "damping coefficient",
-        kind: Kind::Linear,
-        minimum: 0.0,
-        maximum: 1e7,
-        typical: 1e4,
-        start: Start::At(&[1e4]),
-    },
-];
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "viscous_damping",
+    symbol: "Fd",
+    unit: "N s/m",
+    meaning: "damping coefficient",
+    kind: Kind::Linear,
+    minimum: 0.0,
+    maximum: 1e7,
+    typical: 1e4,
+    start: Start::At(&[1e4]),
+}];
 
 impl Physics for ViscousDamping {
     fn card(&self) -> &'static Card {

@@ -85,7 +85,7 @@ impl<T: Number> Account<'_, '_, T> {
         T::contribute(effect.physics, effect.site, &self.parameters[first..last], situation, rows);
     }
 
-    /// Kinetic and potential energy of each joint, [A] Eq. 9, from rows that all effects have added to.
+    /// Kinetic and potential energy of each joint, \[A\] Eq. 9, from rows that all effects have added to.
     fn mechanical_storage(&self) -> Vec<CylinderStorage<T>> {
         let zero = T::from(0.0);
         let Workspace { situation, rows, .. } = &self.workspace;

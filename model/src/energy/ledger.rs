@@ -6,14 +6,14 @@ use crate::scalar::Scalar;
 /// What one cylinder with its joint stores, J.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CylinderStorage<T = f64> {
-    /// Kinetic energy `1/2 qd_i (J qd)_i`, [A] Eq. 9. What two joints share through the coupling of the mass matrix is
+    /// Kinetic energy `1/2 qd_i (J qd)_i`, \[A\] Eq. 9. What two joints share through the coupling of the mass matrix is
     /// split evenly, so that one joint's part can be negative; the sum cannot.
     pub kinetic: T,
-    /// Potential energy of the link's weight, `-W g cos` of its absolute angle, [A] Eq. 9.
+    /// Potential energy of the link's weight, `-W g cos` of its absolute angle, \[A\] Eq. 9.
     pub potential: T,
-    /// `V+ h(p+)` of the cap side's oil, [A] Eq. 9; zero without chambers.
+    /// `V+ h(p+)` of the cap side's oil, \[A\] Eq. 9; zero without chambers.
     pub cap_internal: T,
-    /// `V- h(p-)` of the rod side's oil, [A] Eq. 9.
+    /// `V- h(p-)` of the rod side's oil, \[A\] Eq. 9.
     pub rod_internal: T,
 }
 
@@ -30,16 +30,16 @@ pub struct EffectPower<T = f64> {
     pub stores: bool,
     /// Torque times joint rate plus piston force times velocity.
     pub mechanical: T,
-    /// Flow into the cap side times e(p+), [A] Eq. 11.
+    /// Flow into the cap side times e(p+), \[A\] Eq. 11.
     pub cap: T,
-    /// Flow into the rod side times e(p-), [A] Eq. 11.
+    /// Flow into the rod side times e(p-), \[A\] Eq. 11.
     pub rod: T,
     /// Flow into the pump line times e(pp).
     pub pump_line: T,
 }
 
 /// Storage and powers of a model at one instant. With `storage H`, along the model's solutions
-/// `dH/dt = balance()`, and for the cylinders alone `dHc/dt = supply() + dissipation()`, [A] Eq. 11.
+/// `dH/dt = balance()`, and for the cylinders alone `dHc/dt = supply() + dissipation()`, \[A\] Eq. 11.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ledger<T = f64> {
     /// Storage of each cylinder with its joint.
@@ -74,7 +74,7 @@ impl<T: Scalar> EffectPower<T> {
 }
 
 impl<T: Scalar> Ledger<T> {
-    /// Energy stored in links and chambers, J: H of [A] Eq. 9.
+    /// Energy stored in links and chambers, J: H of \[A\] Eq. 9.
     pub fn stored_in_cylinders(&self) -> T {
         sum(self.cylinders.iter().map(CylinderStorage::total))
     }
@@ -84,13 +84,13 @@ impl<T: Scalar> Ledger<T> {
         self.stored_in_cylinders() + self.pump_line
     }
 
-    /// Power supplied to the cylinders, W: `b e+ Q+ + b e- Q-` of the flows through the valve, [A] Eq. 11, and the
+    /// Power supplied to the cylinders, W: `b e+ Q+ + b e- Q-` of the flows through the valve, \[A\] Eq. 11, and the
     /// power of measured rod forces.
     pub fn supply(&self) -> T {
         sum(self.valve_effects().map(EffectPower::into_cylinders)) + self.rod_force_power
     }
 
-    /// Power that all other effects give to the cylinders, W: the dissipation of [A] Eq. 11, zero or negative but for
+    /// Power that all other effects give to the cylinders, W: the dissipation of \[A\] Eq. 11, zero or negative but for
     /// effects that give energy back (end stops) or bring it in (make-up flow).
     pub fn dissipation(&self) -> T {
         sum(self.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve).map(EffectPower::into_cylinders))

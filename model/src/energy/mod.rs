@@ -1,4 +1,4 @@
-//! Energy: storage, supply and the power of each effect ([A] Eq. 9-12).
+//! Energy: storage, supply and the power of each effect (\[A\] Eq. 9-12).
 //!
 //! The model is a port-Hamiltonian system. Its storage H is the kinetic and potential energy of the links plus what the
 //! oil stores in each chamber and in the pump line. Along the model's solutions

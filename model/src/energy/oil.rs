@@ -6,7 +6,7 @@ use crate::scalar::Scalar;
 ///
 /// The power that a flow Q carries into a chamber is `e Q`, where `de/dp = 1 + c(p) e`, `e(0) = 0`; the chamber stores
 /// `V h` with `h = e - p`. With these, `d(V h)/dt = e Q - p dV/dt` follows from the continuity equation for any c(p). A
-/// constant `c = 1/b` gives `e = b (exp(p/b) - 1)` and the storage of [A] Eq. 9.
+/// constant `c = 1/b` gives `e = b (exp(p/b) - 1)` and the storage of \[A\] Eq. 9.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OilEnergy<T> {
     /// Energy h stored per volume, J/m³.
@@ -22,7 +22,7 @@ const SERIES_BELOW: f64 = 0.1;
 const SERIES_TERMS: i32 = 13;
 
 impl<T: Scalar> OilEnergy<T> {
-    /// At `pressure` (Pa), for a compressibility (1/Pa) that is the same at all pressures: [A] Eq. 9.
+    /// At `pressure` (Pa), for a compressibility (1/Pa) that is the same at all pressures: \[A\] Eq. 9.
     pub fn of_constant(compressibility: T, pressure: T) -> Self {
         let strain = compressibility * pressure;
         // (exp(x) - 1 - x) / (x²/2), which is 1 for stiff oil.

@@ -28,7 +28,7 @@ const FULL_SLIP: f64 = 20.0;
 
 /// `sgn(x) sqrt|x|` of a pressure drop in Pa, made linear below [`LAMINAR_PRESSURE`]: `x / (x² + d²)^(1/4)`.
 ///
-/// [A] prints only the root; the sign lets flow reverse when the supply is below the chamber.
+/// \[A\] prints only the root; the sign lets flow reverse when the supply is below the chamber.
 pub fn orifice_root<T: Scalar>(pressure_drop: T) -> T {
     let squared = pressure_drop * pressure_drop + LAMINAR_PRESSURE * LAMINAR_PRESSURE;
     pressure_drop / squared.sqrt().sqrt()

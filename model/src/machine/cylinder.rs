@@ -32,12 +32,12 @@ pub struct Chambers {
 }
 
 impl Chambers {
-    /// Cap side volume V+ = V+min + (L/2 + s) A+ in m³, [A] Eq. 1.
+    /// Cap side volume V+ = V+min + (L/2 + s) A+ in m³, \[A\] Eq. 1.
     pub fn cap_volume<T: Scalar>(&self, stroke: f64, displacement: T) -> T {
         (displacement + stroke / 2.0) * self.cap_area + self.cap_dead_volume
     }
 
-    /// Rod side volume V- = V-min + (L/2 - s) A- in m³, [A] Eq. 1.
+    /// Rod side volume V- = V-min + (L/2 - s) A- in m³, \[A\] Eq. 1.
     pub fn rod_volume<T: Scalar>(&self, stroke: f64, displacement: T) -> T {
         (-displacement + stroke / 2.0) * self.rod_area + self.rod_dead_volume
     }

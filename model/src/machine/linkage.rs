@@ -11,13 +11,13 @@ pub enum Linkage {
         foot_arm: f64,
         /// Distance lb from the joint to the rod's pin, m.
         rod_arm: f64,
-        /// Pin-to-pin length lc at mid-stroke, m. Table 1 of [A] prints 0.28 m, which cannot be a pin-to-pin length
+        /// Pin-to-pin length lc at mid-stroke, m. Table 1 of \[A\] prints 0.28 m, which cannot be a pin-to-pin length
         /// with its other numbers: the cosine law allows 0.77 m to 1.43 m.
         mid_stroke_length: f64,
         /// `false`: theta = q (boom); `true`: theta = 2 pi - q (arm), so that extension lowers q.
         mirrored: bool,
     },
-    /// The piston carries the load itself: q = s, [B] Eq. 5.
+    /// The piston carries the load itself: q = s, \[B\] Eq. 5.
     Direct,
 }
 
@@ -34,7 +34,7 @@ impl Linkage {
         }
     }
 
-    /// Lever G = ds/dq in m (1 for a direct load), [A] Eq. 1: `G11 = la lb sin(q)/l`, `G22 = -la lb sin(2 pi - q)/l`.
+    /// Lever G = ds/dq in m (1 for a direct load), \[A\] Eq. 1: `G11 = la lb sin(q)/l`, `G22 = -la lb sin(2 pi - q)/l`.
     /// Both are `la lb sin(q) / l`; the mirrored arm has q between pi and 2 pi, so its lever is negative.
     pub fn lever<T: Scalar>(&self, joint: T) -> T {
         match *self {

@@ -5,14 +5,14 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mechanism {
     /// One link turning about a joint whose base is held at a fixed angle; the link hangs straight down at
-    /// `base_angle + q = 0` ([A] Eq. 4 with q1 = q1const).
+    /// `base_angle + q = 0` (\[A\] Eq. 4 with q1 = q1const).
     SingleLink {
         /// Angle q1const at which everything before the joint is held, rad.
         base_angle: f64,
     },
-    /// Two links in a vertical plane, [A] Eq. 1.
+    /// Two links in a vertical plane, \[A\] Eq. 1.
     TwoLink,
-    /// A mass moving along the cylinder's own axis, [B] Eq. 5.
+    /// A mass moving along the cylinder's own axis, \[B\] Eq. 5.
     LinearLoad,
 }
 

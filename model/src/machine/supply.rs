@@ -3,9 +3,9 @@
 /// The hydraulic supply of the valve sections.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Supply {
-    /// A pump feeding a line whose pressure is a state of the model, [A] Eq. 2.
+    /// A pump feeding a line whose pressure is a state of the model, \[A\] Eq. 2.
     PumpLine(PumpLine),
-    /// The supply pressure is set from outside and measured: closed-centre systems, [B].
+    /// The supply pressure is set from outside and measured: closed-centre systems, \[B\].
     MeasuredPressure,
     /// No oil at all: the force on the load is measured.
     None,

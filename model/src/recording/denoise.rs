@@ -70,8 +70,7 @@ impl Window {
         let squares = |power: i32| (1..=half_width).map(|k| 2.0 * (k as f64).powi(power)).sum::<f64>();
         let (count, second, fourth) = ((2 * half_width + 1) as f64, squares(2), squares(4));
         let determinant = count * fourth - second * second;
-        let weights: Vec<f64> =
-            (0..=half_width).map(|k| (fourth - second * (k * k) as f64) / determinant).collect();
+        let weights: Vec<f64> = (0..=half_width).map(|k| (fourth - second * (k * k) as f64) / determinant).collect();
         // For a projection, the variance of the value at the centre is the centre's own weight.
         let standard_error = weights[0].sqrt();
         Window { weights, standard_error }

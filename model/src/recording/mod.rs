@@ -43,10 +43,7 @@ impl Recording {
         Recording {
             source: source.to_string(),
             start_nanoseconds: 0,
-            cylinders: cylinder_names
-                .iter()
-                .map(|name| CylinderSignals::unmeasured(name, samples))
-                .collect(),
+            cylinders: cylinder_names.iter().map(|name| CylinderSignals::unmeasured(name, samples)).collect(),
             pump_pressure: nothing.clone(),
             tank_pressure: nothing.clone(),
             pump_flow: nothing.clone(),
@@ -104,14 +101,11 @@ impl Recording {
     /// # Errors
     /// [`RecordingError::UnknownCylinder`] with the names that the recording has.
     pub fn cylinder(&self, name: &str) -> Result<&CylinderSignals, RecordingError> {
-        self.cylinders
-            .iter()
-            .find(|cylinder| cylinder.name == name)
-            .ok_or_else(|| RecordingError::UnknownCylinder {
-                source_name: self.source.clone(),
-                wanted: name.to_string(),
-                found: self.cylinders.iter().map(|c| c.name.clone()).collect(),
-            })
+        self.cylinders.iter().find(|cylinder| cylinder.name == name).ok_or_else(|| RecordingError::UnknownCylinder {
+            source_name: self.source.clone(),
+            wanted: name.to_string(),
+            found: self.cylinders.iter().map(|c| c.name.clone()).collect(),
+        })
     }
 
     /// Checks the invariants that the fields promise: equal lengths and a strictly increasing, finite clock.
@@ -121,11 +115,7 @@ impl Recording {
     pub fn validate(&self) -> Result<(), RecordingError> {
         for (name, signal) in self.signals() {
             if signal.len() != self.len() {
-                return Err(RecordingError::LengthMismatch {
-                    signal: name,
-                    found: signal.len(),
-                    expected: self.len(),
-                });
+                return Err(RecordingError::LengthMismatch { signal: name, found: signal.len(), expected: self.len() });
             }
         }
         if let Some(&first) = self.time.first()
@@ -135,11 +125,7 @@ impl Recording {
         }
         for (index, pair) in self.time.windows(2).enumerate() {
             if pair[1].partial_cmp(&pair[0]) != Some(std::cmp::Ordering::Greater) || !pair[1].is_finite() {
-                return Err(RecordingError::ClockNotIncreasing {
-                    index: index + 1,
-                    previous: pair[0],
-                    next: pair[1],
-                });
+                return Err(RecordingError::ClockNotIncreasing { index: index + 1, previous: pair[0], next: pair[1] });
             }
         }
         Ok(())

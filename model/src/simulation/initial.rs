@@ -9,7 +9,7 @@ use crate::{Model, SignalError};
 const WINDOW: f64 = 0.02;
 
 /// State of `model` at sample `index` of a recording. Positions and pressures come from straight lines through the
-/// samples within 0.02 s after it, velocity is the slope of the displacement's line ([A] Section 4.1: "estimated by just
+/// samples within 0.02 s after it, velocity is the slope of the displacement's line (\[A\] Section 4.1: "estimated by just
 /// first order differentiation") unless it is measured. Pressures that nobody measures start at tank pressure. `spool`
 /// gives the valve openings at the sample, m².
 ///

@@ -1,8 +1,8 @@
 //! The inputs of a simulation as functions of time.
 
+use super::spool_estimate::spool_estimate;
 use crate::equations::Inputs;
 use crate::machine::{Machine, Supply};
-use super::spool_estimate::spool_estimate;
 use crate::recording::{CylinderSignals, Recording, is_measured};
 use crate::{Model, SignalError};
 

@@ -172,7 +172,7 @@ impl<'m, 's> Integrator<'m, 's> {
             signals.between(index, end, &mut self.later_inputs);
             let error = self.attempt(state, step);
             let time = signals.time[index] + done;
-            if !(error <= 1.0) {
+            if error.is_nan() || error > 1.0 {
                 self.steps.1 += 1;
                 let factor = if error.is_finite() { (0.9 * error.powf(-1.0 / 3.0)).clamp(0.1, 0.7) } else { 0.1 };
                 self.step = step * factor;

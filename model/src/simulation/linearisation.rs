@@ -55,8 +55,8 @@ impl<'m> Linearisation<'m> {
                 *slot = constant(value);
             }
             for direction in first..last {
-                if direction < states {
-                    self.dual_state[direction] = variable(state[direction], direction - first);
+                if let Some(&value) = state.get(direction) {
+                    self.dual_state[direction] = variable(value, direction - first);
                 } else {
                     let parameter = self.parameters_wanted[direction - states];
                     self.dual_parameters[parameter] = variable(parameters[parameter], direction - first);

@@ -91,7 +91,7 @@ fn scaled_to(measured: &[f64], follower: &[f64]) -> Option<Vec<f64>> {
     let count = measured.len() as f64;
     let (mean, mean_follower) = (measured.iter().sum::<f64>() / count, follower.iter().sum::<f64>() / count);
     let variance: f64 = follower.iter().map(|value| (value - mean_follower).powi(2)).sum();
-    if !(variance > 0.0) {
+    if variance.is_nan() || variance <= 0.0 {
         return None;
     }
     let covariance: f64 = measured.iter().zip(follower).map(|(m, f)| (m - mean) * (f - mean_follower)).sum();

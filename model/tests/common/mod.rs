@@ -31,7 +31,7 @@ impl Random {
     }
 }
 
-/// The arm alone with a supply pressure set from outside: the special case of a closed centre, [B].
+/// The arm alone with a supply pressure set from outside: the special case of a closed centre, \[B\].
 pub fn closed_centre() -> Model {
     let mut model = built_in("zx30u-arm").unwrap();
     model.effects.retain(|effect| effect.site != Site::PumpLine);

@@ -1,6 +1,6 @@
 //! Tables for people.
 
-use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
+use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{Attribute, Cell, CellAlignment, Table};
 use excavator_identification::diagnosis::{Candidate, normalised_error};
 use excavator_identification::fit::Fit;
@@ -27,7 +27,7 @@ pub fn number(value: f64) -> String {
 
 fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
-    table.load_preset(UTF8_HORIZONTAL_ONLY);
+    table.load_style(UTF8_FULL_CONDENSED);
     table.set_header(header.iter().map(|text| Cell::new(text).add_attribute(Attribute::Bold)));
     table
 }
@@ -92,7 +92,9 @@ pub fn candidate_table(candidates: &[&Candidate], before: &Fit, validation: &[&R
 
 /// Normalised mean squared error of every signal, step by step.
 pub fn step_table(refinement: &Refinement) -> Table {
-    let Some(first) = refinement.steps.first().and_then(|step| step.comparisons.first()) else { return table(&["step"]) };
+    let Some(first) = refinement.steps.first().and_then(|step| step.comparisons.first()) else {
+        return table(&["step"]);
+    };
     let mut header: Vec<&str> = vec!["NMSE on validation"];
     header.extend(first.signals.iter().map(|signal| signal.name.as_str()));
     header.push("mean");

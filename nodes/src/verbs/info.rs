@@ -19,7 +19,10 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
         ));
         for topic in &info.topics {
             let rate = topic.mean_rate().map_or("-".to_string(), |rate| format!("{rate:.1}"));
-            print(&format!("  {:28} {:36} {:8} messages {rate:>8} Hz", topic.name, topic.type_name, topic.message_count));
+            print(&format!(
+                "  {:28} {:36} {:8} messages {rate:>8} Hz",
+                topic.name, topic.type_name, topic.message_count
+            ));
         }
         for problem in &info.problems {
             print(&format!("  problem: {problem}"));

@@ -53,8 +53,7 @@ pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
 }
 
 fn with_profile(model: &Model, path: &Path) -> Result<Recording, VerbError> {
-    let text =
-        std::fs::read_to_string(path).map_err(|source| VerbError::Read { path: path.to_path_buf(), source })?;
+    let text = std::fs::read_to_string(path).map_err(|source| VerbError::Read { path: path.to_path_buf(), source })?;
     let syntax = |reason: String| VerbError::ProfileSyntax { path: path.to_path_buf(), reason };
     let file: ProfileFile = toml::from_str(&text).map_err(|error| syntax(error.message().replace('\n', " ")))?;
     if !(1.0..=100_000.0).contains(&file.rate) {

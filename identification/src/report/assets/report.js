@@ -27,7 +27,7 @@
     if (spec.height < 150) yAxis.space = 26;
     var plot = new uPlot({
       width: box.clientWidth || 1000, height: spec.height, series: series, axes: [xAxis, yAxis], padding: [8, 8, 0, 0],
-      scales: { x: { time: false } }, legend: { live: true },
+      scales: { x: { time: false } }, legend: { live: true, markers: { dash: function (_, i) { return i > 0 && spec.series[i - 1].dash ? "dashed" : "solid"; } } },
       cursor: { sync: { key: spec.group, setSeries: false }, drag: { x: true, y: false }, points: { size: 6 } }
     }, [spec.time].concat(spec.series.map(function (s) { return s.values; })), box);
     plots.push({ plot: plot, box: box, height: spec.height });
