@@ -6,7 +6,7 @@
 //! `dH/dt = pump power + power of the rod forces + sum of the powers of all effects`
 //!
 //! holds exactly, and each effect's power comes from the same lines of code that drive the simulation: torque times
-//! joint rate, force times piston velocity, and flow times the oil's potential ([`oil`]).
+//! joint rate, force times piston velocity, and flow times the oil's potential (`oil.rs`).
 
 mod account;
 mod ledger;
