@@ -28,6 +28,22 @@ pub(super) struct SegmentSums {
     state_gradient: DVector<f64>,
 }
 
+/// Sums over one segment, kept apart by instrument so that instruments can be weighed anew without another simulation.
+/// Errors are in units of each instrument's noise; the initial state is still among the columns.
+#[derive(Debug, Clone)]
+pub(super) struct RawSums {
+    fitted: usize,
+    information: Vec<DMatrix<f64>>,
+    /// By block, then by instrument.
+    blocks: Vec<Vec<DVector<f64>>>,
+    prior_information: DVector<f64>,
+    prior_gradient: DVector<f64>,
+    squared_errors: Vec<f64>,
+    counts: Vec<usize>,
+    block_errors: Vec<Vec<(f64, usize)>>,
+    prior_loss: f64,
+}
+
 /// Length of the blocks whose gradients are taken as independent in standard errors, s: longer than any correlation of
 /// an arm's errors but drift, and short enough to give many blocks.
 const BLOCK_DURATION: f64 = 0.5;
@@ -64,8 +80,6 @@ pub(super) struct Shared<'a, 'm> {
     /// Scale of each fitted parameter: sums are for `parameter / scale`.
     pub scales: &'a [f64],
     pub instruments: &'a [Instrument],
-    /// Standard deviation by which each instrument's error is divided.
-    pub weights: &'a [f64],
     pub prior: &'a InitialStatePrior,
     pub tolerances: Tolerances,
 }
@@ -77,15 +91,14 @@ impl Shared<'_, '_> {
         recording: &SegmentedRecording,
         segment: &Segment,
         anchor: &[f64],
-    ) -> Result<SegmentSums, SimulationError> {
+    ) -> Result<RawSums, SimulationError> {
         let states = segment.state.len();
         let fitted = self.fitted.len();
         let columns = fitted + states;
         let mut integrator = Integrator::new(self.system, self.parameters, self.fitted, self.tolerances);
         let mut sensitivity = Sensitivity::at_start(states, fitted);
         let mut state = segment.state.clone();
-        let mut information = DMatrix::<f64>::zeros(columns, columns);
-        let mut gradient = DVector::<f64>::zeros(columns);
+        let mut information = vec![DMatrix::<f64>::zeros(columns, columns); self.instruments.len()];
         let mut squared_errors = vec![0.0; self.instruments.len()];
         let mut counts = vec![0; self.instruments.len()];
         let signals: Vec<&[f64]> = self
@@ -94,13 +107,13 @@ impl Shared<'_, '_> {
             .map(|instrument| recording.recording.signal(&instrument.name).unwrap_or(&[]))
             .collect();
         let mut row = vec![0.0; columns];
-        let mut blocks: Vec<DVector<f64>> = Vec::new();
+        let mut blocks: Vec<Vec<DVector<f64>>> = Vec::new();
         let mut block_errors: Vec<Vec<(f64, usize)>> = Vec::new();
         let start = recording.recording.time[segment.first];
         for index in segment.first..=segment.last {
             let block = ((recording.recording.time[index] - start) / BLOCK_DURATION) as usize;
             while blocks.len() <= block {
-                blocks.push(DVector::zeros(columns));
+                blocks.push(vec![DVector::zeros(columns); self.instruments.len()]);
                 block_errors.push(vec![(0.0, 0); self.instruments.len()]);
             }
             for (number, instrument) in self.instruments.iter().enumerate() {
@@ -113,7 +126,7 @@ impl Shared<'_, '_> {
                 counts[number] += 1;
                 block_errors[block][number].0 += error * error;
                 block_errors[block][number].1 += 1;
-                let weight = 1.0 / self.weights[number];
+                let weight = 1.0 / instrument.noise;
                 let [(a, by_a), (b, by_b)] = instrument.gradient(self.system, &state);
                 for (column, slot) in row.iter_mut().enumerate() {
                     let mut slope = by_a * sensitivity.matrix[(a, column)];
@@ -124,11 +137,11 @@ impl Shared<'_, '_> {
                     *slot = slope * scale * weight;
                 }
                 let scaled_error = error * weight;
-                for column in 0..columns {
-                    let value = row[column];
-                    blocks[block][column] += value * scaled_error;
-                    for other in column..columns {
-                        information[(other, column)] += value * row[other];
+                let (gradient, information) = (&mut blocks[block][number], &mut information[number]);
+                for (column, &value) in row.iter().enumerate() {
+                    gradient[column] += value * scaled_error;
+                    for (slot, other) in information.column_mut(column).iter_mut().zip(&row).skip(column) {
+                        *slot += value * other;
                     }
                 }
             }
@@ -136,25 +149,75 @@ impl Shared<'_, '_> {
                 integrator.advance(&recording.inputs, index, &mut state, Some(&mut sensitivity))?;
             }
         }
-        for column in 0..columns {
-            for other in column + 1..columns {
-                information[(column, other)] = information[(other, column)];
-            }
-        }
-        for block in &blocks {
-            gradient += block;
+        for information in &mut information {
+            information.fill_upper_triangle_with_lower_triangle();
         }
         let mut prior_loss = 0.0;
+        let mut prior_information = DVector::zeros(states);
+        let mut prior_gradient = DVector::zeros(states);
         for index in 0..states {
             let inverse = 1.0 / (self.prior.spread[index] * self.prior.spread[index]);
             let away = anchor[index] - segment.state[index];
-            information[(fitted + index, fitted + index)] += inverse;
-            gradient[fitted + index] += away * inverse;
+            prior_information[index] = inverse;
+            prior_gradient[index] = away * inverse;
             prior_loss += away * away * inverse;
         }
-        let mut sums = SegmentSums::eliminate(fitted, &information, &gradient, &blocks, prior_loss);
-        (sums.squared_errors, sums.counts, sums.block_errors) = (squared_errors, counts, block_errors);
-        Ok(sums)
+        Ok(RawSums {
+            fitted,
+            information,
+            blocks,
+            prior_information,
+            prior_gradient,
+            squared_errors,
+            counts,
+            block_errors,
+            prior_loss,
+        })
+    }
+}
+
+impl RawSums {
+    /// Sum of squared errors of each instrument, in its unit.
+    pub fn squared_errors(&self) -> &[f64] {
+        &self.squared_errors
+    }
+
+    /// Number of readings of each instrument.
+    pub fn counts(&self) -> &[usize] {
+        &self.counts
+    }
+
+    /// The sums with each instrument's squared noise units multiplied by its factor, initial state eliminated.
+    pub fn weighed(&self, factors: &[f64]) -> SegmentSums {
+        let (fitted, states) = (self.fitted, self.prior_gradient.len());
+        let mut information = DMatrix::zeros(fitted + states, fitted + states);
+        for (own, factor) in self.information.iter().zip(factors) {
+            information += own * *factor;
+        }
+        let blocks: Vec<DVector<f64>> = self
+            .blocks
+            .iter()
+            .map(|block| {
+                let mut sum = DVector::zeros(fitted + states);
+                for (own, factor) in block.iter().zip(factors) {
+                    sum += own * *factor;
+                }
+                sum
+            })
+            .collect();
+        let mut gradient = DVector::zeros(fitted + states);
+        for block in &blocks {
+            gradient += block;
+        }
+        for index in 0..states {
+            information[(fitted + index, fitted + index)] += self.prior_information[index];
+            gradient[fitted + index] += self.prior_gradient[index];
+        }
+        let mut sums = SegmentSums::eliminate(fitted, &information, &gradient, &blocks, self.prior_loss);
+        sums.squared_errors.clone_from(&self.squared_errors);
+        sums.counts.clone_from(&self.counts);
+        sums.block_errors.clone_from(&self.block_errors);
+        sums
     }
 }
 

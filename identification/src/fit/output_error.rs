@@ -11,7 +11,7 @@ use excavator_model::{Model, SignalError};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::normal_equations::{InitialStatePrior, SegmentSums, Shared};
+use super::normal_equations::{InitialStatePrior, RawSums, SegmentSums, Shared};
 use super::{FitSettings, Instrument, SegmentedRecording, instruments};
 
 /// Why a fit could not be done.
@@ -122,14 +122,13 @@ fn run(
     let prior = InitialStatePrior::of(&system);
     let noise: Vec<f64> = instruments.iter().map(|instrument| instrument.noise).collect();
 
-    let sums_at = |values: &[f64], weights: &[f64], segmented: &[SegmentedRecording]| {
+    let sums_at = |values: &[f64], segmented: &[SegmentedRecording]| {
         let shared = Shared {
             system: &system,
             parameters: values,
             fitted: &fitted,
             scales: &scales,
             instruments: &instruments,
-            weights,
             prior: &prior,
             tolerances: Tolerances::default(),
         };
@@ -151,10 +150,13 @@ fn run(
         squares + sums.iter().map(|segment| segment.prior_loss).sum::<f64>()
     };
 
-    let mut weights = noise.clone();
-    let sums = sums_at(&values, &weights, &segmented)?;
-    weights = error_sizes(&sums, &noise);
-    let sums = sums_at(&values, &weights, &segmented)?;
+    let weighed = |raw: &[RawSums], weights: &[f64]| -> Vec<SegmentSums> {
+        let factors: Vec<f64> = noise.iter().zip(weights).map(|(noise, weight)| (noise / weight).powi(2)).collect();
+        raw.iter().map(|segment| segment.weighed(&factors)).collect()
+    };
+    let raw = sums_at(&values, &segmented)?;
+    let mut weights = error_sizes(&raw, &noise);
+    let sums = weighed(&raw, &weights);
     let loss = loss_of(&sums, &weights);
     let mut current = State { values, sums, loss };
     let mut damping = 1e-3;
@@ -181,14 +183,14 @@ fn run(
                 *value += change;
             }
         }
-        let accepted = match sums_at(&trial_values, &weights, &trial_segments) {
-            Ok(sums) => {
-                let loss = loss_of(&sums, &weights);
-                (loss.is_finite() && loss <= current.loss).then_some((sums, loss))
+        let accepted = match sums_at(&trial_values, &trial_segments) {
+            Ok(raw) => {
+                let loss = loss_of(&weighed(&raw, &weights), &weights);
+                (loss.is_finite() && loss <= current.loss).then_some((raw, loss))
             }
             Err(_) => None,
         };
-        let Some((sums, loss)) = accepted else {
+        let Some((raw, loss)) = accepted else {
             damping = (damping * 10.0_f64).max(1e-3);
             if damping > 1e6 {
                 break;
@@ -197,20 +199,15 @@ fn run(
         };
         let improvement = (current.loss - loss) / current.loss.max(f64::MIN_POSITIVE);
         segmented = trial_segments;
-        let new_weights = error_sizes(&sums, &noise);
+        let new_weights = error_sizes(&raw, &noise);
         let reweighting = new_weights.iter().zip(&weights).map(|(new, old)| (new / old).ln().abs()).fold(0.0, f64::max);
-        // Sums are quadratic in 1/weight per instrument only in the loss; the matrices mix instruments, so they are
-        // recomputed when the weights have moved enough to steer differently.
-        if reweighting > 0.05 {
-            weights = new_weights;
-            let sums = sums_at(&trial_values, &weights, &segmented)?;
-            let loss = loss_of(&sums, &weights);
-            current = State { values: trial_values, sums, loss };
-        } else {
-            current = State { values: trial_values, sums, loss };
-        }
+        let remaining = loss_per_reading(&new_weights, &noise);
+        weights = new_weights;
+        let sums = weighed(&raw, &weights);
+        let loss = loss_of(&sums, &weights);
+        current = State { values: trial_values, sums, loss };
         damping = (damping / 10.0).max(1e-9);
-        if steps >= 4 && loss_per_reading(&error_sizes(&current.sums, &noise), &noise) > settings.give_up_above {
+        if steps >= 4 && remaining > settings.give_up_above {
             break;
         }
         if improvement < settings.least_improvement && reweighting <= 0.05 {
@@ -228,13 +225,13 @@ fn loss_per_reading(errors: &[f64], noise: &[f64]) -> f64 {
 }
 
 /// Root mean square error of each instrument over all segments, not below its noise.
-fn error_sizes(sums: &[SegmentSums], noise: &[f64]) -> Vec<f64> {
+fn error_sizes(sums: &[RawSums], noise: &[f64]) -> Vec<f64> {
     noise
         .iter()
         .enumerate()
         .map(|(number, noise)| {
-            let squares: f64 = sums.iter().map(|segment| segment.squared_errors[number]).sum();
-            let count: usize = sums.iter().map(|segment| segment.counts[number]).sum();
+            let squares: f64 = sums.iter().map(|segment| segment.squared_errors()[number]).sum();
+            let count: usize = sums.iter().map(|segment| segment.counts()[number]).sum();
             (squares / count.max(1) as f64).sqrt().max(*noise)
         })
         .collect()

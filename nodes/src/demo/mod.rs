@@ -1,8 +1,8 @@
 //! `excavator demo`: the whole story on a machine with a hidden effect.
 
-mod manoeuvre;
-mod plant;
-mod sealed;
+pub mod manoeuvre;
+pub mod plant;
+pub mod sealed;
 mod story;
 
-pub use story::run;
+pub(crate) use story::run;

@@ -34,12 +34,21 @@ const HIDDEN: &[(&str, &[(f64, f64)])] = &[
 const PARAMETER_SPREAD: f64 = 0.2;
 
 impl Sealed {
-    /// Draws a machine.
-    pub fn draw(generator: &mut ChaCha8Rng) -> Result<Sealed, VerbError> {
+    /// Draws a machine that hides nothing.
+    ///
+    /// # Errors
+    /// [`DocumentError`] when the built-in model cannot be read.
+    pub fn draw_without_effect(generator: &mut ChaCha8Rng) -> Result<Sealed, DocumentError> {
         let mut truth = built_in("zx30u-arm")?;
         for parameter in truth.parameters_mut().filter(|parameter| !parameter.known) {
             parameter.value *= generator.random_range(1.0 - PARAMETER_SPREAD..1.0 + PARAMETER_SPREAD);
         }
+        Ok(Sealed { truth, effect: "none", site: Site::PumpLine })
+    }
+
+    /// Draws a machine with a hidden effect.
+    pub(crate) fn draw(generator: &mut ChaCha8Rng) -> Result<Sealed, VerbError> {
+        let mut truth = Self::draw_without_effect(generator)?.truth;
         let (effect, ranges) = HIDDEN[generator.random_range(0..HIDDEN.len())];
         let physics = effects::find(effect)?;
         let site = truth.free_sites(physics).first().copied().ok_or_else(|| DocumentError::Inconsistent {

@@ -20,7 +20,7 @@ use crate::sources;
 use crate::verbs::print;
 
 /// Runs the demo.
-pub fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
+pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
     let folder = free_folder(&arguments.output);
     std::fs::create_dir_all(&folder).map_err(|source| VerbError::Write { path: folder.clone(), source })?;
     let mut generator = ChaCha8Rng::seed_from_u64(arguments.seed);
