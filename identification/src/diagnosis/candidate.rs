@@ -69,20 +69,23 @@ pub(crate) fn fit_addition(
     settings: &FitSettings,
 ) -> Result<Fit, CandidateError> {
     let extended = model.with_effect(physics, site)?;
-    let mut starts = starts(&extended, recordings);
     // A regression on the equations finds linear coefficients without a search, however far they are from any start.
-    let quick = WeakFormSettings { rounds: 1, ..WeakFormSettings::default() };
-    let regressed: Vec<Model> = starts
+    let quick = WeakFormSettings { rounds: 1, with_errors: false, ..WeakFormSettings::default() };
+    let plain = starts(&extended, recordings);
+    let regressed = plain
         .iter()
         .filter_map(|start| weak_form(start, recordings, &quick).ok())
-        .map(|regression| within_bounds(regression.model))
-        .collect();
-    starts.extend(regressed);
+        .map(|regression| within_bounds(regression.model));
     let trial_settings = FitSettings { maximum_steps: 2, ..*settings };
     let mut best: Option<Fit> = None;
     let mut failure = None;
-    for start in &starts {
-        match fit(start, recordings, &trial_settings) {
+    for (number, start) in regressed.chain(plain.iter().cloned()).enumerate() {
+        // Where a regression already led below the model without the effect, the plain starts can only cost time.
+        let promising = best.as_ref().is_some_and(|best| best.loss() < settings.give_up_above);
+        if promising && settings.give_up_above.is_finite() && number >= plain.len() {
+            break;
+        }
+        match fit(&start, recordings, &trial_settings) {
             Ok(trial) if best.as_ref().is_none_or(|best| trial.loss() < best.loss()) => best = Some(trial),
             Ok(_) => {}
             Err(error) => failure = Some(error),

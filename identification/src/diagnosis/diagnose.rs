@@ -148,7 +148,8 @@ pub(crate) fn fit_nominal(
     settings: &DiagnosisSettings,
 ) -> Result<Fit, FitError> {
     // Where the regression cannot say anything the given values are the start.
-    let start = weak_form(model, identification, &WeakFormSettings::default()).map(|regression| regression.model);
+    let quick = WeakFormSettings { rounds: 2, with_errors: false, ..WeakFormSettings::default() };
+    let start = weak_form(model, identification, &quick).map(|regression| regression.model);
     if let Ok(start) = start
         && let Ok(fitted) = fit(&start, identification, &settings.fit)
     {

@@ -36,6 +36,8 @@ pub struct WeakFormSettings {
     pub velocity_guard: f64,
     /// Rounds; the first has no instruments, the others those of the model that the round before found.
     pub rounds: usize,
+    /// Whether standard errors and condition numbers are wanted; they cost more than the values.
+    pub with_errors: bool,
 }
 
 impl Default for WeakFormSettings {
@@ -46,6 +48,7 @@ impl Default for WeakFormSettings {
             step_fraction: 0.25,
             velocity_guard: 1e-3,
             rounds: 3,
+            with_errors: true,
         }
     }
 }
@@ -85,7 +88,8 @@ pub fn weak_form(
     let mut result = None;
     for round in 0..settings.rounds.max(1) {
         let rows = rows(&model, recordings, settings, &unknown, round > 0)?;
-        let solution = solve(&model, recordings, settings, &unknown, &rows)?;
+        let last = round + 1 == settings.rounds.max(1);
+        let solution = solve(&model, recordings, settings, &unknown, &rows, settings.with_errors && last)?;
         model = solution.model.clone();
         result = Some(solution);
     }
@@ -211,6 +215,7 @@ fn solve(
     settings: &WeakFormSettings,
     unknown: &[usize],
     rows: &[Row],
+    with_errors: bool,
 ) -> Result<Regression, RegressionError> {
     let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card).collect();
     let values = model.parameter_values();
@@ -304,8 +309,12 @@ fn solve(
     }
     improved.set_parameter_values(&new_values);
 
-    let scores = scores(rows, &instruments, &remaining);
-    let meat = long_run_covariance(&scores, seen.len(), CORRELATION_REACH.max(4.0 * half_width));
+    let meat = if with_errors {
+        let scores = scores(rows, &instruments, &remaining);
+        long_run_covariance(&scores, seen.len(), CORRELATION_REACH.max(4.0 * half_width))
+    } else {
+        DMatrix::from_element(seen.len(), seen.len(), f64::NAN)
+    };
     let correction = independent / (independent - seen.len() as f64).max(1.0);
     let coefficient_covariance = &inverse * meat * inverse.transpose() * correction;
     let mut covariance = DMatrix::zeros(seen.len(), seen.len());
@@ -325,7 +334,8 @@ fn solve(
     }
     for (index, parameter) in improved.parameters_mut().enumerate() {
         if let Some(column) = seen.iter().position(|&s| unknown[s] == index) {
-            parameter.standard_error = Some(covariance[(column, column)].max(0.0).sqrt());
+            let variance = covariance[(column, column)];
+            parameter.standard_error = variance.is_finite().then(|| variance.max(0.0).sqrt());
             parameter.source = "identified".into();
         }
     }
@@ -339,7 +349,11 @@ fn solve(
         model: improved,
         fitted: seen.iter().map(|&index| unknown[index]).collect(),
         covariance,
-        condition_numbers: group_conditions(rows, &seen, |index| slope_to_coefficient(unknown[index])),
+        condition_numbers: if with_errors {
+            group_conditions(rows, &seen, |index| slope_to_coefficient(unknown[index]))
+        } else {
+            Vec::new()
+        },
         rows: rows.len(),
         equations: gauges,
         not_identified,

@@ -25,19 +25,29 @@ pub(super) fn spool_estimate(time: &[f64], measured: &[f64], command: &[f64]) ->
 /// Time constants that are tried, s: from faster than any sampling to a slow pilot stage.
 const LAGS: [f64; 10] = [0.001, 0.002, 0.004, 0.007, 0.012, 0.02, 0.035, 0.06, 0.1, 0.2];
 
+/// Samples that the servo model is searched on; longer recordings are thinned, two numbers need no more.
+const SEARCH_SAMPLES: usize = 4000;
+
 /// The lagged, delayed, scaled and shifted command that is nearest to the measured spool.
 fn best_follower(time: &[f64], measured: &[f64], command: &[f64]) -> Option<Vec<f64>> {
+    let stride = (time.len() / SEARCH_SAMPLES).max(1);
+    let thin = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
+    let (lag, delay) = best_lag_and_delay(&thin(time), &thin(measured), &thin(command))?;
+    scaled_to(measured, &lagged(time, command, lag, delay))
+}
+
+fn best_lag_and_delay(time: &[f64], measured: &[f64], command: &[f64]) -> Option<(f64, f64)> {
     let misfit = |lag: f64, delay: f64| {
         let follower = scaled_to(measured, &lagged(time, command, lag, delay))?;
         let squares: f64 = measured.iter().zip(&follower).map(|(m, f)| (m - f) * (m - f)).sum();
-        Some((squares, follower))
+        Some(squares)
     };
-    let mut best = (f64::INFINITY, 0.0, 0.0, None);
-    let consider = |lag: f64, delay: f64, best: &mut (f64, f64, f64, Option<Vec<f64>>)| {
-        if let Some((squares, follower)) = misfit(lag, delay)
+    let mut best = (f64::INFINITY, 0.0, 0.0);
+    let consider = |lag: f64, delay: f64, best: &mut (f64, f64, f64)| {
+        if let Some(squares) = misfit(lag, delay)
             && squares < best.0
         {
-            *best = (squares, lag, delay, Some(follower));
+            *best = (squares, lag, delay);
         }
     };
     for lag in LAGS {
@@ -56,7 +66,7 @@ fn best_follower(time: &[f64], measured: &[f64], command: &[f64]) -> Option<Vec<
             delay_step /= 2.0;
         }
     }
-    best.3
+    best.0.is_finite().then_some((best.1, best.2))
 }
 
 /// The command after a lag of first order and a delay, both in s.
