@@ -414,9 +414,8 @@ fn scores(rows: &[Row], instruments: &DMatrix<f64>, residuals: &DVector<f64>) ->
     scores
 }
 
-/// Over how long residuals may stay correlated, s: errors of the spool estimate last up to half a second, and Bartlett
-/// weights count only part of what is far apart.
-const CORRELATION_REACH: f64 = 1.5;
+/// Over how long residuals may stay correlated, s: errors of the spool estimate last up to half a second.
+const CORRELATION_REACH: f64 = 0.5;
 
 /// Covariance of the sum of scores that are correlated over up to `reach` s (Newey and West 1987, Bartlett weights).
 fn long_run_covariance(scores: &[(usize, f64, DVector<f64>)], order: usize, reach: f64) -> DMatrix<f64> {
