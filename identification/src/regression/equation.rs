@@ -150,7 +150,7 @@ pub fn equations(
         }
         for sample in 0..samples {
             observation.inputs.between(sample, 0.0, &mut plain_inputs);
-            lift(&plain_inputs, &mut inputs);
+            inputs.lift_from(&plain_inputs);
             for (index, cylinder) in observation.cylinders.iter().enumerate() {
                 let linkage = &model.machine.cylinders[index].linkage;
                 let joint = linkage.joint(cylinder.smooth_displacement[sample]);
@@ -298,16 +298,4 @@ pub fn equations(
         });
     }
     equations
-}
-
-fn lift(plain: &Inputs<f64>, lifted: &mut Inputs<Dual>) {
-    for (slot, &value) in lifted.orifice_area.iter_mut().zip(&plain.orifice_area) {
-        *slot = constant(value);
-    }
-    for (slot, &value) in lifted.rod_force.iter_mut().zip(&plain.rod_force) {
-        *slot = constant(value);
-    }
-    lifted.supply_pressure = constant(plain.supply_pressure);
-    lifted.tank_pressure = constant(plain.tank_pressure);
-    lifted.pump_flow = constant(plain.pump_flow);
 }

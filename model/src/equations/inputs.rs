@@ -1,6 +1,6 @@
 //! What the model is given from outside at one instant.
 
-use crate::scalar::Scalar;
+use crate::scalar::{Dual, Scalar, constant};
 
 /// Inputs of the model at one instant.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,5 +37,20 @@ impl<T: Scalar> Inputs<T> {
         self.supply_pressure = other.supply_pressure;
         self.tank_pressure = other.tank_pressure;
         self.pump_flow = other.pump_flow;
+    }
+}
+
+impl Inputs<Dual> {
+    /// Takes over plain inputs as constants, without allocating.
+    pub fn lift_from(&mut self, plain: &Inputs<f64>) {
+        for (slot, &value) in self.orifice_area.iter_mut().zip(&plain.orifice_area) {
+            *slot = constant(value);
+        }
+        for (slot, &value) in self.rod_force.iter_mut().zip(&plain.rod_force) {
+            *slot = constant(value);
+        }
+        self.supply_pressure = constant(plain.supply_pressure);
+        self.tank_pressure = constant(plain.tank_pressure);
+        self.pump_flow = constant(plain.pump_flow);
     }
 }

@@ -40,6 +40,20 @@ impl CylinderSignals {
         }
     }
 
+    /// Every signal, in message order.
+    pub fn columns_mut(&mut self) -> [&mut Vec<f64>; 8] {
+        [
+            &mut self.joint_angle,
+            &mut self.displacement,
+            &mut self.velocity,
+            &mut self.cap_pressure,
+            &mut self.rod_pressure,
+            &mut self.orifice_area,
+            &mut self.rod_force,
+            &mut self.orifice_command,
+        ]
+    }
+
     /// Every signal with its name, in message order.
     pub fn signals(&self) -> [(&'static str, &[f64]); 8] {
         [

@@ -67,6 +67,18 @@ impl Recording {
         }
     }
 
+    /// The clock and every signal, to change all of them sample by sample in the same way.
+    pub fn columns_mut(&mut self) -> Vec<&mut Vec<f64>> {
+        let own = [
+            &mut self.time,
+            &mut self.pump_pressure,
+            &mut self.tank_pressure,
+            &mut self.pump_flow,
+            &mut self.oil_temperature,
+        ];
+        own.into_iter().chain(self.cylinders.iter_mut().flat_map(CylinderSignals::columns_mut)).collect()
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.time.len()

@@ -42,7 +42,7 @@ impl<'m> Linearisation<'m> {
 
     /// Evaluates rates and both Jacobians.
     pub fn evaluate(&mut self, system: &System<'m>, parameters: &[f64], state: &[f64], inputs: &Inputs<f64>) {
-        lift_inputs(inputs, &mut self.dual_inputs);
+        self.dual_inputs.lift_from(inputs);
         let states = state.len();
         let directions = states + self.parameters_wanted.len();
         let mut first = 0;
@@ -85,16 +85,4 @@ impl<'m> Linearisation<'m> {
             *slot = rate.re;
         }
     }
-}
-
-fn lift_inputs(inputs: &Inputs<f64>, lifted: &mut Inputs<Dual>) {
-    for (slot, &value) in lifted.orifice_area.iter_mut().zip(&inputs.orifice_area) {
-        *slot = constant(value);
-    }
-    for (slot, &value) in lifted.rod_force.iter_mut().zip(&inputs.rod_force) {
-        *slot = constant(value);
-    }
-    lifted.supply_pressure = constant(inputs.supply_pressure);
-    lifted.tank_pressure = constant(inputs.tank_pressure);
-    lifted.pump_flow = constant(inputs.pump_flow);
 }

@@ -110,31 +110,8 @@ fn measure(recording: &mut Recording, spool_sensor: bool, generator: &mut ChaCha
 }
 
 fn keep(recording: &mut Recording, kept: &[bool]) {
-    let filter = |values: &mut Vec<f64>| {
+    for values in recording.columns_mut() {
         let mut flags = kept.iter();
         values.retain(|_| flags.next().copied().unwrap_or(true));
-    };
-    filter(&mut recording.time);
-    for cylinder in &mut recording.cylinders {
-        for values in [
-            &mut cylinder.joint_angle,
-            &mut cylinder.displacement,
-            &mut cylinder.velocity,
-            &mut cylinder.cap_pressure,
-            &mut cylinder.rod_pressure,
-            &mut cylinder.orifice_area,
-            &mut cylinder.rod_force,
-            &mut cylinder.orifice_command,
-        ] {
-            filter(values);
-        }
-    }
-    for values in [
-        &mut recording.pump_pressure,
-        &mut recording.tank_pressure,
-        &mut recording.pump_flow,
-        &mut recording.oil_temperature,
-    ] {
-        filter(values);
     }
 }
