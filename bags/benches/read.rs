@@ -1,4 +1,4 @@
-//! Reading a bag as a recording, against the bare `mcap` crate on the same file.
+//! Reading a bag as a recording, against the bare `mcap` crate on the same file, and from SQLite3.
 //!
 //! The bar is half the speed of `mcap::MessageStream`, which decompresses and copies each message but decodes none.
 //! The file is `EXCAVATOR_BENCH_BAG` (an `.mcap` with `/arm/state`), or one made here: 40 s at 1 kHz, two cylinders.
@@ -53,6 +53,8 @@ fn read(criterion: &mut Criterion) {
         write_recording(&bag, &support::recording(40_000), &Topics::default(), &WriteOptions::default()).unwrap();
         support::mcap_file(&bag)
     });
+    let database = folder.path().join("bag.db3");
+    support::to_sqlite(&file, &database);
     let messages = bare(&file);
     let (bare_time, decoded_time) = (median_time(|| bare(&file)), median_time(|| decoded(&file)));
     println!(
@@ -66,6 +68,8 @@ fn read(criterion: &mut Criterion) {
     group.bench_function("mcap_message_stream", |bencher| bencher.iter(|| bare(&file)));
     group.bench_function("raw_messages", |bencher| bencher.iter(|| raw(&file)));
     group.bench_function("recording", |bencher| bencher.iter(|| decoded(&file)));
+    group.bench_function("sqlite_raw_messages", |bencher| bencher.iter(|| raw(&database)));
+    group.bench_function("sqlite_recording", |bencher| bencher.iter(|| decoded(&database)));
     group.finish();
 }
 

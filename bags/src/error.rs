@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 use excavator_model::recording::RecordingError;
 use thiserror::Error;
 
+use crate::dynamic::LayoutError;
+use crate::map::MapError;
+
 /// A bag that cannot be read or written at all. Damage that can be read around is no error but a
 /// [`Damage`](crate::Damage) in the report.
 #[derive(Debug, Error)]
@@ -25,8 +28,8 @@ pub enum BagError {
         /// What the operating system says.
         source: std::io::Error,
     },
-    /// A folder without any MCAP file, or a file that is no MCAP.
-    #[error("{} is not a bag: {reason}; give a rosbag2 folder or an .mcap file", path.display())]
+    /// A folder without any file of a bag, or a file that is none.
+    #[error("{} is not a bag: {reason}; give a rosbag2 folder, an .mcap or a .db3 file", path.display())]
     NotABag {
         /// The path asked for.
         path: PathBuf,
@@ -49,15 +52,15 @@ pub enum BagError {
         /// The listed file.
         file: String,
     },
-    /// A storage other than MCAP.
-    #[error("{}: {storage} storage is not supported yet; convert the bag to MCAP with `ros2 bag convert`", path.display())]
+    /// A storage other than MCAP and SQLite3.
+    #[error("{}: {storage} storage is not supported; convert the bag to MCAP with `ros2 bag convert`", path.display())]
     UnsupportedStorage {
         /// The bag.
         path: PathBuf,
-        /// Name of the storage: "SQLite3", ...
+        /// Name of the storage as the metadata has it.
         storage: String,
     },
-    /// Files or messages compressed by rosbag2 itself, not by the chunks of MCAP.
+    /// Files or messages compressed by rosbag2 itself with something else than zstd.
     #[error("{}: rosbag2 compression mode \"{mode}\" ({format}) is not supported; convert the bag with `ros2 bag convert`", path.display())]
     UnsupportedCompression {
         /// The bag.
@@ -133,6 +136,25 @@ pub enum BagError {
         /// Length of the message in bytes.
         bytes: usize,
         /// What is wrong with the bytes.
+        reason: String,
+    },
+    /// A definition of a message type is not understood.
+    #[error("{place}: {source}")]
+    BadDefinition {
+        /// The file, or the bag and topic.
+        place: String,
+        /// What is wrong with it.
+        source: LayoutError,
+    },
+    /// A topic map, or what it asks for, is wrong.
+    #[error(transparent)]
+    Map(#[from] MapError),
+    /// A table that cannot be read.
+    #[error("{}: {reason}", path.display())]
+    BadTable {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and what to do.
         reason: String,
     },
     /// The place to write to is taken.

@@ -1,6 +1,7 @@
 //! Bags to recordings and back.
 //!
-//! A bag is a rosbag2 folder (`metadata.yaml` beside MCAP files) or a bare `.mcap` file. There are three levels:
+//! A bag is a rosbag2 folder (`metadata.yaml` beside MCAP or SQLite3 files, also compressed with zstd) or a bare `.mcap`
+//! or `.db3` file. There are three levels:
 //!
 //! - [`read_recording`] and [`write_recording`]: `/arm/state` and `/arm/orifice_command` as a
 //!   [`Recording`](excavator_model::recording::Recording), with a [`ReadReport`] of everything that was not perfect.
@@ -23,19 +24,25 @@
 
 pub mod cdr;
 mod container;
+pub mod dynamic;
 mod error;
+#[doc(hidden)]
+pub mod fuzzing;
 mod info;
 mod location;
+pub mod map;
 mod metadata;
 mod qos;
 mod raw_messages;
 mod reading;
+mod storage;
+pub mod table;
 mod topics;
 mod writing;
 
 pub use container::{Damage, DamageKind};
 pub use error::BagError;
-pub use info::{BagInfo, TopicInfo, info};
+pub use info::{BagInfo, EquationInfo, SignalInfo, SignalsInfo, StampTiming, Timing, TopicInfo, info};
 pub use qos::{Durability, History, Qos, Reliability};
 pub use raw_messages::{RawMessage, RawMessages, Topic};
 pub use reading::{Gap, ReadReport, read_recording};

@@ -1,4 +1,4 @@
-//! From a path to the MCAP files of a bag, in reading order.
+//! From a path to the files of a bag, in reading order.
 
 use std::path::{Path, PathBuf};
 
@@ -6,12 +6,14 @@ use crate::BagError;
 use crate::metadata::{FILE_NAME, Metadata, TopicMetadata};
 
 /// The first bytes of every SQLite database.
-const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
+pub(crate) const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
+/// How the files of bags end, also when compressed as a whole.
+const EXTENSIONS: [&str; 4] = [".mcap", ".db3", ".mcap.zstd", ".db3.zstd"];
 
 /// The files of one bag.
 #[derive(Debug)]
 pub(crate) struct BagFiles {
-    /// The MCAP files: in the order of the metadata, or by name without metadata.
+    /// MCAP or SQLite3 files: in the order of the metadata, or by name without metadata.
     pub files: Vec<PathBuf>,
     /// How many messages `metadata.yaml` promises.
     pub promised_messages: Option<u64>,
@@ -24,7 +26,6 @@ impl BagFiles {
             return Err(BagError::DoesNotExist { path: path.to_path_buf() });
         }
         if !path.is_dir() {
-            refuse_sqlite(path)?;
             return Ok(BagFiles { files: vec![path.to_path_buf()], promised_messages: None });
         }
         let metadata_path = path.join(FILE_NAME);
@@ -34,17 +35,17 @@ impl BagFiles {
 
 fn from_metadata(folder: &Path, metadata_path: &Path) -> Result<BagFiles, BagError> {
     let metadata = Metadata::read(metadata_path)?;
-    if metadata.storage_identifier != "mcap" {
-        let storage = match metadata.storage_identifier.as_str() {
-            "sqlite3" => "SQLite3".to_string(),
-            other => format!("\"{other}\""),
-        };
+    if !["mcap", "sqlite3"].contains(&metadata.storage_identifier.as_str()) {
+        let storage = format!("\"{}\"", metadata.storage_identifier);
         return Err(BagError::UnsupportedStorage { path: folder.to_path_buf(), storage });
     }
+    // What is compressed says so itself; the metadata only names a format that may be another than zstd.
     if let Some(mode) = metadata.compression_mode.filter(|mode| !mode.is_empty() && !mode.eq_ignore_ascii_case("none"))
     {
         let format = metadata.compression_format.unwrap_or_default();
-        return Err(BagError::UnsupportedCompression { path: folder.to_path_buf(), mode, format });
+        if !format.eq_ignore_ascii_case("zstd") {
+            return Err(BagError::UnsupportedCompression { path: folder.to_path_buf(), mode, format });
+        }
     }
     for topic in metadata.topics_with_message_count {
         let TopicMetadata { name, serialization_format } = topic.topic_metadata;
@@ -67,35 +68,37 @@ fn from_metadata(folder: &Path, metadata_path: &Path) -> Result<BagFiles, BagErr
 }
 
 /// The listed file. Early versions of rosbag2 wrote the path with the folder's name in front, and folders get renamed:
-/// so the bare file name counts too.
+/// so the bare file name counts too. Compressed files may be listed, or lie there, without or with their last extension.
 fn beside(folder: &Path, listed: &str) -> Option<PathBuf> {
     let as_written = folder.join(listed);
-    let by_name = Path::new(listed).file_name().map(|name| folder.join(name));
-    [Some(as_written), by_name].into_iter().flatten().find(|path| path.is_file())
+    let by_name = folder.join(Path::new(listed).file_name()?);
+    let mut packed = by_name.clone().into_os_string();
+    packed.push(".zstd");
+    let unpacked = by_name.with_extension("");
+    let is_packed = by_name.extension().is_some_and(|extension| extension == "zstd");
+    let others = if is_packed { unpacked } else { PathBuf::from(packed) };
+    [as_written, by_name, others].into_iter().find(|path| path.is_file())
 }
 
 fn from_folder(folder: &Path) -> Result<BagFiles, BagError> {
     let mut files = Vec::new();
-    let mut has_sqlite = false;
     for entry in std::fs::read_dir(folder).map_err(BagError::io("read", folder))? {
         let path = entry.map_err(BagError::io("read", folder))?.path();
-        match path.extension().and_then(|extension| extension.to_str()) {
-            Some("mcap") if path.is_file() => files.push(path),
-            Some("db3") => has_sqlite = true,
-            _ => {}
+        let name = path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
+        if EXTENSIONS.iter().any(|extension| name.ends_with(extension)) && path.is_file() {
+            files.push(path);
         }
     }
     if files.is_empty() {
-        return Err(if has_sqlite {
-            BagError::UnsupportedStorage { path: folder.to_path_buf(), storage: "SQLite3".to_string() }
-        } else {
-            BagError::NotABag {
-                path: folder.to_path_buf(),
-                reason: "the folder has neither metadata.yaml nor an .mcap file".to_string(),
-            }
+        return Err(BagError::NotABag {
+            path: folder.to_path_buf(),
+            reason: "the folder has neither metadata.yaml nor an .mcap or .db3 file".to_string(),
         });
     }
     files.sort_by_key(|path| natural_order(path));
+    // A compressed file beside the file that it was made from is the same data once more.
+    let plain: Vec<PathBuf> = files.clone();
+    files.retain(|path| path.extension().is_none_or(|end| end != "zstd") || !plain.contains(&path.with_extension("")));
     Ok(BagFiles { files, promised_messages: None })
 }
 
@@ -121,16 +124,13 @@ fn natural_order(path: &Path) -> Vec<(String, u64)> {
     parts
 }
 
-fn refuse_sqlite(path: &Path) -> Result<(), BagError> {
+/// The first bytes of a file, as many as it takes to know its format.
+pub(crate) fn first_bytes(path: &Path) -> Result<Vec<u8>, BagError> {
     use std::io::Read;
     let mut start = Vec::new();
     let file = std::fs::File::open(path).map_err(BagError::io("open", path))?;
     file.take(SQLITE_MAGIC.len() as u64).read_to_end(&mut start).map_err(BagError::io("read", path))?;
-    let is_sqlite = start == SQLITE_MAGIC || path.extension().is_some_and(|extension| extension == "db3");
-    if is_sqlite {
-        return Err(BagError::UnsupportedStorage { path: path.to_path_buf(), storage: "SQLite3".to_string() });
-    }
-    Ok(())
+    Ok(start)
 }
 
 #[cfg(test)]

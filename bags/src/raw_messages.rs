@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use bytes::Bytes;
 
-use crate::container::McapFile;
 use crate::location::BagFiles;
-use crate::{BagError, Damage, DamageKind, Qos};
+use crate::storage::{MessageDecompressor, StorageFile};
+use crate::{BagError, Damage, Qos};
 
 /// A topic as the bag defines it.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -45,25 +45,26 @@ pub struct RawMessage {
     pub log_time: u64,
     /// When the message was published, ns since the epoch; equal to `log_time` where the recorder does not know.
     pub publish_time: u64,
-    /// The message with its four bytes of encapsulation. A window into the decompressed chunk: cheap to clone, but it
+    /// The message with its four bytes of encapsulation. A window into the decompressed chunk of an MCAP file: cheap to clone, but it
     /// keeps the whole chunk in memory for as long as it lives.
     pub data: Bytes,
 }
 
 /// Iterator over all messages of a bag in the order in which they were written, file after file.
 ///
-/// Damage does not end the iteration; it is collected in [`RawMessages::damage`]. Memory holds one chunk at a time.
+/// Damage does not end the iteration; it is collected in [`RawMessages::damage`]. Memory holds one chunk of an MCAP file, or about 1 MB of a SQLite3 file, at a time.
 #[derive(Debug)]
 pub struct RawMessages {
     path: PathBuf,
-    waiting: VecDeque<McapFile>,
-    done: Vec<McapFile>,
-    unreadable: Vec<Damage>,
+    waiting: VecDeque<StorageFile>,
+    done: Vec<StorageFile>,
+    decompressor: MessageDecompressor,
     promised_messages: Option<u64>,
 }
 
 impl RawMessages {
-    /// Opens the bag at `path`: a rosbag2 folder or a bare `.mcap` file.
+    /// Opens the bag at `path`: a rosbag2 folder, or a bare `.mcap` or `.db3` file; MCAP or SQLite3, also compressed
+    /// with zstd by rosbag2.
     ///
     /// # Errors
     /// When there is no bag, or one of a kind that cannot be read: [`BagError::DoesNotExist`], [`BagError::NotABag`],
@@ -72,23 +73,15 @@ impl RawMessages {
     pub fn open(path: &Path) -> Result<Self, BagError> {
         let BagFiles { files, promised_messages } = BagFiles::locate(path)?;
         let mut waiting = VecDeque::new();
-        let mut unreadable = Vec::new();
         for file in &files {
-            match McapFile::open(file)? {
-                Some(open) => waiting.push_back(open),
-                None => {
-                    let lost_bytes = std::fs::metadata(file).map_or(0, |metadata| metadata.len());
-                    let kind = DamageKind::NotMcap;
-                    unreadable.push(Damage { file: file.clone(), offset: 0, lost_bytes, readable_until: None, kind });
-                }
-            }
+            waiting.push_back(StorageFile::open(file)?);
         }
-        if let (Some(first), true) = (unreadable.first(), waiting.is_empty()) {
-            let reason =
-                format!("{} ({} bytes) does not begin like an MCAP file", first.file.display(), first.lost_bytes);
-            return Err(BagError::NotABag { path: path.to_path_buf(), reason });
+        if !waiting.is_empty() && waiting.iter().all(StorageFile::is_unreadable) {
+            let damage: Vec<String> = waiting.iter().flat_map(StorageFile::damage).map(ToString::to_string).collect();
+            return Err(BagError::NotABag { path: path.to_path_buf(), reason: damage.join("; ") });
         }
-        Ok(RawMessages { path: path.to_path_buf(), waiting, done: Vec::new(), unreadable, promised_messages })
+        let decompressor = MessageDecompressor::default();
+        Ok(RawMessages { path: path.to_path_buf(), waiting, done: Vec::new(), decompressor, promised_messages })
     }
 
     /// The path that was opened.
@@ -100,7 +93,7 @@ impl RawMessages {
     /// summary; after the last message it is certainly all.
     pub fn topics(&self) -> Vec<Arc<Topic>> {
         let mut topics: Vec<Arc<Topic>> =
-            self.done.iter().chain(&self.waiting).flat_map(McapFile::topics).cloned().collect();
+            self.done.iter().chain(&self.waiting).flat_map(StorageFile::topics).cloned().collect();
         topics.sort_by(|a, b| a.name.cmp(&b.name));
         topics.dedup_by(|a, b| a.name == b.name);
         topics
@@ -108,8 +101,8 @@ impl RawMessages {
 
     /// The damage met so far; complete after the last message.
     pub fn damage(&self) -> Vec<Damage> {
-        let read = self.done.iter().chain(&self.waiting).flat_map(McapFile::damage);
-        self.unreadable.iter().chain(read).cloned().collect()
+        let read = self.done.iter().chain(&self.waiting).flat_map(StorageFile::damage);
+        read.cloned().chain(self.decompressor.damage(&self.path)).collect()
     }
 
     /// How many messages `metadata.yaml` promises; `None` without one.
@@ -125,7 +118,11 @@ impl Iterator for RawMessages {
         loop {
             let file = self.waiting.front_mut()?;
             match file.next_message() {
-                Ok(Some(message)) => return Some(Ok(message)),
+                Ok(Some(message)) => {
+                    if let Some(data) = self.decompressor.decompress(message.data.clone()) {
+                        return Some(Ok(RawMessage { data, ..message }));
+                    }
+                }
                 Ok(None) => self.done.extend(self.waiting.pop_front()),
                 Err(error) => {
                     // The operating system will say the same again: this file is over.

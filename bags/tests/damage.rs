@@ -173,5 +173,5 @@ fn split_bags_are_read_in_order_and_with_one_broken_part() {
     std::fs::write(path.join("bag_3.mcap"), "").unwrap();
     let (found, report) = read(&path);
     assert_eq!(found.len(), 1);
-    assert_eq!(report.damage[0].kind, DamageKind::NotMcap);
+    assert_eq!(report.damage[0].kind, DamageKind::UnknownFormat);
 }

@@ -173,7 +173,8 @@ fn paths_that_are_no_bags_say_so() {
     let database = folder.path().join("database.db3");
     std::fs::write(&database, "SQLite format 3\0").unwrap();
     let error = read(&database);
-    assert!(error.to_string().contains("SQLite3 storage is not supported yet"), "{error}");
+    assert!(matches!(error, BagError::NotABag { .. }), "{error}");
+    assert!(error.to_string().contains("is a SQLite3 file that cannot be read"), "{error}");
     let metadata = folder.path().join("metadata.yaml");
     std::fs::write(&metadata, "rosbag2_bagfile_information: [").unwrap();
     assert!(matches!(read(folder.path()), BagError::BadMetadata { .. }));

@@ -5,22 +5,10 @@
 mod support;
 
 use excavator_bags::{Compression, Topics, info, read_recording};
-use support::{recording, write_small_chunks};
+use support::{Numbers, recording, write_small_chunks};
 
 /// Broken bags per compression.
 const ROUNDS: usize = 1500;
-
-/// A generator of numbers that needs no crate: xorshift, Marsaglia 2003.
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 % limit as u64) as usize
-    }
-}
 
 #[test]
 fn flipped_bytes_and_cuts_anywhere_never_panic() {

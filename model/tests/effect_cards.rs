@@ -77,6 +77,23 @@ fn parameters_are_complete_and_start_within_their_bounds() {
     }
 }
 
+/// Names in the first column of the contract's table, several of them in a row where they belong together.
+#[test]
+fn the_catalogue_has_every_effect_of_the_contract() {
+    let Some(text) = common::contract("effects.md") else { return };
+    let rows = text.lines().filter(|line| line.starts_with("| ") && !line.contains("**"));
+    let names: Vec<&str> = rows
+        .filter_map(|line| line.split('|').nth(1))
+        .flat_map(|cell| cell.split(','))
+        .map(str::trim)
+        .filter(|name| *name != "effect")
+        .collect();
+    assert!(names.len() >= 28, "the table is not where it was: {names:?}");
+    for name in names {
+        assert!(find(name).is_ok(), "{name} is in the contract but not in the catalogue");
+    }
+}
+
 /// `arm.inertia`, `pump.bulk_modulus`: files and reports find parameters by these names.
 #[test]
 fn parameter_names_are_unique_with_every_effect_present() {

@@ -168,6 +168,69 @@ fn the_rounded_sign_is_smooth_at_any_speed() {
     }
 }
 
+/// Every effect, typical and five times as strong: into both ends at full opening, held commands that jump at 100 Hz.
+#[test]
+fn no_effect_stalls() {
+    let base = built_in("zx30u-arm").unwrap();
+    let mut worst = (0.0, String::new());
+    for &physics in excavator_model::effects::CATALOGUE {
+        for site in base.free_sites(physics) {
+            for strength in [1.0, 5.0] {
+                let mut model = common::with_typical(&base, physics, site);
+                for parameter in &mut model.effects.last_mut().unwrap().parameters {
+                    let card = parameter.card;
+                    parameter.value = (strength * parameter.value).clamp(card.minimum, card.maximum);
+                }
+                let start = common::at_rest(&System::new(&model));
+                let steadily = |_: usize, t: f64| if t < 3.0 { 1.1e-4 } else { -1.1e-4 };
+                let into_both_ends = common::driven(&model, 8.0, 1e-3, steadily, |_| 0.0);
+                let mut jumping = common::driven(&model, 3.0, 1e-2, |_, _| f64::NAN, |_| 0.0);
+                jumping.cylinders[0].orifice_command =
+                    jumping.time.iter().map(|t| [1.1e-4, 0.0, -1.1e-4, 0.0][((t * 2.0) as usize) % 4]).collect();
+                let label = common::label(&model, model.effects.len() - 1);
+                for (recording, most) in [(&into_both_ends, 2), (&jumping, 60)] {
+                    let (states, steps) = run(&model, recording, &start);
+                    assert!(steps < most * states.len(), "{strength} x {label}: {steps} steps for {}", states.len());
+                    let per_sample = steps as f64 / (most * states.len()) as f64;
+                    if per_sample > worst.0 {
+                        worst = (per_sample, format!("{strength} x {label}"));
+                    }
+                }
+            }
+        }
+    }
+    println!("nearest to stalling: {} with {:.2} of the steps allowed", worst.1, worst.0);
+}
+
+/// What each effect costs: time of the same simulation with it, relative to without. A measurement, not a test: run it
+/// alone on a quiet machine with `--ignored --nocapture`.
+#[test]
+#[ignore = "measures time"]
+fn cost_of_each_effect() {
+    let base = built_in("zx30u-arm").unwrap();
+    let time = |model: &Model| {
+        let recording = common::tour(model);
+        let start = common::at_rest(&System::new(model));
+        let clock = std::time::Instant::now();
+        let (states, steps) = run(model, &recording, &start);
+        (clock.elapsed().as_secs_f64(), steps as f64 / states.len() as f64)
+    };
+    for &physics in excavator_model::effects::CATALOGUE {
+        for site in base.free_sites(physics) {
+            let model = common::with_typical(&base, physics, site);
+            // In turns, so that what else the machine does meets both alike; the least of each is the least disturbed.
+            let (mut nominal, mut with, mut steps) = (f64::INFINITY, f64::INFINITY, 0.0);
+            for _ in 0..7 {
+                nominal = time(&base).0.min(nominal);
+                let (seconds, per_sample) = time(&model);
+                (with, steps) = (with.min(seconds), per_sample);
+            }
+            let label = common::label(&model, model.effects.len() - 1);
+            println!("{:.2} x {:.1} ms for 20 s, {steps:.2} steps per sample: {label}", with / nominal, nominal * 1e3);
+        }
+    }
+}
+
 /// A model that cannot be simulated says where and why in one line; it does not hang.
 #[test]
 fn nonsense_ends_with_a_reason() {

@@ -4,8 +4,8 @@
 mod common;
 
 use excavator_model::Model;
-use excavator_model::equations::System;
-use excavator_model::simulation::{InputSignals, Integrator, OutputSensitivity, Sensitivity, Tolerances};
+use excavator_model::equations::{Channel, System};
+use excavator_model::simulation::{InputSignals, Integrator, Sensitivity, Tolerances};
 
 const SAMPLES: usize = 800;
 
@@ -141,14 +141,15 @@ fn output_sensitivities_are_slopes() {
     let system = System::new(&model);
     let state = [1.4, 4.9, 0.2, -0.3, 1e6, 1e6, 1e6, 1e6, 1e6];
     for (cylinder, described) in model.machine.cylinders.iter().enumerate() {
-        let slopes = OutputSensitivity::of(&system, cylinder, &state);
+        let [(_, displacement_by_joint), _] = Channel::Displacement(cylinder).gradient(&system, &state);
+        let [(_, velocity_by_joint), (_, velocity_by_rate)] = Channel::Velocity(cylinder).gradient(&system, &state);
         let (joint, rate, step) = (state[cylinder], state[2 + cylinder], 1e-6);
         let linkage = &described.linkage;
         let by_joint = |of: &dyn Fn(f64) -> f64| (of(joint + step) - of(joint - step)) / (2.0 * step);
         let pairs = [
-            (slopes.displacement_by_joint, by_joint(&|q| linkage.displacement(q))),
-            (slopes.velocity_by_joint, by_joint(&|q| linkage.lever(q) * rate)),
-            (slopes.velocity_by_rate, linkage.lever(joint)),
+            (displacement_by_joint, by_joint(&|q| linkage.displacement(q))),
+            (velocity_by_joint, by_joint(&|q| linkage.lever(q) * rate)),
+            (velocity_by_rate, linkage.lever(joint)),
         ];
         for (found, wanted) in pairs {
             assert!((found - wanted).abs() < 1e-8, "{cylinder}: {found} {wanted}");

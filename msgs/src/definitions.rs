@@ -5,19 +5,54 @@ use crate::layout;
 /// What separates the definitions of a schema: exactly 80 `=`. Other lengths make `mcap-ros2-support` fail.
 pub const SEPARATOR: &str = "================================================================================";
 
-/// Every definition that this package uses: name as `package/Type`, text of the `.msg` file.
-const TEXTS: [(&str, &str); 8] = [
+/// Every definition that is known: name as `package/Type`, text of the `.msg` file. Those of other packages are for
+/// recordings of their topics: fields and constants as the packages of ROS 2 Jazzy have them.
+const TEXTS: [(&str, &str); 42] = [
     ("excavator_msgs/ArmState", include_str!("../msg/ArmState.msg")),
     ("excavator_msgs/CylinderEnergy", include_str!("../msg/CylinderEnergy.msg")),
     ("excavator_msgs/CylinderState", include_str!("../msg/CylinderState.msg")),
     ("excavator_msgs/EnergyState", include_str!("../msg/EnergyState.msg")),
     ("excavator_msgs/EnergyTerm", include_str!("../msg/EnergyTerm.msg")),
     ("excavator_msgs/OrificeCommand", include_str!("../msg/OrificeCommand.msg")),
-    ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"),
-    ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"),
+    ("builtin_interfaces/Duration", include_str!("../common_interfaces/builtin_interfaces/Duration.msg")),
+    ("builtin_interfaces/Time", include_str!("../common_interfaces/builtin_interfaces/Time.msg")),
+    ("diagnostic_msgs/DiagnosticArray", include_str!("../common_interfaces/diagnostic_msgs/DiagnosticArray.msg")),
+    ("diagnostic_msgs/DiagnosticStatus", include_str!("../common_interfaces/diagnostic_msgs/DiagnosticStatus.msg")),
+    ("diagnostic_msgs/KeyValue", include_str!("../common_interfaces/diagnostic_msgs/KeyValue.msg")),
+    ("geometry_msgs/Point", include_str!("../common_interfaces/geometry_msgs/Point.msg")),
+    ("geometry_msgs/Pose", include_str!("../common_interfaces/geometry_msgs/Pose.msg")),
+    ("geometry_msgs/PoseStamped", include_str!("../common_interfaces/geometry_msgs/PoseStamped.msg")),
+    ("geometry_msgs/Quaternion", include_str!("../common_interfaces/geometry_msgs/Quaternion.msg")),
+    ("geometry_msgs/Transform", include_str!("../common_interfaces/geometry_msgs/Transform.msg")),
+    ("geometry_msgs/TransformStamped", include_str!("../common_interfaces/geometry_msgs/TransformStamped.msg")),
+    ("geometry_msgs/Twist", include_str!("../common_interfaces/geometry_msgs/Twist.msg")),
+    ("geometry_msgs/TwistStamped", include_str!("../common_interfaces/geometry_msgs/TwistStamped.msg")),
+    ("geometry_msgs/Vector3", include_str!("../common_interfaces/geometry_msgs/Vector3.msg")),
+    ("geometry_msgs/Wrench", include_str!("../common_interfaces/geometry_msgs/Wrench.msg")),
+    ("geometry_msgs/WrenchStamped", include_str!("../common_interfaces/geometry_msgs/WrenchStamped.msg")),
+    ("rcl_interfaces/Log", include_str!("../common_interfaces/rcl_interfaces/Log.msg")),
+    ("rcl_interfaces/Parameter", include_str!("../common_interfaces/rcl_interfaces/Parameter.msg")),
+    ("rcl_interfaces/ParameterEvent", include_str!("../common_interfaces/rcl_interfaces/ParameterEvent.msg")),
+    ("rcl_interfaces/ParameterValue", include_str!("../common_interfaces/rcl_interfaces/ParameterValue.msg")),
+    ("rosgraph_msgs/Clock", include_str!("../common_interfaces/rosgraph_msgs/Clock.msg")),
+    ("sensor_msgs/FluidPressure", include_str!("../common_interfaces/sensor_msgs/FluidPressure.msg")),
+    ("sensor_msgs/Imu", include_str!("../common_interfaces/sensor_msgs/Imu.msg")),
+    ("sensor_msgs/JointState", include_str!("../common_interfaces/sensor_msgs/JointState.msg")),
+    ("sensor_msgs/Joy", include_str!("../common_interfaces/sensor_msgs/Joy.msg")),
+    ("sensor_msgs/Temperature", include_str!("../common_interfaces/sensor_msgs/Temperature.msg")),
+    ("std_msgs/Bool", include_str!("../common_interfaces/std_msgs/Bool.msg")),
+    ("std_msgs/Float32", include_str!("../common_interfaces/std_msgs/Float32.msg")),
+    ("std_msgs/Float64", include_str!("../common_interfaces/std_msgs/Float64.msg")),
+    ("std_msgs/Header", include_str!("../common_interfaces/std_msgs/Header.msg")),
+    ("std_msgs/Int32", include_str!("../common_interfaces/std_msgs/Int32.msg")),
+    ("std_msgs/Int64", include_str!("../common_interfaces/std_msgs/Int64.msg")),
+    ("std_msgs/String", include_str!("../common_interfaces/std_msgs/String.msg")),
+    ("std_msgs/UInt32", include_str!("../common_interfaces/std_msgs/UInt32.msg")),
+    ("std_msgs/UInt8", include_str!("../common_interfaces/std_msgs/UInt8.msg")),
+    ("tf2_msgs/TFMessage", include_str!("../common_interfaces/tf2_msgs/TFMessage.msg")),
 ];
 
-/// Text of the `.msg` file of one type, `None` for a type that this package does not use.
+/// Text of the `.msg` file of one type, `None` for a type that is not known.
 ///
 /// The name may be written `package/msg/Type` or `package/Type`.
 pub fn message_text(type_name: &str) -> Option<&'static str> {
@@ -26,7 +61,7 @@ pub fn message_text(type_name: &str) -> Option<&'static str> {
 }
 
 /// The `ros2msg` schema of a type: its definition followed by those of all types that it contains, each once and
-/// headed by [`SEPARATOR`] and `MSG: package/Type`. `None` for a type that this package does not use.
+/// headed by [`SEPARATOR`] and `MSG: package/Type`. `None` for a type that is not known.
 ///
 /// ```
 /// let schema = excavator_msgs::definitions::schema("excavator_msgs/msg/OrificeCommand");
@@ -86,7 +121,7 @@ mod tests {
         for (name, _) in TEXTS {
             assert!(schema(name).is_some(), "{name}");
         }
-        assert_eq!(schema("sensor_msgs/msg/JointState"), None);
+        assert_eq!(schema("sensor_msgs/msg/PointCloud2"), None);
         assert_eq!(schema(""), None);
     }
 }

@@ -7,6 +7,7 @@
 //! A `NaN` in any field means "not measured". All quantities are SI except temperatures, which are in °C.
 
 mod arm_state;
+pub mod common;
 mod cylinder_energy;
 mod cylinder_state;
 pub mod definitions;

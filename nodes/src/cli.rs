@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::ros::{Remap, RosError};
+
 /// Which physics is your hydraulic arm's model missing?
 ///
 /// Compare a model with recordings, see where it fails, learn which physical effect is missing, add it, and watch the
 /// error fall. Models are built-in names (zx30u-arm, zx30u, emps) or TOML files; bags are rosbag2 folders with MCAP
-/// storage or bare .mcap files.
+/// or SQLite3 storage, or bare .mcap or .db3 files. With a map, any topic or column can be a signal.
 #[derive(Debug, Parser)]
 #[command(name = "excavator", version)]
 pub struct Arguments {
@@ -32,8 +34,151 @@ pub enum Verb {
     Refine(RefineArguments),
     /// The catalogue of physical effects, or one of them in full.
     Effects(EffectsArguments),
-    /// What is in a bag.
+    /// What is in a bag: topics, clocks, signals, and what is missing for identification.
     Info(InfoArguments),
+    /// Make a bag of a table (CSV, MATLAB) or of other people's topics, through a map; or guess the map.
+    Import(ImportArguments),
+    /// Record topics into a bag.
+    Record(RecordArguments),
+    /// Play a bag.
+    Play(PlayArguments),
+    /// Simulator, energy monitor and recorder in one command.
+    Up(UpArguments),
+    /// A live ROS 2 node.
+    #[command(subcommand)]
+    Node(NodeVerb),
+}
+
+/// Live ROS 2 nodes. Each takes --ros-args (-r FROM:=TO, -r __node:=NAME, -r __ns:=NAMESPACE, -p NAME:=VALUE,
+/// --params-file FILE, --log-level LEVEL).
+#[derive(Debug, Subcommand)]
+pub enum NodeVerb {
+    /// A model as a machine: takes /arm/orifice_command, publishes /arm/state and /joint_states.
+    ArmSimulator,
+    /// Instruments of other makers as /arm/state: datagrams and topics, by a description (-p description:=FILE.toml).
+    ArmBridge,
+    /// The energy balance of the machine, state by state: takes /arm/state, publishes /arm/energy.
+    EnergyMonitor,
+    /// The action /identification/run: identifies a model from bags, with feedback, cancellable.
+    Identification,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum BagCompression {
+    /// Fastest to write.
+    None,
+    /// Fast, about half the size.
+    Lz4,
+    /// About a third of the size.
+    Zstd,
+}
+
+impl From<BagCompression> for excavator_bags::Compression {
+    fn from(compression: BagCompression) -> Self {
+        match compression {
+            BagCompression::None => excavator_bags::Compression::None,
+            BagCompression::Lz4 => excavator_bags::Compression::Lz4,
+            BagCompression::Zstd => excavator_bags::Compression::Zstd,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub struct RecordArguments {
+    /// Topics to record; all of them where neither names nor a pattern are given.
+    pub topics: Vec<String>,
+    /// Record all topics.
+    #[arg(short, long)]
+    pub all: bool,
+    /// Record topics whose whole name matches.
+    #[arg(short = 'e', long, value_name = "PATTERN")]
+    pub regex: Option<String>,
+    /// Leave out topics whose whole name matches.
+    #[arg(short = 'x', long, value_name = "PATTERN")]
+    pub exclude: Option<String>,
+    /// Record plumbing too (topics with a part that begins with an underscore).
+    #[arg(long)]
+    pub include_hidden_topics: bool,
+    /// Bag to write [default: rosbag2_ and the time].
+    #[arg(short, long, value_name = "BAG")]
+    pub output: Option<PathBuf>,
+    /// Stop after this time, s.
+    #[arg(short, long, value_name = "SECONDS", value_parser = positive)]
+    pub duration: Option<f64>,
+    /// Compression of the bag.
+    #[arg(long, value_enum, default_value_t = BagCompression::Zstd)]
+    pub compression: BagCompression,
+}
+
+#[derive(Debug, Args)]
+pub struct UpArguments {
+    /// Bag to write [default: rosbag2_ and the time].
+    #[arg(short, long, value_name = "BAG")]
+    pub output: Option<PathBuf>,
+    /// Do not record.
+    #[arg(long)]
+    pub no_record: bool,
+    /// Stop after this time, s.
+    #[arg(short, long, value_name = "SECONDS", value_parser = positive)]
+    pub duration: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct PlayArguments {
+    /// Bag.
+    pub bag: PathBuf,
+    /// How many times as fast as it was.
+    #[arg(short, long, default_value_t = 1.0, value_parser = positive)]
+    pub rate: f64,
+    /// Begin again at the end.
+    #[arg(short = 'l', long = "loop")]
+    pub repeat: bool,
+    /// Leave out the first seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = not_negative)]
+    pub start_offset: f64,
+    /// Play these topics only.
+    #[arg(long, num_args = 1.., value_name = "TOPIC")]
+    pub topics: Vec<String>,
+    /// Play topics under other names.
+    #[arg(short = 'm', long, num_args = 1.., value_name = "FROM:=TO")]
+    pub remap: Vec<String>,
+    /// Publish bag time on /clock, so many times per second.
+    #[arg(long, num_args = 0..=1, default_missing_value = "40", value_name = "HZ", value_parser = positive)]
+    pub clock: Option<f64>,
+    /// Wait for readers before the first message, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.5, value_parser = not_negative)]
+    pub delay: f64,
+    /// Begin paused. The space bar or SIGUSR1 pauses and goes on.
+    #[arg(short = 'p', long)]
+    pub start_paused: bool,
+}
+
+impl PlayArguments {
+    /// The rules of `--remap`.
+    pub fn remaps(&self) -> Result<Vec<Remap>, RosError> {
+        self.remap
+            .iter()
+            .map(|rule| match rule.split_once(":=") {
+                Some((from, to)) => Ok(Remap { node: None, from: from.to_string(), to: to.to_string() }),
+                None => Err(RosError::Arguments(format!("--remap {rule} is not of the form FROM:=TO"))),
+            })
+            .collect()
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    number(text, |value| value > 0.0, "a positive number")
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    number(text, |value| value >= 0.0, "zero or a positive number")
+}
+
+fn number(text: &str, fits: fn(f64) -> bool, what: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && fits(value) && value < 1e9 => Ok(value),
+        _ => Err(format!("{text} is not {what}")),
+    }
 }
 
 #[derive(Debug, Args)]
@@ -41,6 +186,14 @@ pub struct Json {
     /// Write the result as JSON to this file ("-": standard output, instead of the table).
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Mapping {
+    /// Topic map (TOML): which field of which topic, or which column of a table, is which signal. Without, the map.toml
+    /// in the bag's folder or FILE.map.toml beside the file is used, if there is one.
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -61,6 +214,8 @@ pub struct SimulateArguments {
     /// A bag whose inputs are used, or a profile (.toml) of sines, sweeps, trapezoids and holds.
     #[arg(long, value_name = "BAG|PROFILE")]
     pub input: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
     /// Bag to write.
     #[arg(short, long, value_name = "BAG")]
     pub output: PathBuf,
@@ -84,6 +239,8 @@ pub struct IdentifyArguments {
     /// Recordings.
     #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
     pub bag: Vec<PathBuf>,
+    #[command(flatten)]
+    pub mapping: Mapping,
     /// Model file to write.
     #[arg(short, long, value_name = "MODEL")]
     pub output: Option<PathBuf>,
@@ -102,6 +259,8 @@ pub struct CompareArguments {
     /// Recording.
     #[arg(long, value_name = "BAG")]
     pub bag: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
     /// Write a page with plots of every signal, residuals, and error against command, speed, pressure and position.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
@@ -117,6 +276,8 @@ pub struct Recordings {
     /// Recordings that evidence is taken from; never fitted.
     #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
     pub validation: Vec<PathBuf>,
+    #[command(flatten)]
+    pub mapping: Mapping,
 }
 
 #[derive(Debug, Args)]
@@ -167,8 +328,27 @@ pub struct EffectsArguments {
 
 #[derive(Debug, Args)]
 pub struct InfoArguments {
-    /// Bag.
+    /// Bag, or a table with a map.
     pub bag: PathBuf,
     #[command(flatten)]
+    pub mapping: Mapping,
+    #[command(flatten)]
     pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct ImportArguments {
+    /// Table (.csv, .tsv, .txt, .mat) or bag.
+    pub data: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    /// Print a map guessed from names, types, units and the shapes of the signals, with a reason for each line. Check it!
+    #[arg(long, conflicts_with = "map")]
+    pub guess: bool,
+    /// Cylinder that guessed signals belong to where their names do not say.
+    #[arg(long, value_name = "NAME", default_value = "arm", requires = "guess")]
+    pub cylinder: String,
+    /// Bag to write; with --guess, the file for the map.
+    #[arg(short, long, value_name = "BAG|MAP", required_unless_present = "guess")]
+    pub output: Option<PathBuf>,
 }

@@ -13,6 +13,8 @@ use excavator_model::effects::UnknownEffect;
 use excavator_model::simulation::{ProfileError, RunError};
 use excavator_model::{ModelError, SignalError};
 
+use crate::ros::RosError;
+
 /// Why a verb failed.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)]
@@ -40,6 +42,8 @@ pub enum VerbError {
     #[error(transparent)]
     UnknownEffect(#[from] UnknownEffect),
     #[error(transparent)]
+    Ros(#[from] RosError),
+    #[error(transparent)]
     Profile(#[from] ProfileError),
     #[error("cannot read {}: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
@@ -53,6 +57,20 @@ pub enum VerbError {
     Json(#[from] serde_json::Error),
     #[error("{0}")]
     Terminal(#[from] std::io::Error),
+    #[error("the {part} ended by itself: {status}")]
+    PartEnded { part: &'static str, status: String },
+    #[error("no bag is given; name at least one recording")]
+    NoBags,
     #[error("cannot add {0} twice")]
     AddedTwice(String),
+}
+
+impl VerbError {
+    /// 2 for wrong usage, 1 for everything that failed.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            VerbError::Ros(RosError::Arguments(_)) => 2,
+            _ => 1,
+        }
+    }
 }

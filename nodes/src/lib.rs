@@ -1,10 +1,19 @@
 //! The program `excavator`: verbs over recordings, and the made-up machine of its demo.
 
+mod arm_bridge;
+mod arm_simulator;
 mod cli;
+mod command;
 pub mod demo;
+mod energy_monitor;
 mod error;
+mod identification_node;
 mod output;
+mod play;
+mod record;
+pub mod ros;
 mod sources;
+mod up;
 mod verbs;
 
 use std::process::ExitCode;
@@ -13,12 +22,16 @@ use clap::Parser;
 
 /// Runs the command line of this process.
 pub fn run_command_line() -> ExitCode {
-    let arguments = cli::Arguments::parse();
-    match verbs::run(arguments.verb) {
+    let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    let outcome = ros::RosArguments::parse(&all).map_err(error::VerbError::from).and_then(|(ros, words)| {
+        let arguments = cli::Arguments::parse_from(words);
+        verbs::run(arguments.verb, &ros, ros::ros_words(&all))
+    });
+    match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("excavator: {error}");
-            ExitCode::from(1)
+            ExitCode::from(error.exit_code())
         }
     }
 }

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use excavator_bags::{Topics, read_recording};
+use excavator_bags::map::read_recording_or_mapped;
 use excavator_identification::gate;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse};
 use excavator_model::recording::Recording;
 
+use crate::cli::Mapping;
 use crate::error::VerbError;
 
 /// A model by its built-in name or file.
@@ -20,9 +21,10 @@ pub fn model(name: &str) -> Result<Model, VerbError> {
     Ok(parse(name, &text)?)
 }
 
-/// A recording, with what was wrong in its bag told on standard error, checked against the model.
-pub fn recording(path: &Path, model: &Model) -> Result<Recording, VerbError> {
-    let (recording, report) = read_recording(path, &Topics::default())?;
+/// A recording, with what was wrong in its data told on standard error, checked against the model. Bags of other people
+/// and tables are read through `map`, or the map that lies beside them.
+pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording, VerbError> {
+    let (recording, report) = read_recording_or_mapped(path, map.map.as_deref())?;
     for problem in report.problems() {
         eprintln!("{}: {problem}", path.display());
     }
@@ -31,8 +33,8 @@ pub fn recording(path: &Path, model: &Model) -> Result<Recording, VerbError> {
 }
 
 /// Several recordings.
-pub fn recordings(paths: &[impl AsRef<Path>], model: &Model) -> Result<Vec<Recording>, VerbError> {
-    paths.iter().map(|path| recording(path.as_ref(), model)).collect()
+pub fn recordings(paths: &[impl AsRef<Path>], map: &Mapping, model: &Model) -> Result<Vec<Recording>, VerbError> {
+    paths.iter().map(|path| recording(path.as_ref(), map, model)).collect()
 }
 
 /// Writes a text file.

@@ -8,9 +8,13 @@ use excavator_model::document::built_in;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+/// Draws for coverage: with 80, a parameter whose intervals are right falls below 88 % once in 170 runs.
+const COVERAGE_DRAWS: usize = 80;
+
+/// Draws for false claims.
 const DRAWS: usize = 40;
 
-/// 95 % intervals of every parameter contain the truth in 88 % to 100 % of the draws.
+/// 95 % intervals of every parameter contain the truth in at least 88 % of the draws.
 #[test]
 #[ignore = "minutes; tests/run --long"]
 fn intervals_cover() {
@@ -19,7 +23,9 @@ fn intervals_cover() {
     let unknown = model.unknown_parameters();
     let mut covered = vec![0; unknown.len()];
     let mut errors = vec![0.0; unknown.len()];
-    for draw in 0..DRAWS {
+    // Mean error in standard errors: the share of a miss that is bias rather than an interval too narrow.
+    let mut biases = vec![0.0; unknown.len()];
+    for draw in 0..COVERAGE_DRAWS {
         let mut generator = ChaCha8Rng::seed_from_u64(1000 + draw as u64);
         let sealed = Sealed::draw_without_effect(&mut generator).unwrap();
         let recording = plant::record(&sealed, &manoeuvre::identification(), &mut generator).unwrap();
@@ -28,16 +34,29 @@ fn intervals_cover() {
         for (number, &index) in unknown.iter().enumerate() {
             let (_, parameter) = result.model.parameters().nth(index).unwrap();
             let error = parameter.value - truth[index];
-            covered[number] += usize::from(error.abs() <= 1.96 * parameter.standard_error.unwrap());
-            errors[number] += (error / truth[index]).abs() / DRAWS as f64;
+            let standard_error = parameter.standard_error.unwrap();
+            covered[number] += usize::from(error.abs() <= 1.96 * standard_error);
+            biases[number] += error / standard_error / COVERAGE_DRAWS as f64;
+            errors[number] += (error / truth[index]).abs() / COVERAGE_DRAWS as f64;
         }
     }
     for (number, &index) in unknown.iter().enumerate() {
-        let share = covered[number] as f64 / DRAWS as f64;
-        println!("{:28} covered {:5.1} %, mean error {:.2} %", names[index], 100.0 * share, 100.0 * errors[number]);
+        let share = covered[number] as f64 / COVERAGE_DRAWS as f64;
+        println!(
+            "{:28} covered {:5.1} %, mean error {:.2} %, bias {:+.2} standard errors",
+            names[index],
+            100.0 * share,
+            100.0 * errors[number],
+            biases[number]
+        );
     }
     for (number, &index) in unknown.iter().enumerate() {
-        assert!(covered[number] as f64 >= 0.88 * DRAWS as f64, "{}: {} of {DRAWS}", names[index], covered[number]);
+        assert!(
+            covered[number] as f64 >= 0.88 * COVERAGE_DRAWS as f64,
+            "{}: {} of {COVERAGE_DRAWS}",
+            names[index],
+            covered[number]
+        );
     }
 }
 

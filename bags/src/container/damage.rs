@@ -10,9 +10,10 @@ use serde::Serialize;
 pub struct Damage {
     /// The file.
     pub file: PathBuf,
-    /// Where the damage begins, bytes from the start of the file.
+    /// Where the damage begins, bytes from the start of the file; 0 where SQLite does not tell.
     pub offset: u64,
-    /// Bytes lost: those that are there but of no use, plus those that are announced but not there.
+    /// Bytes lost: those that are there but of no use, plus those that are announced but not there; 0 where only the
+    /// messages lost can be counted.
     pub lost_bytes: u64,
     /// Log time of the last message before the damage, ns since the epoch; `None` when there is none.
     pub readable_until: Option<u64>,
@@ -24,8 +25,38 @@ pub struct Damage {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DamageKind {
-    /// The file is no MCAP at all, or empty.
-    NotMcap,
+    /// The file is neither MCAP nor SQLite3, or empty.
+    UnknownFormat,
+    /// A SQLite3 file of which not even the topics can be read.
+    BadDatabase {
+        /// What SQLite says.
+        reason: String,
+    },
+    /// A SQLite3 file that is shorter than its header says.
+    CutDatabase,
+    /// Rows of a SQLite3 file that cannot be read.
+    LostRows {
+        /// Number of the first of them; writers number rows from 1.
+        first: i64,
+        /// How many; `None` when nothing can be read after them, so that nobody knows.
+        messages: Option<u64>,
+        /// What SQLite says.
+        reason: String,
+    },
+    /// A file that was compressed as a whole and cannot be decompressed to its end.
+    BadCompression {
+        /// What zstd says.
+        reason: String,
+        /// Bytes that were decompressed before.
+        unpacked: u64,
+    },
+    /// Messages that were compressed one by one and cannot be decompressed.
+    BadMessages {
+        /// How many.
+        messages: u64,
+        /// What zstd says of the first.
+        reason: String,
+    },
     /// The file ends in the middle of a record, as after a power cut or an interrupted copy.
     CutOff {
         /// Messages that were still won from the cut chunk; without checksum, since that covers the whole chunk.
@@ -55,7 +86,13 @@ pub enum DamageKind {
 impl Damage {
     /// Whether the end of the file is missing, as opposed to a hole in the middle.
     pub fn is_truncation(&self) -> bool {
-        matches!(self.kind, DamageKind::CutOff { .. } | DamageKind::NotClosed)
+        matches!(
+            self.kind,
+            DamageKind::CutOff { .. }
+                | DamageKind::NotClosed
+                | DamageKind::CutDatabase
+                | DamageKind::BadCompression { .. }
+        )
     }
 }
 
@@ -64,8 +101,29 @@ impl fmt::Display for Damage {
         let Damage { file, offset, lost_bytes, kind, .. } = self;
         let file = file.display();
         match kind {
-            DamageKind::NotMcap => {
-                write!(f, "{file} is not an MCAP file: {lost_bytes} bytes left out")
+            DamageKind::UnknownFormat => {
+                write!(f, "{file} is neither an MCAP nor a SQLite3 file: {lost_bytes} bytes left out")
+            }
+            DamageKind::BadDatabase { reason } => {
+                write!(f, "{file} is a SQLite3 file that cannot be read, {lost_bytes} bytes lost: {reason}")
+            }
+            DamageKind::CutDatabase => {
+                write!(f, "{file} is cut off at byte {offset}: {lost_bytes} bytes are missing")
+            }
+            DamageKind::LostRows { first, messages: Some(messages), reason } => {
+                write!(f, "{file}: {messages} messages from number {first} on cannot be read: {reason}")
+            }
+            DamageKind::LostRows { first, messages: None, reason } => {
+                write!(f, "{file}: no message from number {first} on can be read: {reason}")
+            }
+            DamageKind::BadCompression { reason, unpacked } => {
+                write!(f, "{file} was decompressed to {unpacked} bytes, its end is lost: {reason}")
+            }
+            DamageKind::BadMessages { messages, reason } => {
+                write!(
+                    f,
+                    "{file}: {messages} compressed messages cannot be decompressed, {lost_bytes} bytes lost: {reason}"
+                )
             }
             DamageKind::CutOff { recovered_messages } => write!(
                 f,

@@ -29,11 +29,12 @@ pub(super) struct RecordFile {
 }
 
 impl RecordFile {
-    pub fn open(path: &Path) -> Result<RecordFile, BagError> {
+    /// Opens the file at `path`, which people know as `name`.
+    pub fn open(path: &Path, name: &Path) -> Result<RecordFile, BagError> {
         let file = File::open(path).map_err(BagError::io("open", path))?;
         let length = file.metadata().map_err(BagError::io("read", path))?.len();
         Ok(RecordFile {
-            path: path.to_path_buf(),
+            path: name.to_path_buf(),
             reader: BufReader::with_capacity(1 << 18, file),
             position: 0,
             length,

@@ -50,9 +50,10 @@ struct UnknownTopic {
 }
 
 impl McapFile {
-    /// Opens a file and reads its summary, if it has one; `None` when it is no MCAP file.
-    pub fn open(path: &Path) -> Result<Option<McapFile>, BagError> {
-        let mut file = RecordFile::open(path)?;
+    /// Opens the file at `path`, which people know as `name`, and reads its summary, if it has one; `None` when it is no
+    /// MCAP file.
+    pub fn open(path: &Path, name: &Path) -> Result<Option<McapFile>, BagError> {
+        let mut file = RecordFile::open(path, name)?;
         if file.read(mcap::MAGIC.len() as u64)? != mcap::MAGIC {
             return Ok(None);
         }

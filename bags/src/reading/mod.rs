@@ -8,4 +8,6 @@ mod state_table;
 mod topic_check;
 
 pub use read_recording::read_recording;
+pub(crate) use read_recording::{TopicCounts, truncated_after};
 pub use report::{Gap, ReadReport};
+pub(crate) use state_table::{count_late, gaps};

@@ -77,7 +77,7 @@ fn no_state(messages: &RawMessages, topics: &Topics, report: &ReadReport) -> Bag
 }
 
 /// Seconds from the first message of the bag to the last before the first missing end of a file.
-fn truncated_after(damage: &[Damage], first_log_time: Option<u64>) -> Option<f64> {
+pub(crate) fn truncated_after(damage: &[Damage], first_log_time: Option<u64>) -> Option<f64> {
     let cut = damage.iter().find(|damage| damage.is_truncation())?;
     let nanoseconds = cut.readable_until.zip(first_log_time).map_or(0, |(until, first)| until.saturating_sub(first));
     Some(nanoseconds as f64 / 1e9)
@@ -86,17 +86,19 @@ fn truncated_after(damage: &[Damage], first_log_time: Option<u64>) -> Option<f64
 /// Messages per topic. Counted per shared [`Topic`] first, since a look-up by name for every message costs more than
 /// decompressing it.
 #[derive(Default)]
-struct TopicCounts(Vec<(Arc<Topic>, u64)>);
+pub(crate) struct TopicCounts(Vec<(Arc<Topic>, u64)>);
 
 impl TopicCounts {
-    fn count(&mut self, message: &RawMessage) {
+    /// Counts one message.
+    pub fn count(&mut self, message: &RawMessage) {
         match self.0.iter_mut().find(|(topic, _)| Arc::ptr_eq(topic, &message.topic)) {
             Some((_, count)) => *count += 1,
             None => self.0.push((Arc::clone(&message.topic), 1)),
         }
     }
 
-    fn write_to(self, report: &mut ReadReport) {
+    /// Enters the counts into the report.
+    pub fn write_to(self, report: &mut ReadReport) {
         for (topic, count) in self.0 {
             *report.messages.entry(topic.name.clone()).or_default() += count;
         }

@@ -47,6 +47,8 @@ pub struct ReadReport {
     pub truncated_after: Option<f64>,
     /// Messages that `metadata.yaml` promises and that are not there; 0 without metadata.
     pub missing_messages: u64,
+    /// What a map or a table could not give, one line each.
+    pub notes: Vec<String>,
 }
 
 impl ReadReport {
@@ -90,6 +92,7 @@ impl ReadReport {
             let names = self.commands_without_cylinder.join(", ");
             lines.push(format!("commands for {names} are not used: no state message has such a cylinder"));
         }
+        lines.extend(self.notes.iter().cloned());
         lines
     }
 }

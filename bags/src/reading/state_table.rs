@@ -54,16 +54,17 @@ impl StateTable {
             self.repeated_cylinders += 1;
             return;
         }
+        // In message order, as the columns; the command comes in messages of its own.
         let values = [
-            (&mut cylinder.joint_angle, state.joint_angle),
-            (&mut cylinder.displacement, state.displacement),
-            (&mut cylinder.velocity, state.velocity),
-            (&mut cylinder.cap_pressure, state.cap_pressure),
-            (&mut cylinder.rod_pressure, state.rod_pressure),
-            (&mut cylinder.orifice_area, state.orifice_area),
-            (&mut cylinder.rod_force, state.rod_force),
+            state.joint_angle,
+            state.displacement,
+            state.velocity,
+            state.cap_pressure,
+            state.rod_pressure,
+            state.orifice_area,
+            state.rod_force,
         ];
-        for (column, value) in values {
+        for (column, value) in cylinder.columns_mut().into_iter().zip(values) {
             // Rows of messages without this cylinder.
             column.resize(row, f64::NAN);
             push_finite(column, value, &mut self.infinite_values);
@@ -84,7 +85,7 @@ impl StateTable {
         report.duplicates = (self.stamps.len() - order.len()) as u64;
         let samples = self.stamps.len();
         for cylinder in &mut self.cylinders {
-            for column in measured_columns(cylinder) {
+            for column in cylinder.columns_mut() {
                 column.resize(samples, f64::NAN);
             }
         }
@@ -93,12 +94,9 @@ impl StateTable {
             self.stamps = order.iter().map(|&row| self.stamps[row]).collect();
             let shared =
                 [&mut self.pump_pressure, &mut self.tank_pressure, &mut self.pump_flow, &mut self.oil_temperature];
-            for column in shared.into_iter().chain(self.cylinders.iter_mut().flat_map(measured_columns)) {
+            for column in shared.into_iter().chain(self.cylinders.iter_mut().flat_map(CylinderSignals::columns_mut)) {
                 *column = order.iter().map(|&row| column[row]).collect();
             }
-        }
-        for cylinder in &mut self.cylinders {
-            cylinder.orifice_command = vec![f64::NAN; self.stamps.len()];
         }
         let start = self.stamps.first().copied().unwrap_or_default();
         // Division, not multiplication by 1e-9: it gives the double nearest to the decimal number.
@@ -118,25 +116,13 @@ impl StateTable {
     }
 }
 
-fn measured_columns(cylinder: &mut CylinderSignals) -> [&mut Vec<f64>; 7] {
-    [
-        &mut cylinder.joint_angle,
-        &mut cylinder.displacement,
-        &mut cylinder.velocity,
-        &mut cylinder.cap_pressure,
-        &mut cylinder.rod_pressure,
-        &mut cylinder.orifice_area,
-        &mut cylinder.rod_force,
-    ]
-}
-
 fn push_finite(column: &mut Vec<f64>, value: f64, infinite_values: &mut u64) {
     *infinite_values += u64::from(value.is_infinite());
     column.push(if value.is_infinite() { f64::NAN } else { value });
 }
 
 /// How many stamps are smaller than one before them.
-pub(super) fn count_late(stamps: &[i64]) -> u64 {
+pub(crate) fn count_late(stamps: &[i64]) -> u64 {
     let mut latest = i64::MIN;
     let mut late = 0;
     for &stamp in stamps {
@@ -154,7 +140,8 @@ fn rows_by_stamp(stamps: &[i64]) -> Vec<usize> {
     rows
 }
 
-fn gaps(recording: &Recording) -> Vec<Gap> {
+/// Pauses of the recording's clock.
+pub(crate) fn gaps(recording: &Recording) -> Vec<Gap> {
     let limit = GAP_FACTOR * recording.sample_interval();
     let steps = recording.time.windows(2).map(|pair| Gap { after: pair[0], length: pair[1] - pair[0] });
     steps.filter(|step| step.length > limit).collect()

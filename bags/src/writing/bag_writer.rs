@@ -149,6 +149,18 @@ impl BagWriter {
         Ok(())
     }
 
+    /// Sets a pair of `custom_data` in `metadata.yaml`, which `ros2 bag info` shows.
+    pub fn set_custom_data(&mut self, key: &str, value: &str) {
+        self.custom_data.insert(key.to_string(), value.to_string());
+    }
+
+    /// Sets the quality of service that `metadata.yaml` tells for a topic, for publishers that came later.
+    pub fn set_qos(&mut self, topic: TopicId, qos: Vec<Qos>) {
+        if let Some(written) = self.topics.get_mut(topic.0) {
+            written.topic.qos = qos;
+        }
+    }
+
     /// Closes the chunk and hands everything to the operating system, so that it survives the end of this process.
     ///
     /// # Errors

@@ -4,7 +4,9 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{BagWriter, Compression, Qos, TopicToWrite, Topics, WriteOptions, cdr, write_recording};
+use excavator_bags::{
+    BagWriter, Compression, Qos, RawMessages, TopicToWrite, Topics, WriteOptions, cdr, write_recording,
+};
 use excavator_model::recording::Recording;
 use excavator_msgs::{ArmState, CylinderState, Header, Message, OrificeCommand, Time};
 
@@ -114,4 +116,74 @@ pub fn shared(what: &str) -> Option<PathBuf> {
     }
     eprintln!("skipped: {} does not exist (set EXCAVATOR_SHARED to the folder of shared files)", path.display());
     None
+}
+
+/// Writes the messages of a bag as a SQLite3 file of rosbag2, as version 4 of its tables has them.
+pub fn to_sqlite(bag: &Path, database: &Path) {
+    let mut connection = rusqlite::Connection::open(database).unwrap();
+    connection
+        .execute_batch(
+            "CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);
+             CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,
+                 serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL,
+                 type_description_hash TEXT NOT NULL);
+             CREATE TABLE message_definitions(id INTEGER PRIMARY KEY, topic_type TEXT NOT NULL, encoding TEXT NOT NULL,
+                 encoded_message_definition TEXT NOT NULL, type_description_hash TEXT NOT NULL);
+             CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL,
+                 data BLOB NOT NULL);
+             CREATE INDEX timestamp_idx ON messages (timestamp ASC);
+             INSERT INTO schema VALUES (4, 'jazzy');",
+        )
+        .unwrap();
+    let transaction = connection.transaction().unwrap();
+    let mut topics: Vec<String> = Vec::new();
+    for message in RawMessages::open(bag).unwrap() {
+        let message = message.unwrap();
+        let topic = &message.topic;
+        let id = match topics.iter().position(|name| *name == topic.name) {
+            Some(index) => index + 1,
+            None => {
+                topics.push(topic.name.clone());
+                transaction
+                    .execute(
+                        "INSERT INTO topics VALUES (?1, ?2, ?3, ?4, ?5, '')",
+                        rusqlite::params![
+                            topics.len() as i64,
+                            topic.name,
+                            topic.type_name,
+                            topic.message_encoding,
+                            topic.offered_qos_profiles
+                        ],
+                    )
+                    .unwrap();
+                transaction
+                    .execute(
+                        "INSERT INTO message_definitions VALUES (?1, ?2, ?3, ?4, '')",
+                        rusqlite::params![topics.len() as i64, topic.type_name, topic.schema_encoding, topic.schema],
+                    )
+                    .unwrap();
+                topics.len()
+            }
+        };
+        transaction
+            .execute(
+                "INSERT INTO messages(topic_id, timestamp, data) VALUES (?1, ?2, ?3)",
+                rusqlite::params![id as i64, message.log_time as i64, message.data.as_ref()],
+            )
+            .unwrap();
+    }
+    transaction.commit().unwrap();
+}
+
+/// A generator of numbers that needs no crate: xorshift, Marsaglia 2003.
+pub struct Numbers(pub u64);
+
+impl Numbers {
+    /// A number from 0 to `limit` - 1.
+    pub fn below(&mut self, limit: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % limit as u64) as usize
+    }
 }

@@ -1,12 +1,12 @@
 //! Effects that a model may be missing, and their fits.
 
-use excavator_model::effects::{self, Effect, Family, Kind, Site, Start};
+use excavator_model::effects::{self, Effect, Family, Site};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelError};
 
 use super::Evidence;
+use super::starts::starts;
 use crate::fit::{Fit, FitError, FitSettings, fit};
-use crate::regression::{WeakFormSettings, weak_form};
 
 /// A candidate that was tried.
 #[derive(Debug, Clone)]
@@ -59,8 +59,10 @@ pub enum CandidateError {
     Fit(#[from] FitError),
 }
 
-/// Fits `model` with one more effect: from each of the effect's start values, and from what a regression makes of them,
-/// a few steps, then the best of them to the end.
+/// Fits `model` with one more effect: a few steps from each start, then the best of them to the end.
+///
+/// # Errors
+/// [`CandidateError`].
 pub(crate) fn fit_addition(
     model: &Model,
     physics: &'static dyn Effect,
@@ -68,84 +70,41 @@ pub(crate) fn fit_addition(
     recordings: &[&Recording],
     settings: &FitSettings,
 ) -> Result<Fit, CandidateError> {
+    let trial = try_starts(model, physics, site, recordings, &FitSettings { maximum_steps: 2, ..*settings })?;
+    Ok(fit(&trial.model, recordings, settings)?)
+}
+
+/// The best of short fits from all starts of an addition.
+///
+/// # Errors
+/// [`CandidateError`].
+pub(super) fn try_starts(
+    model: &Model,
+    physics: &'static dyn Effect,
+    site: Site,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+) -> Result<Fit, CandidateError> {
     let extended = model.with_effect(physics, site)?;
-    // A regression on the equations finds linear coefficients without a search, however far they are from any start.
-    let quick = WeakFormSettings { rounds: 1, with_errors: false, ..WeakFormSettings::default() };
-    let plain = starts(&extended, recordings);
-    let regressed = plain
-        .iter()
-        .filter_map(|start| weak_form(start, recordings, &quick).ok())
-        .map(|regression| within_bounds(regression.model));
-    let trial_settings = FitSettings { maximum_steps: 2, ..*settings };
+    let starts = starts(&extended, recordings);
+    let regressed = starts.len() / 2;
     let mut best: Option<Fit> = None;
     let mut failure = None;
-    for (number, start) in regressed.chain(plain.iter().cloned()).enumerate() {
+    for (number, start) in starts.iter().enumerate() {
         // Where a regression already led below the model without the effect, the plain starts can only cost time.
         let promising = best.as_ref().is_some_and(|best| best.loss() < settings.give_up_above);
-        if promising && settings.give_up_above.is_finite() && number >= plain.len() {
+        if promising && settings.give_up_above.is_finite() && number >= regressed {
             break;
         }
-        match fit(&start, recordings, &trial_settings) {
+        match fit(start, recordings, settings) {
             Ok(trial) if best.as_ref().is_none_or(|best| trial.loss() < best.loss()) => best = Some(trial),
             Ok(_) => {}
             Err(error) => failure = Some(error),
         }
     }
     match (best, failure) {
-        (Some(best), _) => Ok(fit(&best.model, recordings, settings)?),
+        (Some(best), _) => Ok(best),
         (None, Some(error)) => Err(error.into()),
         (None, None) => Err(FitError::TooShort.into()),
     }
-}
-
-/// Unknown parameters moved to the nearest possible value.
-fn within_bounds(mut model: Model) -> Model {
-    for parameter in model.parameters_mut().filter(|parameter| !parameter.known) {
-        parameter.value = parameter.value.clamp(parameter.card.minimum, parameter.card.maximum);
-    }
-    model
-}
-
-/// The model with the last effect's parameters at each combination of their start values.
-fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
-    let mut starts = vec![model.clone()];
-    let Some(last) = model.effects.last() else { return starts };
-    for (number, parameter) in last.parameters.iter().enumerate() {
-        let values: Vec<f64> = match parameter.card.start {
-            Start::At(values) => values.to_vec(),
-            Start::PumpPressureQuantiles(levels) => {
-                levels.iter().map(|&level| pump_pressure(recordings, level)).collect()
-            }
-        };
-        let values: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
-        if parameter.card.kind != Kind::Shape && values.len() < 2 || values.is_empty() {
-            continue;
-        }
-        starts = starts
-            .iter()
-            .flat_map(|start| {
-                values.iter().map(|&value| {
-                    let mut start = start.clone();
-                    if let Some(effect) = start.effects.last_mut() {
-                        effect.parameters[number].value = value;
-                    }
-                    start
-                })
-            })
-            .collect();
-    }
-    starts
-}
-
-fn pump_pressure(recordings: &[&Recording], level: f64) -> f64 {
-    let mut values: Vec<f64> = recordings
-        .iter()
-        .flat_map(|recording| recording.pump_pressure.iter().copied())
-        .filter(|value| value.is_finite())
-        .collect();
-    if values.is_empty() {
-        return f64::NAN;
-    }
-    let position = ((values.len() - 1) as f64 * level) as usize;
-    *values.select_nth_unstable_by(position, f64::total_cmp).1
 }

@@ -1,15 +1,12 @@
 //! From recordings to a verdict.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use excavator_model::Model;
-use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
-use rayon::prelude::*;
 
-use super::candidate::{CandidateError, fit_addition};
-use super::{Candidate, DiagnosisSettings, Share, Unexplained, additions, compare_losses, residual_map, unexplained};
-use crate::fit::{Fit, FitError, FitSettings, evaluate, fit};
+use super::candidate::CandidateError;
+use super::race::{Race, Round};
+use super::{Candidate, DiagnosisSettings, Share, Unexplained, additions, residual_map, unexplained};
+use crate::fit::{Fit, FitError, evaluate, fit};
 use crate::regression::{RegressionError, WeakFormSettings, weak_form};
 
 /// What is to be thought of a model.
@@ -103,10 +100,8 @@ pub fn diagnose(
         let start = 0.15 + 0.8 * chain.len() as f64 / settings.most_effects as f64;
         let span = 0.8 / settings.most_effects as f64;
         let wanted = additions(&base.model);
-        let (tried, failed) =
-            try_all(base, base_validation, &wanted, identification, validation, settings, &|what, fraction| {
-                progress(what, start + span * fraction);
-            });
+        let race = Race { base, base_validation, identification, validation, settings };
+        let (tried, failed) = race.run(&wanted, &|what, fraction| progress(what, start + span * fraction))?;
         let best = tried.iter().find(|candidate| candidate.accepted).cloned();
         if first_round.is_none() {
             first_round = Some((tried, failed));
@@ -176,84 +171,4 @@ pub fn normalised_error(fit: &Fit, recordings: &[&Recording]) -> f64 {
         })
         .collect();
     errors.iter().sum::<f64>() / errors.len() as f64
-}
-
-/// Candidates that were fitted, best on validation first, and those that could not be.
-type Round = (Vec<Candidate>, Vec<(String, CandidateError)>);
-
-/// Fits every addition, best on validation first.
-fn try_all(
-    base: &Fit,
-    base_validation: &Fit,
-    wanted: &[(&'static dyn Effect, Site)],
-    identification: &[&Recording],
-    validation: &[&Recording],
-    settings: &DiagnosisSettings,
-    progress: &(dyn Fn(&str, f64) + Sync),
-) -> Round {
-    let done = AtomicUsize::new(0);
-    let results: Vec<(String, Result<Candidate, CandidateError>)> = wanted
-        .par_iter()
-        .map(|&(physics, site)| {
-            let place = excavator_model::site_name(&base.model.machine, site).to_string();
-            let name = format!("{}@{place}", physics.card().name);
-            let candidate = try_one(base, base_validation, physics, site, place, identification, validation, settings);
-            progress(&name, (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / wanted.len() as f64);
-            (name, candidate)
-        })
-        .collect();
-    let mut tried = Vec::new();
-    let mut failed = Vec::new();
-    for (name, result) in results {
-        match result {
-            Ok(candidate) => tried.push(candidate),
-            Err(error) => failed.push((name, error)),
-        }
-    }
-    tried.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
-    mark_ties(&mut tried, settings);
-    (tried, failed)
-}
-
-#[allow(clippy::too_many_arguments)]
-fn try_one(
-    base: &Fit,
-    base_validation: &Fit,
-    physics: &'static dyn Effect,
-    site: Site,
-    place: String,
-    identification: &[&Recording],
-    validation: &[&Recording],
-    settings: &DiagnosisSettings,
-) -> Result<Candidate, CandidateError> {
-    // A candidate that has gained nothing after a few steps will not be named; its fit need not be finished.
-    let give_up_above = base.loss() - settings.least_gain / 4.0;
-    let patience = FitSettings { give_up_above, ..settings.fit };
-    let fit = fit_addition(&base.model, physics, site, identification, &patience)?;
-    let validation = evaluate(&fit.model, validation, &settings.fit)?;
-    let evidence = compare_losses(base_validation, &validation);
-    let identification_gain = compare_losses(base, &fit).gain;
-    let accepted = evidence.gain >= settings.least_gain
-        && evidence.significance >= settings.least_significance
-        && identification_gain >= settings.least_gain / 2.0;
-    Ok(Candidate {
-        physics,
-        site,
-        place,
-        fit,
-        validation,
-        evidence,
-        identification_gain,
-        accepted,
-        tied_with_first: false,
-    })
-}
-
-fn mark_ties(candidates: &mut [Candidate], settings: &DiagnosisSettings) {
-    let Some((first, others)) = candidates.split_first_mut() else { return };
-    for other in others.iter_mut().filter(|candidate| candidate.accepted) {
-        let lead = compare_losses(&other.validation, &first.validation);
-        other.tied_with_first = lead.gain < settings.tie_gain || lead.significance < settings.tie_significance;
-        first.tied_with_first |= other.tied_with_first;
-    }
 }

@@ -3,8 +3,10 @@
 mod candidate;
 mod diagnose;
 mod evidence;
+mod race;
 mod residual_map;
 mod settings;
+mod starts;
 
 pub(crate) use candidate::fit_addition;
 pub use candidate::{Candidate, CandidateError, additions};

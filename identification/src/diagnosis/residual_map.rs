@@ -2,7 +2,7 @@
 
 use excavator_model::Model;
 use excavator_model::recording::Recording;
-use excavator_model::simulation::InputSignals;
+use excavator_model::simulation::{InputSignals, undistorted};
 
 use crate::regression::{EquationKind, RegressionError, WeakFormSettings, observe, weak_residuals};
 
@@ -61,7 +61,7 @@ fn points(model: &Model, recordings: &[&Recording]) -> Result<Vec<Point>, Regres
     let settings = WeakFormSettings { velocity_guard: 0.0, ..WeakFormSettings::default() };
     let mut points = Vec::new();
     for recording in recordings {
-        let observation = observe(model, recording)?;
+        let observation = observe(model, &undistorted(model, recording))?;
         let inputs = InputSignals::from_recording(model, recording)?;
         for residual in weak_residuals(model, recording, &settings)? {
             let cylinder = match residual.kind {

@@ -6,7 +6,7 @@ mod output_error;
 mod segments;
 mod settings;
 
-pub use instruments::{Instrument, Quantity, instruments, standard_deviation};
+pub use instruments::{Instrument, instruments, standard_deviation};
 pub use output_error::{Fit, FitError, evaluate, fit};
 pub use segments::{Segment, SegmentedRecording};
 pub use settings::FitSettings;

@@ -38,6 +38,8 @@ impl EquationKind {
 pub struct Term {
     /// Order of the derivative, 1 or 2.
     pub order: usize,
+    /// The sensor whose noise the quantity carries; a joint's or a piston's position goes by [`Sensor::Velocity`].
+    pub sensor: Sensor,
     /// The quantity at each sample, as measured.
     pub quantity: Vec<f64>,
     /// Storage c at each sample.
@@ -234,6 +236,7 @@ pub fn equations(
             .map(|(other, track)| (other, parameters_only(track)))
             .map(|(other, track)| Term {
                 order: 2,
+                sensor: Sensor::Velocity(other),
                 quantity: observation.cylinders[other].joint.clone(),
                 storage: track.value,
                 by_parameter: track.by_parameter,
@@ -262,12 +265,14 @@ pub fn equations(
             let (flow, rest_by_sensor) = split(flow);
             let displaced = Term {
                 order: 1,
+                sensor: Sensor::Velocity(index),
                 quantity: cylinder.displacement.clone(),
                 storage: vec![area; samples],
                 by_parameter: vec![Vec::new(); fitted.len()],
             };
             let compressed = Term {
                 order: 1,
+                sensor: if side == 0 { Sensor::CapPressure(index) } else { Sensor::RodPressure(index) },
                 quantity: cylinder.pressures[side].clone(),
                 storage: compliance.value,
                 by_parameter: compliance.by_parameter,
@@ -288,6 +293,7 @@ pub fn equations(
             kind: EquationKind::PumpContinuity,
             terms: vec![Term {
                 order: 1,
+                sensor: Sensor::PumpPressure,
                 quantity: observation.pump_pressure.clone(),
                 storage: pump_compliance.value,
                 by_parameter: pump_compliance.by_parameter,

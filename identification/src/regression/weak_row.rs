@@ -136,7 +136,12 @@ pub(super) fn weak_row(
             deviation * deviation * weights.iter().map(|weight| weight * weight).sum::<f64>()
         })
         .sum();
-    Some(WeakRow { residual, noise: variance.sqrt(), size: size.sqrt(), regressors })
+    // Rates of storage look beyond the window, where a signal may have ended.
+    let whole = residual.is_finite()
+        && variance > 0.0
+        && variance.is_finite()
+        && regressors.iter().all(|slope: &f64| slope.is_finite());
+    whole.then(|| WeakRow { residual, noise: variance.sqrt(), size: size.sqrt(), regressors })
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -150,17 +155,12 @@ fn add_noise(
     sensors: &[Sensor],
     by_sensor: &mut [Vec<f64>],
 ) {
-    let (wanted, cylinder) = match (equation.kind, term.order) {
-        // Storage terms of motion are in joint coordinates of some cylinder; noise of a coupled joint is counted with
-        // the equation's own, which is of the same size.
-        (EquationKind::Motion(c), _) => (Sensor::Velocity(c), Some(c)),
-        (EquationKind::CapContinuity(c), _) if is_displacement(term, observation, c) => (Sensor::Velocity(c), None),
-        (EquationKind::RodContinuity(c), _) if is_displacement(term, observation, c) => (Sensor::Velocity(c), None),
-        (EquationKind::CapContinuity(c), _) => (Sensor::CapPressure(c), None),
-        (EquationKind::RodContinuity(c), _) => (Sensor::RodPressure(c), None),
-        (EquationKind::PumpContinuity, _) => (Sensor::PumpPressure, None),
+    // Storage terms of motion are in joint coordinates of some cylinder; continuity's displacement is the piston's own.
+    let cylinder = match (equation.kind, term.sensor) {
+        (EquationKind::Motion(_), Sensor::Velocity(c)) => Some(c),
+        _ => None,
     };
-    let Some(position) = sensors.iter().position(|sensor| *sensor == wanted) else { return };
+    let Some(position) = sensors.iter().position(|sensor| *sensor == term.sensor) else { return };
     let total = &mut by_sensor[position];
     total.resize(weights.len(), 0.0);
     for (offset, (slot, weight)) in total.iter_mut().zip(weights).enumerate() {
@@ -170,9 +170,4 @@ fn add_noise(
         });
         *slot += weight * factor;
     }
-}
-
-fn is_displacement(term: &Term, observation: &Observation, cylinder: usize) -> bool {
-    term.quantity.first().map(|value| value.to_bits())
-        == observation.cylinders[cylinder].displacement.first().map(|value| value.to_bits())
 }

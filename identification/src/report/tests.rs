@@ -10,7 +10,9 @@ use nalgebra::DMatrix;
 
 use super::{comparison_page, diagnosis_page, refinement_page, verdict_sentence};
 use crate::diagnosis::{Candidate, Diagnosis, Evidence, Share, Unexplained, Verdict};
-use crate::fit::{Fit, Instrument, Quantity};
+use excavator_model::equations::Channel;
+
+use crate::fit::{Fit, Instrument};
 use crate::refinement::{Refinement, Step};
 use crate::validation::{Comparison, SignalComparison};
 
@@ -61,7 +63,7 @@ fn fit_of(model: &Model, error: f64) -> Fit {
         instruments: vec![Instrument {
             name: "arm.displacement".into(),
             unit: "m",
-            quantity: Quantity::Displacement(0),
+            channel: Channel::Displacement(0),
             noise: 1e-4,
         }],
         errors: vec![error],

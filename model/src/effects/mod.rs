@@ -11,22 +11,36 @@
 mod card;
 mod physics;
 
+mod asymmetric_friction;
+mod bypass_overlap;
 mod cavitation;
 mod coulomb_friction;
+mod displacement_sensor_offset;
+mod end_cushion;
 mod end_stop;
 mod entrained_air;
+mod external_contact;
 mod external_leakage;
 mod force_offset;
 mod gravity;
 mod hose_loss;
 mod inertia;
 mod internal_leakage;
+mod load_check_valve;
 mod oil_compressibility;
 mod open_centre_bypass;
 mod orifice_flow;
+mod payload;
+mod pressure_dependent_friction;
+mod pressure_sensor_offset;
+mod pump_leakage;
 mod relief_valve;
+mod sensor_delay;
 mod stribeck_friction;
 mod valve_dead_zone;
+mod valve_directional_gain;
+mod valve_gain_curve;
+mod valve_hysteresis;
 mod valve_lag;
 mod valve_leakage;
 mod viscous_damping;
@@ -52,12 +66,26 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &end_stop::EndStop,
     &cavitation::Cavitation,
     &valve_dead_zone::ValveDeadZone,
+    &valve_directional_gain::ValveDirectionalGain,
+    &valve_gain_curve::ValveGainCurve,
+    &valve_hysteresis::ValveHysteresis,
     &valve_leakage::ValveLeakage,
     &valve_lag::ValveLag,
+    &load_check_valve::LoadCheckValve,
     &hose_loss::HoseLoss,
-    &stribeck_friction::StribeckFriction,
     &entrained_air::EntrainedAir,
+    &stribeck_friction::StribeckFriction,
+    &pressure_dependent_friction::PressureDependentFriction,
+    &asymmetric_friction::AsymmetricFriction,
+    &end_cushion::EndCushion,
     &relief_valve::ReliefValve,
+    &pump_leakage::PumpLeakage,
+    &bypass_overlap::BypassOverlap,
+    &pressure_sensor_offset::PressureSensorOffset,
+    &displacement_sensor_offset::DisplacementSensorOffset,
+    &sensor_delay::SensorDelay,
+    &payload::Payload,
+    &external_contact::ExternalContact,
 ];
 
 /// An effect name that the catalogue does not have.
@@ -96,8 +124,16 @@ pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
 
 /// Whether an effect acts on oil, so that a cylinder driven by a measured force cannot have it.
 pub fn needs_chambers(effect: &dyn Effect) -> bool {
-    effect.card().acts_on != ActsOn::Cylinder || OIL_EFFECTS.contains(&effect.card().name)
+    let name = effect.card().name;
+    if WITHOUT_OIL.contains(&name) {
+        return false;
+    }
+    effect.card().acts_on != ActsOn::Cylinder || OIL_EFFECTS.contains(&name)
 }
 
 /// Effects that act on cylinders, but only on their oil.
-const OIL_EFFECTS: &[&str] = &["internal_leakage", "external_leakage", "entrained_air", "cavitation"];
+const OIL_EFFECTS: &[&str] =
+    &["internal_leakage", "external_leakage", "entrained_air", "cavitation", "pressure_dependent_friction"];
+
+/// Effects that act on cylinders and pump line alike, and on cylinders without oil too.
+const WITHOUT_OIL: &[&str] = &["sensor_delay"];

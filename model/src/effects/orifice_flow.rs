@@ -64,12 +64,12 @@ impl Physics for OrificeFlow {
         let cap_gain = parameters[0] * piston.opening;
         let rod_gain = parameters[1] * piston.opening;
         if piston.opening.value() >= 0.0 {
-            let drawn = cap_gain * orifice_root(pump - piston.cap_pressure);
+            let drawn = cap_gain * piston.drawn_root(pump - piston.cap_pressure);
             rows.cap_flow[cylinder] += drawn;
             rows.rod_flow[cylinder] -= rod_gain * orifice_root(piston.rod_pressure - tank);
             rows.pump_flow -= drawn;
         } else {
-            let drawn = -rod_gain * orifice_root(pump - piston.rod_pressure);
+            let drawn = -rod_gain * piston.drawn_root(pump - piston.rod_pressure);
             rows.cap_flow[cylinder] += cap_gain * orifice_root(piston.cap_pressure - tank);
             rows.rod_flow[cylinder] += drawn;
             rows.pump_flow -= drawn;

@@ -1,7 +1,7 @@
 //! The interface between an effect and the equations.
 
 use super::{Card, ParameterCard, Rows, Scalar, Site};
-use crate::equations::Situation;
+use crate::equations::{Instruments, Situation};
 use crate::machine::Machine;
 use crate::scalar::Dual;
 
@@ -19,7 +19,7 @@ pub trait Physics: Sync {
     }
 
     /// Where the spool really is (m²), given where the input says it is; `states` are the effect's own, whose rates
-    /// go to `rates`.
+    /// go to `rates`. Asked of effects of valves only, as is [`Physics::opening`].
     fn spool<T: Scalar>(&self, _parameters: &[T], _states: &[T], _rates: &mut [T], spool: T) -> T {
         spool
     }
@@ -28,6 +28,13 @@ pub trait Physics: Sync {
     fn opening<T: Scalar>(&self, _parameters: &[T], opening: T, _maximum: f64) -> T {
         opening
     }
+
+    /// Adjusts what the valve's other effects see: the closing of the bypass, the share of flow back to the pump. Asked
+    /// of effects of valves and of the pump line, after all openings are known.
+    fn adjust<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &mut Situation<T>) {}
+
+    /// Adds to what instruments make of what they measure, for an effect that acts on them and not on the machine.
+    fn distort<T: Scalar>(&self, _site: Site, _parameters: &[T], _instruments: &mut Instruments<T>) {}
 
     /// Potential energy in J that the effect stores by posture, for an effect whose whole torque follows from it;
     /// `None` for all others. What an effect adds to the mass matrix needs no such word: it stores kinetic energy.
@@ -50,6 +57,10 @@ pub trait Effect: Sync {
     fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual;
     fn opening_plain(&self, parameters: &[f64], opening: f64, maximum: f64) -> f64;
     fn opening_dual(&self, parameters: &[Dual], opening: Dual, maximum: f64) -> Dual;
+    fn adjust_plain(&self, site: Site, parameters: &[f64], now: &mut Situation<f64>);
+    fn adjust_dual(&self, site: Site, parameters: &[Dual], now: &mut Situation<Dual>);
+    fn distort_plain(&self, site: Site, parameters: &[f64], instruments: &mut Instruments<f64>);
+    fn distort_dual(&self, site: Site, parameters: &[Dual], instruments: &mut Instruments<Dual>);
     fn potential_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>) -> Option<f64>;
     fn potential_dual(&self, site: Site, parameters: &[Dual], now: &Situation<Dual>) -> Option<Dual>;
     fn contribute_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>, rows: &mut Rows<f64>);
@@ -78,6 +89,18 @@ impl<P: Physics> Effect for P {
     fn opening_dual(&self, parameters: &[Dual], opening: Dual, maximum: f64) -> Dual {
         self.opening(parameters, opening, maximum)
     }
+    fn adjust_plain(&self, site: Site, parameters: &[f64], now: &mut Situation<f64>) {
+        self.adjust(site, parameters, now);
+    }
+    fn adjust_dual(&self, site: Site, parameters: &[Dual], now: &mut Situation<Dual>) {
+        self.adjust(site, parameters, now);
+    }
+    fn distort_plain(&self, site: Site, parameters: &[f64], instruments: &mut Instruments<f64>) {
+        self.distort(site, parameters, instruments);
+    }
+    fn distort_dual(&self, site: Site, parameters: &[Dual], instruments: &mut Instruments<Dual>) {
+        self.distort(site, parameters, instruments);
+    }
     fn potential_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>) -> Option<f64> {
         self.potential(site, parameters, now)
     }
@@ -103,6 +126,8 @@ impl std::fmt::Debug for dyn Effect {
 pub trait Number: Scalar {
     fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self;
     fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self;
+    fn adjust(effect: &dyn Effect, site: Site, parameters: &[Self], now: &mut Situation<Self>);
+    fn distort(effect: &dyn Effect, site: Site, parameters: &[Self], instruments: &mut Instruments<Self>);
     fn potential(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>) -> Option<Self>;
     fn contribute(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>, rows: &mut Rows<Self>);
 }
@@ -113,6 +138,12 @@ impl Number for f64 {
     }
     fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self {
         effect.opening_plain(parameters, opening, maximum)
+    }
+    fn adjust(effect: &dyn Effect, site: Site, parameters: &[Self], now: &mut Situation<Self>) {
+        effect.adjust_plain(site, parameters, now);
+    }
+    fn distort(effect: &dyn Effect, site: Site, parameters: &[Self], instruments: &mut Instruments<Self>) {
+        effect.distort_plain(site, parameters, instruments);
     }
     fn potential(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>) -> Option<Self> {
         effect.potential_plain(site, parameters, now)
@@ -128,6 +159,12 @@ impl Number for Dual {
     }
     fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self {
         effect.opening_dual(parameters, opening, maximum)
+    }
+    fn adjust(effect: &dyn Effect, site: Site, parameters: &[Self], now: &mut Situation<Self>) {
+        effect.adjust_dual(site, parameters, now);
+    }
+    fn distort(effect: &dyn Effect, site: Site, parameters: &[Self], instruments: &mut Instruments<Self>) {
+        effect.distort_dual(site, parameters, instruments);
     }
     fn potential(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>) -> Option<Self> {
         effect.potential_dual(site, parameters, now)

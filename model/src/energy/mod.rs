@@ -10,6 +10,7 @@
 
 mod account;
 mod ledger;
+pub mod monitor;
 mod oil;
 
 pub use account::ledger;

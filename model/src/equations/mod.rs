@@ -1,13 +1,17 @@
 //! The rows that effects add to: joint torque, piston force, chamber continuity, pump line, valve opening.
 
+mod channel;
 mod inputs;
+mod instruments;
 mod layout;
 mod rows;
 mod situation;
 pub mod smooth;
 mod system;
 
+pub use channel::Channel;
 pub use inputs::Inputs;
+pub use instruments::{Distortion, Instruments};
 pub use layout::Layout;
 pub use rows::Rows;
 pub use situation::{Piston, Situation};

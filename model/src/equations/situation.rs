@@ -1,5 +1,6 @@
 //! Everything an effect may look at.
 
+use super::smooth::orifice_root;
 use crate::machine::{Chambers, Machine};
 use crate::scalar::Scalar;
 
@@ -24,12 +25,24 @@ pub struct Piston<T> {
     pub cap_volume: T,
     /// Rod side volume V-, m³.
     pub rod_volume: T,
-    /// Where the spool really is, as an orifice area, m²: the input after lag and hysteresis. It sets the bypass.
+    /// Where the spool really is, as an orifice area, m²: the input after lag and hysteresis.
     pub spool: T,
     /// Area open to flow, m²: the spool's after dead zone and area law. It sets the metered flow.
     pub opening: T,
+    /// By how much the section's bypass has been closed, m²: |spool|, less what the bypass overlaps.
+    pub bypass_closing: T,
+    /// Share of a flow back from the chamber to the pump that passes the valve section: 1 without a check valve.
+    pub backflow: T,
     /// Force measured on the rod, N; drives a cylinder without chambers.
     pub rod_force: T,
+}
+
+impl<T: Scalar> Piston<T> {
+    /// `phi` of the pressure drop (Pa) from pump to chamber over a metering edge, as far as flow may run back through it.
+    pub fn drawn_root(&self, pressure_drop: T) -> T {
+        let root = orifice_root(pressure_drop);
+        if pressure_drop.value() < 0.0 { root * self.backflow } else { root }
+    }
 }
 
 /// Everything an effect may look at, at one instant.
@@ -37,6 +50,8 @@ pub struct Piston<T> {
 pub struct Situation<'m, T> {
     /// The machine.
     pub machine: &'m Machine,
+    /// Time since the first sample of the recording, s.
+    pub time: T,
     /// One entry per cylinder.
     pub pistons: Vec<Piston<T>>,
     /// Pump or supply pressure pp, Pa.
@@ -63,10 +78,13 @@ impl<'m, T: Scalar> Situation<'m, T> {
             rod_volume: T::from(1.0),
             spool: zero,
             opening: zero,
+            bypass_closing: zero,
+            backflow: T::from(1.0),
             rod_force: zero,
         };
         Situation {
             machine,
+            time: zero,
             pistons: vec![piston; machine.cylinders.len()],
             pump_pressure: zero,
             tank_pressure: zero,

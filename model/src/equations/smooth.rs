@@ -11,16 +11,28 @@ pub const SLIP_SPEED: f64 = 1.0e-3;
 pub const LAMINAR_PRESSURE: f64 = 2.0e3;
 
 /// `sgn(v)`, rounded over [`SLIP_SPEED`]: `tanh(v / SLIP_SPEED)`.
+pub fn direction<T: Scalar>(velocity: T) -> T {
+    rounded_sign(velocity / SLIP_SPEED)
+}
+
+/// The hyperbolic tangent: a sign that is rounded over one.
 ///
 /// Written with one exponential and cut off where it has reached one: `num_dual` takes the hyperbolic sine and cosine
-/// apart, which overflow at 0.36 m/s and leave a derivative that is not a number.
-pub fn direction<T: Scalar>(velocity: T) -> T {
-    let ratio = velocity / SLIP_SPEED;
+/// apart, which overflow at a ratio of 360 and leave a derivative that is not a number.
+pub fn rounded_sign<T: Scalar>(ratio: T) -> T {
     if ratio.value().abs() > FULL_SLIP {
         return T::from(ratio.value().signum());
     }
     let excess = (ratio * 2.0).exp_m1();
     excess / (excess + 2.0)
+}
+
+/// A step from zero to one that is rounded over one: `(1 + tanh(ratio)) / 2`, without cancellation where it is small.
+pub fn rounded_step<T: Scalar>(ratio: T) -> T {
+    if ratio.value().abs() > FULL_SLIP {
+        return T::from(if ratio.value() > 0.0 { 1.0 } else { 0.0 });
+    }
+    ((ratio * -2.0).exp() + 1.0).recip()
 }
 
 /// Ratio beyond which the hyperbolic tangent is one to the last digit of a double.

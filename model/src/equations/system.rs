@@ -1,8 +1,8 @@
 //! The equations of motion of a model, for any number type.
 
-use super::{Inputs, Layout, Rows, Situation};
+use super::{Inputs, Instruments, Layout, Rows, Situation};
 use crate::Model;
-use crate::effects::{Number, Site};
+use crate::effects::{ActsOn, Number, Site};
 use crate::machine::Supply;
 
 /// A model's equations of motion `dx/dt = f(x, inputs, parameters)`.
@@ -11,6 +11,9 @@ pub struct System<'m> {
     model: &'m Model,
     layout: Layout,
     parameter_ranges: Vec<(usize, usize)>,
+    /// Effects of valves and of the pump line: no other has a say in spools, openings and bypass.
+    on_the_way_of_oil: Vec<usize>,
+    own_instruments: Instruments<f64>,
 }
 
 /// Memory for one evaluation, reused so that none allocates.
@@ -37,7 +40,14 @@ impl<'m> System<'m> {
                 range
             })
             .collect();
-        System { model, layout: Layout::of(model), parameter_ranges }
+        let on_the_way_of_oil = (0..model.effects.len())
+            .filter(|&number| matches!(model.effects[number].physics.card().acts_on, ActsOn::Valve | ActsOn::PumpLine))
+            .collect();
+        let own_instruments = Instruments::true_ones(model.machine.cylinders.len());
+        let mut system =
+            System { model, layout: Layout::of(model), parameter_ranges, on_the_way_of_oil, own_instruments };
+        system.own_instruments = system.instruments(&model.parameter_values());
+        system
     }
 
     /// The model.
@@ -105,6 +115,7 @@ impl<'m> System<'m> {
     ) {
         let layout = &self.layout;
         let situation = &mut workspace.situation;
+        situation.time = inputs.time;
         situation.tank_pressure = inputs.tank_pressure;
         situation.pump_flow = inputs.pump_flow;
         situation.pump_pressure = layout.pump.map_or(inputs.supply_pressure, |index| state[index]);
@@ -126,10 +137,22 @@ impl<'m> System<'m> {
             }
             piston.spool = inputs.orifice_area[index];
         }
-        for (number, effect) in self.model.effects.iter().enumerate() {
+        self.observe_valves(situation, parameters, state, rates);
+    }
+
+    /// The valve's part of the situation: spools, then openings, then what effects adjust of them for others.
+    fn observe_valves<T: Number>(
+        &self,
+        situation: &mut Situation<'m, T>,
+        parameters: &[T],
+        state: &[T],
+        rates: &mut [T],
+    ) {
+        for &number in &self.on_the_way_of_oil {
+            let effect = &self.model.effects[number];
             let Site::Cylinder(index) = effect.site else { continue };
             let (first, last) = self.parameter_ranges[number];
-            let (state_first, states) = layout.effect_states[number];
+            let (state_first, states) = self.layout.effect_states[number];
             let own_states = &state[state_first..state_first + states];
             let own_rates = &mut rates[state_first..state_first + states];
             let spool = situation.pistons[index].spool;
@@ -138,14 +161,37 @@ impl<'m> System<'m> {
         }
         for piston in &mut situation.pistons {
             piston.opening = piston.spool;
+            piston.bypass_closing = piston.spool.abs();
+            piston.backflow = T::from(1.0);
         }
+        for &number in &self.on_the_way_of_oil {
+            let effect = &self.model.effects[number];
+            let (first, last) = self.parameter_ranges[number];
+            let own = &parameters[first..last];
+            if let Site::Cylinder(index) = effect.site
+                && let Some(chambers) = self.model.machine.cylinders[index].chambers
+            {
+                let opening = situation.pistons[index].opening;
+                situation.pistons[index].opening =
+                    T::opening(effect.physics, own, opening, chambers.maximum_orifice_area);
+            }
+            T::adjust(effect.physics, effect.site, own, situation);
+        }
+    }
+
+    /// [`System::instruments`] at the model's own parameter values.
+    pub fn own_instruments(&self) -> &Instruments<f64> {
+        &self.own_instruments
+    }
+
+    /// What the model's instruments make of what they measure: sums of the effects that act on sensors. They do not
+    /// depend on the state, so once per set of parameters is enough.
+    pub fn instruments<T: Number>(&self, parameters: &[T]) -> Instruments<T> {
+        let mut instruments = Instruments::true_ones(self.model.machine.cylinders.len());
         for (effect, &(first, last)) in self.model.effects.iter().zip(&self.parameter_ranges) {
-            let Site::Cylinder(index) = effect.site else { continue };
-            let Some(chambers) = self.model.machine.cylinders[index].chambers else { continue };
-            let opening = situation.pistons[index].opening;
-            situation.pistons[index].opening =
-                T::opening(effect.physics, &parameters[first..last], opening, chambers.maximum_orifice_area);
+            T::distort(effect.physics, effect.site, &parameters[first..last], &mut instruments);
         }
+        instruments
     }
 
     /// From rows to rates: solves the mass matrix and divides flows by compliances.

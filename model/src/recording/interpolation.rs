@@ -21,6 +21,30 @@ pub fn linear(time: &[f64], values: &[f64], at: f64) -> f64 {
     values[before] + fraction * (values[after] - values[before])
 }
 
+/// Cubic through the four samples around `at` (Lagrange), on an even or uneven clock. A straight line where only the two
+/// nearest are measured; `NaN` where one of these is not, and outside the samples.
+pub fn cubic(time: &[f64], values: &[f64], at: f64) -> f64 {
+    let (Some(&first), Some(&last)) = (time.first(), time.last()) else {
+        return f64::NAN;
+    };
+    if !(first..=last).contains(&at) {
+        return f64::NAN;
+    }
+    let after = time.partition_point(|&t| t <= at);
+    if after < 2 || after + 1 >= time.len() || values[after - 2..after + 2].iter().any(|value| !value.is_finite()) {
+        return linear(time, values, at);
+    }
+    let nodes = after - 2..after + 2;
+    nodes
+        .clone()
+        .map(|node| {
+            let others = nodes.clone().filter(|&other| other != node);
+            let weight: f64 = others.map(|other| (at - time[other]) / (time[node] - time[other])).product();
+            weight * values[node]
+        })
+        .sum()
+}
+
 /// The value of the latest sample at or before `at`; `NaN` before the first.
 pub fn zero_order_hold(time: &[f64], values: &[f64], at: f64) -> f64 {
     match time.partition_point(|&t| t <= at) {

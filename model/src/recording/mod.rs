@@ -8,7 +8,7 @@ mod interpolation;
 pub use cylinder_signals::CylinderSignals;
 pub use denoise::{denoised, noise_level};
 pub use error::RecordingError;
-pub use interpolation::{linear, zero_order_hold};
+pub use interpolation::{cubic, linear, zero_order_hold};
 
 /// A recording of one machine: all signals sampled on one, possibly uneven, clock.
 ///

@@ -1,6 +1,6 @@
 //! The state at which a simulation starts, from what was measured there.
 
-use crate::equations::{Layout, System};
+use crate::equations::{Channel, Distortion, Layout, System};
 use crate::recording::Recording;
 use crate::{Model, SignalError};
 
@@ -11,7 +11,7 @@ const WINDOW: f64 = 0.02;
 /// State of `model` at sample `index` of a recording. Positions and pressures come from straight lines through the
 /// samples within 0.02 s after it, velocity is the slope of the displacement's line (\[A\] Section 4.1: "estimated by just
 /// first order differentiation") unless it is measured. Pressures that nobody measures start at tank pressure. `spool`
-/// gives the valve openings at the sample, m².
+/// gives the valve openings at the sample, m². What the model's sensor effects add to measurements is taken away.
 ///
 /// # Errors
 /// [`SignalError::NoInitialState`] when displacement and joint angle of a cylinder are both missing there or impossible.
@@ -24,6 +24,10 @@ pub fn initial_state(
 ) -> Result<Vec<f64>, SignalError> {
     let model: &Model = system.model();
     let layout: &Layout = system.layout();
+    let line = |channel: Channel, signal: &[f64]| {
+        let Distortion { offset, delay } = system.own_instruments().of(channel);
+        start_line(&recording.time, signal, index, delay).map(|(value, slope)| (value - offset, slope))
+    };
     let mut state = vec![0.0; layout.len];
     for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
         let signals = recording.cylinder(&cylinder.name)?;
@@ -32,12 +36,12 @@ pub fn initial_state(
             signal: format!("{}.displacement", cylinder.name),
             reason: reason.to_string(),
         };
-        let line = start_line(&recording.time, &signals.displacement, index);
-        let angle_line = start_line(&recording.time, &signals.joint_angle, index);
-        let (joint, rate) = match (line, angle_line) {
+        let displacement_line = line(Channel::Displacement(number), &signals.displacement);
+        let angle_line = line(Channel::JointAngle(number), &signals.joint_angle);
+        let (joint, rate) = match (displacement_line, angle_line) {
             (Some((displacement, slope)), _) => {
                 let joint = cylinder.linkage.joint(displacement);
-                let measured = start_line(&recording.time, &signals.velocity, index).map(|(velocity, _)| velocity);
+                let measured = line(Channel::Velocity(number), &signals.velocity).map(|(velocity, _)| velocity);
                 (joint, measured.unwrap_or(slope) / cylinder.linkage.lever(joint))
             }
             (None, Some((joint, slope))) => (joint, slope),
@@ -51,13 +55,13 @@ pub fn initial_state(
         state[layout.joint(number)] = joint;
         state[layout.rate(number)] = rate;
         if let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) {
-            let at_start = |signal: &[f64]| start_line(&recording.time, signal, index).map(|(value, _)| value);
-            state[cap] = at_start(&signals.cap_pressure).unwrap_or(tank_pressure);
-            state[rod] = at_start(&signals.rod_pressure).unwrap_or(tank_pressure);
+            let at_start = |channel, signal: &[f64]| line(channel, signal).map(|(value, _)| value);
+            state[cap] = at_start(Channel::CapPressure(number), &signals.cap_pressure).unwrap_or(tank_pressure);
+            state[rod] = at_start(Channel::RodPressure(number), &signals.rod_pressure).unwrap_or(tank_pressure);
         }
     }
     if let Some(pump) = layout.pump {
-        let measured = start_line(&recording.time, &recording.pump_pressure, index).map(|(value, _)| value);
+        let measured = line(Channel::PumpPressure, &recording.pump_pressure).map(|(value, _)| value);
         state[pump] = measured.unwrap_or(tank_pressure);
     }
     for (effect, &(first, states)) in model.effects.iter().zip(&layout.effect_states) {
@@ -68,12 +72,15 @@ pub fn initial_state(
     Ok(state)
 }
 
-/// Value and slope at sample `index` of the straight line through the values within [`WINDOW`] after it.
-fn start_line(time: &[f64], signal: &[f64], index: usize) -> Option<(f64, f64)> {
-    let start = *time.get(index)?;
-    let points: Vec<(f64, f64)> = time[index..]
+/// Value and slope of a signal that is `delay` s late, at sample `index`: of the straight line through the values that
+/// were reported within [`WINDOW`] after the delay.
+fn start_line(time: &[f64], signal: &[f64], index: usize, delay: f64) -> Option<(f64, f64)> {
+    let start = *time.get(index)? + delay;
+    // A clock's last digit must not cost the first point.
+    let first = time.partition_point(|&t| t < start - 1e-9);
+    let points: Vec<(f64, f64)> = time[first..]
         .iter()
-        .zip(&signal[index..])
+        .zip(&signal[first..])
         .take_while(|(t, _)| **t - start <= WINDOW)
         .filter(|(_, value)| value.is_finite())
         .map(|(t, value)| (t - start, *value))

@@ -130,6 +130,7 @@ impl InputSignals {
         for (slot, values) in inputs.rod_force.iter_mut().zip(&self.rod_force) {
             *slot = line(values);
         }
+        inputs.time = line(&self.time);
         inputs.supply_pressure = line(&self.supply_pressure);
         inputs.tank_pressure = line(&self.tank_pressure);
         inputs.pump_flow = line(&self.pump_flow);

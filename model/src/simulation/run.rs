@@ -1,9 +1,9 @@
 //! Whole simulations.
 
-use super::{InputSignals, Integrator, SimulationError, Tolerances, initial_state};
+use super::{InputSignals, Integrator, Observer, SimulationError, Tolerances, initial_state};
 use crate::Model;
 use crate::SignalError;
-use crate::equations::System;
+use crate::equations::{Channel, System};
 use crate::recording::Recording;
 
 /// Why there is no simulated recording.
@@ -18,7 +18,7 @@ pub enum RunError {
 }
 
 /// Simulates `model` with the inputs of `recording` from the state measured at its start; the result has the
-/// recording's clock and inputs, and simulated displacement, velocity, joint angle and pressures.
+/// recording's clock and inputs, and displacement, velocity, joint angle and pressures as its instruments report them.
 ///
 /// # Errors
 /// [`RunError`].
@@ -45,11 +45,13 @@ pub fn simulate_from(
     tolerances: Tolerances,
 ) -> Result<Recording, SimulationError> {
     let system = System::new(model);
-    let mut integrator = Integrator::new(&system, &model.parameter_values(), &[], tolerances);
+    let parameters = model.parameter_values();
+    let mut integrator = Integrator::new(&system, &parameters, &[], tolerances);
+    let mut observer = Observer::new(&system, &parameters, &[], &Channel::all(system.layout()));
     let mut simulated = recording.clone();
     simulated.source = format!("{} simulated", model.machine.name);
     for index in 0..signals.len() {
-        observed(&system, &state, index, &mut simulated);
+        observer.record(signals, index, &state, &mut simulated);
         if index + 1 < signals.len() {
             integrator.advance(signals, index, &mut state, None)?;
         }
@@ -57,23 +59,13 @@ pub fn simulate_from(
     Ok(simulated)
 }
 
-/// Writes what instruments would see of a state into sample `index` of a recording.
+/// Writes what instruments report of a state into sample `index` of a recording, as far as the state alone says it: with
+/// the model's sensor offsets, but without delays, which need the past; an [`Observer`] has both.
 pub fn observed(system: &System<'_>, state: &[f64], index: usize, recording: &mut Recording) {
-    let layout = system.layout();
-    for (number, cylinder) in system.model().machine.cylinders.iter().enumerate() {
-        let Some(signals) = recording.cylinders.iter_mut().find(|signals| signals.name == cylinder.name) else {
-            continue;
-        };
-        let joint = state[layout.joint(number)];
-        signals.joint_angle[index] = joint;
-        signals.displacement[index] = cylinder.linkage.displacement(joint);
-        signals.velocity[index] = cylinder.linkage.lever(joint) * state[layout.rate(number)];
-        if let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) {
-            signals.cap_pressure[index] = state[cap];
-            signals.rod_pressure[index] = state[rod];
+    let machine = &system.model().machine;
+    for channel in Channel::all(system.layout()) {
+        if let Some(values) = channel.signal_mut(machine, recording) {
+            values[index] = channel.value(system, state) + system.own_instruments().of(channel).offset;
         }
-    }
-    if let Some(pump) = layout.pump {
-        recording.pump_pressure[index] = state[pump];
     }
 }

@@ -4,8 +4,6 @@ use nalgebra::DMatrix;
 
 use super::Linearisation;
 use super::factors::Factors;
-use crate::equations::System;
-use crate::scalar::{constant, derivative, variable};
 
 /// Forward sensitivities `S = dx/d(parameters, initial states)`, carried along a trajectory.
 ///
@@ -102,34 +100,6 @@ impl Sensitivity {
             for column in 0..columns {
                 matrix[(row, column)] = stage[row * columns + column];
             }
-        }
-    }
-}
-
-/// Sensitivity of what instruments see, from the sensitivity of states.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OutputSensitivity {
-    /// d(displacement)/dq, m/rad.
-    pub displacement_by_joint: f64,
-    /// d(velocity)/dq, 1/s per rad times m.
-    pub velocity_by_joint: f64,
-    /// d(velocity)/d(rate), m/rad.
-    pub velocity_by_rate: f64,
-}
-
-impl OutputSensitivity {
-    /// For one cylinder at a state.
-    pub fn of(system: &System<'_>, cylinder: usize, state: &[f64]) -> Self {
-        let layout = system.layout();
-        let linkage = &system.model().machine.cylinders[cylinder].linkage;
-        let joint = variable(state[layout.joint(cylinder)], 0);
-        let rate = state[layout.rate(cylinder)];
-        let lever = linkage.lever(joint);
-        let velocity = lever * constant(rate);
-        OutputSensitivity {
-            displacement_by_joint: derivative(&linkage.displacement(joint), 0),
-            velocity_by_joint: derivative(&velocity, 0),
-            velocity_by_rate: lever.re,
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use excavator_model::document::built_in;
 use excavator_model::effects::{CATALOGUE, Effect, Site};
-use excavator_model::equations::{Inputs, System};
+use excavator_model::equations::{Channel, Inputs, System};
 use excavator_model::machine::{Machine, Supply};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelEffect};
@@ -65,11 +65,24 @@ pub fn every_effect_everywhere() -> Vec<(Model, usize)> {
     cases
 }
 
+/// Random numbers of one case, the same whatever other cases there are: another effect in the catalogue must not decide
+/// whether a test of this one visits what it needs.
+pub fn random_for(seed: u64, model: &Model, effect: usize) -> Random {
+    let letters =
+        label(model, effect).bytes().fold(seed, |sum, letter| sum.wrapping_mul(31).wrapping_add(letter.into()));
+    Random(letters)
+}
+
 /// The model with one more effect, as strong as is typical, so that no test is about an effect of size zero.
 pub fn with_typical(model: &Model, physics: &'static dyn Effect, site: Site) -> Model {
     let mut model = model.with_effect(physics, site).unwrap();
     for parameter in &mut model.effects.last_mut().unwrap().parameters {
-        parameter.value = parameter.card.typical;
+        parameter.value = match parameter.card.name {
+            // Within the second or less that tests simulate.
+            "contact_start" => 0.1,
+            "contact_duration" => 0.3,
+            _ => parameter.card.typical,
+        };
     }
     model
 }
@@ -137,6 +150,7 @@ pub fn random_inputs(machine: &Machine, random: &mut Random) -> Inputs<f64> {
     for force in &mut inputs.rod_force {
         *force = random.between(-100.0, 100.0);
     }
+    inputs.time = random.between(0.0, 0.5);
     inputs.supply_pressure = random.between(0.0, 7e6);
     inputs.tank_pressure = random.between(0.0, 2e5);
     inputs.pump_flow = random.between(1e-4, 5e-4);
@@ -190,4 +204,45 @@ pub fn at_rest(system: &System<'_>) -> Vec<f64> {
         state[pump] = 1e6;
     }
     state
+}
+
+/// A page of the contract, or `None` with a line that says so where it is not at hand.
+pub fn contract(page: &str) -> Option<String> {
+    let shared = std::env::var_os("EXCAVATOR_SHARED").map_or_else(
+        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
+        std::path::PathBuf::from,
+    );
+    let path = shared.join("contract").join(page);
+    let text = std::fs::read_to_string(&path).ok();
+    if text.is_none() {
+        eprintln!("skipped: {} cannot be read (set EXCAVATOR_SHARED to the folder of shared files)", path.display());
+    }
+    text
+}
+
+/// A manoeuvre that visits what effects need to show: both ends of the stroke, reversals, holds, low pump pressure.
+pub fn tour(model: &Model) -> Recording {
+    let area = |number: usize, t: f64| match t {
+        t if t < 8.0 => 9e-5 * (std::f64::consts::TAU * 0.5 * t + 0.4 * number as f64).sin(),
+        t if t < 12.0 => 1.1e-4,
+        t if t < 13.0 => 0.0,
+        t if t < 19.0 => -1.1e-4,
+        _ => 4e-5,
+    };
+    let force = |t: f64| match t {
+        // Slow reversals, for what shows near standstill only.
+        t if t < 8.0 => 25.0 * (std::f64::consts::TAU * 0.5 * t).sin(),
+        t if t < 13.0 => 60.0,
+        _ => -60.0,
+    };
+    driven(model, 20.0, 2e-3, area, force)
+}
+
+/// Noise of a good instrument of a channel, in its unit.
+pub fn good_noise(channel: Channel) -> f64 {
+    match channel {
+        Channel::JointAngle(_) | Channel::Displacement(_) => 5e-5,
+        Channel::Velocity(_) => 1e-3,
+        Channel::CapPressure(_) | Channel::RodPressure(_) | Channel::PumpPressure => 2e3,
+    }
 }

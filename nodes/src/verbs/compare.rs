@@ -13,7 +13,7 @@ use crate::sources;
 
 pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
     let model = sources::model(&arguments.model)?;
-    let recording = sources::recording(&arguments.bag, &model)?;
+    let recording = sources::recording(&arguments.bag, &arguments.mapping, &model)?;
     let comparison = compare(&model, &recording)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         print(&format!("{} simulated with the input of {}", model.machine.name, recording.source));

@@ -28,7 +28,7 @@ struct Identified {
 
 pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     let model = sources::model(&arguments.model)?;
-    let recordings = sources::recordings(&arguments.bag, &model)?;
+    let recordings = sources::recordings(&arguments.bag, &arguments.mapping, &model)?;
     let recordings: Vec<&Recording> = recordings.iter().collect();
     let mut result = identify(&model, &recordings, arguments.method)?;
     result.model.history.push(HistoryEntry {

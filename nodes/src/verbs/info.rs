@@ -2,34 +2,199 @@
 
 use std::path::Path;
 
+use comfy_table::presets::UTF8_FULL_CONDENSED;
+use comfy_table::{Attribute, Cell, CellAlignment, Table};
+use excavator_bags::map::read_recording_or_mapped;
+use excavator_bags::table::Table as DataTable;
+use excavator_bags::{BagError, BagInfo, SignalsInfo, Timing, info};
+use serde_json::{Value, json};
+
 use super::print;
 use crate::cli::InfoArguments;
 use crate::error::VerbError;
-use crate::output::write_json;
+use crate::output::{number, write_json};
+
+/// A clock that is off by more than this is worth a line, s: networks and recorders take less.
+const NOTABLE_DELAY: f64 = 0.1;
 
 pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
-    let info = excavator_bags::info(&arguments.bag)?;
+    let path = &arguments.bag;
+    let bag = if DataTable::is_table(path) { None } else { Some(info(path)?) };
+    let signals = read_recording_or_mapped(path, arguments.mapping.map.as_deref());
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        print(&format!(
-            "{}: {} messages in {:.2} s, {:.1} MB",
-            info.path.display(),
-            info.message_count,
-            info.duration,
-            info.size as f64 / 1e6
+        if let Some(bag) = &bag {
+            show_bag(bag);
+        }
+        match &signals {
+            Ok((recording, report)) => {
+                show_signals(&SignalsInfo::of(recording), recording.duration());
+                // Damage is the bag's; it has been told.
+                for note in report.notes.iter().chain(bag.is_none().then(|| report.problems()).iter().flatten()) {
+                    print(&format!("note: {note}"));
+                }
+            }
+            Err(error) => print(&format!("signals: none read: {}{}", error, advice(error))),
+        }
+    }
+    if let Some(file) = &arguments.json.json {
+        write_json(file, &to_json(bag.as_ref(), &signals.as_ref().map(|(recording, _)| SignalsInfo::of(recording)))?)?;
+    }
+    // A bag without our topics is still a bag; a table or map that cannot be read is a failure.
+    match signals {
+        Err(error) if bag.is_none() || arguments.mapping.map.is_some() => Err(error.into()),
+        _ => Ok(()),
+    }
+}
+
+/// What to do about a bag of other people.
+fn advice(error: &BagError) -> &'static str {
+    match error {
+        BagError::NoTopic { .. } | BagError::WrongType { .. } => {
+            "; `excavator import --guess` proposes a map of its topics"
+        }
+        _ => "",
+    }
+}
+
+fn to_json(bag: Option<&BagInfo>, signals: &Result<SignalsInfo, &BagError>) -> Result<Value, VerbError> {
+    let mut value = match bag {
+        Some(bag) => serde_json::to_value(bag)?,
+        None => json!({}),
+    };
+    value["signals"] = match signals {
+        Ok(signals) => serde_json::to_value(signals)?,
+        Err(error) => json!({"error": error.to_string()}),
+    };
+    Ok(value)
+}
+
+fn table(header: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(header.iter().map(|text| Cell::new(text).add_attribute(Attribute::Bold)));
+    table
+}
+
+fn right(text: impl ToString) -> Cell {
+    Cell::new(text.to_string()).set_alignment(CellAlignment::Right)
+}
+
+fn show_bag(bag: &BagInfo) {
+    let start = bag.start.and_then(|start| i64::try_from(start / 1_000_000).ok());
+    let start = start.and_then(|start| jiff::Timestamp::from_millisecond(start).ok());
+    print(&format!(
+        "{}: {} messages in {:.2} s{}, {} in {}",
+        bag.path.display(),
+        bag.message_count,
+        bag.duration,
+        start.map_or(String::new(), |start| format!(" from {start}")),
+        size(bag.size),
+        if bag.files.len() == 1 { "one file".to_string() } else { format!("{} files", bag.files.len()) },
+    ));
+    let mut topics = table(&["topic", "type", "messages", "rate Hz", "jitter ms", "gaps", "longest gap"]);
+    for topic in &bag.topics {
+        let timing = topic.timing.as_ref();
+        let of = |text: &dyn Fn(&Timing) -> String| right(timing.map_or("-".to_string(), text));
+        topics.add_row([
+            Cell::new(&topic.name),
+            Cell::new(topic.type_name.replacen("/msg/", "/", 1)),
+            right(topic.message_count),
+            right(topic.mean_rate().map_or("-".to_string(), |rate| format!("{rate:.1}"))),
+            of(&|timing| format!("{:.2}", 1e3 * timing.jitter)),
+            of(&|timing| timing.gaps.to_string()),
+            of(&|timing| match timing.gaps {
+                0 => "-".to_string(),
+                _ => format!("{} at {:.2} s", seconds(timing.longest_interval), timing.longest_interval_at),
+            }),
+        ]);
+    }
+    print(&topics.to_string());
+    for problem in &bag.problems {
+        print(&format!("problem: {problem}"));
+    }
+    for topic in &bag.topics {
+        for line in topic.timing.iter().flat_map(clock_problems) {
+            print(&format!("clock of {}: {line}", topic.name));
+        }
+    }
+}
+
+/// What is wrong with the times of a topic, one line each.
+fn clock_problems(timing: &Timing) -> Vec<String> {
+    let mut lines = Vec::new();
+    if timing.log_times_backwards > 0 {
+        lines.push(format!("log time steps backwards {} times", timing.log_times_backwards));
+    }
+    let Some(stamps) = &timing.stamps else { return lines };
+    if stamps.zero > 0 {
+        lines.push(format!("{} stamps are zero, never set", stamps.zero));
+        return lines;
+    }
+    if stamps.backwards > 0 {
+        lines.push(format!("stamps step backwards {} times", stamps.backwards));
+    }
+    if stamps.repeated > 0 {
+        lines.push(format!("{} stamps repeat the one before", stamps.repeated));
+    }
+    let (least, most) = stamps.delay_range;
+    if stamps.median_delay.abs() > NOTABLE_DELAY {
+        let side = if stamps.median_delay > 0.0 { "after" } else { "before" };
+        lines.push(format!(
+            "messages were logged {} {side} their stamps ({} to {}): late, or two clocks",
+            seconds(stamps.median_delay.abs()),
+            seconds(least),
+            seconds(most)
         ));
-        for topic in &info.topics {
-            let rate = topic.mean_rate().map_or("-".to_string(), |rate| format!("{rate:.1}"));
-            print(&format!(
-                "  {:28} {:36} {:8} messages {rate:>8} Hz",
-                topic.name, topic.type_name, topic.message_count
-            ));
-        }
-        for problem in &info.problems {
-            print(&format!("  problem: {problem}"));
+    } else if most - least > NOTABLE_DELAY {
+        lines.push(format!("log time minus stamp varies from {} to {}", seconds(least), seconds(most)));
+    }
+    lines
+}
+
+fn show_signals(signals: &SignalsInfo, duration: f64) {
+    print(&format!("signals: {} samples in {duration:.2} s", signals.samples));
+    let mut rows = table(&["signal", "from", "to", "unit", "not measured"]);
+    for signal in &signals.measured {
+        let (factor, unit) = display_unit(&signal.name);
+        let missing = if signal.missing == 0.0 { String::new() } else { format!("{:.1} %", 100.0 * signal.missing) };
+        rows.add_row([
+            Cell::new(&signal.name),
+            right(number(factor * signal.least)),
+            right(number(factor * signal.most)),
+            Cell::new(unit),
+            right(missing),
+        ]);
+    }
+    print(&rows.to_string());
+    for equation in &signals.equations {
+        match equation.missing.as_slice() {
+            [] => print(&format!("{}: can be identified", equation.equation)),
+            missing => print(&format!("{}: needs {}", equation.equation, missing.join(", "))),
         }
     }
-    if let Some(path) = &arguments.json.json {
-        write_json(path, &serde_json::to_value(&info)?)?;
+}
+
+/// Factor from SI, and the unit in which people read such a signal.
+fn display_unit(name: &str) -> (f64, &'static str) {
+    match name.rsplit('.').next().unwrap_or_default() {
+        "displacement" => (1e3, "mm"),
+        "velocity" => (1e3, "mm/s"),
+        "joint_angle" => (180.0 / std::f64::consts::PI, "deg"),
+        "orifice_area" | "orifice_command" => (1e6, "mm2"),
+        "rod_force" => (1.0, "N"),
+        "pump_flow" => (60_000.0, "l/min"),
+        "oil_temperature" => (1.0, "degC"),
+        _ => (1e-5, "bar"),
     }
-    Ok(())
+}
+
+fn size(bytes: u64) -> String {
+    match bytes {
+        0..1_000_000 => format!("{:.1} kB", bytes as f64 / 1e3),
+        _ => format!("{:.1} MB", bytes as f64 / 1e6),
+    }
+}
+
+fn seconds(value: f64) -> String {
+    if value.abs() < 1.0 { format!("{:.1} ms", 1e3 * value) } else { format!("{value:.2} s") }
 }

@@ -4,15 +4,18 @@ mod compare;
 mod diagnose;
 mod effects;
 mod identify;
+mod import;
 mod info;
+mod node;
 mod refine;
 mod simulate;
 
 use crate::cli::Verb;
 use crate::error::VerbError;
+use crate::ros::RosArguments;
 
-/// Runs a verb.
-pub fn run(verb: Verb) -> Result<(), VerbError> {
+/// Runs a verb; `ros` is what stood after --ros-args, `ros_words` the same in words.
+pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), VerbError> {
     match verb {
         Verb::Demo(arguments) => crate::demo::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
@@ -22,6 +25,11 @@ pub fn run(verb: Verb) -> Result<(), VerbError> {
         Verb::Refine(arguments) => refine::run(&arguments),
         Verb::Effects(arguments) => effects::run(&arguments),
         Verb::Info(arguments) => info::run(&arguments),
+        Verb::Record(arguments) => crate::record::run(&arguments, ros),
+        Verb::Play(arguments) => crate::play::run(&arguments, ros),
+        Verb::Up(arguments) => crate::up::run(&arguments, ros_words),
+        Verb::Node(which) => node::run(which, ros),
+        Verb::Import(arguments) => import::run(&arguments),
     }
 }
 

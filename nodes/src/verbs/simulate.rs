@@ -39,7 +39,7 @@ pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
     let simulated = if arguments.input.extension().is_some_and(|extension| extension == "toml") {
         with_profile(&model, &arguments.input)?
     } else {
-        simulate(&model, &sources::recording(&arguments.input, &model)?)?
+        simulate(&model, &sources::recording(&arguments.input, &arguments.mapping, &model)?)?
     };
     write_recording(&arguments.output, &simulated, &Topics::default(), &WriteOptions::default())?;
     print(&format!(

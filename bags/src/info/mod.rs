@@ -1,4 +1,7 @@
-//! What is in a bag, per topic.
+//! What is in a bag, per topic, and what it is good for.
+
+mod signals;
+mod timing;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -8,12 +11,16 @@ use serde::Serialize;
 use crate::location::BagFiles;
 use crate::{BagError, RawMessages};
 
+pub use signals::{EquationInfo, SignalInfo, SignalsInfo};
+use timing::Times;
+pub use timing::{StampTiming, Timing};
+
 /// Contents of a bag. Times are log times: when the recorder received the messages.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BagInfo {
     /// The path that was asked for.
     pub path: PathBuf,
-    /// The MCAP files in reading order.
+    /// The files in reading order.
     pub files: Vec<PathBuf>,
     /// Size of these files, bytes.
     pub size: u64,
@@ -32,7 +39,7 @@ pub struct BagInfo {
 }
 
 /// Contents of one topic.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TopicInfo {
     /// Name: `/arm/state`.
     pub name: String,
@@ -46,6 +53,8 @@ pub struct TopicInfo {
     pub first: Option<u64>,
     /// Latest log time, ns since the epoch; `None` without messages.
     pub last: Option<u64>,
+    /// How regular the topic is; `None` for fewer than two messages.
+    pub timing: Option<Timing>,
 }
 
 impl TopicInfo {
@@ -75,18 +84,20 @@ pub fn info(path: &Path) -> Result<BagInfo, BagError> {
         size += std::fs::metadata(file).map_err(BagError::io("read", file))?.len();
     }
     let mut messages = RawMessages::open(path)?;
-    let mut topics: BTreeMap<String, TopicInfo> = BTreeMap::new();
+    let mut seen: BTreeMap<String, (TopicInfo, Times)> = BTreeMap::new();
     for message in &mut messages {
         let message = message?;
-        match topics.get_mut(&message.topic.name) {
-            Some(topic) => topic.note(message.log_time),
-            None => {
-                let mut topic = TopicInfo::empty(&message.topic);
-                topic.note(message.log_time);
-                topics.insert(topic.name.clone(), topic);
-            }
-        }
+        let (topic, times) = match seen.get_mut(&message.topic.name) {
+            Some(seen) => seen,
+            None => seen
+                .entry(message.topic.name.clone())
+                .or_insert_with(|| (TopicInfo::empty(&message.topic), Times::of(&message.topic))),
+        };
+        topic.note(message.log_time);
+        times.note(&message);
     }
+    let mut topics: BTreeMap<String, TopicInfo> =
+        seen.into_iter().map(|(name, (topic, times))| (name, TopicInfo { timing: times.timing(), ..topic })).collect();
     for topic in messages.topics() {
         topics.entry(topic.name.clone()).or_insert_with(|| TopicInfo::empty(&topic));
     }
@@ -121,6 +132,7 @@ impl TopicInfo {
             message_count: 0,
             first: None,
             last: None,
+            timing: None,
         }
     }
 }

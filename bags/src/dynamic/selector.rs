@@ -1,0 +1,232 @@
+//! From a field path and a layout to numbers.
+
+use super::cursor::Cursor;
+use super::error::PathError;
+use super::field_path::{FieldPath, Index};
+use super::layout::{Count, Kind, Layout, Member, Primitive, StructLayout};
+use crate::cdr::CdrError;
+
+/// As in [`cdr::decode`](crate::cdr::decode): what is left over must be padding.
+const PADDING_LIMIT: usize = 7;
+const NANOSECONDS_PER_SECOND: i64 = 1_000_000_000;
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum ResolvedIndex {
+    Single,
+    Number(usize),
+    /// Place of the text in the member with this number, beside the array.
+    Beside(usize, String),
+    /// The element whose member with this number is the text.
+    Within(usize, String),
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct ResolvedStep {
+    member: usize,
+    index: ResolvedIndex,
+}
+
+/// A field path that was looked up in a layout.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Selector {
+    steps: Vec<ResolvedStep>,
+    /// What is at the end of the path.
+    kind: Kind,
+}
+
+impl Selector {
+    /// Looks up a path that must end at a number.
+    ///
+    /// # Errors
+    /// [`PathError`].
+    pub fn number(layout: &Layout, path: &FieldPath) -> Result<Selector, PathError> {
+        let selector = Selector::resolve(layout, path)?;
+        let found = match &selector.kind {
+            Kind::Primitive(_) => return Ok(selector),
+            Kind::Text => "text".to_string(),
+            Kind::Struct(number) => layout.structure(*number).map(|s| s.name.clone()).unwrap_or_default(),
+            Kind::Unreadable(name) => name.clone(),
+        };
+        Err(PathError::NotANumber { path: path.to_string(), found })
+    }
+
+    /// Looks up a path that must end at a `builtin_interfaces/Time`.
+    ///
+    /// # Errors
+    /// [`PathError`].
+    pub fn time(layout: &Layout, path: &FieldPath) -> Result<Selector, PathError> {
+        let selector = Selector::resolve(layout, path)?;
+        let wanted = [Kind::Primitive(Primitive::I32), Kind::Primitive(Primitive::U32)];
+        let is_time = match &selector.kind {
+            Kind::Struct(number) => layout.structure(*number).is_some_and(|structure| {
+                structure.members.iter().map(|member| &member.kind).eq(&wanted)
+                    && structure.members.iter().all(|member| member.count == Count::One)
+            }),
+            _ => false,
+        };
+        if is_time { Ok(selector) } else { Err(PathError::NotATime { path: path.to_string() }) }
+    }
+
+    fn resolve(layout: &Layout, path: &FieldPath) -> Result<Selector, PathError> {
+        let mut steps = Vec::new();
+        let mut kind = Kind::Struct(0);
+        for step in path.steps() {
+            let structure = match &kind {
+                Kind::Struct(number) => layout.structure(*number),
+                _ => None,
+            };
+            let members = structure.map_or(&[][..], |structure| &structure.members);
+            let Some(member) = members.iter().position(|member| member.name == step.field) else {
+                return Err(PathError::NoField {
+                    type_name: structure.map_or("a number".to_string(), |structure| structure.name.clone()),
+                    wanted: step.field.clone(),
+                    existing: members.iter().map(|member| member.name.clone()).collect(),
+                });
+            };
+            let found = &members[member];
+            let index = match (&step.index, found.count) {
+                (None, Count::One) => ResolvedIndex::Single,
+                (None, _) => return Err(PathError::NeedsIndex { field: step.field.clone() }),
+                (Some(_), Count::One) => return Err(PathError::NotAnArray { field: step.field.clone() }),
+                (Some(Index::Number(number)), _) => ResolvedIndex::Number(*number),
+                (Some(Index::Named { key, value }), _) => named(layout, structure, found, key, value)?,
+            };
+            kind = found.kind.clone();
+            steps.push(ResolvedStep { member, index });
+        }
+        Ok(Selector { steps, kind })
+    }
+
+    /// The number in a message (with encapsulation); `None` when the array has no such element.
+    ///
+    /// # Errors
+    /// [`CdrError`] when the bytes up to the number do not fit the layout.
+    pub fn read(&self, layout: &Layout, message: &[u8]) -> Result<Option<f64>, CdrError> {
+        let Kind::Primitive(primitive) = self.kind else {
+            return Ok(None);
+        };
+        match self.locate(layout, message)? {
+            Some(mut cursor) => cursor.number(primitive).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    /// The time in a message, ns since the epoch; `None` when the array has no such element.
+    ///
+    /// # Errors
+    /// As [`Selector::read`].
+    pub fn read_time(&self, layout: &Layout, message: &[u8]) -> Result<Option<i64>, CdrError> {
+        let Some(mut cursor) = self.locate(layout, message)? else {
+            return Ok(None);
+        };
+        let (seconds, nanoseconds) = (cursor.i32()?, cursor.u32()?);
+        Ok(Some(i64::from(seconds) * NANOSECONDS_PER_SECOND + i64::from(nanoseconds)))
+    }
+
+    fn locate<'b>(&self, layout: &Layout, message: &'b [u8]) -> Result<Option<Cursor<'b>>, CdrError> {
+        let mut cursor = Cursor::new(message)?;
+        let mut number = 0;
+        for step in &self.steps {
+            let Some(member) = layout.structure(number).and_then(|structure| structure.members.get(step.member)) else {
+                return Ok(None);
+            };
+            let start = cursor;
+            cursor.skip_members(layout, number, step.member)?;
+            let count = cursor.count(member.count)?;
+            let wanted = match &step.index {
+                ResolvedIndex::Single => Some(0),
+                ResolvedIndex::Number(index) => Some(*index),
+                ResolvedIndex::Beside(list, text) => place_in_list(layout, number, *list, start, text)?,
+                ResolvedIndex::Within(key, text) => place_of_element(layout, &member.kind, *key, count, cursor, text)?,
+            };
+            let Some(wanted) = wanted.filter(|&wanted| wanted < count) else {
+                return Ok(None);
+            };
+            cursor.skip(layout, &member.kind, wanted)?;
+            if let Kind::Struct(inner) = member.kind {
+                number = inner;
+            }
+        }
+        Ok(Some(cursor))
+    }
+}
+
+/// How `[key=value]` finds its element.
+fn named(
+    layout: &Layout,
+    structure: Option<&StructLayout>,
+    array: &Member,
+    key: &str,
+    value: &str,
+) -> Result<ResolvedIndex, PathError> {
+    let is_text = |member: &Member, single: bool| {
+        member.name == key && member.kind == Kind::Text && (member.count == Count::One) == single
+    };
+    if let Kind::Struct(number) = array.kind {
+        let members = layout.structure(number).map_or(&[][..], |element| &element.members);
+        if let Some(member) = members.iter().position(|member| is_text(member, true)) {
+            return Ok(ResolvedIndex::Within(member, value.to_string()));
+        }
+    }
+    let beside = structure.map_or(&[][..], |structure| &structure.members);
+    match beside.iter().position(|member| is_text(member, false)) {
+        Some(member) => Ok(ResolvedIndex::Beside(member, value.to_string())),
+        None => Err(PathError::NoKey { field: array.name.clone(), key: key.to_string() }),
+    }
+}
+
+/// Place of a text in the list that is member `list` of the struct at `cursor`.
+fn place_in_list(
+    layout: &Layout,
+    number: usize,
+    list: usize,
+    mut cursor: Cursor,
+    text: &str,
+) -> Result<Option<usize>, CdrError> {
+    let count = layout.structure(number).and_then(|s| s.members.get(list)).map_or(Count::One, |member| member.count);
+    cursor.skip_members(layout, number, list)?;
+    for place in 0..cursor.count(count)? {
+        if cursor.text()? == text.as_bytes() {
+            return Ok(Some(place));
+        }
+    }
+    Ok(None)
+}
+
+/// Place of the element whose member `key` is the text, among `count` at `cursor`.
+fn place_of_element(
+    layout: &Layout,
+    kind: &Kind,
+    key: usize,
+    count: usize,
+    mut cursor: Cursor,
+    text: &str,
+) -> Result<Option<usize>, CdrError> {
+    let Kind::Struct(number) = *kind else {
+        return Ok(None);
+    };
+    for place in 0..count {
+        let mut inside = cursor;
+        inside.skip_members(layout, number, key)?;
+        if inside.text()? == text.as_bytes() {
+            return Ok(Some(place));
+        }
+        cursor.skip_struct(layout, number)?;
+    }
+    Ok(None)
+}
+
+impl Layout {
+    /// Whether a whole message (with encapsulation) fits: not too short, and nothing but padding left over.
+    ///
+    /// # Errors
+    /// [`CdrError`], which says what does not fit.
+    pub fn check(&self, message: &[u8]) -> Result<(), CdrError> {
+        let mut cursor = Cursor::new(message)?;
+        cursor.skip_struct(self, 0)?;
+        match cursor.remaining() {
+            left if left > PADDING_LIMIT => Err(CdrError::LeftOver { bytes: message.len() - 4, left }),
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! From the number in a message or cell to the value of a signal.
+
+use super::document::SignalSource;
+use super::error::MapError;
+use super::unit::Unit;
+
+/// Value of the signal = `factor` · number in SI units + `offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conversion {
+    unit: Unit,
+    factor: f64,
+    offset: f64,
+}
+
+impl Conversion {
+    /// The conversion that a map asks for; `unit` is that of a column's heading, used where the map names none.
+    ///
+    /// # Errors
+    /// [`MapError::UnknownUnit`], [`MapError::WrongDimension`], [`MapError::BadQuantity`], [`MapError::BadNumber`].
+    pub fn of(source: &SignalSource, heading: Option<&str>) -> Result<Conversion, MapError> {
+        let signal = source.signal.to_string();
+        let dimension = source.signal.kind.dimension();
+        let unit = match source.unit.as_deref().or(heading) {
+            None => Unit::si(dimension),
+            Some(name) => Unit::named(name).ok_or_else(|| MapError::UnknownUnit {
+                signal: signal.clone(),
+                unit: name.to_string(),
+                known: Unit::names(),
+            })?,
+        };
+        let scale = match &source.scale {
+            Some(scale) => scale.ratio_to_si(&signal, unit.dimension, dimension)?,
+            None if unit.dimension == dimension => 1.0,
+            None => {
+                return Err(MapError::WrongDimension {
+                    signal,
+                    wanted: dimension,
+                    unit: unit.name.to_string(),
+                    found: unit.dimension,
+                });
+            }
+        };
+        let sign = match source.sign {
+            None | Some(1) => 1.0,
+            Some(-1) => -1.0,
+            Some(found) => {
+                let found = f64::from(found);
+                return Err(MapError::BadNumber { place: signal, key: "sign", found, wanted: "1 or -1" });
+            }
+        };
+        let offset = match &source.offset {
+            Some(offset) => offset.to_si(&signal, "offset", dimension)?,
+            None => 0.0,
+        };
+        Ok(Conversion { unit, factor: sign * scale, offset })
+    }
+
+    /// The value of the signal; what is not finite is not measured.
+    pub fn apply(&self, number: f64) -> f64 {
+        let value = self.unit.to_si(number) * self.factor;
+        let value = if self.offset == 0.0 { value } else { value + self.offset };
+        if value.is_finite() { value } else { f64::NAN }
+    }
+}

@@ -1,0 +1,289 @@
+//! A topic map as text.
+
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use super::conversion::Conversion;
+use super::error::MapError;
+use super::quantity::Quantity;
+use super::signal::SignalName;
+use crate::BagError;
+use crate::dynamic::FieldPath;
+use crate::table::TableFormat;
+
+/// Which field of which topic, or which column of which table, is which signal.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TopicMap {
+    /// What the map is for, for people.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+    /// `.msg` files with types that neither the bag nor we define; relative to the map's own file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub definitions: Vec<PathBuf>,
+    /// At which times the recording has samples.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub clock: ClockSource,
+    /// How a text table is laid out; most of it is found out without.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub table: TableFormat,
+    /// The signals; what is not here is not measured.
+    #[serde(default)]
+    pub signals: Vec<SignalSource>,
+}
+
+/// At which times the recording has samples.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ClockSource {
+    /// Bags: the topic whose stamps are the clock; without, the mapped topic with most messages.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub topic: Option<String>,
+    /// Bags: which stamps.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub stamp: Stamp,
+    /// Tables: the column with the time; without, `time`, `t`, `timestamp` or `stamp` if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub column: Option<ColumnName>,
+    /// Tables: unit of that column, `s` unless its heading says otherwise. Not for columns of dates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Tables without time: samples per second, Hz.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate: Option<f64>,
+    /// Tables whose time is not since the epoch: when time 0 was, `2026-05-01T12:00:00Z`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<String>,
+}
+
+/// Which time a message has.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub enum Stamp {
+    /// `header.stamp` where the type has it and it is not zero, else the log time.
+    #[default]
+    Auto,
+    /// `header.stamp`.
+    Header,
+    /// When the recorder received the message.
+    Log,
+    /// Another field of type `builtin_interfaces/Time`, by its path.
+    Field(String),
+}
+
+impl From<String> for Stamp {
+    fn from(text: String) -> Self {
+        match text.as_str() {
+            "auto" => Stamp::Auto,
+            "header" => Stamp::Header,
+            "log" => Stamp::Log,
+            _ => Stamp::Field(text),
+        }
+    }
+}
+
+impl From<Stamp> for String {
+    fn from(stamp: Stamp) -> String {
+        match stamp {
+            Stamp::Auto => "auto".to_string(),
+            Stamp::Header => "header".to_string(),
+            Stamp::Log => "log".to_string(),
+            Stamp::Field(path) => path,
+        }
+    }
+}
+
+/// A column by heading, or by number from 1.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum ColumnName {
+    /// From 1.
+    Number(usize),
+    /// Heading, or name of a variable.
+    Name(String),
+}
+
+impl fmt::Display for ColumnName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ColumnName::Number(number) => write!(f, "{number}"),
+            ColumnName::Name(name) => f.write_str(name),
+        }
+    }
+}
+
+/// The value of a signal between the messages that carry it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Resampling {
+    /// On the straight line between the message before and the one after.
+    Linear,
+    /// That of the message before.
+    Hold,
+}
+
+/// Where one signal comes from, and how its numbers become SI values:
+/// value = `sign` · `scale` · (number in `unit`, as SI) + `offset`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SignalSource {
+    /// The signal: `arm.displacement`, `pump_pressure`.
+    pub signal: SignalName,
+    /// Bags: the topic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub topic: Option<String>,
+    /// Bags: the field.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub field: Option<FieldPath>,
+    /// Tables: the column.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub column: Option<ColumnName>,
+    /// Neither: a known constant, in SI or with its unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<Quantity>,
+    /// Unit of the numbers; SI when not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Factor; with its unit where `unit` measures something else than the signal (`"25 bar/V"`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<Quantity>,
+    /// Added last; in the unit of the signal, not of the numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<Quantity>,
+    /// -1 turns the direction around.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sign: Option<i8>,
+    /// Bags: which time the message has.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub stamp: Stamp,
+    /// Added to that time, s: negative for a sensor whose stamps are late.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_shift: Option<f64>,
+    /// Between messages; without, `linear`, and `hold` for commands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resample: Option<Resampling>,
+    /// Longest time over which a value is interpolated or held, s; beyond it the signal is not measured. Without, five
+    /// median intervals of its own for `linear`, no limit for `hold`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub maximum_gap: Option<f64>,
+}
+
+impl SignalSource {
+    /// A signal of which only the name is known yet.
+    pub fn new(signal: SignalName) -> SignalSource {
+        SignalSource {
+            signal,
+            topic: None,
+            field: None,
+            column: None,
+            value: None,
+            unit: None,
+            scale: None,
+            offset: None,
+            sign: None,
+            stamp: Stamp::Auto,
+            time_shift: None,
+            resample: None,
+            maximum_gap: None,
+        }
+    }
+
+    fn check(&self) -> Result<(), MapError> {
+        let signal = self.signal.to_string();
+        let sources = (self.topic.is_some(), self.field.is_some(), self.column.is_some(), self.value.is_some());
+        match sources {
+            (true, true, false, false) | (false, false, true, false) => {}
+            (false, false, false, true) => {}
+            _ => return Err(MapError::NoSource { signal }),
+        }
+        if let Some(gap) = self.maximum_gap.filter(|gap| !(gap.is_finite() && *gap > 0.0)) {
+            return Err(MapError::BadNumber { place: signal, key: "maximum_gap", found: gap, wanted: "positive" });
+        }
+        if let Some(shift) = self.time_shift.filter(|shift| shift.is_nan() || shift.abs() > 1e6) {
+            return Err(MapError::BadNumber { place: signal, key: "time_shift", found: shift, wanted: "under 1e6 s" });
+        }
+        // The heading of a column may still name the unit, so a missing one is no fault here.
+        if self.column.is_none() || self.unit.is_some() {
+            Conversion::of(self, None)?;
+        }
+        Ok(())
+    }
+}
+
+impl TopicMap {
+    /// The map in the file at `path`; the files of its definitions are looked for beside it.
+    ///
+    /// # Errors
+    /// [`BagError::Io`], [`BagError::Map`].
+    pub fn read(path: &Path) -> Result<TopicMap, BagError> {
+        let text = std::fs::read_to_string(path).map_err(BagError::io("read", path))?;
+        let mut map: TopicMap =
+            text.parse().map_err(|source| MapError::InFile { path: path.to_path_buf(), source: Box::new(source) })?;
+        let folder = path.parent().unwrap_or(Path::new("."));
+        for definition in &mut map.definitions {
+            *definition = folder.join(&*definition);
+        }
+        Ok(map)
+    }
+
+    /// The file of the map that belongs to a bag or table, if there is one: `map.toml` in the folder of a bag, or
+    /// `FILE.map.toml` beside a file.
+    pub fn beside(data: &Path) -> Option<PathBuf> {
+        let path = if data.is_dir() {
+            data.join("map.toml")
+        } else {
+            let mut name = data.file_name()?.to_os_string();
+            name.push(".map.toml");
+            data.with_file_name(name)
+        };
+        path.is_file().then_some(path)
+    }
+
+    /// The map as text that reads back as the same map.
+    ///
+    /// # Errors
+    /// [`MapError::Syntax`] when a number is none that TOML can hold.
+    pub fn to_text(&self) -> Result<String, MapError> {
+        toml::to_string(self).map_err(|error| MapError::Syntax(error.to_string()))
+    }
+
+    fn check(&self) -> Result<(), MapError> {
+        if self.signals.is_empty() {
+            return Err(MapError::NoSignals);
+        }
+        let mut seen = BTreeSet::new();
+        for source in &self.signals {
+            if !seen.insert(&source.signal) {
+                return Err(MapError::SignalTwice { signal: source.signal.to_string() });
+            }
+            source.check()?;
+        }
+        if let Some(rate) = self.clock.rate.filter(|rate| !(1e-6..=1e7).contains(rate)) {
+            let place = "[clock]".to_string();
+            return Err(MapError::BadNumber { place, key: "rate", found: rate, wanted: "between 1e-6 and 1e7 Hz" });
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for TopicMap {
+    type Err = MapError;
+
+    fn from_str(text: &str) -> Result<Self, MapError> {
+        let map: TopicMap = toml::from_str(text).map_err(|error| {
+            let line = error.span().map(|span| text.get(..span.start).unwrap_or_default().matches('\n').count() + 1);
+            let line = line.map_or(String::new(), |line| format!("line {line}: "));
+            MapError::Syntax(format!("{line}{}", error.message().replace('\n', " ")))
+        })?;
+        map.check()?;
+        Ok(map)
+    }
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

@@ -1,0 +1,86 @@
+//! A column or field that may be a signal.
+
+use super::super::document::{ColumnName, SignalSource};
+use super::super::signal::SignalName;
+use super::super::unit::{Dimension, Unit};
+use crate::dynamic::FieldPath;
+
+/// Where the numbers come from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Origin {
+    Column(String),
+    Field { topic: String, field: FieldPath },
+}
+
+/// A column or field with its values.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Candidate {
+    pub origin: Origin,
+    /// Lower-case words of its name.
+    pub words: Vec<String>,
+    /// Unit that a heading or the type of the message gives, and who says so.
+    pub unit: Option<(Unit, String)>,
+    /// What the type of the message says that it measures.
+    pub dimension: Option<Dimension>,
+    /// s.
+    pub time: Vec<f64>,
+    pub values: Vec<f64>,
+}
+
+impl Candidate {
+    /// How people call it.
+    pub fn label(&self) -> String {
+        match &self.origin {
+            Origin::Column(name) => name.clone(),
+            Origin::Field { topic, field } => format!("{topic} {field}"),
+        }
+    }
+
+    /// Its entry in a map.
+    pub fn source(&self, signal: SignalName, unit: Option<&str>) -> SignalSource {
+        let mut source = SignalSource::new(signal);
+        match &self.origin {
+            Origin::Column(name) => source.column = Some(ColumnName::Name(name.clone())),
+            Origin::Field { topic, field } => {
+                source.topic = Some(topic.clone());
+                source.field = Some(field.clone());
+            }
+        }
+        source.unit = unit.map(str::to_string);
+        source
+    }
+}
+
+/// Lower-case words of a name: at signs, at changes from lower to upper case, and between letters and digits.
+pub(super) fn words(name: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    let mut before = ' ';
+    for character in name.chars() {
+        let starts = (character.is_uppercase() && before.is_lowercase())
+            || character.is_ascii_digit() != before.is_ascii_digit()
+            || !before.is_alphanumeric();
+        if character.is_alphanumeric() {
+            match words.last_mut() {
+                Some(word) if !starts => word.extend(character.to_lowercase()),
+                _ => words.push(character.to_lowercase().collect()),
+            }
+        } else if character == '+' {
+            words.push("plus".to_string());
+        }
+        before = character;
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words;
+
+    #[test]
+    fn names_fall_apart_where_people_read_a_gap() {
+        assert_eq!(words("/armCylinder/p_A2"), ["arm", "cylinder", "p", "a", "2"]);
+        assert_eq!(words("position[name=arm]"), ["position", "name", "arm"]);
+        assert_eq!(words("pA"), ["p", "a"]);
+        assert_eq!(words("Druck p+"), ["druck", "p", "plus"]);
+    }
+}

@@ -1,0 +1,201 @@
+//! Which candidate is which signal.
+
+use std::collections::HashSet;
+
+use super::super::signal::{SignalKind, SignalName};
+use super::super::unit::{Dimension, Unit};
+use super::GuessedSignal;
+use super::candidate::Candidate;
+use super::names;
+use super::shapes::{Shape, derivative, short};
+
+/// Below this a name alone is no reason.
+const LEAST_SCORE: f64 = 0.5;
+/// A velocity that goes with the derivative of a position so closely is its velocity.
+const LEAST_CORRELATION: f64 = 0.8;
+
+/// A candidate, a signal that it may be, and how good that is.
+struct Pair {
+    candidate: usize,
+    kind: SignalKind,
+    score: f64,
+    reason: String,
+}
+
+/// The signals, and the labels of what is left.
+pub(super) fn choose(candidates: Vec<Candidate>, cylinder: &str) -> (Vec<GuessedSignal>, Vec<String>) {
+    let shapes: Vec<Option<Shape>> = candidates.iter().map(|candidate| Shape::of(&candidate.values)).collect();
+    let mut pairs = pairs(&candidates, &shapes);
+    pairs.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.candidate.cmp(&b.candidate)));
+    let (mut used, mut taken, mut signals) = (HashSet::new(), HashSet::new(), Vec::new());
+    for pair in pairs {
+        let candidate = &candidates[pair.candidate];
+        let own = names::cylinder(&candidate.words).unwrap_or(cylinder);
+        let name = SignalName { cylinder: pair.kind.is_of_cylinder().then(|| own.to_string()), kind: pair.kind };
+        if pair.score < LEAST_SCORE || used.contains(&pair.candidate) || taken.contains(&name) {
+            continue;
+        }
+        used.insert(pair.candidate);
+        taken.insert(name.clone());
+        let (unit, unit_reason) = unit(candidate, shapes[pair.candidate], pair.kind.dimension());
+        let mut source = candidate.source(name, unit.as_ref().map(|unit| unit.name));
+        if let Some(unit) = unit.filter(|unit| unit.dimension != pair.kind.dimension()) {
+            // A map needs a scale here; only the maker of the sensor knows it.
+            let text = format!("1 {}/{}", pair.kind.dimension().si_unit(), unit.name);
+            source.scale = Some(super::super::Quantity::Text(text));
+        }
+        signals.push(GuessedSignal { source, reason: pair.reason, unit_reason });
+    }
+    signals.sort_by(|a, b| a.source.signal.cmp(&b.source.signal));
+    let left = (0..candidates.len()).filter(|index| !used.contains(index)).map(|index| candidates[index].label());
+    (signals, left.collect())
+}
+
+fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {
+    let mut pairs = Vec::new();
+    for (index, candidate) in candidates.iter().enumerate() {
+        let Some(shape) = shapes[index] else { continue };
+        for kind in SignalKind::ALL {
+            if let Some((score, reason)) = by_name_and_unit(kind, candidate) {
+                // A signal that never changes says little, except for tank pressure and flow.
+                let may_rest =
+                    matches!(kind, SignalKind::TankPressure | SignalKind::PumpFlow | SignalKind::OilTemperature);
+                let score = if shape.is_constant() && !may_rest { 0.7 * score } else { score };
+                pairs.push(Pair { candidate: index, kind, score, reason });
+            }
+        }
+    }
+    add_derivatives(candidates, &mut pairs);
+    add_places_of_pressures(candidates, shapes, &mut pairs);
+    pairs
+}
+
+/// What name, unit and type say together.
+fn by_name_and_unit(kind: SignalKind, candidate: &Candidate) -> Option<(f64, String)> {
+    let wanted = kind.dimension();
+    let named = names::score(kind, &candidate.words);
+    match candidate.dimension {
+        Some(found) if found == wanted => {
+            let what = candidate.unit.as_ref().map_or(wanted.to_string(), |(unit, _)| format!("unit {}", unit.name));
+            // A joint's speed in a JointState, a force in a Wrench: the type has said it all.
+            match named {
+                // A pressure of which nothing says where it is may be any of them.
+                Some((score, word)) if wanted == Dimension::Pressure && score < LEAST_SCORE => {
+                    Some((0.3, format!("named \"{word}\", {what}")))
+                }
+                Some((score, word)) => Some((0.4 + 0.6 * score, format!("named \"{word}\", {what}"))),
+                None if wanted == Dimension::Pressure || kind == SignalKind::OrificeArea => Some((0.3, what)),
+                None if kind == SignalKind::OrificeCommand => None,
+                None => Some((0.55, what)),
+            }
+        }
+        // Raw volts and counts keep the name as the only reason.
+        Some(Dimension::Voltage | Dimension::Current | Dimension::Number) | None => {
+            named.map(|(score, word)| (0.9 * score, format!("named \"{word}\"")))
+        }
+        Some(_) => None,
+    }
+}
+
+/// A position and a velocity that is its derivative make each other sure.
+fn add_derivatives(candidates: &[Candidate], pairs: &mut [Pair]) {
+    let of_kind =
+        |pairs: &[Pair], kind| -> Vec<usize> { (0..pairs.len()).filter(|&index| pairs[index].kind == kind).collect() };
+    for position in of_kind(pairs, SignalKind::Displacement) {
+        for velocity in of_kind(pairs, SignalKind::Velocity) {
+            let (x, v) = (&candidates[pairs[position].candidate], &candidates[pairs[velocity].candidate]);
+            if pairs[position].candidate == pairs[velocity].candidate {
+                continue;
+            }
+            let Some((correlation, ratio)) = derivative((&x.time, &x.values), (&v.time, &v.values)) else { continue };
+            if correlation.abs() >= LEAST_CORRELATION {
+                let sign = if correlation < 0.0 { ", with the sign turned" } else { "" };
+                let told = format!("correlation {correlation:.2}, {} per 1{sign}", short(ratio.abs()));
+                pairs[position].score += 0.5;
+                pairs[position].reason += &format!("; its derivative is {} ({told})", v.label());
+                pairs[velocity].score += 0.5;
+                pairs[velocity].reason += &format!("; derivative of {} ({told})", x.label());
+            }
+        }
+    }
+}
+
+/// Pressures whose names do not say where they are: the highest on average is the supply, the lowest the tank, two
+/// between them the chambers.
+fn add_places_of_pressures(candidates: &[Candidate], shapes: &[Option<Shape>], pairs: &mut Vec<Pair>) {
+    let placed: HashSet<usize> =
+        pairs.iter().filter(|pair| pair.score >= LEAST_SCORE).map(|pair| pair.candidate).collect();
+    let has = |kind: SignalKind| pairs.iter().any(|pair| pair.kind == kind && pair.score >= LEAST_SCORE);
+    let mut loose: Vec<(usize, f64)> = pairs
+        .iter()
+        .filter(|pair| pair.kind == SignalKind::CapPressure && !placed.contains(&pair.candidate))
+        .filter_map(|pair| Some((pair.candidate, si_mean(&candidates[pair.candidate], shapes[pair.candidate]?))))
+        .collect();
+    loose.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut found = Vec::new();
+    let mut add = |candidate: usize, kind: SignalKind, why: String| {
+        found.push(Pair { candidate, kind, score: LEAST_SCORE, reason: why });
+    };
+    let mut open: Vec<SignalKind> =
+        [SignalKind::CapPressure, SignalKind::RodPressure].into_iter().filter(|&kind| !has(kind)).collect();
+    if loose.len() > open.len() && !has(SignalKind::PumpPressure) {
+        let (candidate, mean) = loose.remove(0);
+        add(candidate, SignalKind::PumpPressure, format!("highest of the pressures, {} Pa on average", short(mean)));
+    }
+    if loose.len() > open.len()
+        && !has(SignalKind::TankPressure)
+        && let Some((candidate, mean)) = loose.pop()
+    {
+        add(candidate, SignalKind::TankPressure, format!("lowest of the pressures, {} Pa on average", short(mean)));
+    }
+    // In the order of the data: people write the cap side first.
+    loose.sort_by_key(|&(candidate, _)| candidate);
+    for (candidate, mean) in loose {
+        if open.is_empty() {
+            break;
+        }
+        let kind = open.remove(0);
+        let why = format!("a pressure of {} Pa on average; which chamber is only the order: check", short(mean));
+        add(candidate, kind, why);
+    }
+    pairs.extend(found);
+}
+
+fn si_mean(candidate: &Candidate, shape: Shape) -> f64 {
+    let (unit, _) = unit(candidate, Some(shape), Dimension::Pressure);
+    unit.unwrap_or(Unit::si(Dimension::Pressure)).to_si(shape.mean)
+}
+
+/// The unit of a candidate as a signal of this dimension, `None` for SI, and why.
+fn unit(candidate: &Candidate, shape: Option<Shape>, dimension: Dimension) -> (Option<Unit>, String) {
+    if let Some((unit, who)) = &candidate.unit {
+        let why = match unit.dimension == dimension {
+            true => who.clone(),
+            false => format!("{who}; the scale is a placeholder: put the sensor's"),
+        };
+        return (Some(*unit), why);
+    }
+    if let Some(raw) = raw_unit(candidate, shape) {
+        let why = format!(
+            "named so; the scale is a placeholder: put the {}'s",
+            if raw.dimension == Dimension::Current { "valve" } else { "sensor" }
+        );
+        return (Some(raw), why);
+    }
+    match shape.and_then(|shape| shape.unit(dimension)) {
+        Some((name, why)) => (Unit::named(name), why),
+        None => (Some(Unit::si(dimension)), "no unit given, and the numbers fit SI".to_string()),
+    }
+}
+
+/// The electrical unit that a name speaks of.
+fn raw_unit(candidate: &Candidate, shape: Option<Shape>) -> Option<Unit> {
+    let says = |wanted: &[&str]| candidate.words.iter().any(|word| wanted.contains(&word.as_str()));
+    // No valve takes 30 A, and none is moved by 30 mA.
+    let is_large = shape.is_some_and(|shape| shape.most.abs().max(shape.least.abs()) > 30.0);
+    match () {
+        () if says(&["current", "strom"]) => Unit::named(if is_large { "mA" } else { "A" }),
+        () if says(&["voltage", "volt", "volts", "spannung"]) => Unit::named(if is_large { "mV" } else { "V" }),
+        () => None,
+    }
+}

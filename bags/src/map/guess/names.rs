@@ -1,0 +1,80 @@
+//! What names say.
+
+use super::super::signal::SignalKind;
+use super::super::unit::Dimension;
+
+/// Cylinders that names speak of.
+const CYLINDERS: [&str; 7] = ["boom", "arm", "stick", "bucket", "swing", "load", "dipper"];
+
+/// Words for what is measured.
+const QUANTITIES: [(Dimension, &[&str]); 7] = [
+    (Dimension::Pressure, &["pressure", "press", "p", "druck", "bar", "chamber"]),
+    (
+        Dimension::Length,
+        &["displacement", "position", "pos", "stroke", "extension", "length", "x", "s", "qm", "laser", "weg"],
+    ),
+    (Dimension::Velocity, &["velocity", "vel", "speed", "v", "dx", "xd", "xdot"]),
+    (Dimension::Angle, &["angle", "theta", "rotation", "q", "phi"]),
+    (Dimension::Force, &["force", "effort", "f", "kraft", "loadcell"]),
+    (Dimension::Flow, &["flow", "qp", "volumenstrom"]),
+    (Dimension::Temperature, &["temperature", "temp", "t"]),
+];
+/// Words for the place of a pressure.
+const PLACES: [(SignalKind, &[&str]); 4] = [
+    (SignalKind::CapPressure, &["cap", "bore", "head", "bottom", "a", "1", "plus", "piston", "fluid_a"]),
+    (SignalKind::RodPressure, &["rod", "annulus", "ring", "b", "2", "minus"]),
+    (SignalKind::PumpPressure, &["pump", "supply", "system", "ps", "pp", "s", "feed"]),
+    (SignalKind::TankPressure, &["tank", "return", "reservoir", "pt", "t"]),
+];
+const COMMANDS: [&str; 11] =
+    ["command", "cmd", "ref", "reference", "setpoint", "desired", "valve", "ventil", "u", "input", "r"];
+const OPENINGS: [&str; 4] = ["spool", "opening", "orifice", "area"];
+
+/// How well a name suits a signal, 0 to 1, and the word that says so.
+pub(super) fn score(kind: SignalKind, words: &[String]) -> Option<(f64, String)> {
+    let command = find(words, &COMMANDS);
+    let opening = find(words, &OPENINGS);
+    match kind {
+        SignalKind::OrificeCommand => command,
+        SignalKind::OrificeArea => opening.filter(|_| command.as_ref().is_none_or(|(_, word)| word.starts_with("v"))),
+        // What is commanded is not what is measured.
+        _ if command.as_ref().is_some_and(|(_, word)| word.len() > 1 && !word.starts_with("v")) => None,
+        SignalKind::CapPressure | SignalKind::RodPressure | SignalKind::PumpPressure | SignalKind::TankPressure => {
+            let places = PLACES.iter().find(|(place, _)| *place == kind).map_or(&[][..], |(_, places)| places);
+            let (what, word) = find(words, quantity(Dimension::Pressure)).or_else(|| joined(words, places))?;
+            match find(words, places) {
+                Some((place, place_word)) => Some((0.5 * (what + place), format!("{word}, {place_word}"))),
+                None => Some((0.35 * what, word)),
+            }
+        }
+        _ => find(words, quantity(kind.dimension())),
+    }
+}
+
+/// The cylinder that a name speaks of.
+pub(super) fn cylinder(words: &[String]) -> Option<&'static str> {
+    CYLINDERS.into_iter().find(|name| words.iter().any(|word| word == name))
+}
+
+fn quantity(dimension: Dimension) -> &'static [&'static str] {
+    QUANTITIES.iter().find(|(of, _)| *of == dimension).map_or(&[][..], |(_, words)| words)
+}
+
+/// From so many letters on a wanted word also counts within another: `Pumpendruck`, `chambers`.
+const LETTERS_WITHIN: usize = 4;
+
+/// The longest of the words that is, or contains, one of those wanted. Single letters say less.
+fn find(words: &[String], wanted: &[&str]) -> Option<(f64, String)> {
+    let found = words
+        .iter()
+        .filter(|word| wanted.iter().any(|w| word == w || (w.len() >= LETTERS_WITHIN && word.contains(w))))
+        .max_by_key(|word| word.len())?;
+    let weight = if found.len() > 2 { 1.0 } else { 0.6 };
+    Some((weight, found.clone()))
+}
+
+/// `ps`, `pt`: quantity and place in one word.
+fn joined(words: &[String], places: &[&str]) -> Option<(f64, String)> {
+    let word = words.iter().find(|word| word.starts_with('p') && places.contains(&word.as_str()) && word.len() == 2)?;
+    Some((0.6, word.clone()))
+}

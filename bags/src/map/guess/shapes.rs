@@ -1,0 +1,92 @@
+//! What the numbers themselves say.
+
+use super::super::unit::Dimension;
+
+/// Extremes and mean of finite values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shape {
+    pub least: f64,
+    pub most: f64,
+    pub mean: f64,
+}
+
+impl Shape {
+    /// `None` without any finite value.
+    pub fn of(values: &[f64]) -> Option<Shape> {
+        let mut shape = Shape { least: f64::INFINITY, most: f64::NEG_INFINITY, mean: 0.0 };
+        let mut count = 0.0;
+        for &value in values.iter().filter(|value| value.is_finite()) {
+            shape.least = shape.least.min(value);
+            shape.most = shape.most.max(value);
+            count += 1.0;
+            shape.mean += (value - shape.mean) / count;
+        }
+        (count > 0.0).then_some(shape)
+    }
+
+    /// Whether nothing happens.
+    pub fn is_constant(&self) -> bool {
+        self.most - self.least <= 1e-9 * self.most.abs().max(self.least.abs())
+    }
+
+    /// The unit that numbers of this size most likely have, and why; `None` when they fit SI.
+    pub fn unit(&self, dimension: Dimension) -> Option<(&'static str, String)> {
+        let size = self.most.abs().max(self.least.abs());
+        let most = short(size);
+        match dimension {
+            // Zeros are the same in every unit.
+            _ if size == 0.0 => None,
+            // No machine has a stroke of 5 m, or one that never leaves 5 mm.
+            Dimension::Length if size > 5.0 => Some(("mm", format!("numbers up to {most} are no metres"))),
+            Dimension::Velocity if size > 10.0 => {
+                Some(("mm/s", format!("numbers up to {most} are no metres per second")))
+            }
+            Dimension::Pressure if size < 1e3 => Some(("bar", format!("numbers up to {most} are no pascals"))),
+            Dimension::Pressure if size < 5e4 => {
+                Some(("kPa", format!("numbers up to {most} are no pascals, and much for bar")))
+            }
+            Dimension::Angle if size > 7.0 => {
+                Some(("deg", format!("numbers up to {most} are more than a turn in radians")))
+            }
+            Dimension::Flow if size > 0.1 => Some(("l/min", format!("numbers up to {most} are no m3/s"))),
+            Dimension::Area if size > 0.1 => Some(("mm2", format!("numbers up to {most} are no m2"))),
+            Dimension::Temperature if self.least > 200.0 => {
+                Some(("K", format!("numbers from {} are no oil in degC", short(self.least))))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A number with three digits.
+pub(super) fn short(value: f64) -> String {
+    if value == 0.0 || (0.01..1e4).contains(&value.abs()) {
+        let digits = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 4) as usize;
+        return format!("{value:.digits$}");
+    }
+    format!("{value:.2e}")
+}
+
+/// How well `velocity` is the derivative of `position` (each with its times in s): correlation, and units of position
+/// per second for one of velocity. `None` for too little motion.
+pub(super) fn derivative(position: (&[f64], &[f64]), velocity: (&[f64], &[f64])) -> Option<(f64, f64)> {
+    let ((time, x), (other_time, v)) = (position, velocity);
+    // Wide steps, so that noise on the position does not hide the motion.
+    let stride = (x.len() / 2000).max(3);
+    let (mut products, mut slopes, mut speeds) = (0.0, 0.0, 0.0);
+    let mut count = 0;
+    for from in (0..x.len().saturating_sub(stride)).step_by(stride) {
+        let to = from + stride;
+        let middle = 0.5 * (time[from] + time[to]);
+        let speed = excavator_model::recording::linear(other_time, v, middle);
+        let slope = (x[to] - x[from]) / (time[to] - time[from]);
+        if slope.is_finite() && speed.is_finite() {
+            products += slope * speed;
+            slopes += slope * slope;
+            speeds += speed * speed;
+            count += 1;
+        }
+    }
+    let size = (slopes * speeds).sqrt();
+    (count >= 20 && size > 0.0).then(|| (products / size, products / speeds))
+}

@@ -1,0 +1,51 @@
+//! Topic maps: which field of which topic, or which column of which table, is which signal.
+//!
+//! ```
+//! use excavator_bags::map::TopicMap;
+//!
+//! let map: TopicMap = r#"
+//!     [clock]
+//!     topic = "/joint_states"
+//!
+//!     [[signals]]
+//!     signal = "arm.displacement"
+//!     topic = "/joint_states"
+//!     field = "position[name=arm_cylinder]"
+//!     unit = "mm"
+//!     offset = "-350 mm"
+//!
+//!     [[signals]]
+//!     signal = "arm.cap_pressure"
+//!     topic = "/pressures"
+//!     field = "data[3]"
+//!     unit = "V"
+//!     scale = "25 bar/V"
+//!     resample = "hold"
+//! "#
+//! .parse()?;
+//! assert_eq!(map.signals.len(), 2);
+//! # Ok::<(), excavator_bags::map::MapError>(())
+//! ```
+
+mod assemble;
+mod conversion;
+mod document;
+mod error;
+mod guess;
+mod quantity;
+mod read_bag;
+mod read_mapped;
+mod read_table;
+mod resample;
+mod signal;
+mod track;
+mod unit;
+
+pub use conversion::Conversion;
+pub use document::{ClockSource, ColumnName, Resampling, SignalSource, Stamp, TopicMap};
+pub use error::MapError;
+pub use guess::{Guess, GuessedSignal, guess};
+pub use quantity::Quantity;
+pub use read_mapped::{read_mapped, read_recording_or_mapped};
+pub use signal::{SignalKind, SignalName};
+pub use unit::{Dimension, Unit};

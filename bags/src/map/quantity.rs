@@ -1,0 +1,71 @@
+//! Numbers with or without unit.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::MapError;
+use super::unit::{Dimension, Unit};
+
+/// A number in SI units, or text with its unit: `"-350 mm"`, `"25 bar/V"`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Quantity {
+    /// In SI units.
+    Number(f64),
+    /// With unit.
+    Text(String),
+}
+
+impl Quantity {
+    /// The SI value of something that must have this dimension. A difference, so that `"10 K"` is 10 K.
+    pub(super) fn to_si(&self, signal: &str, key: &'static str, dimension: Dimension) -> Result<f64, MapError> {
+        match self {
+            Quantity::Number(number) => finite(*number, signal, key),
+            Quantity::Text(text) => split(text)
+                .and_then(|(number, unit)| Some((number, Unit::named(unit)?)))
+                .filter(|(_, unit)| unit.dimension == dimension)
+                .map(|(number, unit)| number * unit.factor())
+                .ok_or_else(|| self.bad(signal, key, "-350 mm")),
+        }
+    }
+
+    /// The SI value of a ratio `to` per `from`.
+    pub(super) fn ratio_to_si(&self, signal: &str, from: Dimension, to: Dimension) -> Result<f64, MapError> {
+        let bad = || self.bad(signal, "scale", "25 bar/V");
+        match self {
+            Quantity::Number(number) => finite(*number, signal, "scale"),
+            Quantity::Text(text) => {
+                let (number, units) = split(text).ok_or_else(bad)?;
+                // The last slash is that of the ratio: units like l/min have their own.
+                let (over, under) = units.rsplit_once('/').ok_or_else(bad)?;
+                let (over, under) = Unit::named(over).zip(Unit::named(under)).ok_or_else(bad)?;
+                if over.dimension != to || under.dimension != from {
+                    return Err(bad());
+                }
+                Ok(number * over.factor() / under.factor())
+            }
+        }
+    }
+
+    fn bad(&self, signal: &str, key: &'static str, example: &'static str) -> MapError {
+        let text = match self {
+            Quantity::Number(number) => number.to_string(),
+            Quantity::Text(text) => text.clone(),
+        };
+        MapError::BadQuantity { signal: signal.to_string(), key, text, example }
+    }
+}
+
+fn finite(number: f64, signal: &str, key: &'static str) -> Result<f64, MapError> {
+    if number.is_finite() {
+        return Ok(number);
+    }
+    Err(MapError::BadNumber { place: signal.to_string(), key, found: number, wanted: "a finite number" })
+}
+
+/// The number in front and the unit behind.
+fn split(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE_".contains(c))).unwrap_or(text.len());
+    let number = text[..end].replace('_', "").parse().ok().filter(|number: &f64| number.is_finite())?;
+    Some((number, text[end..].trim()))
+}

@@ -1,0 +1,203 @@
+//! Units by name.
+
+use std::fmt;
+
+/// What a unit measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum Dimension {
+    Length,
+    Angle,
+    Velocity,
+    Pressure,
+    Force,
+    Flow,
+    Area,
+    Temperature,
+    Time,
+    Voltage,
+    Current,
+    Number,
+}
+
+impl Dimension {
+    /// The unit in which recordings carry it; °C for temperatures.
+    pub fn si_unit(self) -> &'static str {
+        match self {
+            Dimension::Length => "m",
+            Dimension::Angle => "rad",
+            Dimension::Velocity => "m/s",
+            Dimension::Pressure => "Pa",
+            Dimension::Force => "N",
+            Dimension::Flow => "m3/s",
+            Dimension::Area => "m2",
+            Dimension::Temperature => "degC",
+            Dimension::Time => "s",
+            Dimension::Voltage => "V",
+            Dimension::Current => "A",
+            Dimension::Number => "1",
+        }
+    }
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Dimension::Length => "length",
+            Dimension::Angle => "angle",
+            Dimension::Velocity => "velocity",
+            Dimension::Pressure => "pressure",
+            Dimension::Force => "force",
+            Dimension::Flow => "volume flow",
+            Dimension::Area => "area",
+            Dimension::Temperature => "temperature",
+            Dimension::Time => "time",
+            Dimension::Voltage => "voltage",
+            Dimension::Current => "current",
+            Dimension::Number => "plain number",
+        })
+    }
+}
+
+/// A unit: SI value = number · `multiply` / `divide` + `add`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// As it is written.
+    pub name: &'static str,
+    /// What it measures.
+    pub dimension: Dimension,
+    multiply: f64,
+    /// Apart from `multiply`, since dividing by a thousand is exact where multiplying by its inverse is not.
+    divide: f64,
+    add: f64,
+}
+
+const fn unit(name: &'static str, dimension: Dimension, multiply: f64, divide: f64) -> Unit {
+    Unit { name, dimension, multiply, divide, add: 0.0 }
+}
+
+const INCH: f64 = 0.0254;
+const POUND_FORCE: f64 = 4.448_221_615_260_5;
+const GALLON: f64 = 3.785_411_784e-3;
+
+/// Every unit, SI first within its dimension.
+const UNITS: [Unit; 58] = {
+    use Dimension::{
+        Angle, Area, Current, Flow, Force, Length, Number, Pressure, Temperature, Time, Velocity, Voltage,
+    };
+    use std::f64::consts::PI;
+    [
+        unit("m", Length, 1.0, 1.0),
+        unit("cm", Length, 1.0, 100.0),
+        unit("mm", Length, 1.0, 1e3),
+        unit("um", Length, 1.0, 1e6),
+        unit("in", Length, INCH, 1.0),
+        unit("rad", Angle, 1.0, 1.0),
+        unit("mrad", Angle, 1.0, 1e3),
+        unit("deg", Angle, PI, 180.0),
+        unit("rev", Angle, 2.0 * PI, 1.0),
+        unit("m/s", Velocity, 1.0, 1.0),
+        unit("cm/s", Velocity, 1.0, 100.0),
+        unit("mm/s", Velocity, 1.0, 1e3),
+        unit("in/s", Velocity, INCH, 1.0),
+        unit("Pa", Pressure, 1.0, 1.0),
+        unit("hPa", Pressure, 100.0, 1.0),
+        unit("kPa", Pressure, 1e3, 1.0),
+        unit("MPa", Pressure, 1e6, 1.0),
+        unit("mbar", Pressure, 100.0, 1.0),
+        unit("bar", Pressure, 1e5, 1.0),
+        unit("psi", Pressure, POUND_FORCE, INCH * INCH),
+        unit("atm", Pressure, 101_325.0, 1.0),
+        unit("N", Force, 1.0, 1.0),
+        unit("kN", Force, 1e3, 1.0),
+        unit("daN", Force, 10.0, 1.0),
+        unit("kgf", Force, 9.806_65, 1.0),
+        unit("lbf", Force, POUND_FORCE, 1.0),
+        unit("m3/s", Flow, 1.0, 1.0),
+        unit("m3/h", Flow, 1.0, 3600.0),
+        unit("l/min", Flow, 1.0, 60_000.0),
+        unit("lpm", Flow, 1.0, 60_000.0),
+        unit("l/s", Flow, 1.0, 1e3),
+        unit("ml/s", Flow, 1.0, 1e6),
+        unit("cm3/s", Flow, 1.0, 1e6),
+        unit("gpm", Flow, GALLON, 60.0),
+        unit("m2", Area, 1.0, 1.0),
+        unit("cm2", Area, 1.0, 1e4),
+        unit("mm2", Area, 1.0, 1e6),
+        unit("degC", Temperature, 1.0, 1.0),
+        unit("C", Temperature, 1.0, 1.0),
+        Unit { name: "K", dimension: Temperature, multiply: 1.0, divide: 1.0, add: -273.15 },
+        Unit { name: "degF", dimension: Temperature, multiply: 5.0, divide: 9.0, add: -160.0 / 9.0 },
+        unit("s", Time, 1.0, 1.0),
+        unit("ms", Time, 1.0, 1e3),
+        unit("us", Time, 1.0, 1e6),
+        unit("ns", Time, 1.0, 1e9),
+        unit("min", Time, 60.0, 1.0),
+        unit("h", Time, 3600.0, 1.0),
+        unit("V", Voltage, 1.0, 1.0),
+        unit("mV", Voltage, 1.0, 1e3),
+        unit("uV", Voltage, 1.0, 1e6),
+        unit("A", Current, 1.0, 1.0),
+        unit("mA", Current, 1.0, 1e3),
+        unit("1", Number, 1.0, 1.0),
+        unit("-", Number, 1.0, 1.0),
+        unit("%", Number, 1.0, 100.0),
+        unit("counts", Number, 1.0, 1.0),
+        unit("digits", Number, 1.0, 1.0),
+        unit("LSB", Number, 1.0, 1.0),
+    ]
+};
+
+impl Unit {
+    /// The unit of this name: `bar`, `l/min`, `mm²`, `°C`; capitals count only where it matters (`mm`, `MM`, but
+    /// `mPa` is not `MPa`).
+    pub fn named(name: &str) -> Option<Unit> {
+        let name: String = name
+            .trim()
+            .chars()
+            .filter(|c| !c.is_whitespace() && *c != '^')
+            .map(|c| match c {
+                '²' => '2',
+                '³' => '3',
+                'µ' | 'μ' => 'u',
+                other => other,
+            })
+            .collect();
+        let name = match name.strip_prefix('°') {
+            Some("") => "deg".to_string(),
+            Some(rest) => format!("deg{rest}"),
+            None => name,
+        };
+        UNITS
+            .iter()
+            .find(|unit| unit.name == name)
+            .or_else(|| {
+                let mut alike = UNITS.iter().filter(|unit| unit.name.eq_ignore_ascii_case(&name) && name != "mPa");
+                alike.next().filter(|_| alike.next().is_none())
+            })
+            .copied()
+    }
+
+    /// The SI unit of a dimension; °C for temperatures.
+    pub fn si(dimension: Dimension) -> Unit {
+        let name = dimension.si_unit();
+        UNITS.iter().find(|unit| unit.name == name).copied().unwrap_or(unit(name, dimension, 1.0, 1.0))
+    }
+
+    /// A number in this unit as SI value.
+    pub fn to_si(&self, number: f64) -> f64 {
+        let scaled = if self.multiply == 1.0 { number } else { number * self.multiply };
+        let scaled = if self.divide == 1.0 { scaled } else { scaled / self.divide };
+        if self.add == 0.0 { scaled } else { scaled + self.add }
+    }
+
+    /// SI value of one of this unit, as a factor: without the zero of a temperature scale.
+    pub fn factor(&self) -> f64 {
+        self.multiply / self.divide
+    }
+
+    /// All names, for people.
+    pub fn names() -> String {
+        UNITS.iter().map(|unit| unit.name).collect::<Vec<_>>().join(", ")
+    }
+}

@@ -1,0 +1,48 @@
+//! The way past rows that cannot be read.
+
+use rusqlite::Connection;
+
+use super::sqlite_query::{last_row, rows_from};
+
+/// About the rows of one page of the database. Larger steps could pass over whole good pages between two bad ones.
+const LARGEST_STEP: i64 = 64;
+/// After so many probes without success the steps grow without limit: so much is then lost that speed matters more.
+const PATIENT_PROBES: usize = 5_000;
+
+/// The first row number after `bad` from which on reading succeeds; `None` when nothing readable follows.
+pub(super) fn next_readable(connection: &Connection, bad: i64) -> Option<i64> {
+    let last = last_row(connection).ok().flatten().unwrap_or(i64::MAX);
+    let (mut before, mut step) = (bad, 1_i64);
+    let mut probes = 0;
+    let mut good = loop {
+        let probe = before.checked_add(step).filter(|&probe| probe <= last)?;
+        match first_row(connection, probe) {
+            Ok(found) => break found?,
+            Err(_) => before = probe,
+        }
+        probes += 1;
+        if step < LARGEST_STEP || probes > PATIENT_PROBES {
+            step = step.saturating_mul(2);
+        }
+    };
+    // Between `before`, which fails, and `good`: the first that succeeds.
+    while good.checked_sub(before).is_some_and(|distance| distance > 1) {
+        let middle = before + (good - before) / 2;
+        match first_row(connection, middle) {
+            Ok(Some(found)) if found < good => good = found.max(middle),
+            Ok(_) => good = middle,
+            Err(_) => before = middle,
+        }
+    }
+    Some(good)
+}
+
+/// Number of the first row at or after `from`, after it has been read whole.
+fn first_row(connection: &Connection, from: i64) -> rusqlite::Result<Option<i64>> {
+    let mut found = None;
+    rows_from(connection, from, |row| {
+        found = Some(row.id);
+        false
+    })?;
+    Ok(found)
+}

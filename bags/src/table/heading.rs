@@ -1,0 +1,57 @@
+//! Names and units in the headings of columns.
+
+use crate::map::Unit;
+
+/// Name and unit of a heading: `p_A [bar]`, `stroke (mm)`, `flow / l/min`, `pressure_bar`.
+pub(super) fn split(heading: &str) -> (String, Option<String>) {
+    let heading = heading.trim().trim_start_matches('\u{feff}').trim();
+    for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {
+        if let Some((name, rest)) = heading.rsplit_once(open)
+            && let Some(unit) = rest.trim_end().strip_suffix(close)
+            && let Some(unit) = Unit::named(unit)
+        {
+            return (name.trim().to_string(), Some(unit.name.to_string()));
+        }
+    }
+    for separator in [" / ", " in ", ", ", "_", " "] {
+        if let Some((name, unit)) = heading.rsplit_once(separator)
+            && is_telling(unit)
+            && let Some(unit) = Unit::named(unit)
+        {
+            // The unit stays part of a name like `time_ms`: that is how the column is asked for.
+            let name = if separator == "_" { heading } else { name.trim() };
+            return (name.to_string(), Some(unit.name.to_string()));
+        }
+    }
+    (heading.to_string(), None)
+}
+
+/// Whether an ending without brackets is meant as a unit: `p_A` is the pressure at port A, no current, and `x_1` the first x.
+fn is_telling(unit: &str) -> bool {
+    unit.chars().count() > 1 || ["s", "m", "N", "%"].contains(&unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::split;
+
+    #[test]
+    fn units_are_found_in_the_usual_spellings() {
+        for (heading, name, unit) in [
+            ("p_A [bar]", "p_A", Some("bar")),
+            ("stroke (mm)", "stroke", Some("mm")),
+            ("flow / l/min", "flow", Some("l/min")),
+            ("Q [L/min]", "Q", Some("l/min")),
+            ("angle [°]", "angle", Some("deg")),
+            ("area [mm²]", "area", Some("mm2")),
+            ("time_ms", "time_ms", Some("ms")),
+            ("\u{feff}time", "time", None),
+            ("p_A", "p_A", None),
+            ("x_1", "x_1", None),
+            ("count (of parts)", "count (of parts)", None),
+            ("", "", None),
+        ] {
+            assert_eq!(split(heading), (name.to_string(), unit.map(str::to_string)), "{heading}");
+        }
+    }
+}

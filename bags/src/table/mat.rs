@@ -1,0 +1,97 @@
+//! MATLAB files of versions 4, 6 and 7 as tables: every real numeric vector is a column.
+
+use super::{Column, Table, Values, mat4, mat5};
+
+/// A numeric variable.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Variable {
+    pub name: String,
+    pub rows: usize,
+    /// Column by column; a whole number of columns.
+    pub values: Vec<f64>,
+}
+
+/// Headings of the columns of a matrix beyond this many are of no use to anybody.
+const COLUMN_LIMIT: usize = 256;
+
+/// The table in a file. `Err` says in one line what is wrong.
+pub(super) fn parse(bytes: &[u8]) -> Result<Table, String> {
+    let mut table = Table::default();
+    let variables = if mat5::is_mat5(bytes) {
+        mat5::parse(bytes, &mut table.notes)?
+    } else if bytes.get(512..).is_some_and(|rest| rest.starts_with(b"\x89HDF\r\n\x1a\n"))
+        || bytes.starts_with(b"\x89HDF")
+    {
+        return Err("it is a MATLAB 7.3 file (HDF5); save it with `save -v7` to have it read here".to_string());
+    } else {
+        mat4::parse(bytes, &mut table.notes)?
+    };
+    for Variable { name, rows, values } in variables {
+        let columns = values.len().checked_div(rows).unwrap_or(0);
+        // A row is a column that lies down.
+        if rows == 1 || columns == 1 {
+            table.columns.push(Column { name, unit: None, values: Values::Numbers(values) });
+            continue;
+        }
+        for (index, column) in values.chunks_exact(rows.max(1)).take(COLUMN_LIMIT).enumerate() {
+            let name = format!("{name}[{}]", index + 1);
+            table.columns.push(Column { name, unit: None, values: Values::Numbers(column.to_vec()) });
+        }
+    }
+    if table.columns.is_empty() {
+        return Err("it has no real numeric variable".to_string());
+    }
+    Ok(table)
+}
+
+/// Numbers of one storage type, told apart by both formats.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Number {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+impl Number {
+    pub fn size(self) -> usize {
+        match self {
+            Number::I8 | Number::U8 => 1,
+            Number::I16 | Number::U16 => 2,
+            Number::I32 | Number::U32 | Number::F32 => 4,
+            Number::I64 | Number::U64 | Number::F64 => 8,
+        }
+    }
+
+    /// All whole numbers in the bytes.
+    pub fn read(self, bytes: &[u8], big_endian: bool) -> Vec<f64> {
+        macro_rules! read {
+            ($type:ty, $convert:expr) => {
+                bytes
+                    .chunks_exact(self.size())
+                    .filter_map(|chunk| chunk.try_into().ok())
+                    .map(|chunk| if big_endian { <$type>::from_be_bytes(chunk) } else { <$type>::from_le_bytes(chunk) })
+                    .map($convert)
+                    .collect()
+            };
+        }
+        match self {
+            Number::I8 => read!(i8, f64::from),
+            Number::U8 => read!(u8, f64::from),
+            Number::I16 => read!(i16, f64::from),
+            Number::U16 => read!(u16, f64::from),
+            Number::I32 => read!(i32, f64::from),
+            Number::U32 => read!(u32, f64::from),
+            Number::I64 => read!(i64, |value| value as f64),
+            Number::U64 => read!(u64, |value| value as f64),
+            Number::F32 => read!(f32, f64::from),
+            Number::F64 => read!(f64, |value| value),
+        }
+    }
+}

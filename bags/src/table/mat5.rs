@@ -1,0 +1,161 @@
+//! MATLAB versions 5 to 7: elements with a tag, variables packed with zlib (MAT-File Format, chapter 1).
+
+use std::io::Read;
+
+use super::mat::{Number, Variable};
+
+const HEADER: usize = 128;
+/// Bytes that one packed variable may unpack to. Larger ones are not recordings.
+const UNPACKED_LIMIT: u64 = 2 << 30;
+/// Structs within structs that are looked into.
+const DEPTH_LIMIT: usize = 8;
+
+const MATRIX: u32 = 14;
+const COMPRESSED: u32 = 15;
+const STRUCT_CLASS: u8 = 2;
+/// Classes of real numbers: double, single, and integers of 8 to 64 bits.
+const NUMERIC_CLASSES: std::ops::RangeInclusive<u8> = 6..=15;
+const COMPLEX_FLAG: u8 = 0x08;
+
+/// Whether the bytes begin like a file of these versions.
+pub(super) fn is_mat5(bytes: &[u8]) -> bool {
+    matches!(bytes.get(124..128), Some([0, 1, b'I', b'M'] | [1, 0, b'M', b'I']))
+}
+
+/// The real numeric arrays in a file, those in structs as `struct.field`; others are noted.
+pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>) -> Result<Vec<Variable>, String> {
+    let big_endian = bytes.get(126) == Some(&b'M');
+    let mut found = Found { variables: Vec::new(), notes };
+    let mut reader = Elements { rest: bytes.get(HEADER..).unwrap_or_default(), big_endian };
+    while !reader.rest.is_empty() {
+        let left = reader.rest.len();
+        let Some(element) = reader.next() else {
+            found.notes.push(format!("the last {left} bytes are no whole variable: the file is cut off"));
+            break;
+        };
+        if element.kind != COMPRESSED {
+            found.take(&element, big_endian);
+            continue;
+        }
+        let mut unpacked = Vec::new();
+        let result = flate2::read::ZlibDecoder::new(element.content).take(UNPACKED_LIMIT).read_to_end(&mut unpacked);
+        let inner = Elements { rest: &unpacked, big_endian }.next();
+        match (result, inner) {
+            (Ok(_), Some(inner)) => found.take(&inner, big_endian),
+            (Err(error), _) => found.notes.push(format!("a variable cannot be unpacked: {error}")),
+            (Ok(_), None) => found.notes.push("a variable is cut off after unpacking".to_string()),
+        }
+    }
+    Ok(found.variables)
+}
+
+struct Element<'b> {
+    kind: u32,
+    content: &'b [u8],
+}
+
+/// Elements one after the other.
+struct Elements<'b> {
+    rest: &'b [u8],
+    big_endian: bool,
+}
+
+impl<'b> Elements<'b> {
+    /// The next element; `None` when there is no whole one.
+    fn next(&mut self) -> Option<Element<'b>> {
+        let first = self.word(0)?;
+        // Up to four bytes of content may stand in the tag itself; then the length is in its upper half.
+        if first >> 16 != 0 {
+            let length = (first >> 16) as usize;
+            let content = self.rest.get(4..8)?.get(..length)?;
+            self.rest = self.rest.get(8..)?;
+            return Some(Element { kind: first & 0xffff, content });
+        }
+        let length = self.word(4)? as usize;
+        let content = self.rest.get(8..)?.get(..length)?;
+        let end = 8 + length;
+        // Packed elements are not padded, all others to eight bytes, except perhaps the last.
+        let end = if first == COMPRESSED { end } else { end.next_multiple_of(8).min(self.rest.len()) };
+        self.rest = self.rest.get(end..)?;
+        Some(Element { kind: first, content })
+    }
+
+    fn word(&self, at: usize) -> Option<u32> {
+        let bytes = self.rest.get(at..at + 4)?.try_into().ok()?;
+        Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
+    }
+}
+
+struct Found<'n> {
+    variables: Vec<Variable>,
+    notes: &'n mut Vec<String>,
+}
+
+impl Found<'_> {
+    fn take(&mut self, element: &Element, big_endian: bool) {
+        let before = self.notes.len();
+        if element.kind != MATRIX {
+            self.notes.push(format!("an element of type {} was left out", element.kind));
+        } else if self.matrix(element.content, big_endian, None, 0).is_none() && self.notes.len() == before {
+            self.notes.push("a variable that makes no sense was left out".to_string());
+        }
+    }
+
+    /// Takes a matrix; `name` replaces its own. `None` when it makes no sense.
+    fn matrix(&mut self, content: &[u8], big_endian: bool, name: Option<String>, depth: usize) -> Option<()> {
+        if content.is_empty() {
+            return Some(());
+        }
+        let mut parts = Elements { rest: content, big_endian };
+        let flags = parts.next()?;
+        let flags = Elements { rest: flags.content, big_endian }.word(0)?;
+        let (class, flags) = ((flags & 0xff) as u8, (flags >> 8 & 0xff) as u8);
+        let dimensions = Number::I32.read(parts.next()?.content, big_endian);
+        let own_name = String::from_utf8_lossy(parts.next()?.content).into_owned();
+        let name = name.unwrap_or(own_name);
+        if class == STRUCT_CLASS && dimensions.iter().all(|&size| size == 1.0) && depth < DEPTH_LIMIT {
+            return self.structure(&mut parts, &name, depth);
+        }
+        if !NUMERIC_CLASSES.contains(&class) || flags & COMPLEX_FLAG != 0 {
+            self.notes.push(format!("{name} is no real numeric array and was left out"));
+            return Some(());
+        }
+        let data = parts.next()?;
+        let number = match data.kind {
+            1 => Number::I8,
+            2 => Number::U8,
+            3 => Number::I16,
+            4 => Number::U16,
+            5 => Number::I32,
+            6 => Number::U32,
+            7 => Number::F32,
+            9 => Number::F64,
+            12 => Number::I64,
+            13 => Number::U64,
+            _ => return None,
+        };
+        let values = number.read(data.content, big_endian);
+        let rows = dimensions.first().filter(|&&rows| rows >= 0.0).map(|&rows| rows as usize)?;
+        let announced: f64 = dimensions.iter().product();
+        if announced != values.len() as f64 {
+            self.notes.push(format!("{name} has {} values instead of {announced} and was left out", values.len()));
+            return Some(());
+        }
+        self.variables.push(Variable { name, rows, values });
+        Some(())
+    }
+
+    /// The fields of a single struct.
+    fn structure(&mut self, parts: &mut Elements, name: &str, depth: usize) -> Option<()> {
+        let length = Number::I32.read(parts.next()?.content, parts.big_endian);
+        let length =
+            length.first().filter(|&&length| (1.0..=256.0).contains(&length)).map(|&length| length as usize)?;
+        let names = parts.next()?.content;
+        for field in names.chunks_exact(length) {
+            let field = String::from_utf8_lossy(field.split(|&byte| byte == 0).next().unwrap_or_default()).into_owned();
+            let element = parts.next()?;
+            self.matrix(element.content, parts.big_endian, Some(format!("{name}.{field}")), depth + 1)?;
+        }
+        Some(())
+    }
+}

@@ -1,0 +1,101 @@
+//! Tables: columns of numbers from text files and MATLAB files.
+
+mod dates;
+mod format;
+mod heading;
+mod mat;
+mod mat4;
+mod mat5;
+mod text;
+
+use std::path::Path;
+
+use crate::BagError;
+
+pub use dates::parse_date;
+pub use format::TableFormat;
+
+/// The values of one column.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Numbers as written, `NaN` for empty cells.
+    Numbers(Vec<f64>),
+    /// Dates, ns since the epoch; `None` for empty cells.
+    Stamps(Vec<Option<i64>>),
+}
+
+impl Values {
+    /// Rows of the column.
+    pub fn len(&self) -> usize {
+        match self {
+            Values::Numbers(values) => values.len(),
+            Values::Stamps(stamps) => stamps.len(),
+        }
+    }
+
+    /// Whether the column has no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// One column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Heading without its unit, or name of the variable; `column_3` without heading.
+    pub name: String,
+    /// Unit that the heading names, if it is one that is known here.
+    pub unit: Option<String>,
+    /// The values.
+    pub values: Values,
+}
+
+/// A table.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// In the order of the file. Columns of a MATLAB file may have different lengths.
+    pub columns: Vec<Column>,
+    /// What was not perfect, one line each.
+    pub notes: Vec<String>,
+}
+
+impl Table {
+    /// Whether the file is a table, by its extension: `.csv`, `.tsv`, `.txt`, `.dat`, `.mat`, or `.parquet`, which is
+    /// only read to say that it cannot be.
+    pub fn is_table(path: &Path) -> bool {
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        path.is_file()
+            && extension.is_some_and(|end| ["csv", "tsv", "txt", "dat", "mat", "parquet"].contains(&end.as_str()))
+    }
+
+    /// Reads a table.
+    ///
+    /// # Errors
+    /// [`BagError::Io`], [`BagError::BadTable`].
+    pub fn read(path: &Path, format: &TableFormat) -> Result<Table, BagError> {
+        let has_extension = |wanted| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
+        if has_extension("parquet") {
+            let reason = "Parquet is not read here; export the table as CSV".to_string();
+            return Err(BagError::BadTable { path: path.to_path_buf(), reason });
+        }
+        let bytes = std::fs::read(path).map_err(BagError::io("read", path))?;
+        let table = if has_extension("mat") { Table::from_mat(&bytes) } else { Table::from_text(&bytes, format) };
+        table.map_err(|reason| BagError::BadTable { path: path.to_path_buf(), reason })
+    }
+
+    /// The table in the text of a CSV file of any dialect.
+    ///
+    /// # Errors
+    /// What is wrong, in one line.
+    pub fn from_text(bytes: &[u8], format: &TableFormat) -> Result<Table, String> {
+        text::parse(bytes, format)
+    }
+
+    /// The table in a MATLAB file of version 4, 6 or 7.
+    ///
+    /// # Errors
+    /// What is wrong, in one line.
+    pub fn from_mat(bytes: &[u8]) -> Result<Table, String> {
+        mat::parse(bytes)
+    }
+}

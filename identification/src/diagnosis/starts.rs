@@ -1,0 +1,82 @@
+//! Where the fit of a candidate effect starts.
+
+use excavator_model::Model;
+use excavator_model::effects::{Kind, Start};
+use excavator_model::recording::Recording;
+
+use crate::regression::{WeakFormSettings, weak_form};
+
+/// The model with the last effect's parameters at each combination of their start values, each also as a regression on
+/// the equations improves it: that finds linear coefficients without a search, however far they are from any start.
+/// Regressed starts come first.
+pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
+    let plain = plain_starts(model, recordings);
+    // Thinned to this rate a regression still sees what starts a fit, in half the time.
+    let thinned: Vec<Recording> = recordings.iter().map(|recording| thinned_to(recording, START_RATE)).collect();
+    let thinned: Vec<&Recording> = thinned.iter().collect();
+    let quick = WeakFormSettings { rounds: 1, with_errors: false, ..WeakFormSettings::default() };
+    let regressed = plain
+        .iter()
+        .filter_map(|start| weak_form(start, &thinned, &quick).ok())
+        .map(|regression| within_bounds(regression.model));
+    regressed.chain(plain.iter().cloned()).collect()
+}
+
+/// Samples per second of the regressions that give starts.
+const START_RATE: f64 = 250.0;
+
+fn thinned_to(recording: &Recording, rate: f64) -> Recording {
+    let stride = (1.0 / (recording.sample_interval() * rate)).round();
+    recording.thinned(if stride.is_finite() { (stride as usize).max(1) } else { 1 })
+}
+
+/// Unknown parameters moved to the nearest possible value.
+fn within_bounds(mut model: Model) -> Model {
+    for parameter in model.parameters_mut().filter(|parameter| !parameter.known) {
+        parameter.value = parameter.value.clamp(parameter.card.minimum, parameter.card.maximum);
+    }
+    model
+}
+
+fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
+    let mut starts = vec![model.clone()];
+    let Some(last) = model.effects.last() else { return starts };
+    for (number, parameter) in last.parameters.iter().enumerate() {
+        let values: Vec<f64> = match parameter.card.start {
+            Start::At(values) => values.to_vec(),
+            Start::PumpPressureQuantiles(levels) => {
+                levels.iter().map(|&level| pump_pressure(recordings, level)).collect()
+            }
+        };
+        let values: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
+        if parameter.card.kind != Kind::Shape && values.len() < 2 || values.is_empty() {
+            continue;
+        }
+        starts = starts
+            .iter()
+            .flat_map(|start| {
+                values.iter().map(|&value| {
+                    let mut start = start.clone();
+                    if let Some(effect) = start.effects.last_mut() {
+                        effect.parameters[number].value = value;
+                    }
+                    start
+                })
+            })
+            .collect();
+    }
+    starts
+}
+
+fn pump_pressure(recordings: &[&Recording], level: f64) -> f64 {
+    let mut values: Vec<f64> = recordings
+        .iter()
+        .flat_map(|recording| recording.pump_pressure.iter().copied())
+        .filter(|value| value.is_finite())
+        .collect();
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    let position = ((values.len() - 1) as f64 * level) as usize;
+    *values.select_nth_unstable_by(position, f64::total_cmp).1
+}

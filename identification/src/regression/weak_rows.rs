@@ -1,0 +1,108 @@
+//! The rows of the weak form: every equation against every test function, with its instruments.
+
+use excavator_model::Model;
+use excavator_model::equations::System;
+use excavator_model::machine::Linkage;
+use excavator_model::recording::{Recording, noise_level};
+use excavator_model::simulation::undistorted;
+use nalgebra::DVector;
+
+use super::equation::{EquationKind, equations};
+use super::simulated::simulated;
+use super::weak_row::{SensorNoise, weak_row};
+use super::window::windows;
+use super::{RegressionError, WeakFormSettings, observe, observe_guided};
+use crate::fit::standard_deviation;
+
+/// One row, divided by what sensor noise puts into its residual.
+pub(super) struct Row {
+    pub kind: EquationKind,
+    pub recording: usize,
+    pub centre: f64,
+    pub residual: f64,
+    pub relative: f64,
+    pub noise: f64,
+    pub regressors: DVector<f64>,
+    pub instruments: DVector<f64>,
+}
+
+pub(super) fn rows(
+    model: &Model,
+    recordings: &[&Recording],
+    settings: &WeakFormSettings,
+    unknown: &[usize],
+    with_instruments: bool,
+) -> Result<Vec<Row>, RegressionError> {
+    let system = System::new(model);
+    let linkages: Vec<Linkage> = model.machine.cylinders.iter().map(|cylinder| cylinder.linkage).collect();
+    let (half_width, step) = settings.widths(recordings);
+    let mut rows = Vec::new();
+    for (number, recording) in recordings.iter().enumerate() {
+        let noise = sensor_noise(recording, model)?;
+        let truth = undistorted(model, recording);
+        let simulation = simulated(model, recording, &truth)?;
+        let observation = observe_guided(model, &truth, &simulation.recording)?;
+        let measured = equations(&system, &observation, &simulation.effect_states, unknown);
+        let instruments = if with_instruments {
+            let observation = observe(model, &simulation.recording)?;
+            let equations = equations(&system, &observation, &simulation.effect_states, unknown);
+            Some((observation, equations))
+        } else {
+            None
+        };
+        for window in windows(&recording.time, recording.sample_interval(), half_width, step) {
+            for (index, equation) in measured.iter().enumerate() {
+                if let EquationKind::Motion(cylinder) = equation.kind {
+                    let inside = window.first..window.first + window.weights.len();
+                    let speeds = &observation.cylinders[cylinder].velocity[inside];
+                    if speeds.iter().any(|speed| speed.is_nan() || speed.abs() <= settings.velocity_guard) {
+                        continue;
+                    }
+                }
+                let row =
+                    |equation, observation| weak_row(equation, &window, observation, &noise, &linkages, unknown.len());
+                let Some(row_measured) = row(equation, &observation) else { continue };
+                let instruments = match &instruments {
+                    None => row_measured.regressors.clone(),
+                    Some((observation, equations)) => match row(&equations[index], observation) {
+                        Some(simulated) => simulated.regressors,
+                        None => continue,
+                    },
+                };
+                let scale = 1.0 / row_measured.noise;
+                rows.push(Row {
+                    kind: equation.kind,
+                    recording: number,
+                    centre: window.centre,
+                    residual: row_measured.residual * scale,
+                    relative: row_measured.residual / row_measured.size.max(f64::MIN_POSITIVE),
+                    noise: row_measured.noise,
+                    regressors: row_measured.regressors * scale,
+                    instruments: instruments * scale,
+                });
+            }
+        }
+    }
+    Ok(rows)
+}
+
+fn sensor_noise(recording: &Recording, model: &Model) -> Result<SensorNoise, RegressionError> {
+    // A noiseless (simulated) signal would weigh its rows infinitely; rounding alone is of this size.
+    let level = |signal: &[f64]| noise_level(signal).max(1e-6 * standard_deviation(signal)).max(1e-15);
+    let mut noise = SensorNoise {
+        displacement: vec![],
+        pressures: vec![],
+        spool: vec![],
+        pump_pressure: level(&recording.pump_pressure),
+    };
+    for cylinder in &model.machine.cylinders {
+        let signals = recording.cylinder(&cylinder.name).map_err(excavator_model::SignalError::from)?;
+        let lever = cylinder.linkage.lever(cylinder.linkage.joint(0.0)).abs();
+        let from_angle = level(&signals.joint_angle) * lever;
+        let measured = signals.displacement.iter().any(|value| value.is_finite());
+        noise.displacement.push(if measured { level(&signals.displacement) } else { from_angle });
+        noise.pressures.push([level(&signals.cap_pressure), level(&signals.rod_pressure)]);
+        noise.spool.push(level(&signals.orifice_area));
+    }
+    Ok(noise)
+}

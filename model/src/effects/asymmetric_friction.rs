@@ -1,0 +1,52 @@
+//! Friction that differs by direction.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::equations::smooth::direction;
+use crate::machine::Machine;
+
+/// Friction that differs by direction.
+///
+/// The level of retraction is that of `coulomb_friction`. `s (1 + s)/2` is the step from 0 to 1 without a corner, and never
+/// pushes along: its sign is that of v at every speed.
+pub struct AsymmetricFriction;
+
+static CARD: Card = Card {
+    name: "asymmetric_friction",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Candidate,
+    summary: "The friction level of extension differs from that of retraction: lip seals, a bent rod, a wiper that bites one way.",
+    equation: "force -dFc s (1 + s)/2, s = sgn(v) rounded over 1 mm/s: dFc more against extension, nothing against retraction",
+    source: "textbook (e.g. Armstrong-Helouvry, Dupont, Canudas de Wit 1994)",
+    shows: "Force error of one size while extending and another while retracting, at any speed.",
+    experiment: "Slow strokes in both directions over the same range.",
+    energy: "Dissipates dFc |v| while extending.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "extension_friction_change",
+    symbol: "dFc",
+    unit: "N",
+    meaning: "how much larger the friction of extension is than that of retraction",
+    kind: Kind::Linear,
+    minimum: -1e5,
+    maximum: 1e5,
+    typical: 200.0,
+    start: Start::At(&[0.0]),
+}];
+
+impl Physics for AsymmetricFriction {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let sign = direction(now.pistons[cylinder].velocity);
+        rows.piston_force[cylinder] -= parameters[0] * sign * (sign + 1.0) * 0.5;
+    }
+}

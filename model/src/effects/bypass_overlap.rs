@@ -1,0 +1,51 @@
+//! A bypass that starts to close late.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Machine;
+
+/// A bypass that starts to close late.
+///
+/// One overlap for all sections of the valve block: its spools are cut alike, and what each of them does to the pressure of
+/// one line cannot be told apart anyway where they do not move alone.
+pub struct BypassOverlap;
+
+static CARD: Card = Card {
+    name: "bypass_overlap",
+    acts_on: ActsOn::PumpLine,
+    family: Family::Candidate,
+    summary: "The open centre stays fully open until the spool has travelled some way.",
+    equation: "section of the bypass umax - max(0, |u| - o) in place of umax - |u|: travel past the edge counts",
+    source: "hydraulics practice (overlap of the centre lands of open-centre spools)",
+    shows: "Pump pressure stays low for small openings and then follows a parallel curve.",
+    experiment: "Slow sweep of the spool from closed, with the cylinder at rest.",
+    energy: "Changes what the bypass loses; dissipates nothing itself.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "bypass_overlap",
+    symbol: "o",
+    unit: "m2",
+    meaning: "spool travel before the bypass starts to close, as an orifice area",
+    kind: Kind::Shape,
+    minimum: 0.0,
+    maximum: 1e-4,
+    typical: 1e-5,
+    start: Start::At(&[3e-6]),
+}];
+
+impl Physics for BypassOverlap {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn adjust<T: Scalar>(&self, _site: Site, parameters: &[T], now: &mut Situation<T>) {
+        for piston in &mut now.pistons {
+            piston.bypass_closing = (piston.bypass_closing - parameters[0]).positive_part();
+        }
+    }
+}

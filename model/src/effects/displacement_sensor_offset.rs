@@ -1,0 +1,47 @@
+//! A displacement sensor whose zero is not at mid-stroke.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use crate::equations::{Channel, Instruments};
+use crate::machine::Machine;
+
+/// A displacement sensor whose zero is not at mid-stroke.
+pub struct DisplacementSensorOffset;
+
+static CARD: Card = Card {
+    name: "displacement_sensor_offset",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Candidate,
+    summary: "The displacement sensor reads the same amount too much or too little at all times; the machine feels nothing of it.",
+    equation: "reported s = s + o; joint angle and velocity are other instruments' or do not change",
+    source: "practice (mounting tolerance of string and magnetostrictive sensors)",
+    shows: "Gravity and lever of the model belong to another posture: force error that changes with position; ends of the stroke met early on one side and late on the other.",
+    experiment: "Drive gently into both ends: the mean of the two readings is the offset.",
+    energy: "None: it acts on the instrument.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "displacement_offset",
+    symbol: "o",
+    unit: "m",
+    meaning: "what the displacement sensor adds",
+    kind: Kind::Shape,
+    minimum: -0.5,
+    maximum: 0.5,
+    typical: 5e-3,
+    start: Start::At(&[0.0]),
+}];
+
+impl Physics for DisplacementSensorOffset {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn distort<T: Scalar>(&self, site: Site, parameters: &[T], instruments: &mut Instruments<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        instruments.of_mut(Channel::Displacement(cylinder)).offset += parameters[0];
+    }
+}

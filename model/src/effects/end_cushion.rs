@@ -1,0 +1,69 @@
+//! Cushions at the ends of the stroke.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Machine;
+
+/// Cushions at the ends of the stroke.
+pub struct EndCushion;
+
+static CARD: Card = Card {
+    name: "end_cushion",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Candidate,
+    summary: "Near either end the oil left in the chamber leaves through a throttle that brakes the piston.",
+    equation: "within l of an end, moving towards it: force -c (depth/l) v; free on the way back (check valve)",
+    source: "textbook (e.g. Merritt, Watton), linear in speed and depth",
+    shows: "The piston slows down before it meets the end, more the faster it comes; a force error in that region only.",
+    experiment: "Strokes into both ends at several speeds.",
+    energy: "Dissipates c (depth/l) v^2.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "cushion_length",
+        symbol: "l",
+        unit: "m",
+        meaning: "length of the cushion before either end",
+        kind: Kind::Shape,
+        minimum: 1e-3,
+        maximum: 0.5,
+        typical: 0.03,
+        start: Start::At(&[0.05, 0.25]),
+    },
+    ParameterCard {
+        name: "cushion_damping",
+        symbol: "c",
+        unit: "N s/m",
+        meaning: "damping coefficient at the end of the stroke",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e8,
+        typical: 1e5,
+        start: Start::At(&[2e4]),
+    },
+];
+
+impl Physics for EndCushion {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        let half_stroke = now.machine.cylinders[cylinder].stroke / 2.0;
+        for side in [1.0, -1.0] {
+            let depth = (piston.displacement * side - half_stroke + parameters[0]).positive_part();
+            if depth.value() <= 0.0 {
+                continue;
+            }
+            let approach = (piston.velocity * side).positive_part();
+            rows.piston_force[cylinder] -= parameters[1] * (depth / parameters[0]) * approach * side;
+        }
+    }
+}

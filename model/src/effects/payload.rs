@@ -1,0 +1,144 @@
+//! A mass that the link carries.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::{Machine, Mechanism};
+
+/// A mass that the link carries.
+///
+/// Machines do not know the distance of their tips, only that of their pins, so it is a parameter: known where somebody
+/// has measured it.
+pub struct Payload;
+
+static CARD: Card = Card {
+    name: "payload",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Candidate,
+    summary: "Added mass at the tip: inertia and weight grow together, by mass times distance squared and mass times distance.",
+    equation: "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; linear load: M += m, Fg += m g i",
+    source: "practice; point mass in [A] Eq. 1",
+    shows: "Static pressure difference and force at reversals both larger than the unloaded machine's, in a fixed ratio. To be told from inertia and gravity only where these are known.",
+    experiment: "The same manoeuvre with the bucket empty and full.",
+    energy: "Stores kinetic energy m |velocity|^2 / 2 and potential energy m g height.",
+};
+
+const MASS: ParameterCard = ParameterCard {
+    name: "payload_mass",
+    symbol: "m",
+    unit: "kg",
+    meaning: "added mass",
+    kind: Kind::Linear,
+    minimum: 0.0,
+    maximum: 1e5,
+    typical: 100.0,
+    start: Start::At(&[20.0]),
+};
+
+const DISTANCE: ParameterCard = ParameterCard {
+    name: "payload_distance",
+    symbol: "r",
+    unit: "m",
+    meaning: "distance of its centre from the joint",
+    kind: Kind::Shape,
+    minimum: 0.0,
+    maximum: 20.0,
+    typical: 1.5,
+    start: Start::At(&[1.5]),
+};
+
+static LINK: &[ParameterCard] = &[MASS, DISTANCE];
+
+static SECOND_OF_TWO: &[ParameterCard] = &[
+    MASS,
+    DISTANCE,
+    ParameterCard {
+        name: "payload_joint_distance",
+        symbol: "l1",
+        unit: "m",
+        meaning: "distance between the two joints",
+        kind: Kind::Shape,
+        minimum: 0.0,
+        maximum: 20.0,
+        typical: 2.5,
+        start: Start::At(&[2.5]),
+    },
+];
+
+static LOAD: &[ParameterCard] = &[
+    MASS,
+    ParameterCard {
+        name: "payload_incline",
+        symbol: "i",
+        unit: "-",
+        meaning: "sine of the slope of the axis: 1 lifts, 0 level",
+        kind: Kind::Shape,
+        minimum: -1.0,
+        maximum: 1.0,
+        typical: 0.5,
+        start: Start::At(&[0.0]),
+    },
+];
+
+impl Physics for Payload {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
+        match (machine.mechanism, site) {
+            (Mechanism::LinearLoad, _) => LOAD,
+            (Mechanism::TwoLink, Site::Cylinder(1)) => SECOND_OF_TWO,
+            _ => LINK,
+        }
+    }
+
+    /// `-m g` times the height that the mass loses, zero with all links level.
+    fn potential<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>) -> Option<T> {
+        let Site::Cylinder(cylinder) = site else { return None };
+        let weight = parameters[0] * now.machine.gravity;
+        let joint = now.pistons[cylinder].joint;
+        Some(match (now.machine.mechanism, cylinder) {
+            (Mechanism::LinearLoad, _) => weight * parameters[1] * joint,
+            (Mechanism::SingleLink { base_angle }, _) => -weight * parameters[1] * (joint + base_angle).cos(),
+            (Mechanism::TwoLink, 0) => -weight * parameters[1] * joint.cos(),
+            (Mechanism::TwoLink, _) => {
+                let first = now.pistons[0].joint;
+                -weight * (parameters[2] * first.cos() + parameters[1] * (first + joint).cos())
+            }
+        })
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let (mass, weight) = (parameters[0], parameters[0] * now.machine.gravity);
+        let joint = now.pistons[cylinder].joint;
+        match (now.machine.mechanism, cylinder) {
+            (Mechanism::LinearLoad, _) => {
+                rows.add_mass(cylinder, cylinder, mass);
+                rows.torque[cylinder] -= weight * parameters[1];
+            }
+            (Mechanism::TwoLink, 1) => second_of_two(mass, weight, parameters[1], parameters[2], now, rows),
+            (mechanism, _) => {
+                let base_angle = if let Mechanism::SingleLink { base_angle } = mechanism { base_angle } else { 0.0 };
+                rows.add_mass(cylinder, cylinder, mass * parameters[1] * parameters[1]);
+                rows.torque[cylinder] -= weight * parameters[1] * (joint + base_angle).sin();
+            }
+        }
+    }
+}
+
+/// A mass on the second of two links, at `distance` from the second joint, which is `between` away from the first.
+fn second_of_two<T: Scalar>(mass: T, weight: T, distance: T, between: T, now: &Situation<T>, rows: &mut Rows<T>) {
+    let (first, second) = (&now.pistons[0], &now.pistons[1]);
+    let own = mass * distance * distance;
+    let coupling = mass * distance * between;
+    let (cosine, sine) = (coupling * second.joint.cos(), coupling * second.joint.sin());
+    rows.add_mass(0, 0, own + mass * between * between + cosine * 2.0);
+    rows.add_mass(0, 1, own + cosine);
+    rows.add_mass(1, 0, own + cosine);
+    rows.add_mass(1, 1, own);
+    let moment = weight * distance * (first.joint + second.joint).sin();
+    rows.torque[0] += sine * second.rate * (first.rate * 2.0 + second.rate);
+    rows.torque[0] -= moment + weight * between * first.joint.sin();
+    rows.torque[1] -= sine * first.rate * first.rate + moment;
+}

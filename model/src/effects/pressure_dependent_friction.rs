@@ -1,0 +1,50 @@
+//! Friction of seals that pressure pushes against the wall.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::equations::smooth::direction;
+use crate::machine::Machine;
+
+/// Friction of seals that pressure pushes against the wall.
+pub struct PressureDependentFriction;
+
+static CARD: Card = Card {
+    name: "pressure_dependent_friction",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Candidate,
+    summary: "Friction grows with the pressures in the chambers.",
+    equation: "force -mu (max(0, p+) + max(0, p-)) sgn(v), the sign rounded over 1 mm/s; a chamber under vacuum pushes no seal",
+    source: "textbook (e.g. Merritt, Watton)",
+    shows: "Force step at each reversal is larger under load than without; Coulomb friction identified at two pressure levels differs.",
+    experiment: "Slow reversals with and without load, or at two counter-pressures.",
+    energy: "Dissipates mu (p+ + p-) |v|.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "pressure_friction",
+    symbol: "mu",
+    unit: "m2",
+    meaning: "friction force per sum of the chamber pressures",
+    kind: Kind::Linear,
+    minimum: 0.0,
+    maximum: 1e-2,
+    typical: 1e-4,
+    start: Start::At(&[5e-5]),
+}];
+
+impl Physics for PressureDependentFriction {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        let pressing = piston.cap_pressure.positive_part() + piston.rod_pressure.positive_part();
+        rows.piston_force[cylinder] -= parameters[0] * pressing * direction(piston.velocity);
+    }
+}

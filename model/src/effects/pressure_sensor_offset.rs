@@ -1,0 +1,82 @@
+//! Pressure sensors that do not read zero at ambient pressure.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use crate::equations::{Channel, Instruments};
+use crate::machine::Machine;
+
+/// Pressure sensors that do not read zero at ambient pressure.
+///
+/// A shape, not a linear coefficient: equations that are fed with the measured pressure see it under a root.
+pub struct PressureSensorOffset;
+
+static CARD: Card = Card {
+    name: "pressure_sensor_offset",
+    acts_on: ActsOn::CylinderOrPumpLine,
+    family: Family::Candidate,
+    summary: "A pressure sensor reads the same amount too much or too little at all times; the machine feels nothing of it.",
+    equation: "reported p = p + o, for cap side, rod side or pump",
+    source: "practice (zero shift of strain gauge pressure sensors)",
+    shows: "Measured pressure off by a constant; flows through the valve look wrong most where the pressure drop is small.",
+    experiment: "Read all pressures with the pump off and the load on its stop.",
+    energy: "None: it acts on the instrument.",
+};
+
+static CYLINDER: &[ParameterCard] = &[
+    ParameterCard {
+        name: "pressure_offset_cap",
+        symbol: "o+",
+        unit: "Pa",
+        meaning: "what the cap side sensor adds",
+        kind: Kind::Shape,
+        minimum: -1e7,
+        maximum: 1e7,
+        typical: 5e4,
+        start: Start::At(&[0.0]),
+    },
+    ParameterCard {
+        name: "pressure_offset_rod",
+        symbol: "o-",
+        unit: "Pa",
+        meaning: "what the rod side sensor adds",
+        kind: Kind::Shape,
+        minimum: -1e7,
+        maximum: 1e7,
+        typical: 5e4,
+        start: Start::At(&[0.0]),
+    },
+];
+
+static PUMP_LINE: &[ParameterCard] = &[ParameterCard {
+    name: "pressure_offset",
+    symbol: "op",
+    unit: "Pa",
+    meaning: "what the pump pressure sensor adds",
+    kind: Kind::Shape,
+    minimum: -1e7,
+    maximum: 1e7,
+    typical: 5e4,
+    start: Start::At(&[0.0]),
+}];
+
+impl Physics for PressureSensorOffset {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, site: Site) -> &'static [ParameterCard] {
+        match site {
+            Site::Cylinder(_) => CYLINDER,
+            Site::PumpLine => PUMP_LINE,
+        }
+    }
+
+    fn distort<T: Scalar>(&self, site: Site, parameters: &[T], instruments: &mut Instruments<T>) {
+        match site {
+            Site::Cylinder(cylinder) => {
+                instruments.of_mut(Channel::CapPressure(cylinder)).offset += parameters[0];
+                instruments.of_mut(Channel::RodPressure(cylinder)).offset += parameters[1];
+            }
+            Site::PumpLine => instruments.of_mut(Channel::PumpPressure).offset += parameters[0],
+        }
+    }
+}

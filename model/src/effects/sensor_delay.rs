@@ -1,0 +1,94 @@
+//! Instruments that report late.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use crate::equations::{Channel, Instruments};
+use crate::machine::Machine;
+
+/// Instruments that report late.
+///
+/// A pure delay, kept out of the state: [`crate::simulation::Observer`] looks back along the trajectory.
+pub struct SensorDelay;
+
+static CARD: Card = Card {
+    name: "sensor_delay",
+    acts_on: ActsOn::CylinderOrPumpLine,
+    family: Family::Candidate,
+    summary: "Readings arrive later than they are stamped: filters, converters and buses on the way; the machine feels nothing of it.",
+    equation: "reported y(t) = y(t - T), one T for position (displacement, angle, velocity), one for the pressures",
+    source: "practice (group delay of filters, cycle time of field buses)",
+    shows: "Error in proportion to the rate of the signal, by the same time at all frequencies, in the late signals only: against valve_lag, pump pressure is not late.",
+    experiment: "Sines of two frequencies: phase that grows in proportion to frequency. Knock on the boom: all sensors should see it at once.",
+    energy: "None: it acts on the instrument.",
+};
+
+const DISPLACEMENT_DELAY: ParameterCard = ParameterCard {
+    name: "displacement_delay",
+    symbol: "Ts",
+    unit: "s",
+    meaning: "delay of displacement, velocity and joint angle",
+    kind: Kind::Shape,
+    minimum: 0.0,
+    maximum: 0.5,
+    typical: 0.01,
+    start: Start::At(&[5e-3]),
+};
+
+static CYLINDER: &[ParameterCard] = &[
+    DISPLACEMENT_DELAY,
+    ParameterCard {
+        name: "pressure_delay",
+        symbol: "Tp",
+        unit: "s",
+        meaning: "delay of both chamber pressures",
+        kind: Kind::Shape,
+        minimum: 0.0,
+        maximum: 0.5,
+        typical: 0.01,
+        start: Start::At(&[5e-3]),
+    },
+];
+
+static LOAD: &[ParameterCard] = &[DISPLACEMENT_DELAY];
+
+static PUMP_LINE: &[ParameterCard] = &[ParameterCard {
+    name: "pressure_delay",
+    symbol: "Tp",
+    unit: "s",
+    meaning: "delay of the pump pressure",
+    kind: Kind::Shape,
+    minimum: 0.0,
+    maximum: 0.5,
+    typical: 0.01,
+    start: Start::At(&[5e-3]),
+}];
+
+impl Physics for SensorDelay {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
+        match site {
+            Site::Cylinder(index) if machine.cylinders.get(index).is_some_and(|c| c.chambers.is_some()) => CYLINDER,
+            Site::Cylinder(_) => LOAD,
+            Site::PumpLine => PUMP_LINE,
+        }
+    }
+
+    fn distort<T: Scalar>(&self, site: Site, parameters: &[T], instruments: &mut Instruments<T>) {
+        match site {
+            Site::Cylinder(cylinder) => {
+                let position =
+                    [Channel::JointAngle(cylinder), Channel::Displacement(cylinder), Channel::Velocity(cylinder)];
+                for channel in position {
+                    instruments.of_mut(channel).delay += parameters[0];
+                }
+                if let Some(&late) = parameters.get(1) {
+                    instruments.of_mut(Channel::CapPressure(cylinder)).delay += late;
+                    instruments.of_mut(Channel::RodPressure(cylinder)).delay += late;
+                }
+            }
+            Site::PumpLine => instruments.of_mut(Channel::PumpPressure).delay += parameters[0],
+        }
+    }
+}

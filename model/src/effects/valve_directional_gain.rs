@@ -1,0 +1,72 @@
+//! A valve that meters differently in the two directions.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::equations::smooth::orifice_root;
+use crate::machine::Machine;
+
+/// A valve that meters differently in the two directions.
+///
+/// Written as a change that is added to the gains of `orifice_flow`, not as gains of its own: rows stay linear in it, and
+/// zero is the nominal model, so that a search can start there.
+pub struct ValveDirectionalGain;
+
+static CARD: Card = Card {
+    name: "valve_directional_gain",
+    acts_on: ActsOn::Valve,
+    family: Family::Candidate,
+    summary: "The flow gains for u < 0 differ from those for u > 0, on the cap side and on the rod side.",
+    equation: "u < 0: Q+ += dCf+ u phi(p+ - pt), Q- += -dCf- u phi(pp - p-), the pump gives the second; nothing for u > 0: gains of orifice_flow hold there",
+    source: "[B] Eq. 7-8",
+    shows: "Speed over opening times root of the pressure drop has another slope for retraction than for extension.",
+    experiment: "Trapezoids of equal amplitude in both directions, steady for half a second.",
+    energy: "Supplies b (exp(p/b) - 1) times its flow to each chamber.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "negative_gain_change_cap",
+        symbol: "dCf+",
+        unit: "m/(s sqrt(Pa))",
+        meaning: "how much more the cap side edges pass for u < 0 than for u > 0",
+        kind: Kind::Linear,
+        minimum: -0.02,
+        maximum: 0.02,
+        typical: 1e-3,
+        start: Start::At(&[0.0]),
+    },
+    ParameterCard {
+        name: "negative_gain_change_rod",
+        symbol: "dCf-",
+        unit: "m/(s sqrt(Pa))",
+        meaning: "how much more the rod side edges pass for u < 0 than for u > 0",
+        kind: Kind::Linear,
+        minimum: -0.02,
+        maximum: 0.02,
+        typical: 1e-3,
+        start: Start::At(&[0.0]),
+    },
+];
+
+impl Physics for ValveDirectionalGain {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        if piston.opening.value() >= 0.0 {
+            return;
+        }
+        let drawn = -parameters[1] * piston.opening * piston.drawn_root(now.pump_pressure - piston.rod_pressure);
+        rows.cap_flow[cylinder] +=
+            parameters[0] * piston.opening * orifice_root(piston.cap_pressure - now.tank_pressure);
+        rows.rod_flow[cylinder] += drawn;
+        rows.pump_flow -= drawn;
+    }
+}

@@ -1,0 +1,317 @@
+//! From measured states to balances.
+
+use std::collections::VecDeque;
+
+use super::slope::slope_at;
+use super::{Balance, CylinderBalance, CylinderSample, EffectTerm, Sample};
+use crate::Model;
+use crate::effects::{ActsOn, Site};
+use crate::energy::ledger;
+use crate::equations::{Inputs, System};
+use crate::machine::Supply;
+
+/// How the monitor differentiates, and what it takes for a gap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Half width of the window of a slope, s. 10 ms: at 1 kHz it averages 21 samples, and an arm's energy, which
+    /// changes within 50 ms at the fastest, passes with 97 % of its amplitude.
+    pub half_width: f64,
+    /// Time without a sample that separates what comes after from what was before, s.
+    pub gap: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings { half_width: 0.01, gap: 0.1 }
+    }
+}
+
+/// What the monitor met.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// States taken.
+    pub states: u64,
+    /// Balances given.
+    pub balances: u64,
+    /// States with the stamp of the one before, left out.
+    pub duplicates: u64,
+    /// States older than the one before, left out.
+    pub out_of_order: u64,
+    /// Gaps, after which windows start anew.
+    pub gaps: u64,
+    /// Jumps of the clock backwards, after which windows start anew.
+    pub jumps: u64,
+    /// Balances in which something is `NaN` because a signal was missing.
+    pub incomplete: u64,
+}
+
+/// Rounding of times, s: less than the distance of any two samples, more than doubles lose within a day.
+const ROUNDING: f64 = 1e-9;
+/// A state older than the newest by more than this is a jump of the clock, not a late message, ns.
+const BACKWARDS: i64 = 1_000_000_000;
+
+/// Follows one machine.
+#[derive(Debug)]
+pub struct Monitor<'m, 's> {
+    system: &'s System<'m>,
+    parameters: Vec<f64>,
+    settings: Settings,
+    /// States whose balances are not complete, oldest first; the first `stored` have their storage.
+    waiting: VecDeque<Waiting>,
+    /// Entries of `waiting` that have been given away and stay for the windows of younger ones.
+    given: usize,
+    /// Entries of `waiting` whose storage and powers are known.
+    evaluated: usize,
+    counts: Counts,
+}
+
+#[derive(Debug)]
+struct Waiting {
+    sample: Sample,
+    /// Seconds since the first sample after a new beginning.
+    time: f64,
+    balance: Option<Balance>,
+}
+
+impl<'m, 's> Monitor<'m, 's> {
+    /// A monitor for the machine of `system`, with the model's parameter values.
+    pub fn new(system: &'s System<'m>, settings: Settings) -> Self {
+        Monitor {
+            system,
+            parameters: system.model().parameter_values(),
+            settings,
+            waiting: VecDeque::new(),
+            given: 0,
+            evaluated: 0,
+            counts: Counts::default(),
+        }
+    }
+
+    /// Time by which a balance comes later than its state, s: until the window of the Hamiltonian's rate is full, and
+    /// before that the window of the velocity where no sensor measures it.
+    pub fn delay(&self, velocity_is_measured: bool) -> f64 {
+        if velocity_is_measured { self.settings.half_width } else { 2.0 * self.settings.half_width }
+    }
+
+    /// What was met so far.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Takes a state; the balances that are complete with it go to `balances`, in the order of their states.
+    pub fn push(&mut self, sample: Sample, balances: &mut Vec<Balance>) {
+        let mut first = sample.nanoseconds;
+        if let Some(newest) = self.waiting.back().map(|waiting| waiting.sample.nanoseconds) {
+            let step = sample.nanoseconds.saturating_sub(newest);
+            if step == 0 {
+                self.counts.duplicates += 1;
+                return;
+            }
+            if (-BACKWARDS..0).contains(&step) {
+                self.counts.out_of_order += 1;
+                return;
+            }
+            if step < 0 || step as f64 * 1e-9 > self.settings.gap {
+                let counter = if step < 0 { &mut self.counts.jumps } else { &mut self.counts.gaps };
+                *counter += 1;
+                self.flush(balances);
+            } else if let Some(oldest) = self.waiting.front() {
+                first = oldest.sample.nanoseconds - (oldest.time * 1e9) as i64;
+            }
+        }
+        self.counts.states += 1;
+        let time = sample.nanoseconds.saturating_sub(first) as f64 * 1e-9;
+        self.waiting.push_back(Waiting { sample, time, balance: None });
+        self.evaluate(time, false);
+        self.give(time, false, balances);
+        self.forget();
+    }
+
+    /// Gives what is waiting, with the windows that there are, and starts anew.
+    pub fn flush(&mut self, balances: &mut Vec<Balance>) {
+        self.evaluate(f64::INFINITY, true);
+        self.give(f64::INFINITY, true, balances);
+        self.waiting.clear();
+        self.given = 0;
+        self.evaluated = 0;
+    }
+
+    /// Storage and powers of the states whose velocity can be known at time `now`.
+    fn evaluate(&mut self, now: f64, all: bool) {
+        while let Some(next) = self.waiting.get(self.evaluated) {
+            let measured = self.has_velocity(&next.sample);
+            if !all && !measured && next.time + self.settings.half_width > now + ROUNDING {
+                return;
+            }
+            let balance = self.balance(self.evaluated);
+            if let Some(next) = self.waiting.get_mut(self.evaluated) {
+                next.balance = Some(balance);
+            }
+            self.evaluated += 1;
+        }
+    }
+
+    /// Rates of the Hamiltonian for the states whose window is full.
+    fn give(&mut self, now: f64, all: bool, balances: &mut Vec<Balance>) {
+        while self.given < self.evaluated {
+            let Some(next) = self.waiting.get(self.given) else { return };
+            let reach = next.time + self.settings.half_width;
+            // The window is full when the states behind its end have been evaluated too.
+            let known = self.waiting.get(self.evaluated.saturating_sub(1)).map_or(now, |last| last.time);
+            if !all && known < reach - ROUNDING {
+                return;
+            }
+            let centre = next.time;
+            let Some(mut balance) = next.balance.clone() else { return };
+            for (number, cylinder) in balance.cylinders.iter_mut().enumerate() {
+                let energies = self.around(centre).filter_map(|waiting| {
+                    let stored = waiting.balance.as_ref()?.cylinders.get(number)?.hamiltonian();
+                    Some((waiting.time, stored))
+                });
+                cylinder.hamiltonian_rate = slope_at(energies, centre);
+            }
+            let complete = balance.cylinders.iter().all(|cylinder| cylinder.residual().is_finite());
+            self.counts.incomplete += u64::from(!complete);
+            self.counts.balances += 1;
+            balances.push(balance);
+            self.given += 1;
+        }
+    }
+
+    /// Drops the states that no window needs any more.
+    fn forget(&mut self) {
+        while self.given > 0 {
+            let (Some(oldest), Some(next)) = (self.waiting.front(), self.waiting.get(self.given)) else { return };
+            if oldest.time >= next.time - 2.0 * self.settings.half_width {
+                return;
+            }
+            self.waiting.pop_front();
+            self.given -= 1;
+            self.evaluated -= 1;
+        }
+    }
+
+    /// The states within a half width of `centre`.
+    fn around(&self, centre: f64) -> impl Iterator<Item = &Waiting> {
+        // A little more, so that rounding of stamps does not decide whether a window is symmetric.
+        let half_width = self.settings.half_width + ROUNDING;
+        self.waiting
+            .iter()
+            .skip_while(move |waiting| waiting.time < centre - half_width)
+            .take_while(move |waiting| waiting.time <= centre + half_width)
+    }
+
+    fn has_velocity(&self, sample: &Sample) -> bool {
+        sample.cylinders.iter().all(|cylinder| cylinder.velocity.is_finite())
+    }
+
+    /// Storage and powers at one state; the rate of the Hamiltonian is still to come.
+    fn balance(&self, index: usize) -> Balance {
+        let waiting = &self.waiting[index];
+        let (state, inputs) = self.state_of(waiting);
+        let model: &Model = self.system.model();
+        let book = ledger(self.system, &self.parameters, &state, &inputs);
+        let cylinders = book
+            .cylinders
+            .iter()
+            .enumerate()
+            .map(|(number, storage)| {
+                let own = || book.effects.iter().filter(move |effect| effect.site == Site::Cylinder(number));
+                let valve: f64 =
+                    own().filter(|effect| effect.acts_on == ActsOn::Valve).map(|effect| effect.into_cylinders()).sum();
+                let oil = model.machine.cylinders.get(number).is_some_and(|cylinder| cylinder.chambers.is_some());
+                let pushed = if oil { 0.0 } else { self.rod_power(&state, &inputs, number) };
+                let terms = own()
+                    .filter(|effect| effect.acts_on != ActsOn::Valve && !effect.stores)
+                    .map(|effect| EffectTerm { effect: effect.effect, power: effect.into_cylinders() })
+                    .collect();
+                CylinderBalance {
+                    kinetic: storage.kinetic,
+                    potential: storage.potential,
+                    cap_internal: storage.cap_internal,
+                    rod_internal: storage.rod_internal,
+                    hamiltonian_rate: f64::NAN,
+                    supply: valve + pushed,
+                    terms,
+                }
+            })
+            .collect();
+        Balance {
+            nanoseconds: waiting.sample.nanoseconds,
+            cylinders,
+            pump_power: book.pump_power,
+            bypass_loss: book.bypass_loss(),
+            metering_loss: book.metering_loss(),
+        }
+    }
+
+    fn rod_power(&self, state: &[f64], inputs: &Inputs<f64>, number: usize) -> f64 {
+        let layout = self.system.layout();
+        let cylinder = &self.system.model().machine.cylinders[number];
+        inputs.rod_force[number] * cylinder.linkage.lever(state[layout.joint(number)]) * state[layout.rate(number)]
+    }
+
+    /// State vector and inputs of a measured state.
+    fn state_of(&self, waiting: &Waiting) -> (Vec<f64>, Inputs<f64>) {
+        let layout = self.system.layout();
+        let machine = &self.system.model().machine;
+        let sample = &waiting.sample;
+        let mut state = vec![0.0; layout.len];
+        let mut inputs = Inputs::zero(machine.cylinders.len());
+        for (number, cylinder) in machine.cylinders.iter().enumerate() {
+            let measured = sample.cylinders.get(number).copied().unwrap_or_else(CylinderSample::unmeasured);
+            let joint = if measured.displacement.is_finite() {
+                cylinder.linkage.joint(measured.displacement)
+            } else {
+                measured.joint_angle
+            };
+            state[layout.joint(number)] = joint;
+            let velocity = self.velocity(waiting, number);
+            state[layout.rate(number)] = velocity / cylinder.linkage.lever(joint);
+            if let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) {
+                state[cap] = measured.cap_pressure;
+                state[rod] = measured.rod_pressure;
+            }
+            inputs.orifice_area[number] = if cylinder.chambers.is_some() { measured.orifice_area } else { 0.0 };
+            inputs.rod_force[number] = if cylinder.chambers.is_some() { 0.0 } else { measured.rod_force };
+        }
+        if let Some(pump) = layout.pump {
+            state[pump] = sample.pump_pressure;
+        }
+        // Where the spool of a lagging valve really is, is what its sensor says.
+        for (effect, &(first, states)) in self.system.model().effects.iter().zip(&layout.effect_states) {
+            if let Site::Cylinder(number) = effect.site {
+                state[first..first + states].fill(inputs.orifice_area[number]);
+            }
+        }
+        let (tank, flow) = match machine.supply {
+            Supply::PumpLine(line) => (line.tank_pressure, line.flow),
+            Supply::MeasuredPressure | Supply::None => (0.0, 0.0),
+        };
+        let or = |value: f64, constant: f64| if value.is_finite() { value } else { constant };
+        inputs.supply_pressure = sample.pump_pressure;
+        inputs.tank_pressure = or(sample.tank_pressure, tank);
+        inputs.pump_flow = or(sample.pump_flow, flow);
+        (state, inputs)
+    }
+
+    /// Piston velocity: measured, or the slope of the displacement.
+    fn velocity(&self, waiting: &Waiting, number: usize) -> f64 {
+        let of = |waiting: &Waiting| waiting.sample.cylinders.get(number).copied();
+        let Some(measured) = of(waiting) else { return f64::NAN };
+        if measured.velocity.is_finite() {
+            return measured.velocity;
+        }
+        let linkage = &self.system.model().machine.cylinders[number].linkage;
+        let positions = self.around(waiting.time).filter_map(|waiting| {
+            let measured = of(waiting)?;
+            let displacement = if measured.displacement.is_finite() {
+                measured.displacement
+            } else {
+                linkage.displacement(measured.joint_angle)
+            };
+            Some((waiting.time, displacement))
+        });
+        slope_at(positions, waiting.time)
+    }
+}

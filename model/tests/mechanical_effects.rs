@@ -1,0 +1,155 @@
+//! What payload, contact, cushion and friction do to the motion.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use common::Random;
+use excavator_model::Model;
+use excavator_model::document::built_in;
+use excavator_model::effects::{Site, find};
+use excavator_model::equations::{Inputs, System};
+
+fn with(base: &Model, effect: &str, cylinder: usize, values: &[f64]) -> Model {
+    let mut model = base.with_effect(find(effect).unwrap(), Site::Cylinder(cylinder)).unwrap();
+    for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
+        parameter.value = *value;
+    }
+    model
+}
+
+fn raised(base: &Model, changes: &[(&str, f64)]) -> Model {
+    let mut model = base.clone();
+    for (name, change) in changes {
+        let index = model.parameter_names().iter().position(|candidate| candidate == name).unwrap();
+        model.parameters_mut().nth(index).unwrap().value += change;
+    }
+    model
+}
+
+fn rates(model: &Model, state: &[f64], inputs: &Inputs<f64>) -> Vec<f64> {
+    let system = System::new(model);
+    let mut rates = vec![0.0; state.len()];
+    system.rates(&mut system.workspace(), &model.parameter_values(), state, inputs, &mut rates);
+    rates
+}
+
+/// A payload is the same machine with the inertias and gravity moments that a point mass adds, \[A\] Eq. 1.
+#[test]
+fn a_payload_is_inertia_and_weight_together() {
+    let (m, r, l1) = (150.0, 1.7, 2.4);
+    let (arm, both, load) = (built_in("zx30u-arm").unwrap(), built_in("zx30u").unwrap(), built_in("emps").unwrap());
+    let second = [
+        ("boom.inertia", m * (l1 * l1 + r * r)),
+        ("boom.coupling_inertia", m * r * l1),
+        ("arm.inertia", m * r * r),
+        ("boom.gravity_moment", m * l1),
+        ("arm.gravity_moment", m * r),
+    ];
+    let cases = [
+        (with(&arm, "payload", 0, &[m, r]), raised(&arm, &[("arm.inertia", m * r * r), ("arm.gravity_moment", m * r)])),
+        (
+            with(&both, "payload", 0, &[m, r]),
+            raised(&both, &[("boom.inertia", m * r * r), ("boom.gravity_moment", m * r)]),
+        ),
+        (with(&both, "payload", 1, &[m, r, l1]), raised(&both, &second)),
+        (with(&load, "payload", 0, &[m, 0.0]), raised(&load, &[("load.mass", m)])),
+    ];
+    let mut random = Random(31);
+    for (loaded, heavier) in &cases {
+        for _ in 0..50 {
+            let state = common::random_state(&System::new(loaded), &mut random);
+            let inputs = common::random_inputs(&loaded.machine, &mut random);
+            for (found, wanted) in rates(loaded, &state, &inputs).iter().zip(rates(heavier, &state, &inputs)) {
+                assert!((found - wanted).abs() <= 1e-11 * wanted.abs() + 1e-9, "{found} {wanted}");
+            }
+        }
+    }
+}
+
+/// On a slope a load pulls with its share of the weight.
+#[test]
+fn a_payload_on_a_slope_pulls() {
+    let level = built_in("emps").unwrap();
+    let found = rates(&with(&level, "payload", 0, &[50.0, 0.6]), &[0.1, 0.0], &Inputs::zero(1))[1];
+    let mass = level.value_of("load.mass").unwrap() + 50.0;
+    let offset = level.value_of("load.force_offset").unwrap();
+    let wanted = -(50.0 * 9.8 * 0.6 + offset) / mass;
+    assert!((found - wanted).abs() < 1e-12, "{found} {wanted}");
+}
+
+fn torque(model: &Model, state: &[f64], inputs: &Inputs<f64>) -> (f64, f64) {
+    let system = System::new(model);
+    let mut workspace = system.workspace();
+    system.rates(&mut workspace, &model.parameter_values(), state, inputs, &mut vec![0.0; state.len()]);
+    (workspace.rows.torque[0], workspace.rows.piston_force[0])
+}
+
+/// The torque of a contact, summed over time, is its size times its duration; it is there then and at no other time.
+#[test]
+fn a_contact_lasts_as_long_as_it_says() {
+    let arm = built_in("zx30u-arm").unwrap();
+    let touched = with(&arm, "external_contact", 0, &[3.0, 1.2, 400.0]);
+    let state = common::at_rest(&System::new(&arm));
+    let mut inputs = Inputs::zero(1);
+    let mut impulse = 0.0;
+    for step in 0..8000 {
+        inputs.time = f64::from(step) * 1e-3;
+        let added = torque(&touched, &state, &inputs).0 - torque(&arm, &state, &inputs).0;
+        impulse += added * 1e-3;
+        if inputs.time < 2.8 || inputs.time > 4.4 {
+            assert!(added.abs() < 1e-2, "{added} N m at {} s", inputs.time);
+        } else if (3.2..4.0).contains(&inputs.time) {
+            assert!((added - 400.0).abs() < 1e-2, "{added} N m at {} s", inputs.time);
+        }
+    }
+    assert!((impulse - 480.0).abs() < 0.1, "{impulse} N m s");
+}
+
+/// A cushion brakes on the way in, by speed and depth, and nowhere else.
+#[test]
+fn a_cushion_brakes_on_the_way_in() {
+    let arm = built_in("zx30u-arm").unwrap();
+    let cushioned = with(&arm, "end_cushion", 0, &[0.05, 4e4]);
+    let linkage = &arm.machine.cylinders[0].linkage;
+    for (displacement, velocity, wanted) in [
+        (0.275, 0.2, -4e4 * 0.5 * 0.2),
+        (0.3, 0.2, -4e4 * 0.2),
+        (-0.29, -0.1, 4e4 * 0.8 * 0.1),
+        (0.275, -0.2, 0.0),
+        (-0.29, 0.1, 0.0),
+        (0.249, 0.2, 0.0),
+        (0.0, -0.3, 0.0),
+    ] {
+        let mut state = common::at_rest(&System::new(&arm));
+        state[0] = linkage.joint(displacement);
+        state[1] = velocity / linkage.lever(state[0]);
+        let inputs = Inputs::zero(1);
+        let found = torque(&cushioned, &state, &inputs).1 - torque(&arm, &state, &inputs).1;
+        assert!((found - wanted).abs() < 1e-6, "{displacement} m, {velocity} m/s: {found} N, not {wanted} N");
+    }
+}
+
+/// Friction that differs by direction, and friction that pressure presses on: levels at 0.1 m/s.
+#[test]
+fn friction_has_the_levels_it_says() {
+    let arm = built_in("zx30u-arm").unwrap();
+    let linkage = &arm.machine.cylinders[0].linkage;
+    let (asymmetric, pressed) =
+        (with(&arm, "asymmetric_friction", 0, &[90.0]), with(&arm, "pressure_dependent_friction", 0, &[2e-4]));
+    let mut state = common::at_rest(&System::new(&arm));
+    (state[2], state[3]) = (1.5e6, 5e5);
+    for (velocity, of_direction, of_pressure) in [(0.1, -90.0, -400.0), (-0.1, 0.0, 400.0), (0.0, 0.0, 0.0)] {
+        state[1] = velocity / linkage.lever(state[0]);
+        let inputs = Inputs::zero(1);
+        let nominal = torque(&arm, &state, &inputs).1;
+        for (model, wanted) in [(&asymmetric, of_direction), (&pressed, of_pressure)] {
+            let found = torque(model, &state, &inputs).1 - nominal;
+            assert!((found - wanted).abs() < 1e-9, "{velocity} m/s: {found} N, not {wanted} N");
+        }
+    }
+    (state[2], state[3]) = (-9e4, -9e4);
+    state[1] = 0.1 / linkage.lever(state[0]);
+    let inputs = Inputs::zero(1);
+    let vacuum = torque(&pressed, &state, &inputs).1 - torque(&arm, &state, &inputs).1;
+    assert_eq!(vacuum, 0.0, "a chamber under vacuum presses no seal");
+}

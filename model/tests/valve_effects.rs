@@ -1,0 +1,190 @@
+//! What effects of the valve and of the bypass do to the flow.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+
+use common::Random;
+use excavator_model::Model;
+use excavator_model::document::built_in;
+use excavator_model::effects::{ActsOn, CATALOGUE, Site, find};
+use excavator_model::equations::{Inputs, Rows, Situation, System};
+use excavator_model::simulation::{InputSignals, Integrator, Tolerances};
+
+const CYLINDER: Site = Site::Cylinder(0);
+
+fn arm_with(effect: &str, site: Site, values: &[f64]) -> Model {
+    let mut model = built_in("zx30u-arm").unwrap().with_effect(find(effect).unwrap(), site).unwrap();
+    for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
+        parameter.value = *value;
+    }
+    model
+}
+
+/// The arm with one parameter of its own scaled.
+fn arm_with_scaled(name: &str, factor: f64) -> Model {
+    let mut model = built_in("zx30u-arm").unwrap();
+    let index = model.parameter_names().iter().position(|candidate| candidate == name).unwrap();
+    model.parameters_mut().nth(index).unwrap().value *= factor;
+    model
+}
+
+fn rows(model: &Model, state: &[f64], inputs: &Inputs<f64>) -> Rows<f64> {
+    let system = System::new(model);
+    let mut workspace = system.workspace();
+    system.rates(&mut workspace, &model.parameter_values(), state, inputs, &mut vec![0.0; system.layout().len]);
+    workspace.rows
+}
+
+fn assert_same_flows(found: &Rows<f64>, wanted: &Rows<f64>) {
+    let flows = |rows: &Rows<f64>| [rows.cap_flow[0], rows.rod_flow[0], rows.pump_flow];
+    for (found, wanted) in flows(found).into_iter().zip(flows(wanted)) {
+        assert!((found - wanted).abs() <= 1e-12 * (found.abs() + wanted.abs()), "{found} is not {wanted}");
+    }
+}
+
+/// Random states and inputs of the arm, one after the other.
+fn situations(seed: u64) -> impl Iterator<Item = (Vec<f64>, Inputs<f64>)> {
+    let mut random = Random(seed);
+    (0..50).map(move |_| {
+        let model = built_in("zx30u-arm").unwrap();
+        let state = common::random_state(&System::new(&model), &mut random);
+        (state, common::random_inputs(&model.machine, &mut random))
+    })
+}
+
+/// A change of the gain for u < 0 is a valve of other gains there, and the nominal valve for u > 0.
+#[test]
+fn directional_gains_are_other_gains_for_retraction() {
+    let nominal = built_in("zx30u-arm").unwrap();
+    let gain = |name: &str| nominal.value_of(name).unwrap();
+    let (cap, rod) = (0.3 * gain("arm.flow_gain_cap"), 0.3 * gain("arm.flow_gain_rod"));
+    for (state, mut inputs) in situations(21) {
+        inputs.orifice_area[0] = inputs.orifice_area[0].abs();
+        let changed = arm_with("valve_directional_gain", CYLINDER, &[cap, rod]);
+        assert_same_flows(&rows(&changed, &state, &inputs), &rows(&nominal, &state, &inputs));
+        inputs.orifice_area[0] *= -1.0;
+        let changed = rows(&arm_with("valve_directional_gain", CYLINDER, &[cap, 0.0]), &state, &inputs);
+        assert_same_flows(&changed, &rows(&arm_with_scaled("arm.flow_gain_cap", 1.3), &state, &inputs));
+        let changed = rows(&arm_with("valve_directional_gain", CYLINDER, &[0.0, rod]), &state, &inputs);
+        assert_same_flows(&changed, &rows(&arm_with_scaled("arm.flow_gain_rod", 1.3), &state, &inputs));
+    }
+}
+
+/// At half opening the area is 1 + c1/2 + c2/4 times as large; the bypass does not know of it.
+#[test]
+fn a_gain_curve_bends_the_opening_but_not_the_bypass() {
+    let model = arm_with("valve_gain_curve", CYLINDER, &[0.4, -0.2]);
+    let maximum = model.machine.cylinders[0].chambers.unwrap().maximum_orifice_area;
+    let system = System::new(&model);
+    let mut workspace = system.workspace();
+    for (state, mut inputs) in situations(22).take(3) {
+        for side in [0.5, -0.5] {
+            inputs.orifice_area[0] = side * maximum;
+            system.observe(&mut workspace, &model.parameter_values(), &state, &inputs, &mut [0.0; 5]);
+            let piston = &workspace.situation.pistons[0];
+            assert!((piston.opening - side * maximum * 1.15).abs() < 1e-18, "{}", piston.opening);
+            assert_eq!(piston.bypass_closing, 0.5 * maximum);
+        }
+    }
+}
+
+/// Within the overlap the bypass is fully open; beyond it loses what a nominal one loses that much earlier.
+#[test]
+fn an_overlapped_bypass_closes_later() {
+    let nominal = built_in("zx30u-arm").unwrap();
+    let overlapped = arm_with("bypass_overlap", Site::PumpLine, &[2e-5]);
+    let through_bypass = |model: &Model, state: &[f64], area: f64| {
+        let mut model = model.clone();
+        model.effects.retain(|effect| effect.name() != "orifice_flow");
+        let mut inputs = Inputs::zero(1);
+        inputs.orifice_area[0] = area;
+        rows(&model, state, &inputs).pump_flow
+    };
+    for (state, _) in situations(23) {
+        let open = through_bypass(&nominal, &state, 0.0);
+        for area in [0.0, 1e-5, -2e-5] {
+            assert_eq!(through_bypass(&overlapped, &state, area), open);
+        }
+        for area in [3e-5, 9e-5] {
+            let (found, wanted) =
+                (through_bypass(&overlapped, &state, -area), through_bypass(&nominal, &state, area - 2e-5));
+            assert!((found - wanted).abs() <= 1e-12 * wanted.abs(), "{found} {wanted}");
+        }
+    }
+}
+
+/// Spools, openings and what else is adjusted on the way of the oil are asked of effects of valves and of the pump line
+/// alone: no other effect may have something to say there that nobody hears.
+#[test]
+fn only_valves_and_pump_line_have_a_say_in_the_way_of_oil() {
+    for model in common::machines() {
+        for effect in CATALOGUE.iter().filter(|e| !matches!(e.card().acts_on, ActsOn::Valve | ActsOn::PumpLine)) {
+            let name = effect.card().name;
+            for site in (0..model.machine.cylinders.len()).map(Site::Cylinder).chain([Site::PumpLine]) {
+                let typical: Vec<f64> =
+                    effect.parameters(&model.machine, site).iter().map(|parameter| parameter.typical).collect();
+                assert_eq!(effect.states(), 0, "{name}");
+                assert_eq!(effect.spool_plain(&typical, &[], &mut [], 3e-5), 3e-5, "{name}");
+                assert_eq!(effect.opening_plain(&typical, 3e-5, 1e-4), 3e-5, "{name}");
+                let mut situation = Situation::<f64>::empty(&model.machine);
+                effect.adjust_plain(site, &typical, &mut situation);
+                assert_eq!(situation.pistons, Situation::<f64>::empty(&model.machine).pistons, "{name}");
+            }
+        }
+    }
+}
+
+/// The play holds still inside its width and follows a moving spool at half its width, late by 1 ms.
+#[test]
+fn play_follows_within_its_accuracy() {
+    let mut model = built_in("zx30u-arm").unwrap();
+    model = model.with_effect(find("valve_hysteresis").unwrap(), Site::Cylinder(0)).unwrap();
+    let width = 8e-6;
+    model.effects.last_mut().unwrap().parameters[0].value = width;
+    let system = System::new(&model);
+    let (amplitude, frequency) = (6e-5, 0.5);
+    let spool = |t: f64| amplitude * (std::f64::consts::TAU * frequency * t).sin();
+    let recording = common::driven(&model, 4.0, 1e-3, |_, t| spool(t), |_| 0.0);
+    let signals = InputSignals::from_recording(&model, &recording).unwrap();
+    let mut integrator = Integrator::new(&system, &model.parameter_values(), &[], Tolerances::default());
+    let mut state = common::at_rest(&system);
+    let own = system.layout().effect_states.last().unwrap().0;
+    let fastest = amplitude * std::f64::consts::TAU * frequency;
+    let (mut ideal, mut worst) = (0.0_f64, 0.0_f64);
+    for index in 0..signals.len() - 1 {
+        let now = spool(recording.time[index]);
+        ideal = ideal.clamp(now - width / 2.0, now + width / 2.0);
+        worst = worst.max((state[own] - ideal).abs());
+        integrator.advance(&signals, index, &mut state, None).unwrap();
+    }
+    println!("play: {worst:.1e} m2 behind the ideal, {:.1e} promised", 1e-3 * fastest);
+    assert!(worst < 1.05e-3 * fastest, "{worst:e}");
+    assert!(worst > 0.5e-3 * fastest, "the bound is not met by chance");
+}
+
+/// A check valve that is tight lets nothing back; one that is not there lets all back.
+#[test]
+fn a_tight_check_valve_lets_nothing_back() {
+    let base = built_in("zx30u-arm").unwrap();
+    let model = base.with_effect(find("load_check_valve").unwrap(), Site::Cylinder(0)).unwrap();
+    let system = System::new(&model);
+    let mut inputs = Inputs::zero(1);
+    let mut state = common::at_rest(&system);
+    let pump = system.layout().pump.unwrap();
+    let valve = model.effects.iter().position(|effect| effect.name() == "orifice_flow").unwrap();
+    for (opening, low) in [(5e-5, true), (-5e-5, true), (5e-5, false), (-5e-5, false)] {
+        inputs.orifice_area[0] = opening;
+        state[pump] = if low { 1e5 } else { 2e7 };
+        let drawn = |tightness: f64| {
+            let mut parameters = model.parameter_values();
+            *parameters.last_mut().unwrap() = tightness;
+            let book = excavator_model::energy::ledger(&system, &parameters, &state, &inputs);
+            book.effects[valve].pump_line
+        };
+        if low {
+            assert!(drawn(0.0) > 0.0 && drawn(1.0) == 0.0, "{opening}: {} {}", drawn(0.0), drawn(1.0));
+        } else {
+            assert!(drawn(0.0) < 0.0 && drawn(1.0) == drawn(0.0), "{opening}");
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! `excavator node arm-bridge`: instruments of other makers as `/arm/state`.
+//!
+//! A description in TOML says where each signal comes from:
+//!
+//! ```toml
+//! rate = 200.0                       # states per second, Hz
+//!
+//! [[udp]]                            # datagrams of fixed layout
+//! port = 5600
+//! length = 20                        # bytes; others are refused
+//! byte_order = "little"              # or "big"
+//! [[udp.fields]]
+//! at = 0                             # first byte
+//! kind = "f32"                       # u8 i8 u16 i16 u32 i32 f32 f64
+//! signal = "arm.displacement"
+//! scale = 0.001                      # raw value times scale plus offset is the value in SI
+//! offset = -0.3
+//! minimum = -0.31                    # outside: not measured, and told
+//! maximum = 0.31
+//! age = 0.05                         # older than this (s): not measured, and told
+//!
+//! [[topics]]                         # topics of other nodes
+//! topic = "/joint_states"
+//! kind = "joint_state"               # or "fluid_pressure"
+//! joint = "arm_joint"                # which entry of a joint state
+//! field = "position"                 # position, velocity or effort
+//! signal = "arm.joint_angle"
+//! ```
+//!
+//! Signals are `CYLINDER.` with `joint_angle`, `displacement`, `velocity`, `cap_pressure`, `rod_pressure`,
+//! `orifice_area` or `rod_force`, and `pump_pressure`, `tank_pressure`, `pump_flow`, `oil_temperature`.
+
+mod datagram;
+mod description;
+mod node;
+mod signals;
+
+pub use node::run;

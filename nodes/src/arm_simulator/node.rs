@@ -1,0 +1,358 @@
+//! The simulator on the graph.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use excavator_model::Model;
+use excavator_model::document::to_text;
+use excavator_model::equations::System;
+use excavator_msgs::common::{Clock, JointState, Text};
+use excavator_msgs::{ArmState, Header, OrificeCommand, Time};
+
+use super::declared::parameters;
+use super::plant::Plant;
+use super::sensors::{Instrument, Quality, SIGNALS, Sensors};
+use super::stamps::Stamps;
+use crate::command::{Lease, Valve, check, ramp};
+use crate::error::VerbError;
+use crate::ros::{
+    Diagnostics, Health, Latched, Logger, Outlet, Pace, Parameters, RosArguments, RosError, Supervisor, TopicQos,
+    system_nanoseconds,
+};
+use crate::sources;
+
+/// Rate of `/joint_states`, Hz: what RViz and robot_state_publisher need.
+const JOINT_STATES_RATE: f64 = 50.0;
+/// Rate of `/clock`, Hz of simulated time.
+const CLOCK_RATE: f64 = 250.0;
+/// Time between two looks at parameters and two words to diagnostics, s.
+const REPORT: Duration = Duration::from_millis(200);
+
+/// Samples that are caught up with after a stall; a machine that was suspended for hours goes on where it was.
+const MOST_MISSED: u64 = 10_000;
+
+/// Runs the simulator until it is told to stop.
+///
+/// # Errors
+/// [`VerbError`] when it cannot start.
+pub fn run(arguments: &RosArguments) -> Result<(), VerbError> {
+    let supervisor = Supervisor::start("arm_simulator", arguments, parameters())?;
+    let model = sources::model(&supervisor.parameters.text("model"))?;
+    let not_measured = supervisor.parameters.texts("not_measured");
+    if let Some(unknown) = not_measured.iter().find(|name| !SIGNALS.contains(&name.as_str())) {
+        let reason = format!("not_measured: \"{unknown}\" is none of {}", SIGNALS.join(", "));
+        return Err(RosError::Parameter(reason).into());
+    }
+    let outlets = Outlets {
+        state: supervisor.link.publish("/arm/state", TopicQos::reliable(50))?,
+        joints: supervisor.link.publish("/joint_states", TopicQos::reliable(10))?,
+        model: supervisor.link.publish_latched("/arm/model", TopicQos::latched())?,
+        clock: has_own_clock(&supervisor.parameters)
+            .then(|| supervisor.link.publish("/clock", TopicQos::reliable(10)))
+            .transpose()?,
+    };
+    let desk = Arc::new(CommandDesk::new(&model, &supervisor.parameters, &supervisor.diagnostics));
+    let listening = Arc::clone(&desk);
+    supervisor.link.subscribe("/arm/orifice_command", TopicQos::reliable(10), move |command, received| {
+        listening.take(&command, received.at);
+    })?;
+    // What is published now reaches everybody who comes later.
+    let _ = outlets.model.publish(Text { data: to_text(&model)? });
+    let stop = supervisor.stop_flag();
+    let simulation = Simulation {
+        model: &model,
+        parameters: &supervisor.parameters,
+        diagnostics: &supervisor.diagnostics,
+        logger: &supervisor.logger,
+        outlets: &outlets,
+        desk: &desk,
+        stop: &stop,
+    };
+    let outcome = std::thread::scope(|scope| {
+        let running = scope.spawn(|| simulation.run());
+        supervisor.run(|| {});
+        // The simulation closes its valves before it ends.
+        running.join().unwrap_or(Ok(()))
+    });
+    supervisor.leave();
+    outcome
+}
+
+/// Whether this node is the source of time. With `use_sim_time` somebody has to be, and that is the simulator.
+fn has_own_clock(parameters: &Parameters) -> bool {
+    parameters.flag("publish_clock") || parameters.flag("use_sim_time") || parameters.double("speed") != 1.0
+}
+
+struct Outlets {
+    state: Outlet<ArmState>,
+    joints: Outlet<JointState>,
+    model: Latched<Text>,
+    clock: Option<Outlet<Clock>>,
+}
+
+/// Where commands come in.
+struct CommandDesk {
+    valves: Vec<Valve>,
+    lease: Mutex<Lease>,
+    accepted: AtomicU64,
+    refused: AtomicU64,
+    diagnostics: Diagnostics,
+}
+
+impl CommandDesk {
+    fn new(model: &Model, parameters: &Parameters, diagnostics: &Diagnostics) -> Self {
+        let cylinders = &model.machine.cylinders;
+        // A cylinder without a valve keeps its place, so that indices agree, under a name that nobody can say.
+        let valve = |cylinder: &excavator_model::machine::Cylinder| match cylinder.chambers {
+            Some(chambers) => Valve { name: cylinder.name.clone(), maximum_area: chambers.maximum_orifice_area },
+            None => Valve { name: String::new(), maximum_area: 0.0 },
+        };
+        CommandDesk {
+            valves: cylinders.iter().map(valve).collect(),
+            lease: Mutex::new(Lease::new(cylinders.len(), seconds(parameters.double("command_timeout")))),
+            accepted: AtomicU64::new(0),
+            refused: AtomicU64::new(0),
+            diagnostics: diagnostics.clone(),
+        }
+    }
+
+    fn take(&self, command: &OrificeCommand, now: Instant) {
+        match check(command, &self.valves) {
+            Ok(areas) => {
+                self.lease().renew(&areas, now);
+                self.accepted.fetch_add(1, Ordering::Relaxed);
+            }
+            Err(refusal) => {
+                let refused = self.refused.fetch_add(1, Ordering::Relaxed) + 1;
+                let values = [("refused commands", refused.to_string())];
+                self.diagnostics.tell("refusal", Health::Warning, format!("command refused: {refusal}"), &values);
+            }
+        }
+    }
+
+    fn lease(&self) -> std::sync::MutexGuard<'_, Lease> {
+        self.lease.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn seconds(value: f64) -> Duration {
+    Duration::try_from_secs_f64(value).unwrap_or(Duration::ZERO)
+}
+
+struct Simulation<'r> {
+    model: &'r Model,
+    parameters: &'r Parameters,
+    diagnostics: &'r Diagnostics,
+    logger: &'r Logger,
+    outlets: &'r Outlets,
+    desk: &'r CommandDesk,
+    stop: &'r AtomicBool,
+}
+
+impl Simulation<'_> {
+    /// The loop; sets the stop flag however it ends.
+    fn run(&self) -> Result<(), VerbError> {
+        let outcome = self.steps();
+        self.stop.store(true, Ordering::Relaxed);
+        outcome
+    }
+
+    fn steps(&self) -> Result<(), VerbError> {
+        let parameters = self.parameters;
+        let (rate, speed) = (parameters.double("rate"), parameters.double("speed"));
+        let period = 1.0 / rate;
+        let system = System::new(self.model);
+        let start = parameters.doubles("start_displacement");
+        let mut plant = Plant::new(&system, &start, period, parameters.double("supply_pressure"))?;
+        let seed = u64::try_from(parameters.integer("seed")).unwrap_or_default();
+        let mut sensors = Sensors::new(seed, parameters.texts("not_measured"));
+        let mut valves = Valves::new(&self.desk.valves, parameters.double("closing_time"));
+        let mut clock = SampleClock::new(period, self.outlets.clock.is_some());
+        let mut pace = Pace::new(rate * speed);
+        let mut settings = Settings::read(parameters);
+        let mut reported = Instant::now();
+        let mut failures = 0_u64;
+        let every = |target: f64| ((rate / target).round() as u64).max(1);
+        let (joints_every, clock_every) = (every(JOINT_STATES_RATE), every(CLOCK_RATE));
+        self.logger.info(format!("{} at {rate} Hz, speed {speed}", self.model.machine.name));
+        for sample in 0_u64.. {
+            let stopping = self.stop.load(Ordering::Relaxed);
+            if stopping {
+                self.desk.lease().revoke();
+            }
+            let openings = self.desk.lease().openings(Instant::now());
+            valves.follow(&openings.areas, openings.expired || stopping, period);
+            if let Err(error) = plant.step(&valves.areas) {
+                failures += 1;
+                self.logger.error(format!("{error}; the machine is set up again at rest"));
+            }
+            let mut state = plant.observe(settings.oil_temperature);
+            let stamp = clock.stamp();
+            state.header.stamp = stamp;
+            if sample % clock_every == 0
+                && let Some(outlet) = &self.outlets.clock
+            {
+                let _ = outlet.publish(Clock { clock: stamp });
+            }
+            let joints = (sample % joints_every == 0).then(|| joint_state(&state, plant.joint_rates()));
+            if sensors.measure(&mut state, &settings.quality) {
+                // Refusals are counted by the outlet and told below.
+                let _ = self.outlets.state.publish(state);
+            }
+            if let Some(joints) = joints {
+                let _ = self.outlets.joints.publish(joints);
+            }
+            if reported.elapsed() >= REPORT {
+                reported = Instant::now();
+                settings = Settings::read(parameters);
+                self.desk.lease().set_timeout(settings.command_timeout);
+                self.report(openings.expired, &pace, &clock, failures);
+            }
+            if stopping && valves.are_closed() {
+                return Ok(());
+            }
+            pace.wait();
+            // The machine does not stand still while this program had no processor.
+            let missed = pace.take_missed().min(MOST_MISSED);
+            clock.skip(missed);
+            for _ in 0..missed {
+                if plant.step(&valves.areas).is_err() {
+                    failures += 1;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn report(&self, expired: bool, pace: &Pace, clock: &SampleClock, failures: u64) {
+        let state = &self.outlets.state;
+        let values = [
+            ("published states", state.published().to_string()),
+            ("refused states", state.refused().to_string()),
+            ("schedules started anew", pace.late().to_string()),
+            ("jumps of the clock", clock.jumps.to_string()),
+            ("times set up again", failures.to_string()),
+        ];
+        let (health, message) =
+            if failures > 0 { (Health::Warning, "the machine was set up again") } else { (Health::Ok, "running") };
+        self.diagnostics.tell("simulation", health, message, &values);
+        let accepted = self.desk.accepted.load(Ordering::Relaxed);
+        let age = self.desk.lease().age(Instant::now());
+        let values = [
+            ("accepted commands", accepted.to_string()),
+            ("refused commands", self.desk.refused.load(Ordering::Relaxed).to_string()),
+            ("age of the last command [s]", age.map_or("-".into(), |age| format!("{:.3}", age.as_secs_f64()))),
+        ];
+        let (health, message) = match (expired, accepted) {
+            (true, _) => (Health::Warning, "the command has run out, valves are closed"),
+            (false, 0) => (Health::Ok, "no command yet, valves are closed"),
+            (false, _) => (Health::Ok, "following commands"),
+        };
+        self.diagnostics.tell("commands", health, message, &values);
+    }
+}
+
+/// Parameters that may change while the simulator runs.
+struct Settings {
+    quality: Quality,
+    oil_temperature: f64,
+    command_timeout: Duration,
+}
+
+impl Settings {
+    fn read(parameters: &Parameters) -> Self {
+        let number = |name: &str| parameters.double(name);
+        let instrument = |noise: &str, quantum: &str| Instrument { noise: number(noise), quantum: number(quantum) };
+        let quality = Quality {
+            displacement: instrument("displacement_noise", "displacement_quantum"),
+            joint_angle: instrument("joint_angle_noise", "joint_angle_quantum"),
+            velocity: Instrument { noise: number("velocity_noise"), quantum: 0.0 },
+            pressure: instrument("pressure_noise", "pressure_quantum"),
+            orifice_area: Instrument { noise: number("orifice_area_noise"), quantum: 0.0 },
+            dropout_probability: number("dropout_probability"),
+            loss_probability: number("loss_probability"),
+        };
+        Settings {
+            quality,
+            oil_temperature: number("oil_temperature"),
+            command_timeout: seconds(number("command_timeout")),
+        }
+    }
+}
+
+/// The valves: at once where commanded, by a ramp where they close for safety.
+struct Valves {
+    areas: Vec<f64>,
+    closing_rates: Vec<f64>,
+}
+
+impl Valves {
+    fn new(valves: &[Valve], closing_time: f64) -> Self {
+        Valves {
+            areas: vec![0.0; valves.len()],
+            closing_rates: valves.iter().map(|valve| valve.maximum_area / closing_time).collect(),
+        }
+    }
+
+    fn follow(&mut self, wanted: &[f64], closing: bool, period: f64) {
+        for ((area, &wanted), &rate) in self.areas.iter_mut().zip(wanted).zip(&self.closing_rates) {
+            *area = if closing { ramp(*area, wanted, rate, period) } else { wanted };
+        }
+    }
+
+    fn are_closed(&self) -> bool {
+        self.areas.iter().all(|&area| area == 0.0)
+    }
+}
+
+/// Where stamps come from.
+struct SampleClock {
+    period: i64,
+    /// Simulated time, ns, where this node is the source of time.
+    simulated: Option<i64>,
+    stamps: Stamps,
+    jumps: u64,
+}
+
+impl SampleClock {
+    fn new(period: f64, own: bool) -> Self {
+        let period = (period * 1e9).round() as i64;
+        // Zero is "no time yet" in ROS: the first sample comes one period later.
+        SampleClock { period, simulated: own.then_some(0), stamps: Stamps::new(period), jumps: 0 }
+    }
+
+    /// Leaves out samples that nobody published.
+    fn skip(&mut self, samples: u64) {
+        let samples = i64::try_from(samples).unwrap_or_default();
+        if let Some(time) = &mut self.simulated {
+            *time = time.saturating_add(samples.saturating_mul(self.period));
+        }
+        self.stamps.skip(samples);
+    }
+
+    fn stamp(&mut self) -> Time {
+        let nanoseconds = match &mut self.simulated {
+            Some(time) => {
+                *time += self.period;
+                *time
+            }
+            None => {
+                let (stamp, jumped) = self.stamps.stamp(system_nanoseconds());
+                self.jumps += u64::from(jumped);
+                stamp
+            }
+        };
+        Time::from_nanoseconds(nanoseconds).unwrap_or_default()
+    }
+}
+
+fn joint_state(state: &ArmState, rates: Vec<f64>) -> JointState {
+    JointState {
+        header: Header { stamp: state.header.stamp, frame_id: String::new() },
+        name: state.cylinders.iter().map(|cylinder| format!("{}_joint", cylinder.name)).collect(),
+        position: state.cylinders.iter().map(|cylinder| cylinder.joint_angle).collect(),
+        velocity: rates,
+        effort: Vec::new(),
+    }
+}

@@ -1,0 +1,129 @@
+//! Which commands are refused.
+
+use excavator_msgs::OrificeCommand;
+
+/// A valve section that can be commanded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Valve {
+    /// Name of its cylinder.
+    pub name: String,
+    /// Largest orifice area, m².
+    pub maximum_area: f64,
+}
+
+/// Why a command changes nothing.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// `names` and `areas` do not fit together.
+    #[error("{names} names with {areas} areas")]
+    Lengths {
+        /// Number of names.
+        names: usize,
+        /// Number of areas.
+        areas: usize,
+    },
+    /// No valve of this name.
+    #[error("there is no cylinder \"{name}\" with a valve; there is {known}")]
+    UnknownCylinder {
+        /// The name.
+        name: String,
+        /// Names that exist.
+        known: String,
+    },
+    /// The same valve twice.
+    #[error("cylinder \"{name}\" is named twice")]
+    Twice {
+        /// The name.
+        name: String,
+    },
+    /// `NaN` or infinite.
+    #[error("the area {area} m2 for \"{name}\" is not a number")]
+    NotANumber {
+        /// The cylinder.
+        name: String,
+        /// The area.
+        area: f64,
+    },
+    /// Wider than the valve.
+    #[error("the area {area:.3e} m2 for \"{name}\" is beyond {maximum:.3e} m2")]
+    OutOfRange {
+        /// The cylinder.
+        name: String,
+        /// The area, m².
+        area: f64,
+        /// What the valve can open, m².
+        maximum: f64,
+    },
+}
+
+/// Room for rounding in the largest area: commands computed as 100 % must pass.
+const ROUNDING: f64 = 1e-9;
+
+/// The commanded areas by index of the valve, or why the whole command is refused: half of a command is none.
+///
+/// # Errors
+/// [`Refusal`].
+pub fn check(command: &OrificeCommand, valves: &[Valve]) -> Result<Vec<(usize, f64)>, Refusal> {
+    if command.names.len() != command.areas.len() {
+        return Err(Refusal::Lengths { names: command.names.len(), areas: command.areas.len() });
+    }
+    let mut areas: Vec<(usize, f64)> = Vec::with_capacity(command.names.len());
+    for (name, &area) in command.names.iter().zip(&command.areas) {
+        let Some(index) = valves.iter().position(|valve| valve.name == *name) else {
+            let known: Vec<&str> = valves.iter().map(|valve| valve.name.as_str()).collect();
+            let known = if known.is_empty() { "none".to_string() } else { known.join(", ") };
+            return Err(Refusal::UnknownCylinder { name: name.clone(), known });
+        };
+        if areas.iter().any(|(known, _)| *known == index) {
+            return Err(Refusal::Twice { name: name.clone() });
+        }
+        if !area.is_finite() {
+            return Err(Refusal::NotANumber { name: name.clone(), area });
+        }
+        let maximum = valves[index].maximum_area;
+        if area.abs() > maximum * (1.0 + ROUNDING) {
+            return Err(Refusal::OutOfRange { name: name.clone(), area, maximum });
+        }
+        areas.push((index, area.clamp(-maximum, maximum)));
+    }
+    Ok(areas)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use excavator_msgs::Header;
+
+    fn command(pairs: &[(&str, f64)]) -> OrificeCommand {
+        OrificeCommand {
+            header: Header::default(),
+            names: pairs.iter().map(|pair| pair.0.to_string()).collect(),
+            areas: pairs.iter().map(|pair| pair.1).collect(),
+        }
+    }
+
+    fn valves() -> Vec<Valve> {
+        ["boom", "arm"].map(|name| Valve { name: name.to_string(), maximum_area: 1e-4 }).to_vec()
+    }
+
+    #[test]
+    fn good_commands_pass_by_name() {
+        assert_eq!(check(&command(&[("arm", -5e-5)]), &valves()), Ok(vec![(1, -5e-5)]));
+        assert_eq!(check(&command(&[("arm", 1e-4), ("boom", 0.0)]), &valves()), Ok(vec![(1, 1e-4), (0, 0.0)]));
+        assert_eq!(check(&command(&[]), &valves()), Ok(vec![]));
+    }
+
+    #[test]
+    fn one_bad_entry_refuses_the_whole_command() {
+        for bad in [("bucket", 0.0), ("arm", f64::NAN), ("arm", f64::NEG_INFINITY), ("arm", 2e-4), ("boom", 0.0)] {
+            assert!(check(&command(&[("boom", 1e-5), bad]), &valves()).is_err(), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn lengths_must_agree() {
+        let mut wrong = command(&[("arm", 1e-5)]);
+        wrong.areas.push(0.0);
+        assert_eq!(check(&wrong, &valves()), Err(Refusal::Lengths { names: 1, areas: 2 }));
+    }
+}

@@ -1,0 +1,6 @@
+//! `excavator node energy-monitor`: the energy balance of the machine, state by state.
+
+mod convert;
+mod node;
+
+pub use node::run;

@@ -1,0 +1,239 @@
+//! The energy monitor on the graph.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TrySendError, sync_channel};
+use std::time::{Duration, Instant};
+
+use excavator_model::Model;
+use excavator_model::document::parse;
+use excavator_model::energy::monitor::{Monitor, Settings, Watch, WatchSettings, Window};
+use excavator_model::equations::System;
+use excavator_msgs::common::Text;
+use excavator_msgs::{ArmState, EnergyState};
+
+use super::convert::{message, sample};
+use crate::error::VerbError;
+use crate::ros::{
+    Diagnostics, Health, Logger, Outlet, Parameter, Parameters, RosArguments, Supervisor, TopicQos, Value,
+};
+use crate::sources;
+
+/// States that may wait: a minute at 1 kHz.
+const WAITING: usize = 60_000;
+/// Time without a state after which what is waiting is given with the windows that there are.
+const IDLE: Duration = Duration::from_millis(500);
+/// Time between two words to diagnostics.
+const REPORT: Duration = Duration::from_millis(500);
+/// Time without a state after which that is worth a warning.
+const SILENT: Duration = Duration::from_secs(2);
+
+fn parameters() -> Vec<Parameter> {
+    let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
+    vec![
+        Parameter::new(
+            "model",
+            Value::String(String::new()),
+            "built-in model or model file (.toml); empty: the model on /arm/model",
+        )
+        .read_only(),
+        double("half_width", 0.01, "half width of the window of derivatives, which is also their delay [s]")
+            .within(0.001, 0.5)
+            .read_only(),
+        double("gap", 0.1, "time without a state that separates what comes after from what was before [s]")
+            .within(0.002, 10.0)
+            .read_only(),
+        double("watch_window", 1.0, "time over which unexplained power is averaged [s]").within(0.1, 60.0).read_only(),
+        double("significance", 5.0, "standard errors beyond which unexplained power is told")
+            .within(1.0, 100.0)
+            .read_only(),
+    ]
+}
+
+enum Incoming {
+    State(ArmState),
+    Model(String),
+}
+
+/// Runs the monitor until it is told to stop.
+///
+/// # Errors
+/// [`VerbError`] when it cannot start.
+pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
+    let supervisor = Supervisor::start("energy_monitor", ros, parameters())?;
+    let name = supervisor.parameters.text("model");
+    let model = if name.is_empty() { None } else { Some(sources::model(&name)?) };
+    let outlet = supervisor.link.publish("/arm/energy", TopicQos::reliable(50))?;
+    let (sender, incoming) = sync_channel(WAITING);
+    let dropped = Arc::new(AtomicU64::new(0));
+    let (states, counter) = (sender.clone(), Arc::clone(&dropped));
+    supervisor.link.subscribe("/arm/state", TopicQos::reliable(1000), move |state: ArmState, _| {
+        if let Err(TrySendError::Full(_)) = states.try_send(Incoming::State(state)) {
+            counter.fetch_add(1, Ordering::Relaxed);
+        }
+    })?;
+    if model.is_none() {
+        supervisor.link.subscribe("/arm/model", TopicQos::latched(), move |text: Text, _| {
+            // A model that finds no room is one of thousands per minute.
+            let _ = sender.try_send(Incoming::Model(text.data));
+        })?;
+    }
+    let stop = supervisor.stop_flag();
+    let desk = Desk {
+        incoming,
+        outlet,
+        parameters: &supervisor.parameters,
+        diagnostics: &supervisor.diagnostics,
+        logger: &supervisor.logger,
+        dropped: &dropped,
+        stop: &stop,
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(move || desk.work(model));
+        supervisor.run(|| {});
+    });
+    supervisor.leave();
+    Ok(())
+}
+
+struct Desk<'d> {
+    incoming: Receiver<Incoming>,
+    outlet: Outlet<EnergyState>,
+    parameters: &'d Parameters,
+    diagnostics: &'d Diagnostics,
+    logger: &'d Logger,
+    dropped: &'d AtomicU64,
+    stop: &'d AtomicBool,
+}
+
+impl Desk<'_> {
+    fn work(&self, given: Option<Model>) {
+        let mut model = given;
+        while !self.stop.load(Ordering::Relaxed) {
+            let current = match model.take() {
+                Some(model) => model,
+                None => match self.wait_for_model() {
+                    Some(model) => model,
+                    None => continue,
+                },
+            };
+            self.logger.info(format!("following {}", current.machine.name));
+            model = self.follow(&current);
+        }
+    }
+
+    /// States that come before there is a model are not waited with: their energy is unknown.
+    fn wait_for_model(&self) -> Option<Model> {
+        match self.incoming.recv_timeout(IDLE) {
+            Ok(Incoming::Model(text)) => self.read(&text),
+            Ok(Incoming::State(_)) | Err(_) => {
+                self.diagnostics.tell(
+                    "balance",
+                    Health::Warning,
+                    "no model yet: give -p model:= or publish /arm/model",
+                    &[],
+                );
+                None
+            }
+        }
+    }
+
+    fn read(&self, text: &str) -> Option<Model> {
+        match parse("/arm/model", text) {
+            Ok(model) => Some(model),
+            Err(error) => {
+                self.logger.error(error.to_string());
+                self.diagnostics.tell("balance", Health::Error, error.to_string(), &[]);
+                None
+            }
+        }
+    }
+
+    /// Balances with one model until there is another, or the end.
+    fn follow(&self, model: &Model) -> Option<Model> {
+        let system = System::new(model);
+        let settings =
+            Settings { half_width: self.parameters.double("half_width"), gap: self.parameters.double("gap") };
+        let mut monitor = Monitor::new(&system, settings);
+        let mut watch = Watch::new(WatchSettings {
+            window: self.parameters.double("watch_window"),
+            significance: self.parameters.double("significance"),
+        });
+        let mut balances = Vec::new();
+        let mut window = None;
+        let (mut heard, mut reported) = (Instant::now(), Instant::now());
+        let mut has_velocity = false;
+        while !self.stop.load(Ordering::Relaxed) {
+            match self.incoming.recv_timeout(IDLE) {
+                Ok(Incoming::State(state)) => {
+                    heard = Instant::now();
+                    has_velocity = state.cylinders.iter().all(|cylinder| cylinder.velocity.is_finite());
+                    monitor.push(sample(&state, model), &mut balances);
+                }
+                Ok(Incoming::Model(text)) => {
+                    if let Some(next) = self.read(&text) {
+                        return Some(next);
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => monitor.flush(&mut balances),
+                Err(RecvTimeoutError::Disconnected) => return None,
+            }
+            for balance in balances.drain(..) {
+                window = watch.push(&balance).or(window);
+                // Refusals are counted by the outlet and told below.
+                let _ = self.outlet.publish(message(&balance, model));
+            }
+            if reported.elapsed() >= REPORT {
+                reported = Instant::now();
+                self.report(&monitor, has_velocity, heard.elapsed());
+                self.judge(window.as_ref());
+            }
+        }
+        None
+    }
+
+    fn report(&self, monitor: &Monitor<'_, '_>, has_velocity: bool, silence: Duration) {
+        let counts = monitor.counts();
+        let dropped = self.dropped.load(Ordering::Relaxed);
+        let values = [
+            ("states", counts.states.to_string()),
+            ("balances", counts.balances.to_string()),
+            ("incomplete balances", counts.incomplete.to_string()),
+            ("duplicate stamps", counts.duplicates.to_string()),
+            ("stamps out of order", counts.out_of_order.to_string()),
+            ("gaps", counts.gaps.to_string()),
+            ("jumps of the clock", counts.jumps.to_string()),
+            ("dropped states", dropped.to_string()),
+            ("refused balances", self.outlet.refused().to_string()),
+            ("delay [s]", format!("{:.4}", monitor.delay(has_velocity))),
+        ];
+        let (health, message) = if silence > SILENT {
+            (Health::Warning, "no states on /arm/state".to_string())
+        } else if dropped > 0 {
+            (Health::Warning, "states come faster than they can be followed".to_string())
+        } else {
+            (Health::Ok, "following".to_string())
+        };
+        self.diagnostics.tell("balance", health, message, &values);
+    }
+
+    fn judge(&self, window: Option<&Window>) {
+        let Some(window) = window else { return };
+        let values = [
+            ("unexplained power [W]", format!("{:.3}", window.residual())),
+            ("threshold from noise [W]", format!("{:.3}", window.threshold())),
+            ("stored [J]", format!("{:.3}", window.stored)),
+            ("supplied [J]", format!("{:.3}", window.supplied)),
+            ("dissipated [J]", format!("{:.3}", -window.dissipated)),
+            ("window [s]", format!("{:.3}", window.length)),
+        ];
+        let (health, word) = if window.violates_passivity() {
+            (Health::Error, "more energy is stored than was supplied: an instrument or the supply side is wrong")
+        } else if window.is_explained() {
+            (Health::Ok, "the model explains the energy")
+        } else {
+            (Health::Warning, "the model does not explain all of the energy")
+        };
+        self.diagnostics.tell("passivity", health, word, &values);
+    }
+}

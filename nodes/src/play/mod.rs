@@ -1,0 +1,7 @@
+//! `excavator play`: a bag onto the graph, in its own rhythm.
+
+mod keys;
+mod node;
+mod schedule;
+
+pub use node::run;

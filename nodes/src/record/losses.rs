@@ -1,0 +1,65 @@
+//! Counting what never came, from the publishers' own numbering.
+
+use std::collections::HashMap;
+
+/// Messages of each publisher of one topic.
+#[derive(Debug, Default)]
+pub(super) struct Losses {
+    last: HashMap<[u8; 16], i64>,
+    lost: u64,
+    late: u64,
+}
+
+impl Losses {
+    /// Takes note of message `sequence` of `writer`. What a publisher sent before we listened is not lost.
+    pub fn take(&mut self, writer: [u8; 16], sequence: i64) {
+        let last = self.last.entry(writer).or_insert(sequence - 1);
+        match sequence - *last {
+            step @ 1.. => {
+                self.lost += u64::try_from(step - 1).unwrap_or_default();
+                *last = sequence;
+            }
+            // It was taken for lost when a later one came first.
+            _ => {
+                self.late += 1;
+                self.lost = self.lost.saturating_sub(1);
+            }
+        }
+    }
+
+    /// Messages that were published while we listened and did not come.
+    pub fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    /// Publishers heard.
+    pub fn publishers(&self) -> usize {
+        self.last.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: [u8; 16] = [1; 16];
+    const B: [u8; 16] = [2; 16];
+
+    #[test]
+    fn gaps_are_counted_per_publisher() {
+        let mut losses = Losses::default();
+        for (writer, sequence) in [(A, 100), (A, 101), (B, 1), (A, 104), (B, 2)] {
+            losses.take(writer, sequence);
+        }
+        assert_eq!((losses.lost(), losses.publishers()), (2, 2));
+    }
+
+    #[test]
+    fn what_comes_late_is_not_lost() {
+        let mut losses = Losses::default();
+        for sequence in [1, 2, 4, 3, 5] {
+            losses.take(A, sequence);
+        }
+        assert_eq!(losses.lost(), 0);
+    }
+}

@@ -1,0 +1,181 @@
+//! The recorder on the graph.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
+use std::time::{Duration, Instant};
+
+use excavator_bags::{BagWriter, WriteOptions};
+
+use super::offered::{OfferedTopic, asked, topics};
+use super::selection::Selection;
+use super::writing::{Order, TopicOutcome, write};
+use crate::cli::RecordArguments;
+use crate::error::VerbError;
+use crate::ros::raw::RawInlet;
+use crate::ros::{Health, RosArguments, Supervisor};
+
+/// Time between two looks for new topics.
+const LOOK: Duration = Duration::from_millis(200);
+/// Messages that may wait for the disk: a minute at 1 kHz.
+const WAITING: usize = 60_000;
+
+/// Records until it is told to stop, or for the duration asked for.
+///
+/// # Errors
+/// [`VerbError`] when it cannot start, or the bag cannot be written.
+pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbError> {
+    let supervisor = Supervisor::start("bag_recorder", ros, Vec::new())?;
+    let names: Vec<String> = if arguments.all {
+        Vec::new()
+    } else {
+        let full = |name: &String| supervisor.link.identity().resolve(name);
+        arguments.topics.iter().map(full).collect::<Result<_, _>>()?
+    };
+    let pattern = if arguments.all { None } else { arguments.regex.as_deref() };
+    let selection = Selection::new(names, pattern, arguments.exclude.as_deref(), arguments.include_hidden_topics)?;
+    let folder = arguments.output.clone().unwrap_or_else(default_folder);
+    let options = WriteOptions { compression: arguments.compression.into(), ..WriteOptions::default() };
+    let bag = BagWriter::create(&folder, &options)?;
+    supervisor.logger.info(format!("recording to {}", folder.display()));
+    let dropped = Arc::new(AtomicU64::new(0));
+    let (sender, orders) = sync_channel(WAITING);
+    let stop = supervisor.stop_flag();
+    let outcome = std::thread::scope(|scope| {
+        let counter = Arc::clone(&dropped);
+        let stop_on_failure = Arc::clone(&stop);
+        let writing = scope.spawn(move || {
+            let outcome = write(bag, &orders, || counter.load(Ordering::Relaxed));
+            stop_on_failure.store(true, Ordering::Relaxed);
+            outcome
+        });
+        let looking = scope.spawn(|| {
+            let mut recorder = Recorder { supervisor: &supervisor, selection, sender, dropped, known: Vec::new() };
+            let end = arguments.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
+            while !stop.load(Ordering::Relaxed) {
+                recorder.look();
+                std::thread::sleep(LOOK);
+                if end.is_some_and(|end| Instant::now() >= end) {
+                    stop.store(true, Ordering::Relaxed);
+                }
+            }
+            recorder.missing()
+        });
+        supervisor.run(|| {});
+        let missing = looking.join().unwrap_or_default();
+        // The readers hold senders; the writing thread ends when they are gone.
+        supervisor.link.forget_endpoints();
+        (writing.join(), missing)
+    });
+    let (written, missing) = outcome;
+    for name in missing {
+        supervisor.logger.warn(format!("nobody published {name}"));
+    }
+    let result = match written {
+        Ok(written) => written.map(|topics| tell(&supervisor, &topics)).map_err(VerbError::from),
+        Err(_) => Ok(()),
+    };
+    supervisor.leave();
+    result
+}
+
+fn tell(supervisor: &Supervisor, topics: &[TopicOutcome]) {
+    let total: u64 = topics.iter().map(|topic| topic.messages).sum();
+    for topic in topics {
+        supervisor.logger.info(format!(
+            "{}: {} messages of {} publishers, {} lost",
+            topic.name, topic.messages, topic.publishers, topic.lost
+        ));
+    }
+    supervisor.logger.info(format!("{total} messages on {} topics", topics.len()));
+}
+
+/// `rosbag2_2026_11_21-06_00_00`, as `ros2 bag record` names it.
+fn default_folder() -> PathBuf {
+    PathBuf::from(jiff::Zoned::now().strftime("rosbag2_%Y_%m_%d-%H_%M_%S").to_string())
+}
+
+struct Recorder<'r> {
+    supervisor: &'r Supervisor,
+    selection: Selection,
+    sender: SyncSender<Order>,
+    dropped: Arc<AtomicU64>,
+    known: Vec<OfferedTopic>,
+}
+
+impl Recorder<'_> {
+    fn look(&mut self) {
+        let Some(participant) = self.supervisor.link.participant() else { return };
+        // What this process publishes itself (log, diagnostics) is no part of the world to be recorded.
+        let own = participant_prefix(&participant);
+        let mut writers = participant.discovered_writers();
+        writers.retain(|writer| writer.publication_topic_data.key.prefix.as_ref() != own.as_slice());
+        for topic in topics(&writers) {
+            if !self.selection.takes(&topic.name) {
+                continue;
+            }
+            match self.known.iter().position(|known| known.name == topic.name) {
+                None => self.add(topic),
+                Some(index) if self.known[index].qos != topic.qos => self.update(index, topic),
+                Some(_) => {}
+            }
+        }
+        let values = [
+            ("topics", self.known.len().to_string()),
+            ("dropped messages", self.dropped.load(Ordering::Relaxed).to_string()),
+        ];
+        let health = if self.dropped.load(Ordering::Relaxed) > 0 { Health::Warning } else { Health::Ok };
+        let message = if health == Health::Ok { "recording" } else { "the disk is too slow" };
+        self.supervisor.diagnostics.tell("recorder", health, message, &values);
+    }
+
+    fn add(&mut self, topic: OfferedTopic) {
+        let logger = &self.supervisor.logger;
+        if excavator_msgs::definitions::schema(&topic.type_name).is_none() {
+            logger.warn(format!(
+                "{}: no definition of {} is known here; its bytes are recorded",
+                topic.name, topic.type_name
+            ));
+        }
+        for other in &topic.other_types {
+            logger.warn(format!("{} is also published as {other}, which is not recorded", topic.name));
+        }
+        let index = self.known.len();
+        let order =
+            Order::Topic { name: topic.name.clone(), type_name: topic.type_name.clone(), qos: topic.qos.clone() };
+        if self.sender.send(order).is_err() {
+            return;
+        }
+        let (sender, dropped) = (self.sender.clone(), Arc::clone(&self.dropped));
+        let taken = move |sample| match sender.try_send(Order::Message { topic: index, sample }) {
+            Ok(()) | Err(TrySendError::Disconnected(_)) => {}
+            Err(TrySendError::Full(_)) => {
+                dropped.fetch_add(1, Ordering::Relaxed);
+            }
+        };
+        match RawInlet::open(&self.supervisor.link, &topic.name, &topic.type_name, asked(&topic.qos), taken) {
+            Ok(()) => logger.info(format!("recording {} ({})", topic.name, topic.type_name)),
+            Err(error) => logger.error(error.to_string()),
+        }
+        self.known.push(topic);
+    }
+
+    fn update(&mut self, index: usize, topic: OfferedTopic) {
+        // Publishers that have left stay in the bag's record of what was offered.
+        if topic.qos.len() > self.known[index].qos.len() {
+            let _ = self.sender.send(Order::Qos { topic: index, qos: topic.qos.clone() });
+            self.known[index] = topic;
+        }
+    }
+
+    fn missing(&self) -> Vec<String> {
+        let never = |name: &&String| !self.known.iter().any(|known| known.name == **name);
+        self.selection.names().iter().filter(never).cloned().collect()
+    }
+}
+
+fn participant_prefix(participant: &rustdds::DomainParticipant) -> Vec<u8> {
+    use rustdds::RTPSEntity;
+    participant.guid().prefix.as_ref().to_vec()
+}

@@ -1,0 +1,88 @@
+//! The thread that writes: it alone touches the disk, so that a slow disk delays nobody.
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+use excavator_bags::{BagError, BagWriter, Qos, TopicId, TopicToWrite};
+use excavator_msgs::definitions;
+
+use super::losses::Losses;
+use crate::ros::raw::RawSample;
+
+/// Time between two flushes: what a killed recorder loses at most, with room for the flush itself.
+const FLUSH: Duration = Duration::from_millis(500);
+
+/// What the writing thread is told.
+pub(super) enum Order {
+    /// A topic; its number is the count of topics before it.
+    Topic { name: String, type_name: String, qos: Vec<Qos> },
+    /// Other publishers of a topic.
+    Qos { topic: usize, qos: Vec<Qos> },
+    /// A message of a topic.
+    Message { topic: usize, sample: RawSample },
+}
+
+/// What a recording became.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct TopicOutcome {
+    /// Full name.
+    pub name: String,
+    /// Messages written.
+    pub messages: u64,
+    /// Messages that publishers sent and that never came.
+    pub lost: u64,
+    /// Publishers heard.
+    pub publishers: usize,
+}
+
+struct Recorded {
+    id: TopicId,
+    outcome: TopicOutcome,
+    losses: Losses,
+}
+
+/// Writes until all senders are gone, then closes the bag. `dropped` tells how many messages the recorder itself had no
+/// room for.
+pub(super) fn write(
+    mut bag: BagWriter,
+    orders: &Receiver<Order>,
+    dropped: impl Fn() -> u64,
+) -> Result<Vec<TopicOutcome>, BagError> {
+    let mut topics: Vec<Recorded> = Vec::new();
+    let mut flushed = Instant::now();
+    loop {
+        match orders.recv_timeout(FLUSH.saturating_sub(flushed.elapsed())) {
+            Ok(Order::Topic { name, type_name, qos }) => {
+                let schema = definitions::schema(&type_name).unwrap_or_default();
+                let id = bag.add_topic(&TopicToWrite { name: name.clone(), type_name, schema, qos })?;
+                let outcome = TopicOutcome { name, messages: 0, lost: 0, publishers: 0 };
+                topics.push(Recorded { id, outcome, losses: Losses::default() });
+            }
+            Ok(Order::Qos { topic, qos }) => {
+                if let Some(topic) = topics.get(topic) {
+                    bag.set_qos(topic.id, qos);
+                }
+            }
+            Ok(Order::Message { topic, sample }) => {
+                let Some(topic) = topics.get_mut(topic) else { continue };
+                topic.losses.take(sample.writer, sample.sequence);
+                topic.outcome.messages += 1;
+                bag.write(topic.id, sample.received, sample.published.unwrap_or(sample.received), &sample.data)?;
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+        if flushed.elapsed() >= FLUSH {
+            bag.flush()?;
+            flushed = Instant::now();
+        }
+    }
+    for topic in &mut topics {
+        topic.outcome.lost = topic.losses.lost();
+        topic.outcome.publishers = topic.losses.publishers();
+        bag.set_custom_data(&format!("lost_messages:{}", topic.outcome.name), &topic.outcome.lost.to_string());
+    }
+    bag.set_custom_data("dropped_by_recorder", &dropped().to_string());
+    bag.finish()?;
+    Ok(topics.into_iter().map(|topic| topic.outcome).collect())
+}

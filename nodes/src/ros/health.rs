@@ -1,0 +1,220 @@
+//! Finding out that the middleware is broken for good.
+//!
+//! Two faults of the middleware end communication silently. A peer whose lease expired is never matched again, since
+//! its announcements look like duplicates; and its threads end when a system call is interrupted (SIGSTOP and SIGCONT, a
+//! frozen container, suspend to disk). The remedy for both is a new participant. Building one disturbs every other
+//! peer, so it is done only on proof: a dead thread, or a lost peer that is back. Since our own participant cannot see
+//! that a lost peer is back, a second one without any endpoint, the scout, looks out for it.
+
+use std::collections::BTreeSet;
+
+use nix::ifaddrs::getifaddrs;
+use nix::net::if_::InterfaceFlags;
+use rustdds::{DomainParticipant, DomainParticipantStatusEvent, LostReason, RTPSEntity, StatusEvented};
+
+use super::Environment;
+use super::link::participant;
+
+/// Identity of a participant.
+type Prefix = [u8; 12];
+
+/// Why the link must be built anew.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Fault {
+    /// Threads of the middleware have ended.
+    ThreadsDied { alive: usize, started: usize },
+    /// A peer that was lost is there again, but out of reach of our participant.
+    PeerReturned(Prefix),
+    /// There is a network that our participant does not know, and nobody else to be disturbed.
+    NewNetwork(String),
+}
+
+impl std::fmt::Display for Fault {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Fault::ThreadsDied { alive, started } => {
+                write!(formatter, "{} of {started} threads of the middleware have ended", started - alive)
+            }
+            Fault::PeerReturned(prefix) => {
+                let name: String = prefix.iter().map(|byte| format!("{byte:02x}")).collect();
+                write!(formatter, "peer {name} was lost and is back")
+            }
+            Fault::NewNetwork(name) => write!(formatter, "network {name} is new"),
+        }
+    }
+}
+
+/// What the watch has seen since it was asked last.
+#[derive(Debug, Default)]
+pub(super) struct Observations {
+    pub fault: Option<Fault>,
+    /// Lines for the log.
+    pub notes: Vec<String>,
+}
+
+/// Watches one connection.
+pub(super) struct Watch {
+    environment: Environment,
+    participant: DomainParticipant,
+    threads: BTreeSet<u32>,
+    present: BTreeSet<Prefix>,
+    lost: BTreeSet<Prefix>,
+    scout: Option<DomainParticipant>,
+    networks: BTreeSet<(String, String)>,
+}
+
+impl Watch {
+    /// Watches a connection that was built a moment ago.
+    pub fn new(environment: Environment, participant: DomainParticipant) -> Self {
+        Watch {
+            environment,
+            participant,
+            threads: middleware_threads(),
+            present: BTreeSet::new(),
+            lost: BTreeSet::new(),
+            scout: None,
+            networks: networks(),
+        }
+    }
+
+    /// Number of peers that are here.
+    pub fn peers(&self) -> usize {
+        self.present.len()
+    }
+
+    /// Number of peers that were lost and may come back.
+    pub fn lost(&self) -> usize {
+        self.lost.len()
+    }
+
+    /// Looks.
+    pub fn look(&mut self) -> Observations {
+        let mut seen = Observations::default();
+        let alive = middleware_threads().intersection(&self.threads).count();
+        if alive < self.threads.len() {
+            seen.fault = Some(Fault::ThreadsDied { alive, started: self.threads.len() });
+            return seen;
+        }
+        let mut newly_lost = false;
+        // Our own announcements come back to us, and stop coming when the network is down.
+        let own = prefix_of(self.participant.guid().prefix.as_ref());
+        let listener = self.participant.status_listener();
+        while let Some(event) = listener.try_recv_status() {
+            match event {
+                DomainParticipantStatusEvent::ParticipantDiscovered { dpd } => {
+                    let prefix = prefix_of(dpd.guid.prefix.as_ref());
+                    if prefix == own {
+                        continue;
+                    }
+                    if self.lost.contains(&prefix) {
+                        seen.fault = Some(Fault::PeerReturned(prefix));
+                    }
+                    self.present.insert(prefix);
+                }
+                DomainParticipantStatusEvent::ParticipantLost { id, reason } => {
+                    let prefix = prefix_of(id.as_ref());
+                    if prefix == own {
+                        continue;
+                    }
+                    self.present.remove(&prefix);
+                    match reason {
+                        LostReason::Disposed => {
+                            self.lost.remove(&prefix);
+                        }
+                        LostReason::Timeout { .. } => {
+                            newly_lost |= self.lost.insert(prefix);
+                            seen.notes.push(format!("peer {id:?} is out of reach"));
+                        }
+                    }
+                }
+                DomainParticipantStatusEvent::RemoteReaderQosIncompatible { remote_reader, .. } => {
+                    seen.notes
+                        .push(format!("reader {remote_reader:?} asks for a quality of service that we do not offer"));
+                }
+                DomainParticipantStatusEvent::RemoteWriterQosIncompatible { remote_writer, .. } => {
+                    seen.notes
+                        .push(format!("writer {remote_writer:?} does not offer the quality of service that we ask"));
+                }
+                _ => {}
+            }
+        }
+        self.send_scout(newly_lost, &mut seen);
+        if seen.fault.is_none() && self.present.is_empty() {
+            let new = networks().into_iter().find(|network| !self.networks.contains(network));
+            seen.fault = new.map(|(name, address)| Fault::NewNetwork(format!("{name} ({address})")));
+        }
+        seen
+    }
+
+    fn send_scout(&mut self, newly_lost: bool, seen: &mut Observations) {
+        if self.lost.is_empty() {
+            self.scout = None;
+            return;
+        }
+        if newly_lost || self.scout.is_none() {
+            // The old scout has met the newly lost peer before, and would miss its return just as we do.
+            self.scout = None;
+            match participant(&self.environment) {
+                Ok(scout) => self.scout = Some(scout),
+                Err(reason) => seen.notes.push(format!("cannot look out for lost peers: {reason}")),
+            }
+        }
+        let Some(scout) = &self.scout else { return };
+        let listener = scout.status_listener();
+        while let Some(event) = listener.try_recv_status() {
+            if let DomainParticipantStatusEvent::ParticipantDiscovered { dpd } = event {
+                let prefix = prefix_of(dpd.guid.prefix.as_ref());
+                if self.lost.contains(&prefix) {
+                    seen.fault = Some(Fault::PeerReturned(prefix));
+                }
+            }
+        }
+    }
+}
+
+fn prefix_of(bytes: &[u8]) -> Prefix {
+    let mut prefix = Prefix::default();
+    prefix.iter_mut().zip(bytes).for_each(|(slot, byte)| *slot = *byte);
+    prefix
+}
+
+/// Threads of this process that the middleware has started; empty where the system does not tell.
+fn middleware_threads() -> BTreeSet<u32> {
+    let Ok(entries) = std::fs::read_dir("/proc/self/task") else { return BTreeSet::new() };
+    entries
+        .flatten()
+        .filter(|entry| {
+            std::fs::read_to_string(entry.path().join("comm")).is_ok_and(|name| name.starts_with("RustDDS"))
+        })
+        .filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+        .collect()
+}
+
+/// Names and addresses of the networks that are up.
+fn networks() -> BTreeSet<(String, String)> {
+    let Ok(interfaces) = getifaddrs() else { return BTreeSet::new() };
+    interfaces
+        .filter(|interface| interface.flags.contains(InterfaceFlags::IFF_UP))
+        .filter_map(|interface| {
+            let address = interface.address?;
+            let v4 = address.as_sockaddr_in()?.ip();
+            Some((interface.interface_name, v4.to_string()))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_loopback_network_is_seen() {
+        assert!(networks().iter().any(|(_, address)| address == "127.0.0.1"));
+    }
+
+    #[test]
+    fn a_fault_says_what_happened() {
+        let died = Fault::ThreadsDied { alive: 1, started: 2 };
+        assert_eq!(died.to_string(), "1 of 2 threads of the middleware have ended");
+    }
+}

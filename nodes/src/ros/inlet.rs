@@ -1,0 +1,124 @@
+//! A subscription that outlives its connection.
+
+use std::collections::HashMap;
+use std::pin::pin;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use excavator_msgs::Message;
+use futures::StreamExt;
+use ros2_client::Gid;
+use rustdds::DomainParticipant;
+use tokio::runtime::Handle;
+
+use super::dds_names::{dds_topic, dds_type};
+use super::link::{Connection, Endpoint, Task};
+use super::{RosError, TopicQos};
+
+/// What is known about a message beside its content.
+#[derive(Debug, Clone, Copy)]
+pub struct Received {
+    /// When it came, on the steady clock of this machine.
+    pub at: Instant,
+    /// Who published it.
+    pub publisher: Gid,
+    /// Its number among the messages of that publisher.
+    pub sequence: i64,
+}
+
+/// What is done with each message, on the thread of the link: be brief.
+type Callback<M> = Box<dyn FnMut(M, Received) + Send>;
+
+pub(super) struct Inlet<M> {
+    topic: String,
+    qos: TopicQos,
+    callback: Arc<Mutex<Callback<M>>>,
+    undecodable: Arc<AtomicU64>,
+    task: Mutex<Option<Task>>,
+}
+
+impl<M: Message + Send + 'static> Inlet<M> {
+    pub(super) fn new(topic: String, qos: TopicQos, callback: Callback<M>) -> Self {
+        let callback = Arc::new(Mutex::new(callback));
+        Inlet { topic, qos, callback, undecodable: Arc::default(), task: Mutex::new(None) }
+    }
+
+    /// Messages that could not be decoded, or were of another type, so far.
+    pub(super) fn undecodable(&self) -> Arc<AtomicU64> {
+        Arc::clone(&self.undecodable)
+    }
+}
+
+impl<M: Message + Send + Sync + 'static> Endpoint for Inlet<M> {
+    fn open(&self, connection: &mut Connection, runtime: &Handle) -> Result<(), RosError> {
+        let failed = |reason: String| RosError::Endpoint { what: self.topic.clone(), reason };
+        let wanted_type = dds_type(M::TYPE_NAME);
+        let topic =
+            connection.create_topic(&dds_topic(&self.topic), &wanted_type, &self.qos.to_dds()).map_err(failed)?;
+        let subscription =
+            connection.node().create_subscription::<M>(&topic, None).map_err(|error| failed(error.to_string()))?;
+        let callback = Arc::clone(&self.callback);
+        let undecodable = Arc::clone(&self.undecodable);
+        let mut types = WriterTypes::new(connection.participant(), wanted_type);
+        let task = runtime.spawn(async move {
+            let mut messages = pin!(subscription.async_stream());
+            while let Some(message) = messages.next().await {
+                match message {
+                    Ok((message, info)) if types.fits(info.publisher_gid()) => {
+                        let received = Received {
+                            at: Instant::now(),
+                            publisher: info.publisher_gid(),
+                            sequence: info.sequence_number(),
+                        };
+                        (callback.lock().unwrap_or_else(PoisonError::into_inner))(message, received);
+                    }
+                    Ok(_) => {
+                        undecodable.fetch_add(1, Ordering::Relaxed);
+                    }
+                    Err(_) => {
+                        undecodable.fetch_add(1, Ordering::Relaxed);
+                        // A reader that is broken for good fails at once, again and again.
+                        tokio::time::sleep(Duration::from_millis(1)).await;
+                    }
+                }
+            }
+        });
+        *self.task.lock().unwrap_or_else(PoisonError::into_inner) = Some(task);
+        Ok(())
+    }
+
+    fn close(&self) -> Vec<Task> {
+        self.task.lock().unwrap_or_else(PoisonError::into_inner).take().into_iter().collect()
+    }
+
+    fn interface(&self) -> Option<(String, String)> {
+        Some((self.topic.clone(), M::TYPE_NAME.to_string()))
+    }
+}
+
+/// The middleware matches by topic name alone; a writer of another type would be decoded into nonsense.
+struct WriterTypes {
+    participant: DomainParticipant,
+    wanted: String,
+    known: HashMap<Gid, bool>,
+}
+
+impl WriterTypes {
+    fn new(participant: DomainParticipant, wanted: String) -> Self {
+        WriterTypes { participant, wanted, known: HashMap::new() }
+    }
+
+    fn fits(&mut self, writer: Gid) -> bool {
+        if let Some(&fits) = self.known.get(&writer) {
+            return fits;
+        }
+        let writers = self.participant.discovered_writers();
+        let found = writers.iter().find(|data| Gid::from(data.publication_topic_data.key) == writer);
+        // A writer that discovery does not know (yet) is of this process, or will be looked up with its next message.
+        let Some(found) = found else { return true };
+        let fits = found.publication_topic_data.type_name == self.wanted;
+        self.known.insert(writer, fits);
+        fits
+    }
+}

@@ -1,0 +1,55 @@
+//! A publisher whose last message late joiners get, also those who join after the link was built anew.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use excavator_msgs::Message;
+use tokio::runtime::Handle;
+
+use super::link::{Connection, Endpoint, Task};
+use super::{Outlet, PublishError, RosError};
+
+/// A transient-local publisher of one topic; clones share it.
+pub struct Latched<M: Message> {
+    outlet: Outlet<M>,
+    last: Arc<Mutex<Option<M>>>,
+}
+
+impl<M: Message> Clone for Latched<M> {
+    fn clone(&self) -> Self {
+        Latched { outlet: self.outlet.clone(), last: Arc::clone(&self.last) }
+    }
+}
+
+impl<M: Message + Clone + Send + Sync + 'static> Latched<M> {
+    pub(super) fn new(outlet: Outlet<M>) -> Self {
+        Latched { outlet, last: Arc::new(Mutex::new(None)) }
+    }
+
+    /// Publishes; the message stays for those who come later.
+    ///
+    /// # Errors
+    /// [`PublishError`]; while the link is down the message is published as soon as it is up.
+    pub fn publish(&self, message: M) -> Result<(), PublishError> {
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(message.clone());
+        self.outlet.publish(message)
+    }
+}
+
+impl<M: Message + Clone + Send + Sync + 'static> Endpoint for Latched<M> {
+    fn open(&self, connection: &mut Connection, runtime: &Handle) -> Result<(), RosError> {
+        self.outlet.open(connection, runtime)?;
+        if let Some(last) = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone() {
+            // A new writer has an empty history: it cannot be full.
+            let _ = self.outlet.publish(last);
+        }
+        Ok(())
+    }
+
+    fn close(&self) -> Vec<Task> {
+        self.outlet.close()
+    }
+
+    fn interface(&self) -> Option<(String, String)> {
+        self.outlet.interface()
+    }
+}

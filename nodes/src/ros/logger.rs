@@ -1,0 +1,70 @@
+//! The log of a node: standard error and `/rosout`.
+
+use excavator_msgs::Time;
+use excavator_msgs::common::Log;
+
+use super::clock::system_nanoseconds;
+use super::{Level, Link, Outlet, RosArguments, RosError, TopicQos};
+
+/// Log lines that late joiners of `/rosout` get, and for how long, s: as rcl has it.
+const ROSOUT: TopicQos = TopicQos { depth: 1000, reliable: true, transient_local: true, lifespan: Some(10) };
+
+/// The log of a node; clones share it.
+#[derive(Clone)]
+pub struct Logger {
+    name: String,
+    least: Level,
+    console: bool,
+    rosout: Option<Outlet<Log>>,
+}
+
+impl Logger {
+    /// The log of the link's node.
+    ///
+    /// # Errors
+    /// [`RosError::Endpoint`].
+    pub fn new(link: &Link, arguments: &RosArguments) -> Result<Self, RosError> {
+        let rosout = arguments.log_to_rosout.then(|| link.publish("/rosout", ROSOUT)).transpose()?;
+        let name = link.identity().full_name().trim_start_matches('/').replace('/', ".");
+        Ok(Logger { name, least: arguments.log_level, console: arguments.log_to_console, rosout })
+    }
+
+    /// Says something that people may want to follow.
+    pub fn info(&self, message: impl Into<String>) {
+        self.say(Level::Info, message.into());
+    }
+
+    /// Says something that should not be so.
+    pub fn warn(&self, message: impl Into<String>) {
+        self.say(Level::Warn, message.into());
+    }
+
+    /// Says that something does not work.
+    pub fn error(&self, message: impl Into<String>) {
+        self.say(Level::Error, message.into());
+    }
+
+    fn say(&self, level: Level, message: String) {
+        if level < self.least {
+            return;
+        }
+        let stamp = Time::from_nanoseconds(system_nanoseconds()).unwrap_or_default();
+        if self.console {
+            let word = format!("{level:?}").to_uppercase();
+            eprintln!("[{word}] [{}.{:09}] [{}]: {message}", stamp.sec, stamp.nanosec, self.name);
+        }
+        if let Some(rosout) = &self.rosout {
+            let log = Log {
+                stamp,
+                level: level.number(),
+                name: self.name.clone(),
+                msg: message,
+                file: String::new(),
+                function: String::new(),
+                line: 0,
+            };
+            // The console has it; a log must not fail over its own trouble.
+            let _ = rosout.publish(log);
+        }
+    }
+}

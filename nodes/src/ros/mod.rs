@@ -1,0 +1,66 @@
+//! Everything that has to do with ROS 2, in one place: arguments, parameters, connection, clock, diagnostics, log.
+//!
+//! A process has one [`Link`]: one participant, one node, one tokio worker. A node declares its parameters, opens its
+//! endpoints on the link and runs its own loop on a plain thread; the main thread of the process supervises the link
+//! ([`Supervisor`]) and waits for SIGINT or SIGTERM. Endpoints outlive the connection underneath them: when the
+//! middleware has lost a peer for good or one of its threads has died, the link is built anew and every endpoint with it.
+//!
+//! # Names
+//!
+//! | command | node | topics |
+//! |---|---|---|
+//! | `excavator node arm-simulator` | `/arm_simulator` | publishes `/arm/state`, `/joint_states`, `/arm/model`, `/diagnostics`; takes `/arm/orifice_command` |
+//! | `excavator node energy-monitor` | `/energy_monitor` | takes `/arm/state`, `/arm/model`; publishes `/arm/energy`, `/diagnostics` |
+//! | `excavator node arm-bridge` | `/arm_bridge` | publishes `/arm/state`, `/joint_states`, `/diagnostics` |
+//! | `excavator node identification` | `/identification` | action `/identification/run`; publishes `/arm/model`, `/diagnostics` |
+//! | `excavator record` | `/bag_recorder` | takes what it is told to |
+//! | `excavator play` | `/bag_player` | publishes what the bag has, `/clock` on demand |
+//!
+//! Every node takes `--ros-args` with `-r from:=to`, `-r __node:=`, `-r __ns:=`, `-p name:=value`, `--params-file`,
+//! `--log-level`, and reads `ROS_DOMAIN_ID`, `ROS_AUTOMATIC_DISCOVERY_RANGE`, `ROS_LOCALHOST_ONLY` and
+//! `RMW_IMPLEMENTATION` (which decides how services are mapped: `rmw_cyclonedds_cpp` or all others).
+
+mod arguments;
+mod clock;
+pub(crate) mod dds_names;
+mod diagnostics;
+mod environment;
+mod error;
+mod health;
+mod inlet;
+mod latched;
+pub(crate) mod link;
+mod logger;
+mod names;
+mod outlet;
+mod pace;
+mod parameter;
+mod parameter_file;
+mod parameter_services;
+mod parameters;
+mod qos;
+pub(crate) mod raw;
+mod signals;
+mod supervisor;
+mod value_text;
+
+pub(crate) use arguments::ros_words;
+pub use arguments::{Level, RosArguments};
+pub use clock::RosClock;
+pub(crate) use clock::system_nanoseconds;
+pub use diagnostics::{Diagnostics, Health};
+pub use environment::{DiscoveryRange, Environment, Mapping};
+pub use error::RosError;
+pub use inlet::Received;
+pub use latched::Latched;
+pub use link::Link;
+pub use logger::Logger;
+pub use names::{NodeIdentity, Remap};
+pub use outlet::{Outlet, PublishError};
+pub use pace::Pace;
+pub use parameter::{Kind, Parameter, Range, Value};
+pub(crate) use parameter_services::{service_mapping, service_qos};
+pub use parameters::Parameters;
+pub use qos::TopicQos;
+pub use signals::Signals;
+pub use supervisor::Supervisor;

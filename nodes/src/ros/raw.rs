@@ -1,0 +1,236 @@
+//! Messages as bytes, whatever their type.
+
+use std::pin::pin;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use futures::StreamExt;
+use rustdds::bytes::Bytes;
+use rustdds::no_key::{DataWriter, Decode, DefaultDecoder, DeserializerAdapter, SerializerAdapter};
+use rustdds::{QosPolicies, RepresentationIdentifier, Timestamp};
+use tokio::runtime::Handle;
+
+use super::clock::system_nanoseconds;
+use super::dds_names::{dds_topic, dds_type};
+use super::link::{Connection, Endpoint, Task};
+use super::{Link, PublishError, RosError};
+
+/// Length of the encapsulation in front of every message.
+const ENCAPSULATION: usize = 4;
+
+/// A message with its four bytes of encapsulation.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct RawBytes(Bytes);
+
+/// Never happens: bytes are always bytes.
+#[derive(Debug, thiserror::Error)]
+#[error("bytes that are none")]
+struct NoError;
+
+struct RawAdapter;
+
+#[derive(Clone)]
+struct RawDecoder;
+
+impl DeserializerAdapter<RawBytes> for RawAdapter {
+    type Error = NoError;
+    type Decoded = RawBytes;
+
+    fn supported_encodings() -> &'static [RepresentationIdentifier] {
+        &[RepresentationIdentifier::CDR_LE, RepresentationIdentifier::CDR_BE]
+    }
+
+    fn transform_decoded(decoded: RawBytes) -> RawBytes {
+        decoded
+    }
+}
+
+impl DefaultDecoder<RawBytes> for RawAdapter {
+    type Decoder = RawDecoder;
+    const DECODER: RawDecoder = RawDecoder;
+}
+
+impl<'de> Decode<'de, RawBytes> for RawDecoder {
+    type Error = NoError;
+
+    fn decode_bytes(self, content: &'de [u8], encoding: RepresentationIdentifier) -> Result<RawBytes, NoError> {
+        let little = u8::from(encoding != RepresentationIdentifier::CDR_BE);
+        let mut bytes = Vec::with_capacity(ENCAPSULATION + content.len());
+        bytes.extend_from_slice(&[0, little, 0, 0]);
+        bytes.extend_from_slice(content);
+        Ok(RawBytes(bytes.into()))
+    }
+}
+
+impl SerializerAdapter<RawBytes> for RawAdapter {
+    type Error = NoError;
+
+    fn output_encoding() -> RepresentationIdentifier {
+        RepresentationIdentifier::CDR_LE
+    }
+
+    fn to_bytes(value: &RawBytes) -> Result<Bytes, NoError> {
+        Ok(value.0.slice(ENCAPSULATION.min(value.0.len())..))
+    }
+}
+
+/// A message as it came.
+#[derive(Debug, Clone)]
+pub(crate) struct RawSample {
+    /// Content with encapsulation.
+    pub data: Bytes,
+    /// When it came, ns since the epoch, system's clock.
+    pub received: u64,
+    /// When it was published, ns since the epoch, as the publisher says.
+    pub published: Option<u64>,
+    /// Who published it.
+    pub writer: [u8; 16],
+    /// Its number among the messages of that publisher.
+    pub sequence: i64,
+}
+
+type Callback = Box<dyn FnMut(RawSample) + Send>;
+
+/// A reader of one topic of any type.
+pub(crate) struct RawInlet {
+    topic: String,
+    type_name: String,
+    qos: QosPolicies,
+    callback: Arc<Mutex<Callback>>,
+    task: Mutex<Option<Task>>,
+}
+
+impl RawInlet {
+    /// Reads `topic` (full name) of `type_name` (ROS name) from now on; `callback` runs on the thread of the link.
+    pub fn open(
+        link: &Link,
+        topic: &str,
+        type_name: &str,
+        qos: QosPolicies,
+        callback: impl FnMut(RawSample) + Send + 'static,
+    ) -> Result<(), RosError> {
+        link.add(Arc::new(RawInlet {
+            topic: topic.to_string(),
+            type_name: type_name.to_string(),
+            qos,
+            callback: Arc::new(Mutex::new(Box::new(callback))),
+            task: Mutex::new(None),
+        }))
+    }
+}
+
+impl Endpoint for RawInlet {
+    fn open(&self, connection: &mut Connection, runtime: &Handle) -> Result<(), RosError> {
+        let failed = |reason: String| RosError::Endpoint { what: self.topic.clone(), reason };
+        let topic =
+            connection.create_topic(&dds_topic(&self.topic), &dds_type(&self.type_name), &self.qos).map_err(failed)?;
+        let subscriber =
+            connection.participant().create_subscriber(&self.qos).map_err(|error| failed(error.to_string()))?;
+        let reader = subscriber
+            .create_simple_datareader_no_key::<RawBytes, RawAdapter>(&topic, Some(self.qos.clone()))
+            .map_err(|error| failed(error.to_string()))?;
+        let callback = Arc::clone(&self.callback);
+        let task = runtime.spawn(async move {
+            let mut samples = pin!(reader.as_async_stream());
+            while let Some(sample) = samples.next().await {
+                let Ok(sample) = sample else {
+                    tokio::time::sleep(Duration::from_millis(1)).await;
+                    continue;
+                };
+                let raw = RawSample {
+                    received: u64::try_from(system_nanoseconds()).unwrap_or_default(),
+                    published: sample.source_timestamp().and_then(nanoseconds),
+                    writer: ros2_client::Gid::from(sample.writer_guid()).to_bytes16(),
+                    sequence: i64::from(sample.sequence_number),
+                    data: sample.into_value().0,
+                };
+                (callback.lock().unwrap_or_else(PoisonError::into_inner))(raw);
+            }
+        });
+        *self.task.lock().unwrap_or_else(PoisonError::into_inner) = Some(task);
+        Ok(())
+    }
+
+    fn close(&self) -> Vec<Task> {
+        self.task.lock().unwrap_or_else(PoisonError::into_inner).take().into_iter().collect()
+    }
+}
+
+fn nanoseconds(time: Timestamp) -> Option<u64> {
+    ros2_client::ROSTime::try_from(time).ok().and_then(|time| u64::try_from(time.to_nanos()).ok())
+}
+
+/// A writer of one topic of any type.
+pub(crate) struct RawOutlet {
+    topic: String,
+    type_name: String,
+    qos: QosPolicies,
+    writer: Mutex<Option<DataWriter<RawBytes, RawAdapter>>>,
+}
+
+impl RawOutlet {
+    /// A writer of `topic` (full name) of `type_name` (ROS name).
+    pub fn open(link: &Link, topic: &str, type_name: &str, qos: QosPolicies) -> Result<Arc<Self>, RosError> {
+        let (topic, type_name) = (topic.to_string(), type_name.to_string());
+        let outlet = Arc::new(RawOutlet { topic, type_name, qos, writer: Mutex::new(None) });
+        link.add(Arc::clone(&outlet) as Arc<dyn Endpoint>)?;
+        Ok(outlet)
+    }
+
+    /// Publishes a message with its encapsulation, which must be that of plain little endian CDR.
+    pub fn publish(&self, data: Bytes) -> Result<(), PublishError> {
+        if data.get(..2) != Some(&[0, 1]) {
+            return Err(PublishError::Failed("the message is not plain CDR in little endian".to_string()));
+        }
+        let slot = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
+        let writer = slot.as_ref().ok_or(PublishError::Down)?;
+        writer.write(RawBytes(data), Some(Timestamp::now())).map_err(|error| match error {
+            rustdds::dds::WriteError::WouldBlock { .. } => PublishError::Full,
+            other => PublishError::Failed(other.to_string()),
+        })
+    }
+
+    /// Waits until readers have what was published.
+    pub fn wait_for_readers(&self, time: Duration) {
+        let slot = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(writer) = slot.as_ref() {
+            // Who has not read by then does not hold up the end.
+            let _ = writer.wait_for_acknowledgments(time);
+        }
+    }
+}
+
+impl Endpoint for RawOutlet {
+    fn open(&self, connection: &mut Connection, _runtime: &Handle) -> Result<(), RosError> {
+        let failed = |reason: String| RosError::Endpoint { what: self.topic.clone(), reason };
+        let topic =
+            connection.create_topic(&dds_topic(&self.topic), &dds_type(&self.type_name), &self.qos).map_err(failed)?;
+        let publisher =
+            connection.participant().create_publisher(&self.qos).map_err(|error| failed(error.to_string()))?;
+        let writer = publisher
+            .create_datawriter_no_key::<RawBytes, RawAdapter>(&topic, Some(self.qos.clone()))
+            .map_err(|error| failed(error.to_string()))?;
+        *self.writer.lock().unwrap_or_else(PoisonError::into_inner) = Some(writer);
+        Ok(())
+    }
+
+    fn close(&self) -> Vec<Task> {
+        *self.writer.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        Vec::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_survive_the_round_trip() {
+        let decoded = RawDecoder.decode_bytes(&[1, 2, 3], RepresentationIdentifier::CDR_LE);
+        assert!(matches!(&decoded, Ok(RawBytes(bytes)) if bytes[..] == [0, 1, 0, 0, 1, 2, 3]));
+        let encoded = decoded.and_then(|raw| RawAdapter::to_bytes(&raw));
+        assert!(matches!(encoded, Ok(bytes) if bytes[..] == [1, 2, 3]));
+        let big = RawDecoder.decode_bytes(&[1], RepresentationIdentifier::CDR_BE);
+        assert!(matches!(big, Ok(RawBytes(bytes)) if bytes[..] == [0, 0, 0, 0, 1]));
+    }
+}

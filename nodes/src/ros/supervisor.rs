@@ -1,0 +1,164 @@
+//! The life of a node's process: start, watch, rebuild, stop.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use nix::sys::signal::Signal;
+use tokio::runtime::Runtime;
+
+use super::dds_names::{dds_topic, dds_type};
+use super::health::Watch;
+use super::parameter_file::read_for;
+use super::parameter_services::offer;
+use super::{
+    Diagnostics, Environment, Health, Link, Logger, NodeIdentity, Parameter, Parameters, RosArguments, RosClock,
+    RosError, Signals,
+};
+
+/// Pace of the supervision: a dead thread or a returned peer is found within this time.
+const TICK: Duration = Duration::from_millis(250);
+/// Pause after a rebuild that failed or did not help.
+const PAUSE: Duration = Duration::from_secs(2);
+
+/// Everything that a node's process has beside its own work.
+pub struct Supervisor {
+    /// Connection to the graph.
+    pub link: Link,
+    /// Parameters, declared and overridden.
+    pub parameters: Parameters,
+    /// ROS time.
+    pub clock: RosClock,
+    /// How the parts are.
+    pub diagnostics: Diagnostics,
+    /// Log.
+    pub logger: Logger,
+    signals: Signals,
+    stop: Arc<AtomicBool>,
+    // Last, so that it outlives everything that runs on it.
+    _runtime: Runtime,
+}
+
+impl Supervisor {
+    /// Joins the graph as the node that the program calls `default_name`.
+    ///
+    /// # Errors
+    /// [`RosError`]: wrong arguments, environment or parameter values; a domain that cannot be joined.
+    pub fn start(default_name: &str, arguments: &RosArguments, declared: Vec<Parameter>) -> Result<Self, RosError> {
+        let signals = Signals::block()?;
+        let environment = Environment::read()?;
+        let identity = NodeIdentity::new(default_name, &arguments.remaps)?;
+        let mut overrides = Vec::new();
+        for file in &arguments.parameter_files {
+            overrides.extend(read_for(file, &identity)?);
+        }
+        let for_us =
+            |node: &Option<String>| node.as_deref().is_none_or(|node| node == default_name || node == identity.name());
+        let given = arguments.parameters.iter().filter(|given| for_us(&given.node));
+        overrides.extend(given.map(|given| (given.name.clone(), given.value.clone())));
+        let (parameters, warnings) = Parameters::declare(declared, &overrides)?;
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(1)
+            .thread_name("link")
+            .enable_time()
+            .build()
+            .map_err(|source| RosError::System { action: "start the runtime", source })?;
+        let link = Link::join(identity, environment, runtime.handle().clone())?;
+        let logger = Logger::new(&link, arguments)?;
+        let clock = RosClock::of(&link, parameters.flag("use_sim_time"))?;
+        let diagnostics = Diagnostics::new(&link, &clock)?;
+        offer(&link, &parameters, &clock)?;
+        warnings.into_iter().for_each(|warning| logger.warn(warning));
+        let stop = Arc::new(AtomicBool::new(false));
+        Ok(Supervisor { link, parameters, clock, diagnostics, logger, signals, stop, _runtime: runtime })
+    }
+
+    /// The flag that ends the process: set by a signal, or by a node that has finished its work.
+    pub fn stop_flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
+    }
+
+    /// Watches the link until the stop flag is set. `on_user_signal` is called for SIGUSR1.
+    pub fn run(&self, mut on_user_signal: impl FnMut()) {
+        let mut watch = self.watch();
+        let mut quiet_until = Instant::now();
+        let mut rebuilds = 0;
+        let mut pending = None;
+        while !self.stop.load(Ordering::Relaxed) {
+            match self.signals.wait(TICK) {
+                Some(Signal::SIGUSR1) => on_user_signal(),
+                Some(signal) => {
+                    self.logger.info(format!("{signal}, stopping"));
+                    self.stop.store(true, Ordering::Relaxed);
+                    return;
+                }
+                None => {}
+            }
+            let seen = match &mut watch {
+                Some(watch) => watch.look(),
+                None => super::health::Observations::default(),
+            };
+            seen.notes.into_iter().for_each(|note| self.logger.warn(note));
+            pending = seen.fault.or(pending);
+            if Instant::now() < quiet_until {
+                continue;
+            }
+            if let Some(fault) = pending.take() {
+                self.diagnostics.tell("link", Health::Warning, format!("{fault}: building it anew"), &[]);
+                self.logger.warn(format!("{fault}: building the link anew"));
+            } else if watch.is_some() {
+                self.tell_link(watch.as_ref(), rebuilds);
+                continue;
+            }
+            drop(watch.take());
+            rebuilds += 1;
+            quiet_until = Instant::now() + PAUSE;
+            match self.link.rebuild() {
+                Ok(()) => watch = self.watch(),
+                Err(error) => self.logger.error(format!("{error}; trying again")),
+            }
+        }
+    }
+
+    /// Leaves the graph in good order.
+    pub fn leave(self) {
+        self.link.leave();
+    }
+
+    fn watch(&self) -> Option<Watch> {
+        self.link.participant().map(|participant| Watch::new(*self.link.environment(), participant))
+    }
+
+    fn tell_link(&self, watch: Option<&Watch>, rebuilds: u32) {
+        let Some(watch) = watch else { return };
+        let values = [
+            ("peers", watch.peers().to_string()),
+            ("lost peers", watch.lost().to_string()),
+            ("times built anew", rebuilds.to_string()),
+        ];
+        let foreign = self.foreign_types();
+        if let Some(problem) = foreign.first() {
+            self.diagnostics.tell("link", Health::Warning, problem.clone(), &values);
+        } else {
+            self.diagnostics.tell("link", Health::Ok, "joined", &values);
+        }
+    }
+
+    /// Topics of ours on which somebody speaks another type. The middleware matches by topic name alone.
+    fn foreign_types(&self) -> Vec<String> {
+        let Some(participant) = self.link.participant() else { return Vec::new() };
+        let writers = participant.discovered_writers();
+        let mut found = Vec::new();
+        for (topic, ros_type) in self.link.interfaces() {
+            let (dds_name, dds_type) = (dds_topic(&topic), dds_type(&ros_type));
+            let other = writers
+                .iter()
+                .map(|writer| &writer.publication_topic_data)
+                .find(|data| data.topic_name == dds_name && data.type_name != dds_type);
+            if let Some(other) = other {
+                found.push(format!("{topic} is also published as {}, not {ros_type}", other.type_name));
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,14 @@
+//! `excavator node`
+
+use crate::cli::NodeVerb;
+use crate::error::VerbError;
+use crate::ros::RosArguments;
+
+pub fn run(which: NodeVerb, ros: &RosArguments) -> Result<(), VerbError> {
+    match which {
+        NodeVerb::ArmSimulator => crate::arm_simulator::run(ros),
+        NodeVerb::Identification => crate::identification_node::run(ros),
+        NodeVerb::ArmBridge => crate::arm_bridge::run(ros),
+        NodeVerb::EnergyMonitor => crate::energy_monitor::run(ros),
+    }
+}

@@ -1,0 +1,120 @@
+//! Other people's data through the program: import, guess, maps in every verb, info.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::{assert_one_clear_line, complaint, excavator, json, shared};
+
+fn sample(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../bags/samples").join(name)
+}
+
+fn map(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../config/maps").join(name)
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// Panics unless the program succeeded, and gives what it printed.
+fn printed(folder: &Path, words: &[&str]) -> String {
+    let output = excavator(folder, words);
+    assert!(output.status.success(), "{words:?}: {}", complaint(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn a_table_becomes_a_bag_that_every_verb_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = printed(folder.path(), &["import", text(&sample("arm-swing.csv")), "-o", "swing"]);
+    assert!(line.contains("501 samples") && line.contains("arm.cap_pressure"), "{line}");
+    let compare =
+        |bag: &str| json(&excavator(folder.path(), &["compare", "--model", "zx30u-arm", "--bag", bag, "--json", "-"]));
+    let imported = compare("swing");
+    // The table itself, and the same recording as topics of other people, through the maps beside them.
+    assert_eq!(compare(text(&sample("arm-swing.csv"))), imported);
+    let foreign = compare(text(&sample("joint-states")));
+    for signal in ["arm.displacement", "arm.cap_pressure", "arm.rod_pressure"] {
+        let nmse = |value: &serde_json::Value| value["signals"][signal]["nmse"].as_f64().unwrap();
+        assert!((nmse(&foreign) - nmse(&imported)).abs() < 1e-6, "{signal}: {} {}", nmse(&foreign), nmse(&imported));
+    }
+    let output = excavator(folder.path(), &["import", text(&sample("arm-swing.csv")), "-o", "swing"]);
+    assert_one_clear_line(&output, &["swing exists already"]);
+}
+
+#[test]
+fn a_guess_can_be_written_corrected_and_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("drive.csv");
+    std::fs::copy(sample("arm-swing.csv"), &table).unwrap();
+    let output = excavator(folder.path(), &["import", "drive.csv", "-o", "bag"]);
+    assert_one_clear_line(&output, &["drive.csv", "--map", "--guess"]);
+    let shown = printed(folder.path(), &["import", "drive.csv", "--guess", "-o", "guessed.toml"]);
+    assert!(shown.contains("signal = \"arm.rod_pressure\"") && shown.contains("# the heading says so"), "{shown}");
+    assert_eq!(std::fs::read_to_string(folder.path().join("guessed.toml")).unwrap().trim_end(), shown.trim_end());
+    printed(folder.path(), &["import", "drive.csv", "--map", "guessed.toml", "-o", "bag"]);
+    let info = json(&excavator(folder.path(), &["info", "bag", "--json", "-"]));
+    let measured: Vec<&str> =
+        info["signals"]["measured"].as_array().unwrap().iter().map(|signal| signal["name"].as_str().unwrap()).collect();
+    assert!(measured.contains(&"arm.displacement") && measured.contains(&"pump_pressure"), "{measured:?}");
+}
+
+#[test]
+fn info_says_what_is_there_and_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let shown = printed(folder.path(), &["info", text(&sample("joint-states"))]);
+    for part in
+        ["/joint_states", "sensor_msgs/JointState", "125.0", "arm.orifice_command", "arm motion: can be identified"]
+    {
+        assert!(shown.contains(part), "\"{part}\" is missing in:\n{shown}");
+    }
+    assert!(shown.lines().all(|line| line.chars().count() <= 130), "{shown}");
+    let other = folder.path().join("other");
+    std::fs::create_dir(&other).unwrap();
+    std::fs::copy(sample("joint-states/joint-states.db3"), other.join("other.db3")).unwrap();
+    let shown = printed(folder.path(), &["info", "other"]);
+    assert!(shown.contains("has no topic /arm/state") && shown.contains("import --guess"), "{shown}");
+    let output = excavator(folder.path(), &["info", "other", "--map", "missing.toml"]);
+    assert_one_clear_line(&output, &["missing.toml"]);
+}
+
+#[test]
+fn a_wrong_map_is_told_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = sample("arm-swing.csv");
+    for (content, parts) in [
+        ("[[signals]]\nsignal = \"arm.stroke\"\ncolumn = 1\n", &["map.toml", "arm.stroke", "displacement"][..]),
+        (
+            "[[signals]]\nsignal = \"arm.displacement\"\ncolumn = \"p_A\"\n",
+            &["arm.displacement is a length", "pressure"],
+        ),
+        ("[[signals]]\nsignal = \"arm.displacement\"\ncolumn = \"weg2\"\n", &["no column \"weg2\"", "Weg"]),
+        ("signals = 3", &["map.toml"]),
+    ] {
+        std::fs::write(folder.path().join("map.toml"), content).unwrap();
+        let output = excavator(folder.path(), &["import", text(&data), "--map", "map.toml", "-o", "bag"]);
+        assert_one_clear_line(&output, parts);
+    }
+}
+
+#[test]
+fn emps_is_identified_straight_from_its_matlab_file() {
+    let Some(shared) = shared() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let identify = |words: &[&str]| {
+        let words = [&["identify", "--model", "emps", "--json", "-", "--bag"], words].concat();
+        json(&excavator(folder.path(), &words))
+    };
+    let table = shared.join("realdata/emps/DATA_EMPS.mat");
+    let from_table = identify(&[text(&table), "--map", text(&map("emps.toml"))]);
+    let from_bag = identify(&[text(&shared.join("realdata/emps/identification"))]);
+    for (a, b) in from_table["parameters"].as_array().unwrap().iter().zip(from_bag["parameters"].as_array().unwrap()) {
+        let (found, expected) = (a["value"].as_f64().unwrap(), b["value"].as_f64().unwrap());
+        println!("{}: {found} from the table, {expected} from the bag", a["name"]);
+        // Stamps differ by up to 128 ns.
+        assert!((found - expected).abs() < 1e-3 * expected.abs(), "{}: {found} {expected}", a["name"]);
+    }
+}

@@ -1,0 +1,145 @@
+//! `blind`: draws cases, asks the diagnosis, prints how it did.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, ValueEnum};
+use excavator_blind::cases::{Case, Sort, Wish};
+use excavator_blind::plant::{CATALOGUE, FOREIGN, Kind, kind};
+use excavator_blind::scoring::{make, score};
+use excavator_blind::storing::store;
+use excavator_blind::strength::Strength;
+use excavator_blind::table::{Judged, line, summary};
+
+/// Blind benchmark of the diagnosis: an independent simulator hides effects
+#[derive(Parser)]
+#[command(name = "blind")]
+struct Words {
+    /// Seed of the cases
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Number of cases
+    #[arg(long, default_value_t = 10)]
+    cases: u64,
+    /// Number of the first case: seed and number give a case again, if the same filters are given
+    #[arg(long, default_value_t = 0)]
+    first: u64,
+    /// Only this sort of secret
+    #[arg(long)]
+    kind: Option<SortName>,
+    /// Only this effect; repeat it to go round through several
+    #[arg(long)]
+    effect: Vec<String>,
+    /// Only this strength
+    #[arg(long)]
+    strength: Option<StrengthName>,
+    /// Factor on all sensor noise
+    #[arg(long, default_value_t = 1.0)]
+    noise: f64,
+    /// Leave out the small unmodelled extras (ripple, warming, hose stubs)
+    #[arg(long)]
+    without_extras: bool,
+    /// Store each case in this folder, as two bags and an answer
+    #[arg(long)]
+    write: Option<PathBuf>,
+    /// Draw and store the cases without asking the diagnosis
+    #[arg(long)]
+    only_draw: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum SortName {
+    Nothing,
+    Single,
+    Pair,
+    Unknown,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum StrengthName {
+    Weak,
+    Medium,
+    Strong,
+}
+
+fn main() -> ExitCode {
+    let words = Words::parse();
+    let mut effects: Vec<&'static Kind> = Vec::new();
+    for name in &words.effect {
+        let Some(kind) = kind(name) else {
+            let names: Vec<&str> = CATALOGUE.iter().chain(FOREIGN).map(|kind| kind.name).collect();
+            eprintln!("no effect \"{name}\"; there are {}", names.join(", "));
+            return ExitCode::from(2);
+        };
+        effects.push(kind);
+    }
+    let sort = words.kind.map(|sort| match sort {
+        SortName::Nothing => Sort::Nothing,
+        SortName::Single => Sort::Single,
+        SortName::Pair => Sort::Pair,
+        SortName::Unknown => Sort::Unknown,
+    });
+    let strength = words.strength.map(|strength| match strength {
+        StrengthName::Weak => Strength::Weak,
+        StrengthName::Medium => Strength::Medium,
+        StrengthName::Strong => Strength::Strong,
+    });
+    if let Some(sort) = sort
+        && let Some(kind) = effects.iter().find(|kind| !fits(sort, kind))
+    {
+        eprintln!("{} is no secret of the sort {sort:?}; leave out --kind or name another effect", kind.name);
+        return ExitCode::from(2);
+    }
+    judge_all(&words, &Wish { sort, effects, strength, without_extras: words.without_extras })
+}
+
+/// Whether an effect can be the secret of this sort.
+fn fits(sort: Sort, kind: &Kind) -> bool {
+    let foreign = FOREIGN.iter().any(|other| other.name == kind.name);
+    match sort {
+        Sort::Nothing => false,
+        Sort::Single | Sort::Pair => !foreign,
+        Sort::Unknown => foreign,
+    }
+}
+
+fn judge_all(words: &Words, wish: &Wish) -> ExitCode {
+    let mut judged: Vec<Judged> = Vec::new();
+    for number in words.first..words.first.saturating_add(words.cases) {
+        let mut case = Case::draw(words.seed, number, wish);
+        let evidence = match make(&mut case, words.noise) {
+            Ok(evidence) => evidence,
+            Err(error) => {
+                println!("{number:>4}  no recording: {} {}: {error}", case.secret(), case.strength.name());
+                judged.push((case, Err(error.to_string())));
+                continue;
+            }
+        };
+        if let Some(folder) = &words.write
+            && let Err(error) = store(folder, &case, &evidence)
+        {
+            eprintln!("{error}");
+            return ExitCode::FAILURE;
+        }
+        if words.only_draw {
+            let [identification, validation] = evidence.change.map(|change| 100.0 * change.share());
+            let (secret, strength, truth) = (case.secret(), case.strength.name(), case.truth());
+            println!("{number:>4}  {secret} {strength}: changes {identification:.2}/{validation:.2} %, {truth:?}");
+            continue;
+        }
+        match score(&case, &evidence) {
+            Ok(score) => {
+                println!("{}", line(&case, &evidence, &score));
+                judged.push((case, Ok(score)));
+            }
+            Err(error) => {
+                println!("{number:>4}  no score: {} {}: {error}", case.secret(), case.strength.name());
+                judged.push((case, Err(error.to_string())));
+            }
+        }
+    }
+    if !words.only_draw {
+        println!("\n{}", summary(&judged));
+    }
+    ExitCode::SUCCESS
+}

@@ -1,0 +1,126 @@
+//! One line per case, and the summary.
+
+use comfy_table::{Table, presets};
+
+use crate::cases::{Case, Sort};
+use crate::scoring::{Evidence, Outcome, Score, median};
+
+/// A case with its score, or why it has none.
+pub type Judged = (Case, Result<Score, String>);
+
+/// The line of one case.
+pub fn line(case: &Case, evidence: &Evidence, score: &Score) -> String {
+    let [identification, validation] = evidence.change.map(|change| 100.0 * change.share());
+    let hidden = if case.hidden.is_empty() {
+        "nothing".to_string()
+    } else {
+        let truth: Vec<String> = case.truth().iter().map(|(name, value)| format!("{name}={value:.3e}")).collect();
+        let strength = case.strength.name();
+        let limits = if case.hidden.iter().any(|kind| !kind.identifiable) { ", cannot be seen" } else { "" };
+        let share = format!("changes {identification:.2}/{validation:.2} %");
+        format!("{} {strength} ({share}; {}{limits})", case.secret(), truth.join(" "))
+    };
+    let named = if score.chain.is_empty() { "-".to_string() } else { score.chain.join(" then ") };
+    let tied = if score.tied.is_empty() { String::new() } else { format!(" [tied: {}]", score.tied.join(", ")) };
+    let error =
+        score.coefficient_error.map_or(String::new(), |error| format!(", coefficients off by {:.1} %", 100.0 * error));
+    format!(
+        "{:>4}  {:18}  hidden {hidden}\n      {}: {named}{tied}, NMSE {:.2e} -> {:.2e}{error}, covered {}/{}, {:.0} s",
+        case.number,
+        score.outcome.name(),
+        score.verdict.name(),
+        score.nmse[0],
+        score.nmse[1],
+        score.covered[0],
+        score.covered[1],
+        score.seconds
+    )
+}
+
+/// The summary of all cases.
+pub fn summary(judged: &[Judged]) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header([
+        "what is hidden",
+        "cases",
+        "detected",
+        "right name",
+        "tied",
+        "wrong name",
+        "called unexplained",
+        "missed",
+    ]);
+    let mut groups: Vec<(String, Vec<&Score>)> = Vec::new();
+    for (case, score) in judged {
+        let Ok(score) = score else { continue };
+        for name in groups_of(case) {
+            match groups.iter_mut().find(|(group, _)| *group == name) {
+                Some((_, scores)) => scores.push(score),
+                None => groups.push((name, vec![score])),
+            }
+        }
+    }
+    groups.sort_by(|a, b| a.0.cmp(&b.0));
+    for (name, scores) in &groups {
+        let count = |wanted: &[Outcome]| scores.iter().filter(|score| wanted.contains(&score.outcome)).count();
+        let detected = scores.len() - count(&[Outcome::Missed]);
+        let cells = [
+            name.clone(),
+            scores.len().to_string(),
+            detected.to_string(),
+            count(&[Outcome::Right]).to_string(),
+            count(&[Outcome::Tied, Outcome::Partial]).to_string(),
+            count(&[Outcome::WrongName]).to_string(),
+            count(&[Outcome::CalledUnexplained]).to_string(),
+            count(&[Outcome::Missed]).to_string(),
+        ];
+        if !name.starts_with(SILENT) {
+            table.add_row(cells);
+        }
+    }
+    format!("{table}\n{}", figures(judged))
+}
+
+/// First letters of groups in which nothing can be seen: their figures are those of false alarms.
+const SILENT: &str = "nothing";
+
+fn groups_of(case: &Case) -> Vec<String> {
+    let strength = case.strength.name();
+    match case.sort {
+        Sort::Nothing => vec![SILENT.to_string()],
+        Sort::Single if !case.hidden.iter().all(|kind| kind.identifiable) => vec![format!("{SILENT} to see")],
+        Sort::Single => vec![format!("1 effect, {strength}"), format!("1 effect, all"), format!("  {}", case.secret())],
+        Sort::Pair => vec![format!("2 effects, {strength}"), "2 effects, all".to_string()],
+        Sort::Unknown => {
+            vec![format!("foreign, {strength} (right = unexplained)"), "foreign, all (right = unexplained)".into()]
+        }
+    }
+}
+
+/// The figures under the table.
+fn figures(judged: &[Judged]) -> String {
+    let scores: Vec<(&Case, &Score)> =
+        judged.iter().filter_map(|(case, score)| Some((case, score.as_ref().ok()?))).collect();
+    let silent = |case: &Case| case.hidden.iter().all(|kind| !kind.identifiable);
+    let silent_cases = scores.iter().filter(|(case, _)| silent(case)).count();
+    let alarms = scores.iter().filter(|(_, score)| score.outcome == Outcome::FalseAlarm).count();
+    let mut errors: Vec<f64> = scores.iter().filter_map(|(_, score)| score.coefficient_error).collect();
+    let named = errors.len();
+    let error = median(&mut errors).map_or("none".to_string(), |error| format!("{:.1} %", 100.0 * error));
+    let good = |outcome: Outcome| matches!(outcome, Outcome::Right | Outcome::Tied);
+    let models: Vec<&Score> = scores.iter().map(|(_, score)| *score).filter(|score| good(score.outcome)).collect();
+    let covered: usize = models.iter().map(|score| score.covered[0]).sum();
+    let intervals: usize = models.iter().map(|score| score.covered[1]).sum();
+    let mut seconds: Vec<f64> = scores.iter().map(|(_, score)| score.seconds).collect();
+    let longest = seconds.iter().copied().fold(0.0, f64::max);
+    let middle = median(&mut seconds).unwrap_or(f64::NAN);
+    let failed = judged.len() - scores.len();
+    format!(
+        "false alarms where nothing can be seen: {alarms} of {silent_cases}\n\
+         coefficient error, median of {named} cases: {error}\n\
+         95 % intervals of base parameters that contain the truth, in {} rightly answered cases: {covered} of {intervals}\n\
+         seconds per diagnosis: median {middle:.0}, longest {longest:.0}; cases without a score: {failed}",
+        models.len()
+    )
+}

@@ -1,0 +1,84 @@
+"""The simulated arm, as the tests use it."""
+
+import math
+
+from excavator_msgs.msg import ArmState, OrificeCommand
+from rclpy.qos import QoSProfile
+
+# A test that is late must not lose samples in its own queue: two seconds at 1 kHz.
+STATE_QOS = QoSProfile(depth=2000)
+# Time for which a command holds where a test is not about just that, s; the node's own 0.1 s is little when the test
+# shares the processor with a compiler.
+COMMAND_TIMEOUT = 1.0
+# Commands are renewed four times before they would run out with the node's own time.
+RENEWAL = 0.025
+# Opening in zx30u-arm.toml, m2; commands stay well inside.
+MAXIMUM_AREA = 1.15e-4
+# With closed valves its weight and the leakage let the arm creep by 2 mm/s, m/s.
+CREEP = 5e-3
+
+
+def seconds(stamp):
+    return stamp.sec + stamp.nanosec * 1e-9
+
+
+def cylinder(state, name="arm"):
+    (found,) = [cylinder for cylinder in state.cylinders if cylinder.name == name]
+    return found
+
+
+def command(**areas):
+    """`command(arm=1e-5)`: stamped by the receiver's clock, so the header stays empty."""
+    return OrificeCommand(names=list(areas), areas=[float(area) for area in areas.values()])
+
+
+class Simulator:
+    """An `arm-simulator` that runs, with its states and a publisher of commands."""
+
+    def __init__(self, ros, excavator, *, rate=250.0, command_timeout=COMMAND_TIMEOUT, arguments=()):
+        """`command_timeout=None` leaves the node its own."""
+        self._ros = ros
+        self.rate = rate
+        parameters = ["-p", f"rate:={rate}"]
+        if command_timeout is not None:
+            parameters += ["-p", f"command_timeout:={command_timeout}"]
+        self.process = ros.start(excavator, "node", "arm-simulator", "--ros-args", *parameters, *arguments)
+        self.states = ros.listen(ArmState, "/arm/state", STATE_QOS)
+        ros.spin_until(lambda: self.states, "the first /arm/state")
+        self._commands = ros.publisher(OrificeCommand, "/arm/orifice_command")
+
+    @property
+    def last(self):
+        return self.states[-1]
+
+    def send(self, message):
+        self._commands.publish(message)
+
+    def hold(self, duration, **areas):
+        """Commands the areas, renewed in time, and returns the states of that time."""
+        before = len(self.states)
+        timer = self._ros.node.create_timer(RENEWAL, lambda: self.send(command(**areas)))
+        try:
+            self.send(command(**areas))
+            self._ros.spin_for(duration)
+        finally:
+            self._ros.node.destroy_timer(timer)
+        return self.states[before:]
+
+    def watch(self, duration):
+        """The states of the next seconds."""
+        before = len(self.states)
+        self._ros.spin_for(duration)
+        return self.states[before:]
+
+    def settle(self):
+        """Waits until valves are closed and the arm stands still."""
+        self._ros.spin_until(
+            lambda: cylinder(self.last).orifice_area == 0.0 and abs(cylinder(self.last).velocity) < CREEP,
+            "the arm to stand still",
+        )
+        return self.last
+
+
+def all_finite(values):
+    return all(math.isfinite(value) for value in values)

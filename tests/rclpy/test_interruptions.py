@@ -1,0 +1,79 @@
+"""Programs that stop in the middle of their work, in a debugger for one: the others go on, and so do they."""
+
+import os
+import signal
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from support.simulator import Simulator, command, cylinder, seconds
+
+READER = Path(__file__).parent / "support" / "counting_reader.py"
+RATE = 1000.0
+# Longer than the writer's window of 8192 unacknowledged samples lasts, and than the 10 s after which a silent
+# participant of Cyclone DDS counts as gone.
+LONG_STOP = 12.0
+
+
+@contextmanager
+def stopped(process):
+    os.kill(process.pid, signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        os.kill(process.pid, signal.SIGCONT)
+
+
+@pytest.fixture(scope="module")
+def simulator(ros, excavator):
+    return Simulator(ros, excavator, rate=RATE, command_timeout=None)
+
+
+def test_a_stopped_reader_neither_stops_the_others_nor_is_it_forgotten(ros, simulator):
+    reader = ros.start_python(READER)
+
+    def read():
+        lines = reader.output().split()
+        return int(lines[-1]) if lines else 0
+
+    ros.spin_until(lambda: read() > 0, "the reader")
+    with stopped(reader):
+        start = time.time()
+        states = simulator.watch(LONG_STOP)
+        before = read()
+    stamps = [seconds(state.header.stamp) - start for state in states]
+    assert len(stamps) == pytest.approx(RATE * LONG_STOP, rel=0.1)
+    assert max(later - earlier for earlier, later in zip(stamps, stamps[1:])) < 0.5
+    # more than what waited in its queue
+    ros.spin_until(lambda: read() > before + 1000, "the reader to go on", 30.0)
+    reader.interrupt()
+
+
+def test_a_stopped_simulator_goes_on(ros, simulator):
+    with stopped(simulator.process):
+        simulator.watch(1.0)
+    before = len(simulator.states)
+    ros.spin_until(lambda: len(simulator.states) > before + 500, "states after the interruption", 30.0)
+    # it hears, too
+    ros.spin_until(
+        lambda: simulator.send(command(arm=2e-5)) or cylinder(simulator.last).orifice_area == pytest.approx(2e-5),
+        "the simulator to follow a command",
+        10.0,
+    )
+    stamps = [seconds(state.header.stamp) for state in simulator.states]
+    assert stamps == sorted(stamps)
+
+
+def test_a_simulator_that_was_stopped_with_an_open_valve_closes_it(ros, simulator):
+    """The lease runs on the steady clock and has run out in the meantime; a command that still waited in the socket
+    holds for one more 0.1 s, since it arrives only then."""
+    simulator.hold(0.3, arm=5e-5)
+    with stopped(simulator.process):
+        simulator.watch(1.0)
+    before = len(simulator.states)
+    ros.spin_until(
+        lambda: simulator.states[before:] and cylinder(simulator.last).orifice_area == 0.0, "the valve to close", 10.0
+    )
+    stamps = [seconds(state.header.stamp) for state in simulator.states[before:]]
+    assert stamps[-1] - stamps[0] < 0.5

@@ -1,0 +1,152 @@
+"""The parameters of a node through its services, as `ros2 param` and rqt use them."""
+
+import math
+
+import pytest
+from rcl_interfaces.msg import Parameter, ParameterEvent, ParameterType, ParameterValue
+from rcl_interfaces.srv import (
+    DescribeParameters,
+    GetParameters,
+    GetParameterTypes,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
+from support.simulator import Simulator
+
+NODE = "/arm_simulator"
+
+
+@pytest.fixture(scope="module")
+def simulator(ros, excavator):
+    return Simulator(ros, excavator, command_timeout=None)
+
+
+def double(name, value):
+    return Parameter(name=name, value=ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(value)))
+
+
+def text(name, value):
+    return Parameter(name=name, value=ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=value))
+
+
+def get(ros, *names):
+    return ros.call(GetParameters, f"{NODE}/get_parameters", GetParameters.Request(names=list(names))).values
+
+
+def set_(ros, *parameters):
+    request = SetParameters.Request(parameters=list(parameters))
+    return ros.call(SetParameters, f"{NODE}/set_parameters", request).results
+
+
+def test_list(ros, simulator):
+    answer = ros.call(ListParameters, f"{NODE}/list_parameters", ListParameters.Request())
+    assert {"rate", "model", "command_timeout", "oil_temperature", "use_sim_time"} <= set(answer.result.names)
+
+
+def test_list_by_prefix(ros, simulator):
+    """A prefix is a namespace of parameters: "rate" finds itself and what is below "rate.", not "rate_of_fire"."""
+    request = ListParameters.Request(prefixes=["oil_temperature", "no_such_thing"])
+    answer = ros.call(ListParameters, f"{NODE}/list_parameters", request)
+    assert list(answer.result.names) == ["oil_temperature"]
+
+
+def test_get_in_the_order_of_the_question(ros, simulator):
+    timeout, unknown, rate, model = get(ros, "command_timeout", "no_such_thing", "rate", "model")
+    assert (timeout.type, timeout.double_value) == (ParameterType.PARAMETER_DOUBLE, 0.1)
+    assert unknown.type == ParameterType.PARAMETER_NOT_SET
+    assert rate.double_value == simulator.rate
+    assert (model.type, model.string_value) == (ParameterType.PARAMETER_STRING, "zx30u-arm")
+
+
+def test_types(ros, simulator):
+    request = GetParameterTypes.Request(names=["rate", "use_sim_time", "seed"])
+    answer = ros.call(GetParameterTypes, f"{NODE}/get_parameter_types", request)
+    assert list(answer.types) == [
+        ParameterType.PARAMETER_DOUBLE,
+        ParameterType.PARAMETER_BOOL,
+        ParameterType.PARAMETER_INTEGER,
+    ]
+
+
+def test_describe(ros, simulator):
+    request = DescribeParameters.Request(names=["oil_temperature", "rate"])
+    temperature, rate = ros.call(DescribeParameters, f"{NODE}/describe_parameters", request).descriptors
+    assert temperature.name == "oil_temperature" and temperature.type == ParameterType.PARAMETER_DOUBLE
+    assert "degC" in temperature.description and not temperature.read_only
+    (allowed,) = temperature.floating_point_range
+    assert allowed.from_value < 27.0 < allowed.to_value
+    assert rate.read_only
+
+
+def test_set_is_at_work_at_once(ros, simulator):
+    (answer,) = set_(ros, double("oil_temperature", 41.5))
+    assert answer.successful, answer.reason
+    assert get(ros, "oil_temperature")[0].double_value == 41.5
+    ros.spin_until(lambda: simulator.last.oil_temperature == 41.5, "the new temperature in /arm/state", 2.0)
+
+
+def test_a_change_is_an_event(ros, simulator):
+    events = ros.listen(ParameterEvent, "/parameter_events", 100)
+    ros.spin_until(lambda: ros.node.count_publishers("/parameter_events") > 0, "a publisher of /parameter_events")
+    ros.spin_for(0.2)
+    set_(ros, double("oil_temperature", 30.0))
+
+    def told():
+        return [
+            parameter.value.double_value
+            for event in events
+            if event.node == NODE
+            for parameter in event.changed_parameters
+            if parameter.name == "oil_temperature"
+        ]
+
+    ros.spin_until(told, "a parameter event", 3.0)
+    assert told()[-1] == 30.0
+
+
+def test_the_first_question_of_every_client_is_answered(ros, simulator):
+    """`ros2 param get` asks as soon as it sees the service, when the node may not see its reader yet."""
+    request = GetParameters.Request(names=["rate"])
+    for _ in range(100):
+        answer = ros.call(GetParameters, f"{NODE}/get_parameters", request, timeout=3.0, attempts=1)
+        assert answer.values[0].double_value == simulator.rate
+
+
+@pytest.mark.parametrize(
+    ("parameter", "word"),
+    [
+        (double("oil_temperature", 1e9), "outside"),
+        (double("command_timeout", -1.0), "outside"),
+        (double("oil_temperature", math.nan), "finite"),
+        (double("rate", 100.0), "read"),  # read-only while the node runs
+        (text("oil_temperature", "hot"), "string"),
+        (double("no_such_thing", 1.0), "no_such_thing"),
+    ],
+    ids=["too large", "negative", "not a number", "read-only", "wrong type", "unknown"],
+)
+def test_what_does_not_fit_is_refused_with_a_reason(ros, simulator, parameter, word):
+    before = get(ros, "oil_temperature", "command_timeout", "rate")
+    (answer,) = set_(ros, parameter)
+    assert not answer.successful
+    assert word in answer.reason
+    assert get(ros, "oil_temperature", "command_timeout", "rate") == before
+
+
+def test_one_by_one_each_has_its_own_answer(ros, simulator):
+    good, bad = set_(ros, double("oil_temperature", 20.0), double("oil_temperature", 1e9))
+    assert good.successful and not bad.successful
+    assert get(ros, "oil_temperature")[0].double_value == 20.0
+
+
+def test_atomically_all_or_nothing(ros, simulator):
+    before = get(ros, "oil_temperature")
+    request = SetParametersAtomically.Request(parameters=[double("oil_temperature", 60.0), double("rate", 1.0)])
+    answer = ros.call(SetParametersAtomically, f"{NODE}/set_parameters_atomically", request)
+    assert not answer.result.successful and answer.result.reason
+    assert get(ros, "oil_temperature") == before
+    request = SetParametersAtomically.Request(
+        parameters=[double("oil_temperature", 27.0), double("command_timeout", 0.1)]
+    )
+    answer = ros.call(SetParametersAtomically, f"{NODE}/set_parameters_atomically", request)
+    assert answer.result.successful, answer.result.reason

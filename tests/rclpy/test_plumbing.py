@@ -1,0 +1,123 @@
+"""The tests' own plumbing between two Python programs: what fails here is not the fault of the nodes."""
+
+from pathlib import Path
+
+import pytest
+from action_msgs.msg import GoalStatus
+from action_msgs.srv import CancelGoal
+from excavator_msgs.action import Identify
+from rcl_interfaces.srv import GetParameters
+from rclpy.action import get_action_names_and_types
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from std_msgs.msg import String
+
+PEER = Path(__file__).parent / "support" / "peer.py"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def peer(ros):
+    process = ros.start_python(PEER)
+    ros.spin_until(lambda: "peer" in ros.node.get_node_names(), "the peer")
+    yield process
+    process.interrupt()
+
+
+def test_a_message_goes_there_and_back(ros):
+    answers = ros.listen(String, "/peer/echo")
+    publisher = ros.publisher(String, "/peer/call")
+    ros.spin_until(lambda: ros.node.count_publishers("/peer/echo") == 1, "the echo")
+    text = "30° über Null, \u6cb9\u5727"
+    ros.spin_until(lambda: publisher.publish(String(data=text)) or answers, "the echo of a message", 5.0)
+    assert answers[0].data == text
+
+
+def test_reliable_messages_come_all_and_in_order(ros):
+    ticks = ros.listen(String, "/peer/ticks", 50)
+    ros.spin_until(lambda: len(ticks) >= 20, "twenty messages")
+    numbers = [int(tick.data) for tick in ticks]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+@pytest.mark.parametrize(
+    ("topic", "profile", "heard"),
+    [
+        ("/peer/ticks", QoSProfile(depth=10), True),
+        ("/peer/ticks", qos_profile_sensor_data, True),
+        ("/peer/loose_ticks", qos_profile_sensor_data, True),
+        ("/peer/loose_ticks", QoSProfile(depth=10), False),
+        ("/peer/ticks", QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL), False),
+    ],
+)
+def test_incompatible_profiles_do_not_talk(ros, topic, profile, heard):
+    messages = ros.listen(String, topic, profile)
+    if heard:
+        ros.spin_until(lambda: messages, f"a message on {topic}")
+    else:
+        ros.spin_for(0.5)
+        assert not messages
+
+
+def test_a_late_reader_gets_the_latched_message(ros):
+    messages = ros.listen(String, "/peer/latched", QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    ros.spin_until(lambda: messages, "the latched message")
+    assert [message.data for message in messages] == ["kept"]
+
+
+def test_a_service_answers_every_client_its_own_question(ros):
+    clients = [ros.client(GetParameters, "/peer/get_parameters") for _ in range(3)]
+    futures = [
+        (name, client.call_async(GetParameters.Request(names=[name, "both"])))
+        for client, name in zip(clients, "abc", strict=True)
+        for _ in range(3)  # every client hears all replies, and a service keeps ten
+    ]
+    for name, future in futures:
+        values = ros.result(future, "a reply").values
+        assert [value.string_value for value in values] == [name, "both"]
+
+
+def test_an_action_gives_feedback_and_a_result(ros):
+    client = ros.action_client(Identify, "/peer/run")
+    feedback = []
+    goal = Identify.Goal(model="m", bags=["a", "four"])
+    handle = ros.result(client.send_goal_async(goal, feedback_callback=feedback.append), "the answer to a goal")
+    assert handle.accepted
+    ros.spin_until(lambda: len(feedback) == 3, "the feedback")
+    assert [message.feedback.stage for message in feedback] == ["step 0", "step 1", "step 2"]
+    assert feedback[1].feedback.progress == 0.5
+    answer = ros.result(handle.get_result_async(), "the result")
+    assert answer.status == GoalStatus.STATUS_SUCCEEDED
+    assert answer.result.success and answer.result.message == "m"
+    assert list(answer.result.nmse_after) == [1.0, 4.0]
+    ros.spin_until(lambda: handle.status == GoalStatus.STATUS_SUCCEEDED, "the status")
+
+
+def test_an_action_refuses_and_cancels(ros):
+    client = ros.action_client(Identify, "/peer/run")
+    handle = ros.result(client.send_goal_async(Identify.Goal(model="m")), "the answer to a goal without bags")
+    assert not handle.accepted
+    handle = ros.result(client.send_goal_async(Identify.Goal(model="m", bags=["a"])), "the answer to a goal")
+    answer = ros.result(handle.cancel_goal_async(), "the answer to a cancel request")
+    assert answer.return_code == CancelGoal.Response.ERROR_NONE
+    assert bytes(answer.goals_canceling[0].goal_id.uuid) == bytes(handle.goal_id.uuid)
+    assert ros.result(handle.get_result_async(), "the result").status == GoalStatus.STATUS_CANCELED
+
+
+def test_the_graph_shows_the_peer(ros):
+    assert ("peer", "/") in ros.node.get_node_names_and_namespaces()
+    topics = dict(ros.node.get_topic_names_and_types())
+    assert topics["/peer/ticks"] == ["std_msgs/msg/String"]
+    published = dict(ros.node.get_publisher_names_and_types_by_node("peer", "/"))
+    assert "/peer/latched" in published and "/peer/call" not in published
+    assert ("/peer/call", ["std_msgs/msg/String"]) in ros.node.get_subscriber_names_and_types_by_node("peer", "/")
+    services = dict(ros.node.get_service_names_and_types_by_node("peer", "/"))
+    assert services["/peer/get_parameters"] == ["rcl_interfaces/srv/GetParameters"]
+    assert ("/peer/run", ["excavator_msgs/action/Identify"]) in get_action_names_and_types(ros.node)
+    (info,) = ros.node.get_publishers_info_by_topic("/peer/loose_ticks")
+    assert (info.node_name, info.topic_type) == ("peer", "std_msgs/msg/String")
+    assert info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT
+
+
+def test_a_node_that_ends_leaves_the_graph(ros, peer):
+    assert peer.interrupt() == 0
+    ros.spin_until(lambda: "peer" not in ros.node.get_node_names(), "the peer to leave", 5.0)
+    assert ros.node.count_publishers("/peer/ticks") == 0

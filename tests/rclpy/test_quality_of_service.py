@@ -1,0 +1,79 @@
+"""Which readers hear which topics."""
+
+import tomllib
+
+import pytest
+from excavator_msgs.msg import ArmState, OrificeCommand
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from std_msgs.msg import String
+from support.simulator import Simulator, command, cylinder
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+@pytest.fixture(scope="module")
+def simulator(ros, excavator):
+    return Simulator(ros, excavator)
+
+
+@pytest.mark.parametrize(
+    ("profile", "heard"),
+    [
+        (10, True),  # rclpy's default: reliable
+        (qos_profile_sensor_data, True),  # best effort, what plotting tools take
+        (QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL), False),  # states are volatile
+    ],
+    ids=["reliable", "best effort", "transient local"],
+)
+def test_readers_of_the_state(ros, simulator, profile, heard):
+    states = ros.listen(ArmState, "/arm/state", profile)
+    if heard:
+        ros.spin_until(lambda: len(states) >= 50, "fifty states")
+    else:
+        simulator.watch(1.0)
+        assert not states
+
+
+def test_whoever_comes_late_gets_the_model(ros, simulator):
+    for _ in range(2):
+        models = ros.listen(String, "/arm/model", LATCHED)
+        ros.spin_until(lambda: models, "the model")
+        model = tomllib.loads(models[-1].data)
+        assert model["machine"]["name"] == "zx30u-arm"
+        assert any(effect["effect"] == "oil_compressibility" for effect in model["effects"])
+        assert len(models) == 1
+
+
+def test_a_volatile_reader_that_comes_late_gets_no_model(ros, simulator):
+    models = ros.listen(String, "/arm/model", 1)
+    simulator.watch(1.0)
+    assert not models
+
+
+def test_a_best_effort_command_is_no_command(ros, simulator):
+    """The node asks for reliable commands, so an unreliable publisher does not match."""
+    publisher = ros.node.create_publisher(OrificeCommand, "/arm/orifice_command", qos_profile_sensor_data)
+    try:
+        for _ in range(20):
+            publisher.publish(command(arm=3e-5))
+            simulator.watch(0.02)
+        assert cylinder(simulator.last).orifice_area == 0.0
+    finally:
+        ros.node.destroy_publisher(publisher)
+
+
+@pytest.mark.parametrize(
+    ("topic", "durability"),
+    [
+        ("/arm/state", DurabilityPolicy.VOLATILE),
+        ("/joint_states", DurabilityPolicy.VOLATILE),
+        ("/diagnostics", DurabilityPolicy.VOLATILE),
+        ("/arm/model", DurabilityPolicy.TRANSIENT_LOCAL),
+    ],
+)
+def test_publishers_announce_what_the_contract_says(ros, simulator, topic, durability):
+    ros.spin_until(lambda: ros.node.count_publishers(topic) == 1, f"a publisher of {topic}")
+    (info,) = ros.node.get_publishers_info_by_topic(topic)
+    assert info.node_name == "arm_simulator"
+    assert info.qos_profile.reliability == ReliabilityPolicy.RELIABLE
+    assert info.qos_profile.durability == durability
