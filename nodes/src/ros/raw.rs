@@ -7,7 +7,8 @@ use std::time::Duration;
 use futures::StreamExt;
 use rustdds::bytes::Bytes;
 use rustdds::no_key::{DataWriter, Decode, DefaultDecoder, DeserializerAdapter, SerializerAdapter};
-use rustdds::{QosPolicies, RepresentationIdentifier, Timestamp};
+use rustdds::policy::Durability;
+use rustdds::{GUID, QosPolicies, RepresentationIdentifier, Timestamp, WriteOptionsBuilder};
 use tokio::runtime::Handle;
 
 use super::clock::system_nanoseconds;
@@ -200,6 +201,17 @@ impl RawOutlet {
     }
 }
 
+/// Uses up the first sequence number for nobody, so that the writer has something to announce in its heartbeats.
+///
+/// Eclipse Cyclone drops what a reliable writer sends before its first heartbeat, and RustDDS sends none to a reader that
+/// asks while nothing was written yet: without this the first message is lost whenever the reader learns of the writer
+/// after the writer learned of the reader.
+fn announce(writer: &DataWriter<RawBytes, RawAdapter>) {
+    let nobody = WriteOptionsBuilder::new().to_single_reader(GUID::GUID_UNKNOWN).build();
+    // A writer that cannot take even this refuses the messages that follow, where it is counted.
+    let _ = writer.write_with_options(RawBytes(Bytes::from_static(&[0, 1, 0, 0])), nobody);
+}
+
 impl Endpoint for RawOutlet {
     fn open(&self, connection: &mut Connection, _runtime: &Handle) -> Result<(), RosError> {
         let failed = |reason: String| RosError::Endpoint { what: self.topic.clone(), reason };
@@ -210,6 +222,9 @@ impl Endpoint for RawOutlet {
         let writer = publisher
             .create_datawriter_no_key::<RawBytes, RawAdapter>(&topic, Some(self.qos.clone()))
             .map_err(|error| failed(error.to_string()))?;
+        if self.qos.durability() != Some(Durability::TransientLocal) {
+            announce(&writer);
+        }
         *self.writer.lock().unwrap_or_else(PoisonError::into_inner) = Some(writer);
         Ok(())
     }
