@@ -6,7 +6,7 @@ use excavator_model::{Model, ModelError};
 
 use super::Evidence;
 use super::starts::starts;
-use crate::fit::{Fit, FitError, FitSettings, fit};
+use crate::fit::{Fit, FitError, FitSettings, fit, predict};
 
 /// A candidate that was tried.
 #[derive(Debug, Clone)]
@@ -38,6 +38,17 @@ impl Candidate {
     }
 }
 
+/// An effect that was not worth a fit.
+#[derive(Debug, Clone)]
+pub struct Unpromising {
+    /// The effect.
+    pub physics: &'static dyn Effect,
+    /// Name of the place: a cylinder, or "pump".
+    pub place: String,
+    /// Fall of the loss on the identification recordings that a step of the fit promises.
+    pub promised_gain: f64,
+}
+
 /// Every candidate effect at every place of the machine where it can act and is not yet.
 pub fn additions(model: &Model) -> Vec<(&'static dyn Effect, Site)> {
     effects::CATALOGUE
@@ -59,7 +70,7 @@ pub enum CandidateError {
     Fit(#[from] FitError),
 }
 
-/// Fits `model` with one more effect: a few steps from each start, then the best of them to the end.
+/// Fits `model` with one more effect, from the start that promises most.
 ///
 /// # Errors
 /// [`CandidateError`].
@@ -70,34 +81,40 @@ pub(crate) fn fit_addition(
     recordings: &[&Recording],
     settings: &FitSettings,
 ) -> Result<Fit, CandidateError> {
-    let trial = try_starts(model, physics, site, recordings, &FitSettings { maximum_steps: 2, ..*settings })?;
-    Ok(fit(&trial.model, recordings, settings)?)
+    let start = best_start(model, physics, site, recordings, settings)?;
+    Ok(fit(&start.model, recordings, settings)?)
 }
 
-/// The best of short fits from all starts of an addition.
+/// A start of a candidate's fit and what one step from it promises.
+pub(super) struct PromisingStart {
+    /// The model with the effect, at the start.
+    pub model: Model,
+    /// Loss there.
+    pub loss: f64,
+    /// Promised loss.
+    pub promised_loss: f64,
+}
+
+/// The start of an addition whose first step promises most.
 ///
 /// # Errors
 /// [`CandidateError`].
-pub(super) fn try_starts(
+pub(super) fn best_start(
     model: &Model,
     physics: &'static dyn Effect,
     site: Site,
     recordings: &[&Recording],
     settings: &FitSettings,
-) -> Result<Fit, CandidateError> {
+) -> Result<PromisingStart, CandidateError> {
     let extended = model.with_effect(physics, site)?;
-    let starts = starts(&extended, recordings);
-    let regressed = starts.len() / 2;
-    let mut best: Option<Fit> = None;
+    let mut best: Option<PromisingStart> = None;
     let mut failure = None;
-    for (number, start) in starts.iter().enumerate() {
-        // Where a regression already led below the model without the effect, the plain starts can only cost time.
-        let promising = best.as_ref().is_some_and(|best| best.loss() < settings.give_up_above);
-        if promising && settings.give_up_above.is_finite() && number >= regressed {
-            break;
-        }
-        match fit(start, recordings, settings) {
-            Ok(trial) if best.as_ref().is_none_or(|best| trial.loss() < best.loss()) => best = Some(trial),
+    for start in starts(&extended, recordings) {
+        match predict(&start, recordings, settings) {
+            Ok(promise) if best.as_ref().is_none_or(|best| promise.loss_after < best.promised_loss) => {
+                best =
+                    Some(PromisingStart { model: start, loss: promise.loss_before, promised_loss: promise.loss_after });
+            }
             Ok(_) => {}
             Err(error) => failure = Some(error),
         }

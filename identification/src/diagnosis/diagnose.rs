@@ -5,7 +5,7 @@ use excavator_model::recording::Recording;
 
 use super::candidate::CandidateError;
 use super::race::{Race, Round};
-use super::{Candidate, DiagnosisSettings, Share, Unexplained, additions, residual_map, unexplained};
+use super::{Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, additions, residual_map, unexplained};
 use crate::fit::{Fit, FitError, evaluate, fit};
 use crate::regression::{RegressionError, WeakFormSettings, weak_form};
 
@@ -44,6 +44,8 @@ pub struct Diagnosis {
     pub candidates: Vec<Candidate>,
     /// Candidates that were tried and have none, with what they gained, best first.
     pub rejected: Vec<Candidate>,
+    /// Effects not worth a fit, with what a step of one promised, best first.
+    pub unpromising: Vec<Unpromising>,
     /// Candidates that could not be fitted, with the reason.
     pub failed: Vec<(String, CandidateError)>,
     /// Effects added one after the other, the first included, until nothing more was gained.
@@ -101,18 +103,18 @@ pub fn diagnose(
         let span = 0.8 / settings.most_effects as f64;
         let wanted = additions(&base.model);
         let race = Race { base, base_validation, identification, validation, settings };
-        let (tried, failed) = race.run(&wanted, &|what, fraction| progress(what, start + span * fraction))?;
-        let best = tried.iter().find(|candidate| candidate.accepted).cloned();
+        let round = race.run(&wanted, &|what, fraction| progress(what, start + span * fraction))?;
+        let best = round.fitted.iter().find(|candidate| candidate.accepted).cloned();
         if first_round.is_none() {
-            first_round = Some((tried, failed));
+            first_round = Some(round);
         }
         match best {
             Some(best) => chain.push(best),
             None => break,
         }
     }
-    let (tried, failed) = first_round.unwrap_or_default();
-    let (candidates, rejected): (Vec<_>, Vec<_>) = tried.into_iter().partition(|candidate| candidate.accepted);
+    let Round { fitted, unpromising, failed } = first_round.unwrap_or_default();
+    let (candidates, rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);
 
     let final_validation = chain.last().map_or(&nominal_validation, |last| &last.validation);
     let explained = is_adequate(final_validation, validation, settings)
@@ -130,7 +132,18 @@ pub fn diagnose(
         None
     };
     progress("done", 1.0);
-    Ok(Diagnosis { verdict, nominal, nominal_validation, candidates, rejected, failed, chain, map, unexplained })
+    Ok(Diagnosis {
+        verdict,
+        nominal,
+        nominal_validation,
+        candidates,
+        rejected,
+        unpromising,
+        failed,
+        chain,
+        map,
+        unexplained,
+    })
 }
 
 /// Fits a model's unknown parameters, starting from a regression where one is possible.

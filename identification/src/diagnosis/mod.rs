@@ -9,7 +9,7 @@ mod settings;
 mod starts;
 
 pub(crate) use candidate::fit_addition;
-pub use candidate::{Candidate, CandidateError, additions};
+pub use candidate::{Candidate, CandidateError, Unpromising, additions};
 pub(crate) use diagnose::fit_nominal;
 pub use diagnose::{Diagnosis, DiagnosisError, Verdict, diagnose, normalised_error};
 pub use evidence::{Evidence, compare_losses};

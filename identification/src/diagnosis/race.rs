@@ -1,7 +1,8 @@
-//! All candidates run a short race on coarse data; the first few are fitted to the end.
+//! All candidates run a short race; the first few are fitted to the end.
 //!
-//! A full fit of every effect at every place would take minutes. Four steps on thinned recordings already tell how much
-//! of the error an effect can take away: the evidence itself is always from full fits.
+//! A full fit of every effect at every place would take minutes. One simulation with sensitivities already tells which
+//! effects promise nothing, three steps of a fit how much of the error the others can take away: the evidence itself is
+//! always from full fits.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -9,12 +10,30 @@ use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
-use super::candidate::{CandidateError, try_starts};
-use super::{Candidate, DiagnosisSettings, compare_losses};
-use crate::fit::{Fit, FitError, FitSettings, evaluate, fit};
+use super::candidate::{CandidateError, best_start};
+use super::{Candidate, DiagnosisSettings, Unpromising, compare_losses};
+use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, predict};
 
-/// Candidates that were fitted, best on validation first, and those that could not be, with the reason.
-pub(super) type Round = (Vec<Candidate>, Vec<(String, CandidateError)>);
+/// What became of all candidates.
+#[derive(Default)]
+pub(super) struct Round {
+    /// Those that were fitted, best on validation first.
+    pub fitted: Vec<Candidate>,
+    /// Those not worth a fit.
+    pub unpromising: Vec<Unpromising>,
+    /// Those that could not be fitted, with the reason.
+    pub failed: Vec<(String, CandidateError)>,
+}
+
+/// How an effect left the race.
+enum Outcome {
+    Fitted(Box<Candidate>),
+    Unpromising(Unpromising),
+    Failed(CandidateError),
+}
+
+/// Losses that differ by less belong to models that behave alike.
+const NEXT_TO_BASE: f64 = 0.5;
 
 /// What candidates are measured against and on.
 pub(super) struct Race<'a> {
@@ -40,42 +59,32 @@ impl Race<'_> {
         wanted: &[(&'static dyn Effect, Site)],
         progress: &(dyn Fn(&str, f64) + Sync),
     ) -> Result<Round, FitError> {
-        let coarse = FitSettings {
-            sample_rate: self.settings.race_sample_rate,
-            maximum_steps: self.settings.race_steps,
-            ..self.settings.fit
-        };
-        let base = evaluate(&self.base.model, self.identification, &coarse)?;
-        let base_validation = evaluate(&self.base.model, self.validation, &coarse)?;
-        let heats = Race { base: &base, base_validation: &base_validation, ..*self };
+        let start_loss = predict(&self.base.model, self.identification, &self.settings.fit)?.loss_before;
         let done = AtomicUsize::new(0);
         // Full fits take about a third of the time.
         let total = wanted.len() as f64 * 1.5;
         let advance = |name: &str| progress(name, (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / total);
 
-        let results: Vec<(String, Result<Candidate, CandidateError>)> = wanted
+        let outcomes: Vec<(String, Outcome)> = wanted
             .par_iter()
             .map(|&(physics, site)| {
                 let place = excavator_model::site_name(&self.base.model.machine, site).to_string();
                 let name = format!("{}@{place}", physics.card().name);
-                let patience = FitSettings { give_up_above: base.loss() - self.settings.least_gain / 4.0, ..coarse };
-                // One step from each start shows which is worth the others.
-                let first_step = FitSettings { maximum_steps: 1, ..patience };
-                let candidate = try_starts(&base.model, physics, site, self.identification, &first_step)
-                    .and_then(|trial| Ok(fit(&trial.model, self.identification, &patience)?))
-                    .and_then(|fit| heats.judged(physics, site, place, fit, &coarse));
+                let outcome = self.heat(physics, site, place, start_loss).unwrap_or_else(Outcome::Failed);
                 advance(&name);
-                (name, candidate)
+                (name, outcome)
             })
             .collect();
+        let mut round = Round::default();
         let mut tried = Vec::new();
-        let mut failed = Vec::new();
-        for (name, result) in results {
-            match result {
-                Ok(candidate) => tried.push(candidate),
-                Err(error) => failed.push((name, error)),
+        for (name, outcome) in outcomes {
+            match outcome {
+                Outcome::Fitted(candidate) => tried.push(*candidate),
+                Outcome::Unpromising(effect) => round.unpromising.push(effect),
+                Outcome::Failed(error) => round.failed.push((name, error)),
             }
         }
+        round.unpromising.sort_by(|a, b| b.promised_gain.total_cmp(&a.promised_gain));
         tried.sort_by(|a, b| b.identification_gain.total_cmp(&a.identification_gain));
         let best = tried.first().map_or(0.0, |candidate| candidate.identification_gain);
         let finalist = |(position, candidate): (usize, &Candidate)| {
@@ -96,17 +105,35 @@ impl Race<'_> {
                 self.judged(candidate.physics, candidate.site, candidate.place.clone(), fit, &self.settings.fit)
             })
             .collect();
-        let mut finished = Vec::new();
         for (result, heat) in full.into_iter().zip(tried) {
             match result {
-                Ok(candidate) => finished.push(candidate),
-                Err(error) => failed.push((format!("{}@{}", heat.name(), heat.place), error)),
+                Ok(candidate) => round.fitted.push(candidate),
+                Err(error) => round.failed.push((format!("{}@{}", heat.name(), heat.place), error)),
             }
         }
-        finished.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
-        mark_ties(&mut finished, self.settings);
-        finished.extend(rejected);
-        Ok((finished, failed))
+        round.fitted.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
+        mark_ties(&mut round.fitted, self.settings);
+        round.fitted.extend(rejected);
+        Ok(round)
+    }
+
+    /// A few steps from the start that promises most. `start_loss`: of the base, its segments started as measured.
+    fn heat(
+        &self,
+        physics: &'static dyn Effect,
+        site: Site,
+        place: String,
+        start_loss: f64,
+    ) -> Result<Outcome, CandidateError> {
+        let start = best_start(&self.base.model, physics, site, self.identification, &self.settings.fit)?;
+        let promised_gain = self.base.loss() - start.promised_loss;
+        // Only from a start next to the base can the promise of one step be trusted.
+        if (start.loss - start_loss).abs() < NEXT_TO_BASE && promised_gain < self.settings.least_gain / 4.0 {
+            return Ok(Outcome::Unpromising(Unpromising { physics, place, promised_gain }));
+        }
+        let short = FitSettings { maximum_steps: self.settings.race_steps, ..self.settings.fit };
+        let fit = fit(&start.model, self.identification, &short)?;
+        self.judged(physics, site, place, fit, &short).map(|candidate| Outcome::Fitted(Box::new(candidate)))
     }
 
     /// A fitted candidate with its evidence.

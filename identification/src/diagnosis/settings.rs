@@ -27,9 +27,6 @@ pub struct DiagnosisSettings {
     pub explained_gain: f64,
     /// Most effects added one after the other.
     pub most_effects: usize,
-    /// Samples per second of the race that picks the candidates worth a full fit. Fits at half the usual rate find the
-    /// same gain to a few percent; below that, entrained air loses its sharp edges.
-    pub race_sample_rate: f64,
     /// Steps of a fit in the race.
     pub race_steps: usize,
     /// So many candidates, the best of the race, are fitted to the end.
@@ -50,7 +47,6 @@ impl Default for DiagnosisSettings {
             adequate_error: 1e-3,
             explained_gain: 1.6,
             most_effects: 3,
-            race_sample_rate: 85.0,
             race_steps: 3,
             finalists: 4,
             finalist_margin: 0.5,

@@ -3,10 +3,13 @@
 mod instruments;
 mod normal_equations;
 mod output_error;
+mod prediction;
+mod problem;
 mod segments;
 mod settings;
 
 pub use instruments::{Instrument, instruments, standard_deviation};
 pub use output_error::{Fit, FitError, evaluate, fit};
+pub use prediction::{Prediction, predict};
 pub use segments::{Segment, SegmentedRecording};
 pub use settings::FitSettings;

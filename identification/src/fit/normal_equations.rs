@@ -191,6 +191,26 @@ impl RawSums {
         &self.counts
     }
 
+    /// Adds each instrument's squared errors, in its unit, as they would be after these steps if its readings were linear
+    /// in the scaled parameters and the initial state.
+    pub fn add_predicted(
+        &self,
+        parameter_step: &DVector<f64>,
+        state_step: &DVector<f64>,
+        noise: &[f64],
+        squares: &mut [f64],
+    ) {
+        let (fitted, states) = (self.fitted, state_step.len());
+        let mut step = DVector::zeros(fitted + states);
+        step.rows_mut(0, fitted).copy_from(parameter_step);
+        step.rows_mut(fitted, states).copy_from(state_step);
+        for (number, slot) in squares.iter_mut().enumerate() {
+            let gradient: f64 = self.blocks.iter().map(|block| block[number].dot(&step)).sum();
+            let curvature = step.dot(&(&self.information[number] * &step));
+            *slot += self.squared_errors[number] + noise[number] * noise[number] * (curvature - 2.0 * gradient);
+        }
+    }
+
     /// The sums with each instrument's squared noise units multiplied by its factor, initial state eliminated.
     pub fn weighed(&self, factors: &[f64]) -> SegmentSums {
         let (fitted, states) = (self.fitted, self.prior_gradient.len());

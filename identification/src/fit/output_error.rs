@@ -4,15 +4,16 @@
 //! the normal equations before they are added up: a general solver would factor one dense Jacobian with a column for
 //! each initial state of each segment.
 
+use excavator_model::effects::ParameterCard;
 use excavator_model::equations::System;
 use excavator_model::recording::Recording;
-use excavator_model::simulation::{SimulationError, Tolerances};
+use excavator_model::simulation::SimulationError;
 use excavator_model::{Model, SignalError};
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
-use super::normal_equations::{InitialStatePrior, RawSums, SegmentSums, Shared};
-use super::{FitSettings, Instrument, SegmentedRecording, instruments};
+use super::normal_equations::{RawSums, SegmentSums};
+use super::problem::Problem;
+use super::{FitSettings, Instrument};
 
 /// Why a fit could not be done.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -98,49 +99,10 @@ fn run(
     maximum_steps: usize,
 ) -> Result<Fit, FitError> {
     let system = System::new(model);
-    let instruments = instruments(&system, recordings);
-    if instruments.is_empty() {
-        return Err(FitError::NothingMeasured { machine: model.machine.name.clone() });
-    }
-    let mut segmented = recordings
-        .iter()
-        .map(|recording| SegmentedRecording::new(model, recording, settings.segment_duration, settings.sample_rate))
-        .collect::<Result<Vec<_>, _>>()?;
-    if segmented.iter().all(|recording| recording.segments.is_empty()) {
-        return Err(FitError::TooShort);
-    }
-    let anchors: Vec<Vec<Vec<f64>>> = segmented
-        .iter()
-        .map(|recording| recording.segments.iter().map(|segment| segment.state.clone()).collect())
-        .collect();
-    let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card).collect();
+    let problem = Problem::new(model, &system, recordings, settings, fitted)?;
+    let Problem { fitted, scales, cards, noise, .. } = &problem;
+    let mut segmented = problem.segmented.clone();
     let values = model.parameter_values();
-    let scales: Vec<f64> = fitted
-        .iter()
-        .map(|&index| if values[index] != 0.0 { values[index].abs() } else { cards[index].typical.abs() })
-        .collect();
-    let prior = InitialStatePrior::of(&system);
-    let noise: Vec<f64> = instruments.iter().map(|instrument| instrument.noise).collect();
-
-    let sums_at = |values: &[f64], segmented: &[SegmentedRecording]| {
-        let shared = Shared {
-            system: &system,
-            parameters: values,
-            fitted: &fitted,
-            scales: &scales,
-            instruments: &instruments,
-            prior: &prior,
-            tolerances: Tolerances::default(),
-        };
-        let jobs: Vec<(usize, usize)> = segmented
-            .iter()
-            .enumerate()
-            .flat_map(|(r, recording)| (0..recording.segments.len()).map(move |s| (r, s)))
-            .collect();
-        jobs.par_iter()
-            .map(|&(r, s)| shared.sums(&segmented[r], &segmented[r].segments[s], &anchors[r][s]))
-            .collect::<Result<Vec<_>, _>>()
-    };
     let loss_of = |sums: &[SegmentSums], weights: &[f64]| {
         let squares: f64 = sums
             .iter()
@@ -149,14 +111,9 @@ fn run(
             .sum();
         squares + sums.iter().map(|segment| segment.prior_loss).sum::<f64>()
     };
-
-    let weighed = |raw: &[RawSums], weights: &[f64]| -> Vec<SegmentSums> {
-        let factors: Vec<f64> = noise.iter().zip(weights).map(|(noise, weight)| (noise / weight).powi(2)).collect();
-        raw.iter().map(|segment| segment.weighed(&factors)).collect()
-    };
-    let raw = sums_at(&values, &segmented)?;
-    let mut weights = error_sizes(&raw, &noise);
-    let sums = weighed(&raw, &weights);
+    let raw = problem.sums_at(&values, &segmented)?;
+    let mut weights = error_sizes(&raw, noise);
+    let sums = problem.weighed(&raw, &weights);
     let loss = loss_of(&sums, &weights);
     let mut current = State { values, sums, loss };
     let mut damping = 1e-3;
@@ -164,7 +121,7 @@ fn run(
     let mut converged = false;
     while steps < maximum_steps {
         steps += 1;
-        let held = held_at_bounds(&current, &fitted, |index| (cards[index].minimum, cards[index].maximum));
+        let held = held_at_bounds(&current.sums, &current.values, fitted, cards);
         let Some(step) = parameter_step(&current.sums, &held, damping) else { break };
         let mut trial_values = current.values.clone();
         let mut taken = DVector::zeros(fitted.len());
@@ -183,9 +140,9 @@ fn run(
                 *value += change;
             }
         }
-        let accepted = match sums_at(&trial_values, &trial_segments) {
+        let accepted = match problem.sums_at(&trial_values, &trial_segments) {
             Ok(raw) => {
-                let loss = loss_of(&weighed(&raw, &weights), &weights);
+                let loss = loss_of(&problem.weighed(&raw, &weights), &weights);
                 (loss.is_finite() && loss <= current.loss).then_some((raw, loss))
             }
             Err(_) => None,
@@ -199,11 +156,11 @@ fn run(
         };
         let improvement = (current.loss - loss) / current.loss.max(f64::MIN_POSITIVE);
         segmented = trial_segments;
-        let new_weights = error_sizes(&raw, &noise);
+        let new_weights = error_sizes(&raw, noise);
         let reweighting = new_weights.iter().zip(&weights).map(|(new, old)| (new / old).ln().abs()).fold(0.0, f64::max);
-        let remaining = loss_per_reading(&new_weights, &noise);
+        let remaining = loss_per_reading(&new_weights, noise);
         weights = new_weights;
-        let sums = weighed(&raw, &weights);
+        let sums = problem.weighed(&raw, &weights);
         let loss = loss_of(&sums, &weights);
         current = State { values: trial_values, sums, loss };
         damping = (damping / 10.0).max(1e-9);
@@ -215,17 +172,17 @@ fn run(
             break;
         }
     }
-    Ok(result(model, fitted, &scales, instruments, current, steps, converged))
+    Ok(result(model, problem, current, steps, converged))
 }
 
 /// Loss of a model whose instruments have these errors; see [`Fit::loss`].
-fn loss_per_reading(errors: &[f64], noise: &[f64]) -> f64 {
+pub(super) fn loss_per_reading(errors: &[f64], noise: &[f64]) -> f64 {
     errors.iter().zip(noise).map(|(error, noise)| 2.0 * (error / noise).max(1e-3).ln()).sum::<f64>()
         / noise.len() as f64
 }
 
 /// Root mean square error of each instrument over all segments, not below its noise.
-fn error_sizes(sums: &[RawSums], noise: &[f64]) -> Vec<f64> {
+pub(super) fn error_sizes(sums: &[RawSums], noise: &[f64]) -> Vec<f64> {
     noise
         .iter()
         .enumerate()
@@ -238,20 +195,24 @@ fn error_sizes(sums: &[RawSums], noise: &[f64]) -> Vec<f64> {
 }
 
 /// Which fitted parameters sit at a bound that the loss would push them through; they take no part in the step.
-fn held_at_bounds(state: &State, fitted: &[usize], bounds: impl Fn(usize) -> (f64, f64)) -> Vec<bool> {
+pub(super) fn held_at_bounds(
+    sums: &[SegmentSums],
+    values: &[f64],
+    fitted: &[usize],
+    cards: &[&'static ParameterCard],
+) -> Vec<bool> {
     fitted
         .iter()
         .enumerate()
         .map(|(number, &index)| {
-            let (minimum, maximum) = bounds(index);
-            let downhill: f64 = state.sums.iter().map(|segment| segment.gradient[number]).sum();
-            let value = state.values[index];
-            (value <= minimum && downhill < 0.0) || (value >= maximum && downhill > 0.0)
+            let downhill: f64 = sums.iter().map(|segment| segment.gradient[number]).sum();
+            (values[index] <= cards[index].minimum && downhill < 0.0)
+                || (values[index] >= cards[index].maximum && downhill > 0.0)
         })
         .collect()
 }
 
-fn parameter_step(sums: &[SegmentSums], held: &[bool], damping: f64) -> Option<DVector<f64>> {
+pub(super) fn parameter_step(sums: &[SegmentSums], held: &[bool], damping: f64) -> Option<DVector<f64>> {
     let fitted = held.len();
     if fitted == 0 {
         return Some(DVector::zeros(0));
@@ -276,16 +237,9 @@ fn parameter_step(sums: &[SegmentSums], held: &[bool], damping: f64) -> Option<D
     information.cholesky().map(|factor| factor.solve(&gradient))
 }
 
-fn result(
-    model: &Model,
-    fitted: Vec<usize>,
-    scales: &[f64],
-    instruments: Vec<Instrument>,
-    state: State,
-    steps: usize,
-    converged: bool,
-) -> Fit {
-    let covariance = clustered_covariance(&state.sums, scales);
+fn result(model: &Model, problem: Problem<'_, '_>, state: State, steps: usize, converged: bool) -> Fit {
+    let Problem { fitted, scales, instruments, .. } = problem;
+    let covariance = clustered_covariance(&state.sums, &scales);
     let mut model = model.clone();
     model.set_parameter_values(&state.values);
     for (index, parameter) in model.parameters_mut().enumerate() {

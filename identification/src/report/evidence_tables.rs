@@ -30,7 +30,7 @@ pub(super) fn evidence(diagnosis: &Diagnosis, comparisons: &[Comparison]) -> Mar
     let rejected: Vec<(&Candidate, &str, &str)> =
         diagnosis.rejected.iter().map(|candidate| (candidate, "none", "no evidence")).collect();
     html! {
-        @if rows.is_empty() { p { "None of the " (rejected.len()) " effects tried lowers the error by enough, and surely enough, to be named." } }
+        @if rows.is_empty() { p { "None of the " (rejected.len() + diagnosis.unpromising.len()) " effects tried lowers the error by enough, and surely enough, to be named." } }
         @else { (table(&rows, before, &recordings)) }
         p.note {
             "Each effect of the catalogue was added to the model alone and all parameters were fitted again to the "
@@ -40,6 +40,19 @@ pub(super) fn evidence(diagnosis: &Diagnosis, comparisons: &[Comparison]) -> Mar
         }
         @if !rejected.is_empty() {
             details { summary { "Effects without evidence (" (rejected.len()) ")" } (table(&rejected, before, &recordings)) }
+        }
+        @if !diagnosis.unpromising.is_empty() {
+            details {
+                summary { "Effects that promise nothing (" (diagnosis.unpromising.len()) ")" }
+                table.data {
+                    thead { tr { th { "Effect" } th { "Where" } th.n { "Gain that one step of a fit promises" } } }
+                    tbody { @for effect in &diagnosis.unpromising { tr {
+                        td { (words::spoken(effect.physics.card().name)) " " code.code-name { (effect.physics.card().name) } }
+                        td { (effect.place) }
+                        td.n { (gain(effect.promised_gain)) }
+                    } } }
+                }
+            }
         }
         @if !diagnosis.failed.is_empty() {
             details {

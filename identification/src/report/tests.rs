@@ -105,6 +105,7 @@ fn diagnosis(verdict: Verdict, candidates: Vec<Candidate>) -> Diagnosis {
         chain: candidates.first().cloned().into_iter().collect(),
         candidates,
         rejected: vec![candidate("hose_loss", -0.01, false, false)],
+        unpromising: Vec::new(),
         failed: Vec::new(),
         map: vec![share("arm.cap_continuity", 0.7), share("arm.motion", 0.3)],
         unexplained: (verdict == Verdict::Unexplained).then(|| Unexplained {

@@ -1,5 +1,6 @@
 //! The inputs of a simulation as functions of time.
 
+use super::coarse_inputs::{interval_means, nearest_lines};
 use super::spool_estimate::spool_estimate;
 use crate::equations::Inputs;
 use crate::machine::{Machine, Supply};
@@ -76,16 +77,21 @@ impl InputSignals {
         })
     }
 
-    /// Every `stride`-th sample of the inputs.
+    /// The inputs on every `stride`-th sample time: straight lines nearest to the full ones, means of held ones.
     pub fn thinned(&self, stride: usize) -> Self {
-        let thin = |values: &[f64]| values.iter().copied().step_by(stride.max(1)).collect::<Vec<f64>>();
+        let stride = stride.max(1);
+        let lines = |values: &[f64]| nearest_lines(&self.time, values, stride);
+        let thin = |(interpolation, values): &(Interpolation, Vec<f64>)| match interpolation {
+            Interpolation::Linear => (*interpolation, lines(values)),
+            Interpolation::Hold => (*interpolation, interval_means(values, stride)),
+        };
         InputSignals {
-            time: thin(&self.time),
-            orifice_area: self.orifice_area.iter().map(|(kind, values)| (*kind, thin(values))).collect(),
-            rod_force: self.rod_force.iter().map(|values| thin(values)).collect(),
-            supply_pressure: thin(&self.supply_pressure),
-            tank_pressure: thin(&self.tank_pressure),
-            pump_flow: thin(&self.pump_flow),
+            time: self.time.iter().copied().step_by(stride).collect(),
+            orifice_area: self.orifice_area.iter().map(thin).collect(),
+            rod_force: self.rod_force.iter().map(|values| lines(values)).collect(),
+            supply_pressure: lines(&self.supply_pressure),
+            tank_pressure: lines(&self.tank_pressure),
+            pump_flow: lines(&self.pump_flow),
         }
     }
 

@@ -1,5 +1,6 @@
 //! From a model and its inputs to a trajectory, with sensitivities where wanted.
 
+mod coarse_inputs;
 mod factors;
 mod initial;
 mod input_signals;

@@ -64,6 +64,10 @@ pub struct Score {
     pub coefficient_error: Option<f64>,
     /// Mean NMSE over instruments on validation, before anything is added and after.
     pub nmse: [f64; 2],
+    /// Loss on validation: of the nominal model, then after each effect of the chain; 0 is sensor noise alone.
+    pub losses: Vec<f64>,
+    /// Name, gain and significance of the best candidates for the first place.
+    pub gains: Vec<(&'static str, f64, f64)>,
     /// Base parameters inside their 95 % interval, and how many have one, in the last model.
     pub covered: [usize; 2],
     /// Wall-clock time of the diagnosis, s.
@@ -142,6 +146,17 @@ pub fn score(case: &Case, evidence: &Evidence) -> Result<Score, ScoreError> {
         outcome: outcome(sort, diagnosis.verdict, &hidden, &tied, &chain, first),
         coefficient_error: coefficient_error(case, &diagnosis),
         nmse: [nmse(&diagnosis.nominal_validation, evidence), nmse(last_validation, evidence)],
+        losses: std::iter::once(&diagnosis.nominal_validation)
+            .chain(diagnosis.chain.iter().map(|step| &step.validation))
+            .map(Fit::loss)
+            .collect(),
+        gains: diagnosis
+            .candidates
+            .iter()
+            .chain(&diagnosis.rejected)
+            .take(3)
+            .map(|candidate| (candidate.name(), candidate.evidence.gain, candidate.evidence.significance))
+            .collect(),
         covered: coverage(case, &last.model),
         verdict: diagnosis.verdict,
         first,

@@ -24,8 +24,12 @@ pub fn line(case: &Case, evidence: &Evidence, score: &Score) -> String {
     let tied = if score.tied.is_empty() { String::new() } else { format!(" [tied: {}]", score.tied.join(", ")) };
     let error =
         score.coefficient_error.map_or(String::new(), |error| format!(", coefficients off by {:.1} %", 100.0 * error));
+    let losses: Vec<String> = score.losses.iter().map(|loss| format!("{loss:.2}")).collect();
+    let gains: Vec<String> =
+        score.gains.iter().map(|(name, gain, deviations)| format!("{name} {gain:.2} ({deviations:.1})")).collect();
     format!(
-        "{:>4}  {:18}  hidden {hidden}\n      {}: {named}{tied}, NMSE {:.2e} -> {:.2e}{error}, covered {}/{}, {:.0} s",
+        "{:>4}  {:18}  hidden {hidden}\n      {}: {named}{tied}, NMSE {:.2e} -> {:.2e}{error}, covered {}/{}, {:.0} s\n      \
+         loss {}; gains {}",
         case.number,
         score.outcome.name(),
         score.verdict.name(),
@@ -33,7 +37,9 @@ pub fn line(case: &Case, evidence: &Evidence, score: &Score) -> String {
         score.nmse[1],
         score.covered[0],
         score.covered[1],
-        score.seconds
+        score.seconds,
+        losses.join(" -> "),
+        gains.join(", ")
     )
 }
 

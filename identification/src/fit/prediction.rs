@@ -1,0 +1,67 @@
+//! What one step of a fit promises, without taking it.
+
+use excavator_model::Model;
+use excavator_model::equations::System;
+use excavator_model::recording::Recording;
+use nalgebra::DVector;
+
+use super::output_error::{error_sizes, held_at_bounds, loss_per_reading, parameter_step};
+use super::problem::Problem;
+use super::{FitError, FitSettings};
+
+/// What a Gauss-Newton step from a model's parameters promises.
+#[derive(Debug, Clone)]
+pub struct Prediction {
+    /// Loss of the model as it is, initial states as measured; see [`super::Fit::loss`].
+    pub loss_before: f64,
+    /// Loss after the step if the outputs were linear in parameters and initial states.
+    pub loss_after: f64,
+    /// The model after the step, within the parameters' bounds.
+    pub model: Model,
+}
+
+/// One simulation with sensitivities, and what it promises for a step of all unknown parameters.
+///
+/// # Errors
+/// [`FitError`].
+pub fn predict(model: &Model, recordings: &[&Recording], settings: &FitSettings) -> Result<Prediction, FitError> {
+    let system = System::new(model);
+    let problem = Problem::new(model, &system, recordings, settings, model.unknown_parameters())?;
+    let values = model.parameter_values();
+    let raw = problem.sums_at(&values, &problem.segmented)?;
+    let weights = error_sizes(&raw, &problem.noise);
+    let loss_before = loss_per_reading(&weights, &problem.noise);
+    let sums = problem.weighed(&raw, &weights);
+    let held = held_at_bounds(&sums, &values, &problem.fitted, &problem.cards);
+    let mut stepped = values.clone();
+    let mut taken = DVector::zeros(problem.fitted.len());
+    if let Some(step) = parameter_step(&sums, &held, DAMPING) {
+        for (number, &index) in problem.fitted.iter().enumerate() {
+            let card = problem.cards[index];
+            let wanted = values[index] + step[number] * problem.scales[number];
+            stepped[index] = wanted.clamp(card.minimum, card.maximum);
+            taken[number] = (stepped[index] - values[index]) / problem.scales[number];
+        }
+    }
+    let mut squares = vec![0.0; problem.noise.len()];
+    let mut counts = vec![0usize; problem.noise.len()];
+    for (raw, sums) in raw.iter().zip(&sums) {
+        let state_step = sums.state_step(&taken, DAMPING);
+        raw.add_predicted(&taken, &state_step, &problem.noise, &mut squares);
+        for (total, count) in counts.iter_mut().zip(raw.counts()) {
+            *total += count;
+        }
+    }
+    let errors: Vec<f64> = squares
+        .iter()
+        .zip(&counts)
+        .zip(&problem.noise)
+        .map(|((squares, &count), noise)| (squares / count.max(1) as f64).max(0.0).sqrt().max(*noise))
+        .collect();
+    let mut model = model.clone();
+    model.set_parameter_values(&stepped);
+    Ok(Prediction { loss_before, loss_after: loss_per_reading(&errors, &problem.noise), model })
+}
+
+/// Levenberg-Marquardt damping of the promised step: that of a fit's first step.
+const DAMPING: f64 = 1e-3;
