@@ -96,13 +96,12 @@ pub fn diagnose(
     while chain.len() < settings.most_effects {
         let (base, base_validation) =
             chain.last().map_or((&nominal, &nominal_validation), |last| (&last.fit, &last.validation));
-        if !chain.is_empty() && is_adequate(base_validation, validation, settings) {
-            break;
-        }
         let start = 0.15 + 0.8 * chain.len() as f64 / settings.most_effects as f64;
         let span = 0.8 / settings.most_effects as f64;
         let wanted = additions(&base.model);
-        let race = Race { base, base_validation, identification, validation, settings };
+        let adequate = is_adequate(base_validation, validation, settings);
+        let least_gain = if adequate { settings.least_gain_when_adequate } else { settings.least_gain };
+        let race = Race { base, base_validation, identification, validation, least_gain, settings };
         let round = race.run(&wanted, &|what, fraction| progress(what, start + span * fraction))?;
         let best = round.fitted.iter().find(|candidate| candidate.accepted).cloned();
         if first_round.is_none() {
@@ -118,7 +117,7 @@ pub fn diagnose(
 
     let final_validation = chain.last().map_or(&nominal_validation, |last| &last.validation);
     let explained = is_adequate(final_validation, validation, settings)
-        || nominal_validation.loss() - final_validation.loss() >= settings.explained_gain;
+        || final_validation.loss() <= (1.0 - settings.explained_share) * nominal_validation.loss();
     let verdict = match (chain.is_empty(), explained) {
         (true, true) => Verdict::Adequate,
         (false, true) => Verdict::MissingEffect,
@@ -166,9 +165,9 @@ pub(crate) fn fit_nominal(
     fit(model, identification, &settings.fit)
 }
 
-/// Whether what is left is noise, or too small to act on.
+/// Whether what is left is noise but for a few moments, or too small to act on.
 fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
-    fit.loss() <= settings.adequate_loss || normalised_error(fit, recordings) <= settings.adequate_error
+    fit.typical_loss() <= settings.adequate_loss || normalised_error(fit, recordings) <= settings.adequate_error
 }
 
 /// Mean over instruments of squared error over the signal's own variance; `NaN` when no signal varies.

@@ -45,6 +45,8 @@ pub(super) struct Race<'a> {
     pub identification: &'a [&'a Recording],
     /// Recordings that evidence is taken from.
     pub validation: &'a [&'a Recording],
+    /// Fall of the loss that makes a candidate worth naming.
+    pub least_gain: f64,
     /// Thresholds.
     pub settings: &'a DiagnosisSettings,
 }
@@ -88,7 +90,7 @@ impl Race<'_> {
         tried.sort_by(|a, b| b.identification_gain.total_cmp(&a.identification_gain));
         let best = tried.first().map_or(0.0, |candidate| candidate.identification_gain);
         let finalist = |(position, candidate): (usize, &Candidate)| {
-            candidate.identification_gain >= self.settings.least_gain / 4.0
+            candidate.identification_gain >= self.least_gain / 4.0
                 && (position < self.settings.finalists
                     || best - candidate.identification_gain < self.settings.finalist_margin)
         };
@@ -128,7 +130,7 @@ impl Race<'_> {
         let start = best_start(&self.base.model, physics, site, self.identification, &self.settings.fit)?;
         let promised_gain = self.base.loss() - start.promised_loss;
         // Only from a start next to the base can the promise of one step be trusted.
-        if (start.loss - start_loss).abs() < NEXT_TO_BASE && promised_gain < self.settings.least_gain / 4.0 {
+        if (start.loss - start_loss).abs() < NEXT_TO_BASE && promised_gain < self.least_gain / 4.0 {
             return Ok(Outcome::Unpromising(Unpromising { physics, place, promised_gain }));
         }
         let short = FitSettings { maximum_steps: self.settings.race_steps, ..self.settings.fit };
@@ -148,9 +150,9 @@ impl Race<'_> {
         let validation = evaluate(&fit.model, self.validation, settings)?;
         let evidence = compare_losses(self.base_validation, &validation);
         let identification_gain = compare_losses(self.base, &fit).gain;
-        let accepted = evidence.gain >= self.settings.least_gain
+        let accepted = evidence.gain >= self.least_gain
             && evidence.significance >= self.settings.least_significance
-            && identification_gain >= self.settings.least_gain / 2.0;
+            && identification_gain >= self.least_gain / 2.0;
         Ok(Candidate {
             physics,
             site,

@@ -11,6 +11,9 @@ pub struct DiagnosisSettings {
     /// Least gain of validation loss that makes a candidate worth naming. An effect that lowers the mean squared error
     /// by less than a fifth cannot be told from the small errors that every model has.
     pub least_gain: f64,
+    /// The same where the model is adequate already: an effect that acts in a few moments only can still halve its squared
+    /// error. Less than that, effects gain by taking up imperfections that are none of theirs.
+    pub least_gain_when_adequate: f64,
     /// Least number of standard errors by which that gain must differ from zero; 3.5 keeps the chance of one false name
     /// among 26 candidates near 1 %.
     pub least_significance: f64,
@@ -18,13 +21,17 @@ pub struct DiagnosisSettings {
     pub tie_gain: f64,
     /// Candidates whose loss differs from the best one's by fewer standard errors are tied with it.
     pub tie_significance: f64,
-    /// A model whose loss is below this has nothing left to explain: its mean squared error is at most this many e-folds
-    /// above sensor noise.
+    /// A model whose typical loss ([`crate::fit::Fit::typical_loss`]) is below this is adequate. 0.6 is 1.35 times the
+    /// sensors' noise; the right model of a machine with the small imperfections that every machine has comes to 0.1 to
+    /// 0.3 in the blind benchmark.
     pub adequate_loss: f64,
-    /// Or its normalised mean squared error, mean over signals, is below this: an engineer would not act on it.
+    /// Or its normalised mean squared error, mean over signals, is below this: a hundredth of each signal's own size,
+    /// which nobody would act on however quiet the sensors are.
     pub adequate_error: f64,
-    /// Effects explain a recording when together they lower the loss at least by this (five times less squared error).
-    pub explained_gain: f64,
+    /// Effects explain a recording when they make the model adequate, or take away at least this share of the loss. The
+    /// right effects take away 80 % and more; in the blind benchmark effects that only resemble one that no catalogue
+    /// has took away 35 % at most.
+    pub explained_share: f64,
     /// Most effects added one after the other.
     pub most_effects: usize,
     /// Steps of a fit in the race.
@@ -40,12 +47,13 @@ impl Default for DiagnosisSettings {
         DiagnosisSettings {
             fit: FitSettings::default(),
             least_gain: 0.22,
+            least_gain_when_adequate: 0.7,
             least_significance: 3.5,
             tie_gain: 0.1,
             tie_significance: 2.0,
-            adequate_loss: 1.2,
-            adequate_error: 1e-3,
-            explained_gain: 1.6,
+            adequate_loss: 0.6,
+            adequate_error: 1e-4,
+            explained_share: 0.65,
             most_effects: 3,
             race_steps: 3,
             finalists: 4,

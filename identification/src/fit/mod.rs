@@ -7,6 +7,7 @@ mod prediction;
 mod problem;
 mod segments;
 mod settings;
+mod typical_loss;
 
 pub use instruments::{Instrument, instruments, standard_deviation};
 pub use output_error::{Fit, FitError, evaluate, fit};

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::DocumentError;
 use super::quantity::{Must, Quantity};
-use crate::machine::{Chambers, Cylinder, Linkage, Machine, Mechanism, PumpLine, Supply};
+use crate::machine::{Chambers, Cylinder, Linkage, Machine, Mechanism, PressureSource, PumpLine, Supply};
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -29,7 +29,7 @@ enum MechanismText {
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 enum SupplyText {
     PumpLine { volume: Quantity, flow: Quantity, tank_pressure: Quantity },
-    MeasuredPressure,
+    PressureSource { pressure: Quantity, tank_pressure: Quantity },
     None,
 }
 
@@ -77,7 +77,10 @@ impl MachineText {
                 flow: flow.checked(name, "supply.flow", "m3/s", BePositive)?,
                 tank_pressure: tank_pressure.checked(name, "supply.tank_pressure", "Pa", BeFinite)?,
             }),
-            SupplyText::MeasuredPressure => Supply::MeasuredPressure,
+            SupplyText::PressureSource { pressure, tank_pressure } => Supply::PressureSource(PressureSource {
+                pressure: pressure.checked(name, "supply.pressure", "Pa", BePositive)?,
+                tank_pressure: tank_pressure.checked(name, "supply.tank_pressure", "Pa", BeFinite)?,
+            }),
             SupplyText::None => Supply::None,
         };
         let cylinders = self.cylinders.iter().map(|c| c.cylinder(name)).collect::<Result<Vec<_>, _>>()?;
@@ -130,7 +133,10 @@ impl MachineText {
                     flow: Quantity::new(line.flow, "m3/s"),
                     tank_pressure: Quantity::new(line.tank_pressure, "Pa"),
                 },
-                Supply::MeasuredPressure => SupplyText::MeasuredPressure,
+                Supply::PressureSource(source) => SupplyText::PressureSource {
+                    pressure: Quantity::new(source.pressure, "Pa"),
+                    tank_pressure: Quantity::new(source.tank_pressure, "Pa"),
+                },
                 Supply::None => SupplyText::None,
             },
             cylinders: machine.cylinders.iter().map(CylinderText::of).collect(),

@@ -33,7 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     minimum: 0.0,
     maximum: 5e-5,
     typical: 1e-5,
-    start: Start::At(&[4e-6]),
+    start: Start::At(&[4e-6, 5e-7]),
 }];
 
 impl Physics for ValveHysteresis {

@@ -35,14 +35,14 @@ pub fn ledger<'m, T: Number>(system: &System<'m>, parameters: &[T], state: &[T],
             (oil.stored * line.volume, oil.potential)
         }
         // A pressure given from outside has no volume that could store anything.
-        Supply::MeasuredPressure => (zero, supply_pressure),
+        Supply::PressureSource(_) => (zero, supply_pressure),
         Supply::None => (zero, zero),
     };
     let effects = account.effect_powers(&potentials, pump_potential);
 
     let pump_power = match system.model().machine.supply {
         Supply::PumpLine(_) => pump_potential * inputs.pump_flow,
-        Supply::MeasuredPressure | Supply::None => effects.iter().fold(zero, |sum, effect| sum - effect.pump_line),
+        Supply::PressureSource(_) | Supply::None => effects.iter().fold(zero, |sum, effect| sum - effect.pump_line),
     };
     let pistons = account.workspace.situation.pistons.iter().zip(&system.model().machine.cylinders);
     let rod_force_power = pistons

@@ -8,7 +8,7 @@ mod supply;
 pub use cylinder::{Chambers, Cylinder};
 pub use linkage::Linkage;
 pub use mechanism::Mechanism;
-pub use supply::{PumpLine, Supply};
+pub use supply::{PressureSource, PumpLine, Supply};
 
 /// A machine: a mechanism driven by one cylinder per joint, fed by one supply.
 #[derive(Debug, Clone, PartialEq)]

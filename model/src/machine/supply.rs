@@ -5,10 +5,19 @@
 pub enum Supply {
     /// A pump feeding a line whose pressure is a state of the model, \[A\] Eq. 2.
     PumpLine(PumpLine),
-    /// The supply pressure is set from outside and measured: closed-centre systems, \[B\].
-    MeasuredPressure,
+    /// The supply pressure is set from outside, whatever flows: closed-centre systems, \[B\].
+    PressureSource(PressureSource),
     /// No oil at all: the force on the load is measured.
     None,
+}
+
+/// Known constants of a supply whose pressure is kept from outside.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PressureSource {
+    /// Supply pressure Pp where the recording does not measure it, Pa (gauge).
+    pub pressure: f64,
+    /// Tank pressure Pt where the recording does not measure it, Pa (gauge).
+    pub tank_pressure: f64,
 }
 
 /// Known constants of the pump and its line.

@@ -59,13 +59,12 @@ impl InputSignals {
             }
         }
         let (default_tank, default_flow) = supply_constants(machine);
-        let supply_pressure = if machine.supply == Supply::MeasuredPressure {
-            without_holes(&recording.time, &recording.pump_pressure).ok_or_else(|| missing("pump_pressure".into()))?
-        } else {
-            vec![0.0; samples]
-        };
         let or_constant = |signal: &[f64], constant: f64| {
             without_holes(&recording.time, signal).unwrap_or_else(|| vec![constant; samples])
+        };
+        let supply_pressure = match machine.supply {
+            Supply::PressureSource(source) => or_constant(&recording.pump_pressure, source.pressure),
+            Supply::PumpLine(_) | Supply::None => vec![0.0; samples],
         };
         Ok(InputSignals {
             orifice_area,
@@ -115,6 +114,11 @@ impl InputSignals {
         self.orifice_area[cylinder].1[sample] = area;
     }
 
+    /// Supply pressure at each sample, Pa; zero where the pump line's pressure is a state of the model.
+    pub fn supply_pressure(&self) -> &[f64] {
+        &self.supply_pressure
+    }
+
     /// Tank pressure at each sample, Pa.
     pub fn tank_pressure(&self) -> &[f64] {
         &self.tank_pressure
@@ -147,7 +151,8 @@ impl InputSignals {
 fn supply_constants(machine: &Machine) -> (f64, f64) {
     match machine.supply {
         Supply::PumpLine(line) => (line.tank_pressure, line.flow),
-        Supply::MeasuredPressure | Supply::None => (0.0, 0.0),
+        Supply::PressureSource(source) => (source.tank_pressure, 0.0),
+        Supply::None => (0.0, 0.0),
     }
 }
 

@@ -4,6 +4,7 @@ use super::{InputSignals, Integrator, Observer, SimulationError, Tolerances, ini
 use crate::Model;
 use crate::SignalError;
 use crate::equations::{Channel, System};
+use crate::machine::Supply;
 use crate::recording::Recording;
 
 /// Why there is no simulated recording.
@@ -50,6 +51,9 @@ pub fn simulate_from(
     let mut observer = Observer::new(&system, &parameters, &[], &Channel::all(system.layout()));
     let mut simulated = recording.clone();
     simulated.source = format!("{} simulated", model.machine.name);
+    if let Supply::PressureSource(_) = model.machine.supply {
+        simulated.pump_pressure.copy_from_slice(signals.supply_pressure());
+    }
     for index in 0..signals.len() {
         observer.record(signals, index, &state, &mut simulated);
         if index + 1 < signals.len() {

@@ -4,7 +4,7 @@
 use excavator_model::document::built_in;
 use excavator_model::effects::{CATALOGUE, Effect, Site};
 use excavator_model::equations::{Channel, Inputs, System};
-use excavator_model::machine::{Machine, Supply};
+use excavator_model::machine::{Machine, PressureSource, Supply};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelEffect};
 
@@ -35,13 +35,14 @@ impl Random {
 pub fn closed_centre() -> Model {
     let mut model = built_in("zx30u-arm").unwrap();
     model.effects.retain(|effect| effect.site != Site::PumpLine);
-    model.machine.supply = Supply::MeasuredPressure;
+    model.machine.supply = Supply::PressureSource(PressureSource { pressure: 12e6, tank_pressure: 0.0 });
     model.machine.name = "closed-centre".into();
     model
 }
 
 pub fn machines() -> Vec<Model> {
-    let mut models: Vec<Model> = ["zx30u-arm", "zx30u", "emps"].iter().map(|name| built_in(name).unwrap()).collect();
+    let mut models: Vec<Model> =
+        ["zx30u-arm", "zx30u", "servo-bench", "emps"].iter().map(|name| built_in(name).unwrap()).collect();
     models.push(closed_centre());
     models
 }

@@ -25,7 +25,7 @@ pub(super) fn parameters() -> Vec<Parameter> {
         )
         .within(-5.0, 5.0)
         .read_only(),
-        double("supply_pressure", 7e6, "supply pressure of machines whose supply pressure is measured [Pa]")
+        double("supply_pressure", 0.0, "pressure of a supply that is kept from outside [Pa]; 0: as the machine says")
             .within(0.0, 1e8)
             .read_only(),
         double("oil_temperature", 27.0, "oil temperature that is reported [degC]").within(-50.0, 200.0),

@@ -152,7 +152,12 @@ impl<'m, 's> Plant<'m, 's> {
 fn inputs_of_one_period(model: &Model, period: f64, supply_pressure: f64) -> Recording {
     let names: Vec<&str> = model.machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();
     let mut recording = Recording::unmeasured("simulator", vec![0.0, period], &names);
-    recording.pump_pressure.fill(supply_pressure);
+    if supply_pressure > 0.0 {
+        recording.pump_pressure.fill(supply_pressure);
+    }
+    if let Supply::PressureSource(source) = model.machine.supply {
+        recording.tank_pressure.fill(source.tank_pressure);
+    }
     if let Supply::PumpLine(line) = model.machine.supply {
         recording.tank_pressure.fill(line.tank_pressure);
         recording.pump_flow.fill(line.flow);

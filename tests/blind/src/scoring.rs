@@ -66,6 +66,8 @@ pub struct Score {
     pub nmse: [f64; 2],
     /// Loss on validation: of the nominal model, then after each effect of the chain; 0 is sensor noise alone.
     pub losses: Vec<f64>,
+    /// The same but for the worst moments, before anything is added and after.
+    pub typical: [f64; 2],
     /// Name, gain and significance of the best candidates for the first place.
     pub gains: Vec<(&'static str, f64, f64)>,
     /// Base parameters inside their 95 % interval, and how many have one, in the last model.
@@ -150,6 +152,7 @@ pub fn score(case: &Case, evidence: &Evidence) -> Result<Score, ScoreError> {
             .chain(diagnosis.chain.iter().map(|step| &step.validation))
             .map(Fit::loss)
             .collect(),
+        typical: [diagnosis.nominal_validation.typical_loss(), last_validation.typical_loss()],
         gains: diagnosis
             .candidates
             .iter()

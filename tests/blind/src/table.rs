@@ -29,7 +29,7 @@ pub fn line(case: &Case, evidence: &Evidence, score: &Score) -> String {
         score.gains.iter().map(|(name, gain, deviations)| format!("{name} {gain:.2} ({deviations:.1})")).collect();
     format!(
         "{:>4}  {:18}  hidden {hidden}\n      {}: {named}{tied}, NMSE {:.2e} -> {:.2e}{error}, covered {}/{}, {:.0} s\n      \
-         loss {}; gains {}",
+         loss {} (typical {:.2} -> {:.2}); gains {}",
         case.number,
         score.outcome.name(),
         score.verdict.name(),
@@ -39,6 +39,8 @@ pub fn line(case: &Case, evidence: &Evidence, score: &Score) -> String {
         score.covered[1],
         score.seconds,
         losses.join(" -> "),
+        score.typical[0],
+        score.typical[1],
         gains.join(", ")
     )
 }

@@ -286,10 +286,14 @@ impl<'m, 's> Monitor<'m, 's> {
         }
         let (tank, flow) = match machine.supply {
             Supply::PumpLine(line) => (line.tank_pressure, line.flow),
-            Supply::MeasuredPressure | Supply::None => (0.0, 0.0),
+            Supply::PressureSource(source) => (source.tank_pressure, 0.0),
+            Supply::None => (0.0, 0.0),
         };
         let or = |value: f64, constant: f64| if value.is_finite() { value } else { constant };
-        inputs.supply_pressure = sample.pump_pressure;
+        inputs.supply_pressure = match machine.supply {
+            Supply::PressureSource(source) => or(sample.pump_pressure, source.pressure),
+            Supply::PumpLine(_) | Supply::None => sample.pump_pressure,
+        };
         inputs.tank_pressure = or(sample.tank_pressure, tank);
         inputs.pump_flow = or(sample.pump_flow, flow);
         (state, inputs)
