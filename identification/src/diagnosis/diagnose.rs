@@ -100,6 +100,9 @@ pub fn diagnose(
         let span = 0.8 / settings.most_effects as f64;
         let wanted = additions(&base.model);
         let adequate = is_adequate(base_validation, validation, settings);
+        if adequate && !chain.is_empty() {
+            break;
+        }
         let least_gain = if adequate { settings.least_gain_when_adequate } else { settings.least_gain };
         let race = Race { base, base_validation, identification, validation, least_gain, settings };
         let round = race.run(&wanted, &|what, fraction| progress(what, start + span * fraction))?;

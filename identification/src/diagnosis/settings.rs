@@ -52,7 +52,7 @@ impl Default for DiagnosisSettings {
             tie_gain: 0.1,
             tie_significance: 2.0,
             adequate_loss: 0.6,
-            adequate_error: 1e-4,
+            adequate_error: 1.5e-4,
             explained_share: 0.65,
             most_effects: 3,
             race_steps: 3,

@@ -29,7 +29,7 @@ static PARAMETERS: &[ParameterCard] = &[
         minimum: 1e-3,
         maximum: 0.5,
         typical: 0.03,
-        start: Start::At(&[0.05, 0.25]),
+        start: Start::At(&[0.04, 0.08, 0.16]),
     },
     ParameterCard {
         name: "cushion_damping",
