@@ -9,6 +9,11 @@ import time
 LONGEST_CLEAN_END = 10.0
 
 
+def _hear_interrupts():
+    """A shell starts what runs in its background deaf to SIGINT, and that is inherited all the way down to here."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Process:
     """Started at once; its output goes to a file and is shown when a test fails on it."""
 
@@ -22,6 +27,7 @@ class Process:
             stdin=subprocess.DEVNULL,
             stdout=self._output,
             stderr=subprocess.STDOUT,
+            preexec_fn=_hear_interrupts,
         )
 
     @property

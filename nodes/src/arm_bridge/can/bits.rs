@@ -94,7 +94,7 @@ mod tests {
         let sixteen = bits(7, 16, true, Coding::Unsigned);
         assert_eq!((sixteen.bytes(), sixteen.raw(&[0x12, 0x34])), (2, Some(0x1234)));
         let ten = bits(3, 10, true, Coding::Unsigned);
-        assert_eq!((ten.bytes(), ten.raw(&[0x0f, 0xc0])), (2, Some(0b11_1111_1100 | 0b11)));
+        assert_eq!((ten.bytes(), ten.raw(&[0xfa, 0xc7])), (2, Some(0b10_1011_0001)));
     }
 
     #[test]

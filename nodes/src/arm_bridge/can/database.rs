@@ -228,3 +228,94 @@ impl Database {
         self.dbc.messages.iter().flat_map(of).collect()
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use serde_json::Value;
+
+    use super::*;
+
+    const EXAMPLE: &[u8] = include_bytes!("../../../../config/can/excavator.dbc");
+    /// Random signals and frames with what PyPI's cantools reads from them; made by the script beside the file.
+    const VECTORS: &str = include_str!("../../../tests/can/vectors.json");
+
+    fn bytes(hexadecimal: &str) -> Vec<u8> {
+        let pairs = (0..hexadecimal.len()).step_by(2);
+        pairs.map(|at| u8::from_str_radix(&hexadecimal[at..at + 2], 16).unwrap()).collect()
+    }
+
+    #[test]
+    fn every_number_is_that_of_an_independent_reader() {
+        let vectors: Value = serde_json::from_str(VECTORS).unwrap();
+        let database = Database::parse(vectors["dbc"].as_str().unwrap().as_bytes()).unwrap();
+        let (mut read, mut absent) = (0, 0);
+        for frame in vectors["frames"].as_array().unwrap() {
+            let message = frame["message"].as_str().unwrap();
+            let data = bytes(frame["data"].as_str().unwrap());
+            for (name, bits) in frame["values"].as_object().unwrap() {
+                let place = database.place(message, name).unwrap();
+                let expected = f64::from_bits(u64::from_str_radix(bits.as_str().unwrap(), 16).unwrap());
+                assert!(place.is_selected(&data), "{message}.{name}");
+                let value = place.value(&data).unwrap();
+                // The other reader may round once more or once less.
+                let tolerance = 4.0 * f64::EPSILON * value.abs().max(place.offset.abs());
+                assert!((value - expected).abs() <= tolerance, "{message}.{name}: {value}, not {expected}");
+                read += 1;
+            }
+            for name in frame["absent"].as_array().unwrap() {
+                let place = database.place(message, name.as_str().unwrap()).unwrap();
+                assert!(!place.is_selected(&data), "{message}.{name}");
+                absent += 1;
+            }
+        }
+        assert!(read > 700 && absent > 400, "{read} numbers, {absent} absent");
+    }
+
+    #[test]
+    fn a_frame_that_is_too_short_has_no_value() {
+        let place = Database::parse(EXAMPLE).unwrap().place("ArmPressures", "RodPressure").unwrap();
+        assert_eq!(place.value(&[0x64, 0, 0xc8, 0]), Some(4.0));
+        assert_eq!(place.value(&[0x64, 0, 0xc8]), None);
+    }
+
+    #[test]
+    fn the_range_is_that_of_the_file() {
+        let database = Database::parse(EXAMPLE).unwrap();
+        assert_eq!(database.place("ArmMotion", "Speed").unwrap().range(), Some((-2000.5, 2000.5)));
+        assert_eq!(database.place("ValveState", "OrificeArea").unwrap().range(), Some((-200.0, 200.0)));
+        let none = b"BO_ 1 M: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n";
+        assert_eq!(Database::parse(none).unwrap().place("M", "S").unwrap().range(), None);
+    }
+
+    #[test]
+    fn code_page_1252_is_read() {
+        let database = Database::parse(b"BO_ 1 M: 8 N\n SG_ T : 0|8@1+ (1,-40) [0|0] \"\xb0C\" N\n").unwrap();
+        assert_eq!(database.place("M", "T").unwrap().value(&[50]), Some(10.0));
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_a_reason() {
+        let example = Database::parse(EXAMPLE).unwrap();
+        let refused = |message: &str, signal: &str| example.place(message, signal).unwrap_err();
+        assert!(refused("Nothing", "CapPressure").contains("ArmPressures"));
+        assert!(refused("ArmPressures", "Nothing").contains("CapPressure"));
+        let of = |line: &str, more: &str| {
+            let text = format!("BO_ 1 M: 2 N\n SG_ S {line} [0|0] \"\" N\n\n{more}");
+            Database::parse(text.as_bytes()).and_then(|database| database.place("M", "S"))
+        };
+        for (line, more, word) in [
+            (": 8|9@1+ (1,0)", "", "byte 3 of a message of 2"),
+            (": 0|10@0+ (1,0)", "", "byte 3"),
+            (": 0|65@1+ (1,0)", "", "65 bits"),
+            (": 0|16@1+ (0,0)", "", "factor 0"),
+            (": 0|16@1- (1,0)", "SIG_VALTYPE_ 1 S : 1;\n", "16 bits"),
+            ("m1 : 0|8@1+ (1,0)", "", "no multiplexer"),
+            ("m1M : 0|8@1+ (1,0)", "SG_MUL_VAL_ 1 S S 1-1;\n", "select each other"),
+        ] {
+            let refusal = of(line, more);
+            assert!(refusal.as_ref().is_err_and(|reason| reason.contains(word)), "{word}: {refusal:?}");
+        }
+        assert!(Database::parse(b"not a database").is_err_and(|reason| !reason.contains('\n')));
+    }
+}

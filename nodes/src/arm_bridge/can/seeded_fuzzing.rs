@@ -100,8 +100,9 @@ fn deep_and_long_databases() {
 fn logs() {
     let mut numbers = ChaCha8Rng::seed_from_u64(0x10_95);
     let database = Database::parse(DBC).unwrap();
-    let places = database.all_signals().iter().filter_map(|(message, signal)| database.place(message, signal).ok());
-    let wanted = Wanted { places: places.collect() };
+    let signals = database.all_signals();
+    let places = signals.iter().filter_map(|(message, signal)| database.place(message, signal).ok()).collect();
+    let wanted = Wanted { places };
     let good = &LOG[..3_000];
     let lines = good.iter().filter(|byte| **byte == b'\n').count() as u64;
     for _ in 0..3_000 {
