@@ -107,8 +107,8 @@ fn main() {
     let by_stamp: BTreeMap<i64, i64> = states.iter().map(|(stamp, published, _)| (*stamp, *published)).collect();
     let (mut processing, mut arrival, mut age) = (Vec::new(), Vec::new(), Vec::new());
     for (stamp, published, arrived) in &energies {
-        // Stamps are rounded to nanoseconds: the state at the end of the window may be a little before it.
-        let trigger = by_stamp.range(stamp + HALF_WIDTH - 1_000..).next();
+        // The state that fills the window; a nanosecond is lost where stamps become seconds.
+        let trigger = by_stamp.range(stamp + HALF_WIDTH - 2..).next();
         if let (Some((_, trigger)), Some(own)) = (trigger, by_stamp.get(stamp)) {
             processing.push(milliseconds(*trigger, *published));
             arrival.push(milliseconds(*trigger, *arrived));

@@ -49,9 +49,10 @@ def decoded():
 
 def expected(signal, values, limits, moment, now):
     """The value in SI at `moment` as known at `now`: on the line between two measurements, NaN when impossible or old."""
-    delay, age = signal.get("delay", 0.0) * 1e9, signal.get("age", 0.1) * 1e9
+    # whole nanoseconds: since the epoch they are more than a float holds
+    delay, age = round(signal.get("delay", 0.0) * 1e9), round(signal.get("age", 0.1) * 1e9)
     scale, offset = signal.get("scale", 1.0), signal.get("offset", 0.0)
-    known = [(time - delay, value) for time, value in values if time < now - ROUNDING]
+    known = [(time - delay, value) for time, value in values if time <= now + ROUNDING]
     before = [one for one in known if one[0] <= moment]
     after = [one for one in known if one[0] > moment]
     if not before or moment - before[-1][0] > age:
@@ -94,7 +95,7 @@ def test_every_number_is_that_of_an_independent_decoder(ros, excavator, tmp_path
 
     words = tomllib.loads(path.read_text())
     signals = words["can"][0]["signals"]
-    common = max(signal.get("delay", 0.0) for signal in signals) * 1e9
+    common = round(max(signal.get("delay", 0.0) for signal in signals) * 1e9)
     database = cantools.database.load_file(EXAMPLE / "excavator.dbc")
     bus = decoded()
     compared = missing = 0
@@ -115,24 +116,21 @@ def test_every_number_is_that_of_an_independent_decoder(ros, excavator, tmp_path
 
 
 def test_a_log_is_a_bus_in_real_time_and_what_ends_is_not_measured(ros, excavator, tmp_path):
+    signals = tomllib.loads((EXAMPLE / "arm.toml").read_text())["can"][0]["signals"]
     told = []
 
     def take(array):
         for status in array.status:
             told.extend(f"{value.key}: {value.value}" for value in status.values)
 
-    subscription = ros.node.create_subscription(DiagnosticArray, "/diagnostics", take, 10)
+    ros.listen_with(DiagnosticArray, "/diagnostics", take)
     states = ros.listen(ArmState, "/arm/state", STATE_QOS)
     bridge = ros.start(excavator, "node", "arm-bridge", "--ros-args", "-p", f"description:={EXAMPLE / 'arm.toml'}")
-    try:
-        ros.spin_until(lambda: any("arm.velocity: out of range" in word for word in told), "the missing speed")
-        ros.spin_until(lambda: any("arm.cap_pressure: stale" in word for word in told), "the end of the log")
-        ros.spin_until(lambda: math.isnan(cylinder(states[-1]).cap_pressure), "states without pressures")
-        assert math.isnan(states[-1].pump_pressure) and math.isnan(states[-1].oil_temperature)
-        assert any(state.oil_temperature == 42.0 for state in states)
-        assert any("error and remote frames: 1" in word for word in told)
-    finally:
-        ros.node.destroy_subscription(subscription)
+    ros.spin_until(lambda: any("arm.velocity: out of range" in word for word in told), "the missing speed")
+    ros.spin_until(lambda: any("arm.cap_pressure: stale" in word for word in told), "the end of the log")
+    ros.spin_until(lambda: all(math.isnan(measured(states[-1], signal)) for signal in signals), "states without values")
+    assert any(state.oil_temperature == 42.0 for state in states)
+    assert any("error and remote frames: 1" in word for word in told)
     assert bridge.interrupt() == 0, bridge.output()
 
 

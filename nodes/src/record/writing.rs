@@ -14,10 +14,9 @@ const FLUSH: Duration = Duration::from_millis(500);
 
 /// What the writing thread is told.
 pub(super) enum Order {
-    /// A topic; its number is the count of topics before it.
+    /// A topic; its number is the count of topics before it. What its publishers offer is that of now: the file has it at
+    /// its beginning, and readers do not find the messages of a bag whose metadata say something else than its file.
     Topic { name: String, type_name: String, qos: Vec<Qos> },
-    /// Other publishers of a topic.
-    Qos { topic: usize, qos: Vec<Qos> },
     /// A message of a topic.
     Message { topic: usize, sample: RawSample },
 }
@@ -57,11 +56,6 @@ pub(super) fn write(
                 let id = bag.add_topic(&TopicToWrite { name: name.clone(), type_name, schema, qos })?;
                 let outcome = TopicOutcome { name, messages: 0, lost: 0, publishers: 0 };
                 topics.push(Recorded { id, outcome, losses: Losses::default() });
-            }
-            Ok(Order::Qos { topic, qos }) => {
-                if let Some(topic) = topics.get(topic) {
-                    bag.set_qos(topic.id, qos);
-                }
             }
             Ok(Order::Message { topic, sample }) => {
                 let Some(topic) = topics.get_mut(topic) else { continue };

@@ -20,7 +20,8 @@ class Process:
     def __init__(self, command, environment):
         self.command = [str(word) for word in command]
         self._may_end = False
-        self._output = tempfile.TemporaryFile(mode="w+")
+        # appended to: reading moves the place in the file, which the program shares with us
+        self._output = tempfile.TemporaryFile(mode="a+")
         self._process = subprocess.Popen(
             self.command,
             env=environment,
@@ -55,6 +56,12 @@ class Process:
     def terminate(self):
         """What a service manager does; returns as `interrupt`."""
         return self._end(signal.SIGTERM)
+
+    def vanish(self):
+        """What `kill -9` does: nobody is told."""
+        self._may_end = True
+        self._process.kill()
+        self._process.wait()
 
     def wait(self, timeout):
         """The exit status, whatever it is; AssertionError when it takes longer."""
