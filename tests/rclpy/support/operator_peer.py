@@ -3,6 +3,7 @@
     python operator_peer.py FILE
 """
 
+import signal
 import sys
 import time
 
@@ -16,6 +17,8 @@ STEP = 0.05
 
 
 def main():
+    # a shell starts what runs in its background deaf to SIGINT
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     rclpy.init()
     node = rclpy.create_node("operator", start_parameter_services=False)
     last = 0.0

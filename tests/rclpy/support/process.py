@@ -1,5 +1,6 @@
 """A program that runs beside the test."""
 
+import os
 import signal
 import subprocess
 import tempfile
@@ -20,8 +21,7 @@ class Process:
     def __init__(self, command, environment):
         self.command = [str(word) for word in command]
         self._may_end = False
-        # appended to: reading moves the place in the file, which the program shares with us
-        self._output = tempfile.TemporaryFile(mode="a+")
+        self._output = tempfile.TemporaryFile()
         self._process = subprocess.Popen(
             self.command,
             env=environment,
@@ -39,9 +39,9 @@ class Process:
         return self._process.poll() is None
 
     def output(self):
-        self._output.flush()
-        self._output.seek(0)
-        return self._output.read()
+        # without moving the place in the file, which the program shares with us and writes at
+        file = self._output.fileno()
+        return os.pread(file, os.fstat(file).st_size, 0).decode(errors="replace")
 
     def check_not_failed(self):
         """AssertionError when it ended with an error that nobody waits for."""
