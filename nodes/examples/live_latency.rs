@@ -103,7 +103,10 @@ fn main() {
     println!("{:<28}{:>9}{:>9}{:>9}{:>9}   ms", "", "p50", "p99", "p99.9", "max");
     print("lateness of publication", lateness.iter().map(|late| late - least).collect());
     print("interval of publication", states.windows(2).map(|pair| milliseconds(pair[0].1, pair[1].1)).collect());
-    print("state on the wire", states.iter().map(|(_, published, arrived)| milliseconds(*published, *arrived)).collect());
+    print(
+        "state on the wire",
+        states.iter().map(|(_, published, arrived)| milliseconds(*published, *arrived)).collect(),
+    );
     let by_stamp: BTreeMap<i64, i64> = states.iter().map(|(stamp, published, _)| (*stamp, *published)).collect();
     let (mut processing, mut arrival, mut age) = (Vec::new(), Vec::new(), Vec::new());
     for (stamp, published, arrived) in &energies {

@@ -165,7 +165,10 @@ fn after_two_minutes_without_a_cable_all_peers_find_each_other_again() {
         .filter_map(|value| value.value.parse::<u32>().ok())
         .max();
     println!("valve closed after {closed:.2} s; gaps counted by the monitor: {gaps:?}");
-    println!("lost by sequence number: {}", custom_number(&far, "lost_messages:/arm/state"));
+    let metadata = std::fs::read_to_string(far.join("metadata.yaml")).unwrap();
+    let silence = metadata.lines().find(|line| line.contains("longest_silence_seconds:/arm/state")).unwrap();
+    let silence: f64 = silence.rsplit('\'').nth(1).unwrap().parse().unwrap();
+    println!("silence in the bag's metadata: {silence:.1} s");
     for (who, time) in [
         ("simulator follows the Cyclone operator", heard.map(|found| found.0)),
         ("Cyclone operator hears the state", at_operator.copied()),
@@ -177,4 +180,5 @@ fn after_two_minutes_without_a_cable_all_peers_find_each_other_again() {
     }
     assert!(closed < 0.6, "{closed}");
     assert!(gaps.is_some_and(|gaps| gaps >= 1), "{gaps:?}");
+    assert!((OUTAGE..OUTAGE + 30.0).contains(&silence), "{silence}");
 }

@@ -73,10 +73,12 @@ impl CanSource {
                     logger.info(format!("the log has ended after {frames} frames"));
                 })
             }
-            Input::Log(log, LogPace::Fastest) => convert(&log, &wanted, first, publisher, refused, stop).map(|states| {
-                logger.info(format!("the log has ended, {states} states were published"));
-                stop.store(true, Ordering::Relaxed);
-            }),
+            Input::Log(log, LogPace::Fastest) => {
+                convert(&log, &wanted, first, publisher, refused, stop).map(|states| {
+                    logger.info(format!("the log has ended, {states} states were published"));
+                    stop.store(true, Ordering::Relaxed);
+                })
+            }
         };
         if let Err(reason) = outcome {
             logger.error(reason);

@@ -250,7 +250,10 @@ mod tests {
             .map(|line| line.trim_start_matches("//!").to_string() + "\n")
             .collect();
         let description = Description::parse(&example);
-        assert!(description.as_ref().is_ok_and(|d| d.udp.len() == 1 && d.can.len() == 1 && d.topics.len() == 1), "{description:?}");
+        assert!(
+            description.as_ref().is_ok_and(|d| d.udp.len() == 1 && d.can.len() == 1 && d.topics.len() == 1),
+            "{description:?}"
+        );
     }
 
     #[test]

@@ -266,7 +266,15 @@ mod tests {
     use super::*;
 
     fn treatment(signal: &str) -> Treatment {
-        Treatment { signal: signal.into(), scale: 1e-3, offset: -0.3, minimum: -0.31, maximum: 0.31, age: 0.05, delay: 0.0 }
+        Treatment {
+            signal: signal.into(),
+            scale: 1e-3,
+            offset: -0.3,
+            minimum: -0.31,
+            maximum: 0.31,
+            age: 0.05,
+            delay: 0.0,
+        }
     }
 
     #[test]

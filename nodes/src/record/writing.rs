@@ -59,7 +59,7 @@ pub(super) fn write(
             }
             Ok(Order::Message { topic, sample }) => {
                 let Some(topic) = topics.get_mut(topic) else { continue };
-                topic.losses.take(sample.writer, sample.sequence);
+                topic.losses.take(sample.writer, sample.sequence, sample.received);
                 topic.outcome.messages += 1;
                 bag.write(topic.id, sample.received, sample.published.unwrap_or(sample.received), &sample.data)?;
             }
@@ -75,6 +75,8 @@ pub(super) fn write(
         topic.outcome.lost = topic.losses.lost();
         topic.outcome.publishers = topic.losses.publishers();
         bag.set_custom_data(&format!("lost_messages:{}", topic.outcome.name), &topic.outcome.lost.to_string());
+        let silence = format!("{:.3}", topic.losses.longest_silence());
+        bag.set_custom_data(&format!("longest_silence_seconds:{}", topic.outcome.name), &silence);
     }
     bag.set_custom_data("dropped_by_recorder", &dropped().to_string());
     bag.finish()?;

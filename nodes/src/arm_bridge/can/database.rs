@@ -25,6 +25,9 @@ pub(in crate::arm_bridge) struct Identifier {
     pub extended: bool,
 }
 
+/// A multiplexer, and its values with which the frame carries a signal.
+type Selector = (Bits, Vec<RangeInclusive<u64>>);
+
 /// Where a signal stands.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::arm_bridge) struct Place {
@@ -34,8 +37,8 @@ pub(in crate::arm_bridge) struct Place {
     offset: f64,
     /// Values that the file allows, in its unit.
     range: Option<(f64, f64)>,
-    /// Multiplexers and the values with which the frame carries the signal.
-    selectors: Vec<(Bits, Vec<RangeInclusive<u64>>)>,
+    /// From the signal upwards.
+    selectors: Vec<Selector>,
 }
 
 impl Place {
@@ -135,9 +138,11 @@ impl Database {
     }
 
     fn bits(&self, message: &Message, signal: &Signal) -> Result<Bits, String> {
-        let extended = self.dbc.signal_extended_value_type_list.iter().find(|extended| {
-            extended.message_id == message.id && extended.signal_name == signal.name
-        });
+        let extended = self
+            .dbc
+            .signal_extended_value_type_list
+            .iter()
+            .find(|extended| extended.message_id == message.id && extended.signal_name == signal.name);
         let coding = match (extended.map(|extended| extended.signal_extended_value_type), signal.value_type) {
             (Some(SignalExtendedValueType::IEEEfloat32Bit), _) => Coding::Float32,
             (Some(SignalExtendedValueType::IEEEdouble64bit), _) => Coding::Float64,
@@ -168,7 +173,7 @@ impl Database {
     }
 
     /// Multiplexers from the signal upwards.
-    fn selectors(&self, message: &Message, signal: &Signal) -> Result<Vec<(Bits, Vec<RangeInclusive<u64>>)>, String> {
+    fn selectors(&self, message: &Message, signal: &Signal) -> Result<Vec<Selector>, String> {
         let mut selectors = Vec::new();
         let mut current = signal;
         while let MultiplexIndicator::MultiplexedSignal(value)
