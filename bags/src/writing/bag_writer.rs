@@ -154,13 +154,6 @@ impl BagWriter {
         self.custom_data.insert(key.to_string(), value.to_string());
     }
 
-    /// Sets the quality of service that `metadata.yaml` tells for a topic, for publishers that came later.
-    pub fn set_qos(&mut self, topic: TopicId, qos: Vec<Qos>) {
-        if let Some(written) = self.topics.get_mut(topic.0) {
-            written.topic.qos = qos;
-        }
-    }
-
     /// Closes the chunk and hands everything to the operating system, so that it survives the end of this process.
     ///
     /// # Errors

@@ -45,6 +45,7 @@ mod tests {
             minimum: f64::NEG_INFINITY,
             maximum: f64::INFINITY,
             age: 1.0,
+            delay: 0.0,
         };
         let field = |at, kind| DatagramField { at, kind, treatment: treatment.clone() };
         Udp {

@@ -1,6 +1,6 @@
 //! The description of where signals come from.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
@@ -16,6 +16,9 @@ pub(super) struct Description {
     /// Sources of datagrams.
     #[serde(default)]
     pub udp: Vec<Udp>,
+    /// CAN buses.
+    #[serde(default)]
+    pub can: Vec<Can>,
     /// Topics of other nodes.
     #[serde(default)]
     pub topics: Vec<TopicSource>,
@@ -89,6 +92,48 @@ impl NumberKind {
     }
 }
 
+/// Frames of one CAN bus.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Can {
+    /// DBC file, seen from the description.
+    pub dbc: PathBuf,
+    /// SocketCAN device.
+    pub device: Option<String>,
+    /// Log of `candump -L` in place of a device, seen from the description.
+    pub log: Option<PathBuf>,
+    /// Device whose frames of the log are read; all without.
+    pub channel: Option<String>,
+    /// How fast a log is read.
+    #[serde(default)]
+    pub pace: LogPace,
+    /// What is where.
+    pub signals: Vec<CanSignal>,
+}
+
+/// How fast a log is read.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum LogPace {
+    /// As fast as its stamps say.
+    #[default]
+    Stamps,
+    /// As fast as states can be published; they have the stamps of the log then.
+    Fastest,
+}
+
+/// One signal of a CAN bus.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub(super) struct CanSignal {
+    /// Name of the message in the DBC file.
+    pub message: String,
+    /// Name of the signal there.
+    pub name: String,
+    /// What becomes of the physical value, which has the unit of the DBC file.
+    #[serde(flatten)]
+    pub treatment: Treatment,
+}
+
 /// One value of a topic.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub(super) struct TopicSource {
@@ -135,7 +180,14 @@ impl Description {
     /// What is wrong, in one line.
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        Self::parse(&text).map_err(|reason| format!("{}: {reason}", path.display()))
+        let mut description = Self::parse(&text).map_err(|reason| format!("{}: {reason}", path.display()))?;
+        // Names of files are seen from the description, wherever the program was started.
+        let folder = path.parent().unwrap_or(Path::new("."));
+        for can in &mut description.can {
+            can.dbc = folder.join(&can.dbc);
+            can.log = can.log.as_ref().map(|log| folder.join(log));
+        }
+        Ok(description)
     }
 
     fn parse(text: &str) -> Result<Self, String> {
@@ -153,6 +205,15 @@ impl Description {
                 }
             }
         }
+        let sources = description.udp.len() + description.can.len() + description.topics.len();
+        for can in &description.can {
+            if can.device.is_some() == can.log.is_some() {
+                return Err("a [[can]] needs either a device or a log".to_string());
+            }
+            if can.pace == LogPace::Fastest && (can.log.is_none() || sources > 1) {
+                return Err("pace = \"fastest\" is for a log that is the only source".to_string());
+            }
+        }
         let treatments = description.treatments();
         for (index, treatment) in treatments.iter().enumerate() {
             treatment.check()?;
@@ -166,10 +227,11 @@ impl Description {
         Ok(description)
     }
 
-    /// What becomes of each signal: those of datagrams first, in the order of the description.
+    /// What becomes of each signal: those of datagrams first, then CAN, then topics, in the order of the description.
     pub fn treatments(&self) -> Vec<Treatment> {
         let udp = self.udp.iter().flat_map(|udp| udp.fields.iter().map(|field| field.treatment.clone()));
-        udp.chain(self.topics.iter().map(|topic| topic.treatment.clone())).collect()
+        let can = self.can.iter().flat_map(|can| can.signals.iter().map(|signal| signal.treatment.clone()));
+        udp.chain(can).chain(self.topics.iter().map(|topic| topic.treatment.clone())).collect()
     }
 }
 
@@ -188,18 +250,26 @@ mod tests {
             .map(|line| line.trim_start_matches("//!").to_string() + "\n")
             .collect();
         let description = Description::parse(&example);
-        assert!(description.as_ref().is_ok_and(|d| d.udp.len() == 1 && d.topics.len() == 1), "{description:?}");
+        assert!(
+            description.as_ref().is_ok_and(|d| d.udp.len() == 1 && d.can.len() == 1 && d.topics.len() == 1),
+            "{description:?}"
+        );
     }
 
     #[test]
     fn nonsense_is_refused_with_a_reason() {
         let udp = "[[udp]]\nport = 1\nlength = 4\n[[udp.fields]]\n";
+        let can = "[[can]]\ndbc = \"x.dbc\"\n";
+        let signal = "[[can.signals]]\nmessage = \"M\"\nname = \"S\"\nsignal = \"pump_flow\"\n";
         for (text, word) in [
             (String::new(), "no signal"),
             ("rate = -1".to_string(), "rate"),
             (format!("{udp}at = 2\nkind = \"f32\"\nsignal = \"pump_flow\""), "byte 6"),
             (format!("{udp}at = 0\nkind = \"f32\"\nsignal = \"arm.colour\""), "arm.colour"),
             (format!("{udp}at = 0\nkind = \"f16\"\nsignal = \"pump_flow\""), "f16"),
+            (format!("{udp}at = 0\nkind = \"f32\"\nsignal = \"pump_flow\"\ndelay = 2.0"), "delay"),
+            (format!("{can}{signal}"), "device or a log"),
+            (format!("{can}device = \"can0\"\npace = \"fastest\"\n{signal}"), "only source"),
         ] {
             let refused = Description::parse(&text);
             assert!(refused.as_ref().is_err_and(|reason| reason.contains(word)), "{word}: {refused:?}");

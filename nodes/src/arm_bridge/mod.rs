@@ -18,6 +18,16 @@
 //! minimum = -0.31                    # outside: not measured, and told
 //! maximum = 0.31
 //! age = 0.05                         # older than this (s): not measured, and told
+//! delay = 0.012                      # it was measured so long (s) before it comes
+//!
+//! [[can]]                            # a CAN bus
+//! dbc = "excavator.dbc"              # which bits are which signal; seen from this file
+//! device = "can0"                    # or: log = "arm.log", a log of `candump -L`
+//! [[can.signals]]
+//! message = "ArmPressures"           # names of the DBC file
+//! name = "CapPressure"
+//! signal = "arm.cap_pressure"
+//! scale = 1e5                        # from the unit of the DBC file, here bar
 //!
 //! [[topics]]                         # topics of other nodes
 //! topic = "/joint_states"
@@ -27,12 +37,18 @@
 //! signal = "arm.joint_angle"
 //! ```
 //!
+//! Every signal may have `scale`, `offset`, `minimum`, `maximum`, `age` and `delay`. A state is that of the moment for which
+//! every signal has a value: as long ago as the longest `delay`, and its stamp says so.
+//!
 //! Signals are `CYLINDER.` with `joint_angle`, `displacement`, `velocity`, `cap_pressure`, `rod_pressure`,
 //! `orifice_area` or `rod_force`, and `pump_pressure`, `tank_pressure`, `pump_flow`, `oil_temperature`.
 
+mod can;
+mod can_source;
 mod datagram;
 mod description;
 mod node;
+mod publisher;
 mod signals;
 
 pub use node::run;

@@ -2,27 +2,24 @@
 
 use std::net::UdpSocket;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use excavator_msgs::common::{FluidPressure, JointState};
-use excavator_msgs::{ArmState, Header};
 
+use super::can_source::CanSource;
 use super::datagram::decode;
 use super::description::{Description, JointField, TopicKind, TopicSource, Udp};
-use super::signals::{Fault, Signals};
+use super::publisher::{Publisher, Refused, lock};
+use super::signals::Signals;
 use crate::error::VerbError;
-use crate::ros::{
-    Diagnostics, Health, Outlet, Pace, Parameter, RosArguments, RosClock, RosError, Supervisor, TopicQos, Value,
-};
+use crate::ros::{Health, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
 /// Longest time until a listening thread sees that the node ends.
 const GLANCE: Duration = Duration::from_millis(100);
-/// Time between two words to diagnostics.
-const REPORT: Duration = Duration::from_millis(200);
-/// Rate of `/joint_states`, Hz.
-const JOINT_STATES_RATE: f64 = 50.0;
+/// Time that readers have to find the bridge, and to take what is left at the end, where it does not run for ever.
+const ACQUAINTANCE: Duration = Duration::from_secs(1);
 
 /// Runs the bridge until it is told to stop.
 ///
@@ -38,8 +35,8 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
         return Err(RosError::Parameter(reason).into());
     }
     let description = Description::read(Path::new(&path)).map_err(RosError::Parameter)?;
-    let signals = Arc::new(Mutex::new(Signals::new(description.treatments())));
-    let refused = Arc::new(AtomicU64::new(0));
+    let mut treatments = description.treatments();
+    let refused = Refused::default();
     let mut first = 0;
     let mut sockets = Vec::new();
     for udp in &description.udp {
@@ -52,35 +49,63 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
         sockets.push((socket, udp, first));
         first += udp.fields.len();
     }
+    let mut buses = Vec::new();
+    for can in &description.can {
+        let mine = &mut treatments[first..first + can.signals.len()];
+        buses.push(CanSource::open(can, first, mine).map_err(RosError::Parameter)?);
+        first += can.signals.len();
+    }
+    let signals = Arc::new(Mutex::new(Signals::new(treatments)));
     for (index, source) in description.topics.iter().enumerate() {
         subscribe(&supervisor, source, first + index, &signals)?;
     }
+    let echoes = description.topics.iter().any(|source| source.topic == "/joint_states");
     let publisher = Publisher {
         rate: description.rate,
         signals: &signals,
         states: supervisor.link.publish("/arm/state", TopicQos::reliable(50))?,
-        joints: supervisor.link.publish("/joint_states", TopicQos::reliable(10))?,
+        joints: (!echoes).then(|| supervisor.link.publish("/joint_states", TopicQos::reliable(10))).transpose()?,
         clock: &supervisor.clock,
         diagnostics: &supervisor.diagnostics,
         refused: &refused,
-        // A bridge that reads /joint_states must not answer itself.
-        echoes: description.topics.iter().any(|source| source.topic == "/joint_states"),
+        has_frames: !buses.is_empty(),
     };
+    let has_own_clock = buses.iter().any(CanSource::is_the_clock);
     let stop = supervisor.stop_flag();
     std::thread::scope(|scope| {
+        let (publisher, refused, stop) = (&publisher, &refused, &stop);
         for (socket, udp, first) in &sockets {
-            let (signals, refused, stop) = (&signals, &refused, &stop);
+            let signals = &signals;
             scope.spawn(move || listen(socket, udp, *first, signals, refused, stop));
         }
-        scope.spawn(|| publisher.run(&stop));
+        for bus in buses {
+            let supervisor = &supervisor;
+            scope.spawn(move || {
+                if bus.is_the_clock() {
+                    wait_for_a_reader(supervisor, stop);
+                }
+                bus.run(publisher, refused, &supervisor.logger, stop);
+            });
+        }
+        if !has_own_clock {
+            scope.spawn(move || publisher.run(stop));
+        }
         supervisor.run(|| {});
     });
+    if has_own_clock {
+        std::thread::sleep(ACQUAINTANCE);
+    }
     supervisor.leave();
     Ok(())
 }
 
-fn lock(signals: &Mutex<Signals>) -> std::sync::MutexGuard<'_, Signals> {
-    signals.lock().unwrap_or_else(PoisonError::into_inner)
+/// What is published once, as fast as it can be, needs somebody there before it starts.
+fn wait_for_a_reader(supervisor: &Supervisor, stop: &AtomicBool) {
+    supervisor.diagnostics.tell("signals", Health::Ok, "waiting for a reader of /arm/state", &[]);
+    while !stop.load(Ordering::Relaxed) && !supervisor.link.has_readers("/arm/state") {
+        std::thread::sleep(GLANCE);
+    }
+    std::thread::sleep(ACQUAINTANCE);
 }
 
 fn listen(
@@ -88,7 +113,7 @@ fn listen(
     layout: &Udp,
     first: usize,
     signals: &Mutex<Signals>,
-    refused: &AtomicU64,
+    refused: &Refused,
     stop: &AtomicBool,
 ) {
     // One byte more than any datagram can have shows those that are too long.
@@ -105,7 +130,7 @@ fn listen(
                 }
             }
             None => {
-                refused.fetch_add(1, Ordering::Relaxed);
+                refused.datagrams.fetch_add(1, Ordering::Relaxed);
             }
         }
     }
@@ -142,73 +167,4 @@ fn subscribe(
         }
     }
     Ok(())
-}
-
-struct Publisher<'p> {
-    rate: f64,
-    signals: &'p Mutex<Signals>,
-    states: Outlet<ArmState>,
-    joints: Outlet<JointState>,
-    clock: &'p RosClock,
-    diagnostics: &'p Diagnostics,
-    refused: &'p AtomicU64,
-    echoes: bool,
-}
-
-impl Publisher<'_> {
-    fn run(&self, stop: &AtomicBool) {
-        let mut pace = Pace::new(self.rate);
-        let mut reported: Option<Instant> = None;
-        let joints_every = ((self.rate / JOINT_STATES_RATE).round() as u64).max(1);
-        for round in 0_u64.. {
-            if stop.load(Ordering::Relaxed) {
-                return;
-            }
-            let now = Instant::now();
-            let (state, faults) = lock(self.signals).state(self.clock.now(), now);
-            if round % joints_every == 0 && !self.echoes {
-                let _ = self.joints.publish(joint_state(&state));
-            }
-            // Refusals are counted by the outlet and told below.
-            let _ = self.states.publish(state);
-            if reported.is_none_or(|reported| reported.elapsed() >= REPORT) {
-                reported = Some(now);
-                self.report(&faults);
-            }
-            pace.wait();
-        }
-    }
-
-    fn report(&self, faults: &[(usize, Fault)]) {
-        let words: Vec<(String, String)> = faults
-            .iter()
-            .map(|(index, fault)| {
-                let word = match fault {
-                    Fault::Never => "never came".to_string(),
-                    Fault::Stale(age) => format!("stale for {age:.2} s"),
-                    Fault::OutOfRange(value) => format!("out of range: {value}"),
-                };
-                (lock(self.signals).name(*index).to_string(), word)
-            })
-            .collect();
-        let mut values: Vec<(&str, String)> = words.iter().map(|(name, word)| (name.as_str(), word.clone())).collect();
-        values.push(("refused datagrams", self.refused.load(Ordering::Relaxed).to_string()));
-        values.push(("refused states", self.states.refused().to_string()));
-        let names: Vec<&str> = words.iter().map(|(name, _)| name.as_str()).collect();
-        let (health, message) = match names.as_slice() {
-            [] => (Health::Ok, "all signals are measured".to_string()),
-            names => (Health::Warning, format!("not measured: {}", names.join(", "))),
-        };
-        self.diagnostics.tell("signals", health, message, &values);
-    }
-}
-
-fn joint_state(state: &ArmState) -> JointState {
-    JointState {
-        header: Header { stamp: state.header.stamp, frame_id: String::new() },
-        name: state.cylinders.iter().map(|cylinder| format!("{}_joint", cylinder.name)).collect(),
-        position: state.cylinders.iter().map(|cylinder| cylinder.joint_angle).collect(),
-        velocity: Vec::new(),
-        effort: Vec::new(),
-    }
 }

@@ -1,5 +1,6 @@
 //! The newest value of each signal, and whether it can be used.
 
+use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use excavator_msgs::{ArmState, CylinderState, Header, Time};
@@ -25,7 +26,15 @@ pub(super) struct Treatment {
     /// Age beyond which a value is of no use, s.
     #[serde(default = "default_age")]
     pub age: f64,
+    /// How long ago a value was measured when it comes: filter of the sensor, its sampling, its way here, s.
+    #[serde(default)]
+    pub delay: f64,
 }
+
+/// Values kept of each signal: more than a second of the fastest.
+const KEPT: usize = 4096;
+/// Longest delay of a signal, s.
+const LONGEST_DELAY: f64 = 1.0;
 
 fn one() -> f64 {
     1.0
@@ -75,8 +84,38 @@ impl Treatment {
         if !(self.age > 0.0 && self.age < 1e6) {
             return Err(format!("{}: an age of {} s makes no sense", self.signal, self.age));
         }
+        if !(0.0..=LONGEST_DELAY).contains(&self.delay) {
+            return Err(format!("{}: a delay of {} s is outside 0 to {LONGEST_DELAY}", self.signal, self.delay));
+        }
         Ok(())
     }
+}
+
+impl Treatment {
+    /// The raw value in SI.
+    fn value(&self, raw: f64) -> Result<f64, Fault> {
+        let value = raw * self.scale + self.offset;
+        if !value.is_finite() || value < self.minimum || value > self.maximum {
+            return Err(Fault::OutOfRange(value));
+        }
+        Ok(value)
+    }
+
+    /// Narrows the range to raw values from `least` to `largest`.
+    pub fn narrow(&mut self, least: f64, largest: f64) {
+        let (one, other) = (least * self.scale + self.offset, largest * self.scale + self.offset);
+        self.minimum = self.minimum.max(one.min(other));
+        self.maximum = self.maximum.min(one.max(other));
+    }
+
+    /// Whether the signal steps from one value to the next.
+    fn steps(&self) -> bool {
+        self.signal.ends_with(".orifice_area")
+    }
+}
+
+fn seconds(value: f64) -> Duration {
+    Duration::try_from_secs_f64(value).unwrap_or(Duration::ZERO)
 }
 
 /// Why a signal is not measured.
@@ -90,44 +129,79 @@ pub(super) enum Fault {
     OutOfRange(f64),
 }
 
-/// The newest value of each signal.
+/// The last values of each signal, brought onto one clock.
+///
+/// The state is that of the moment for which the slowest signal has a value: as long ago as the longest delay. Of the
+/// others the value of that moment is taken, between two measurements by a straight line; an orifice area, which steps,
+/// keeps its value until the next.
 #[derive(Debug)]
 pub(super) struct Signals {
     treatments: Vec<Treatment>,
-    newest: Vec<Option<(f64, Instant)>>,
+    /// Raw values and when they were measured, oldest first.
+    values: Vec<VecDeque<(f64, Instant)>>,
+    delay: Duration,
 }
 
 impl Signals {
     /// Signals of which nothing has come.
     pub fn new(treatments: Vec<Treatment>) -> Self {
-        let newest = vec![None; treatments.len()];
-        Signals { treatments, newest }
+        let values = vec![VecDeque::new(); treatments.len()];
+        let delay = treatments.iter().map(|treatment| treatment.delay).fold(0.0, f64::max);
+        Signals { treatments, values, delay: seconds(delay) }
     }
 
-    /// Takes a raw value.
+    /// How long ago the moment was of which the state is told.
+    pub fn delay(&self) -> Duration {
+        self.delay
+    }
+
+    /// Takes a raw value that came at `now`. One that was measured before the last is late and of no use.
     pub fn take(&mut self, index: usize, raw: f64, now: Instant) {
-        if let Some(slot) = self.newest.get_mut(index) {
-            *slot = Some((raw, now));
+        let (Some(treatment), Some(values)) = (self.treatments.get(index), self.values.get_mut(index)) else { return };
+        let measured = now.checked_sub(seconds(treatment.delay)).unwrap_or(now);
+        if values.back().is_some_and(|(_, last)| *last > measured) {
+            return;
         }
+        if values.len() >= KEPT {
+            values.pop_front();
+        }
+        values.push_back((raw, measured));
     }
 
-    /// The value in SI.
+    /// The value in SI, at `now` less the common delay.
     ///
     /// # Errors
     /// [`Fault`]: it is not measured.
     pub fn value(&self, index: usize, now: Instant) -> Result<f64, Fault> {
-        let (treatment, Some((raw, at))) = (&self.treatments[index], self.newest[index]) else {
+        let moment = now.checked_sub(self.delay).unwrap_or(now);
+        let (treatment, values) = (&self.treatments[index], &self.values[index]);
+        let after = values.partition_point(|(_, at)| *at <= moment);
+        let Some((raw, at)) = after.checked_sub(1).map(|before| values[before]) else {
             return Err(Fault::Never);
         };
-        let age = now.saturating_duration_since(at);
-        if age > Duration::from_secs_f64(treatment.age) {
+        let age = moment.saturating_duration_since(at);
+        if age > seconds(treatment.age) {
             return Err(Fault::Stale(age.as_secs_f64()));
         }
-        let value = raw * treatment.scale + treatment.offset;
-        if !value.is_finite() || value < treatment.minimum || value > treatment.maximum {
-            return Err(Fault::OutOfRange(value));
+        let value = treatment.value(raw)?;
+        let Some((next, next_at)) = values.get(after).copied() else { return Ok(value) };
+        let gap = next_at.saturating_duration_since(at);
+        match treatment.value(next) {
+            Ok(next) if !treatment.steps() && gap <= seconds(treatment.age) && !gap.is_zero() => {
+                Ok(value + (next - value) * (age.as_secs_f64() / gap.as_secs_f64()))
+            }
+            _ => Ok(value),
         }
-        Ok(value)
+    }
+
+    /// Forgets what no later state can need.
+    fn forget(&mut self, now: Instant) {
+        let moment = now.checked_sub(self.delay).unwrap_or(now);
+        for values in &mut self.values {
+            while values.get(1).is_some_and(|(_, at)| *at <= moment) {
+                values.pop_front();
+            }
+        }
     }
 
     /// Name of a signal.
@@ -135,8 +209,8 @@ impl Signals {
         &self.treatments[index].signal
     }
 
-    /// The state at `now`, and what is not measured in it and why.
-    pub fn state(&self, stamp: Time, now: Instant) -> (ArmState, Vec<(usize, Fault)>) {
+    /// The state at `now` less the common delay, which `stamp` says, and what is not measured in it and why.
+    pub fn state(&mut self, stamp: Time, now: Instant) -> (ArmState, Vec<(usize, Fault)>) {
         let mut state = ArmState {
             header: Header { stamp, frame_id: String::new() },
             cylinders: Vec::new(),
@@ -146,6 +220,7 @@ impl Signals {
             oil_temperature: f64::NAN,
         };
         let mut faults = Vec::new();
+        self.forget(now);
         for (index, treatment) in self.treatments.iter().enumerate() {
             let value = self.value(index, now).unwrap_or_else(|fault| {
                 faults.push((index, fault));
@@ -191,7 +266,15 @@ mod tests {
     use super::*;
 
     fn treatment(signal: &str) -> Treatment {
-        Treatment { signal: signal.into(), scale: 1e-3, offset: -0.3, minimum: -0.31, maximum: 0.31, age: 0.05 }
+        Treatment {
+            signal: signal.into(),
+            scale: 1e-3,
+            offset: -0.3,
+            minimum: -0.31,
+            maximum: 0.31,
+            age: 0.05,
+            delay: 0.0,
+        }
     }
 
     #[test]
@@ -215,5 +298,43 @@ mod tests {
             signals.take(0, raw, start);
             assert!(matches!(signals.value(0, start), Err(Fault::OutOfRange(_))), "{raw}");
         }
+    }
+
+    #[test]
+    fn signals_with_different_delays_are_brought_onto_one_clock() {
+        let start = Instant::now();
+        let ms = |count: u64| start + Duration::from_millis(count);
+        let slow = Treatment { delay: 0.03, ..treatment("boom.displacement") };
+        let steps = Treatment { minimum: -1.0, maximum: 1.0, ..treatment("arm.orifice_area") };
+        let mut signals = Signals::new(vec![treatment("arm.displacement"), slow, steps]);
+        assert_eq!(signals.delay(), Duration::from_millis(30));
+        // All move by one millimetre per millisecond; the slow one tells it 30 ms late.
+        for now in (0..=100).step_by(20) {
+            signals.take(0, 300.0 + now as f64, ms(now));
+            signals.take(1, 300.0 + now as f64 - 30.0, ms(now));
+            signals.take(2, 300.0 + now as f64, ms(now));
+        }
+        let (state, faults) = signals.state(Time::default(), ms(100));
+        assert_eq!(faults, []);
+        assert!((state.cylinders[0].displacement - 0.07).abs() < 1e-9, "{}", state.cylinders[0].displacement);
+        assert!((state.cylinders[1].displacement - 0.07).abs() < 1e-9, "{}", state.cylinders[1].displacement);
+        assert!((state.cylinders[0].orifice_area - 0.06).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_late_value_is_not_taken() {
+        let start = Instant::now();
+        let later = start + Duration::from_millis(10);
+        let mut signals = Signals::new(vec![treatment("arm.displacement")]);
+        signals.take(0, 400.0, later);
+        signals.take(0, 500.0, start);
+        assert_eq!(signals.value(0, later).map(|value| (value * 1e3).round()), Ok(100.0));
+    }
+
+    #[test]
+    fn a_range_is_narrowed_through_a_negative_scale() {
+        let mut narrowed = Treatment { scale: -1e-3, offset: 0.0, ..treatment("arm.displacement") };
+        narrowed.narrow(-100.0, 200.0);
+        assert_eq!((narrowed.minimum, narrowed.maximum), (-0.2, 0.1));
     }
 }

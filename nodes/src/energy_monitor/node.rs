@@ -163,10 +163,16 @@ impl Desk<'_> {
         let mut window = None;
         let (mut heard, mut reported) = (Instant::now(), Instant::now());
         let mut has_velocity = false;
+        // A silence after which nothing was left waiting: the monitor begins anew and sees no gap.
+        let (mut newest, mut silent, mut silences) = (None::<i64>, false, 0);
         while !self.stop.load(Ordering::Relaxed) {
             match self.incoming.recv_timeout(IDLE) {
                 Ok(Incoming::State(state)) => {
                     heard = Instant::now();
+                    let stamp = state.header.stamp.nanoseconds();
+                    let gap = newest.map_or(0.0, |newest| stamp.saturating_sub(newest) as f64 * 1e-9);
+                    silences += u64::from(silent && gap > settings.gap);
+                    (newest, silent) = (Some(stamp), false);
                     has_velocity = state.cylinders.iter().all(|cylinder| cylinder.velocity.is_finite());
                     monitor.push(sample(&state, model), &mut balances);
                 }
@@ -175,7 +181,10 @@ impl Desk<'_> {
                         return Some(next);
                     }
                 }
-                Err(RecvTimeoutError::Timeout) => monitor.flush(&mut balances),
+                Err(RecvTimeoutError::Timeout) => {
+                    silent = true;
+                    monitor.flush(&mut balances);
+                }
                 Err(RecvTimeoutError::Disconnected) => return None,
             }
             for balance in balances.drain(..) {
@@ -185,14 +194,14 @@ impl Desk<'_> {
             }
             if reported.elapsed() >= REPORT {
                 reported = Instant::now();
-                self.report(&monitor, has_velocity, heard.elapsed());
+                self.report(&monitor, silences, has_velocity, heard.elapsed());
                 self.judge(window.as_ref());
             }
         }
         None
     }
 
-    fn report(&self, monitor: &Monitor<'_, '_>, has_velocity: bool, silence: Duration) {
+    fn report(&self, monitor: &Monitor<'_, '_>, silences: u64, has_velocity: bool, silence: Duration) {
         let counts = monitor.counts();
         let dropped = self.dropped.load(Ordering::Relaxed);
         let values = [
@@ -201,7 +210,7 @@ impl Desk<'_> {
             ("incomplete balances", counts.incomplete.to_string()),
             ("duplicate stamps", counts.duplicates.to_string()),
             ("stamps out of order", counts.out_of_order.to_string()),
-            ("gaps", counts.gaps.to_string()),
+            ("gaps", (counts.gaps + silences).to_string()),
             ("jumps of the clock", counts.jumps.to_string()),
             ("dropped states", dropped.to_string()),
             ("refused balances", self.outlet.refused().to_string()),

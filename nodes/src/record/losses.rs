@@ -8,11 +8,19 @@ pub(super) struct Losses {
     last: HashMap<[u8; 16], i64>,
     lost: u64,
     late: u64,
+    /// When the last message came, ns.
+    received: Option<u64>,
+    /// Longest time between two messages, ns.
+    silence: u64,
 }
 
 impl Losses {
-    /// Takes note of message `sequence` of `writer`. What a publisher sent before we listened is not lost.
-    pub fn take(&mut self, writer: [u8; 16], sequence: i64) {
+    /// Takes note of message `sequence` of `writer`, `received` at that time, ns. What a publisher sent before we listened
+    /// is not lost.
+    pub fn take(&mut self, writer: [u8; 16], sequence: i64, received: u64) {
+        let since = self.received.map_or(0, |last| received.saturating_sub(last));
+        self.silence = self.silence.max(since);
+        self.received = Some(received);
         let last = self.last.entry(writer).or_insert(sequence - 1);
         match sequence - *last {
             step @ 1.. => {
@@ -32,6 +40,12 @@ impl Losses {
         self.lost
     }
 
+    /// Longest time between two messages, s. A publisher that was out of reach for long comes back as another one, whose
+    /// numbers say nothing of what was missed.
+    pub fn longest_silence(&self) -> f64 {
+        self.silence as f64 * 1e-9
+    }
+
     /// Publishers heard.
     pub fn publishers(&self) -> usize {
         self.last.len()
@@ -49,16 +63,25 @@ mod tests {
     fn gaps_are_counted_per_publisher() {
         let mut losses = Losses::default();
         for (writer, sequence) in [(A, 100), (A, 101), (B, 1), (A, 104), (B, 2)] {
-            losses.take(writer, sequence);
+            losses.take(writer, sequence, 0);
         }
         assert_eq!((losses.lost(), losses.publishers()), (2, 2));
+    }
+
+    #[test]
+    fn the_longest_silence_is_kept() {
+        let mut losses = Losses::default();
+        for (sequence, received) in [(1, 1_000_000_000), (2, 1_500_000_000), (3, 4_000_000_000), (4, 4_100_000_000)] {
+            losses.take(A, sequence, received);
+        }
+        assert_eq!(losses.longest_silence(), 2.5);
     }
 
     #[test]
     fn what_comes_late_is_not_lost() {
         let mut losses = Losses::default();
         for sequence in [1, 2, 4, 3, 5] {
-            losses.take(A, sequence);
+            losses.take(A, sequence, 0);
         }
         assert_eq!(losses.lost(), 0);
     }

@@ -115,10 +115,8 @@ impl Recorder<'_> {
             if !self.selection.takes(&topic.name) {
                 continue;
             }
-            match self.known.iter().position(|known| known.name == topic.name) {
-                None => self.add(topic),
-                Some(index) if self.known[index].qos != topic.qos => self.update(index, topic),
-                Some(_) => {}
+            if !self.known.iter().any(|known| known.name == topic.name) {
+                self.add(topic);
             }
         }
         let values = [
@@ -159,14 +157,6 @@ impl Recorder<'_> {
             Err(error) => logger.error(error.to_string()),
         }
         self.known.push(topic);
-    }
-
-    fn update(&mut self, index: usize, topic: OfferedTopic) {
-        // Publishers that have left stay in the bag's record of what was offered.
-        if topic.qos.len() > self.known[index].qos.len() {
-            let _ = self.sender.send(Order::Qos { topic: index, qos: topic.qos.clone() });
-            self.known[index] = topic;
-        }
     }
 
     fn missing(&self) -> Vec<String> {

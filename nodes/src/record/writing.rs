@@ -14,10 +14,9 @@ const FLUSH: Duration = Duration::from_millis(500);
 
 /// What the writing thread is told.
 pub(super) enum Order {
-    /// A topic; its number is the count of topics before it.
+    /// A topic; its number is the count of topics before it. What its publishers offer is that of now: the file has it at
+    /// its beginning, and readers do not find the messages of a bag whose metadata say something else than its file.
     Topic { name: String, type_name: String, qos: Vec<Qos> },
-    /// Other publishers of a topic.
-    Qos { topic: usize, qos: Vec<Qos> },
     /// A message of a topic.
     Message { topic: usize, sample: RawSample },
 }
@@ -58,14 +57,9 @@ pub(super) fn write(
                 let outcome = TopicOutcome { name, messages: 0, lost: 0, publishers: 0 };
                 topics.push(Recorded { id, outcome, losses: Losses::default() });
             }
-            Ok(Order::Qos { topic, qos }) => {
-                if let Some(topic) = topics.get(topic) {
-                    bag.set_qos(topic.id, qos);
-                }
-            }
             Ok(Order::Message { topic, sample }) => {
                 let Some(topic) = topics.get_mut(topic) else { continue };
-                topic.losses.take(sample.writer, sample.sequence);
+                topic.losses.take(sample.writer, sample.sequence, sample.received);
                 topic.outcome.messages += 1;
                 bag.write(topic.id, sample.received, sample.published.unwrap_or(sample.received), &sample.data)?;
             }
@@ -81,6 +75,8 @@ pub(super) fn write(
         topic.outcome.lost = topic.losses.lost();
         topic.outcome.publishers = topic.losses.publishers();
         bag.set_custom_data(&format!("lost_messages:{}", topic.outcome.name), &topic.outcome.lost.to_string());
+        let silence = format!("{:.3}", topic.losses.longest_silence());
+        bag.set_custom_data(&format!("longest_silence_seconds:{}", topic.outcome.name), &silence);
     }
     bag.set_custom_data("dropped_by_recorder", &dropped().to_string());
     bag.finish()?;

@@ -21,6 +21,8 @@ use super::{RosError, TopicQos};
 pub struct Received {
     /// When it came, on the steady clock of this machine.
     pub at: Instant,
+    /// When it was published, ns since the epoch by the publisher's clock, where it says so.
+    pub published: Option<i64>,
     /// Who published it.
     pub publisher: Gid,
     /// Its number among the messages of that publisher.
@@ -68,6 +70,7 @@ impl<M: Message + Send + Sync + 'static> Endpoint for Inlet<M> {
                     Ok((message, info)) if types.fits(info.publisher_gid()) => {
                         let received = Received {
                             at: Instant::now(),
+                            published: info.source_timestamp().map(|time| time.to_nanos()),
                             publisher: info.publisher_gid(),
                             sequence: info.sequence_number(),
                         };

@@ -9,6 +9,7 @@ use ros2_client::{Context, Node, NodeName, NodeOptions};
 use rustdds::{DomainParticipant, DomainParticipantBuilder, QosPolicies, Topic, TopicKind};
 use tokio::runtime::Handle;
 
+use super::dds_names::dds_topic;
 use super::inlet::{Inlet, Received};
 use super::{Environment, Latched, NodeIdentity, Outlet, RosError, TopicQos};
 
@@ -185,6 +186,15 @@ impl Link {
     /// The participant of the connection, `None` while there is none.
     pub(crate) fn participant(&self) -> Option<DomainParticipant> {
         self.lock().connection.as_ref().map(Connection::participant)
+    }
+
+    /// Whether somebody on the graph reads a topic.
+    pub(crate) fn has_readers(&self, name: &str) -> bool {
+        let (Some(participant), Ok(name)) = (self.participant(), self.shared.identity.resolve(name)) else {
+            return false;
+        };
+        let wanted = dds_topic(&name);
+        participant.discovered_readers().iter().any(|reader| *reader.subscription_topic_data.topic_name() == wanted)
     }
 
     /// Topics and types of all endpoints.

@@ -31,6 +31,7 @@ mod inlet;
 mod latched;
 pub(crate) mod link;
 mod logger;
+mod middleware_log;
 mod names;
 mod outlet;
 mod pace;

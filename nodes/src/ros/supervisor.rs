@@ -9,6 +9,7 @@ use tokio::runtime::Runtime;
 
 use super::dds_names::{dds_topic, dds_type};
 use super::health::Watch;
+use super::middleware_log::{complaints, count_complaints};
 use super::parameter_file::read_for;
 use super::parameter_services::offer;
 use super::{
@@ -46,6 +47,7 @@ impl Supervisor {
     /// [`RosError`]: wrong arguments, environment or parameter values; a domain that cannot be joined.
     pub fn start(default_name: &str, arguments: &RosArguments, declared: Vec<Parameter>) -> Result<Self, RosError> {
         let signals = Signals::block()?;
+        count_complaints();
         let environment = Environment::read()?;
         let identity = NodeIdentity::new(default_name, &arguments.remaps)?;
         let mut overrides = Vec::new();
@@ -131,10 +133,13 @@ impl Supervisor {
 
     fn tell_link(&self, watch: Option<&Watch>, rebuilds: u32) {
         let Some(watch) = watch else { return };
+        let (malformed, others) = complaints();
         let values = [
             ("peers", watch.peers().to_string()),
             ("lost peers", watch.lost().to_string()),
             ("times built anew", rebuilds.to_string()),
+            ("malformed packets", malformed.to_string()),
+            ("other complaints of the middleware", others.to_string()),
         ];
         let foreign = self.foreign_types();
         if let Some(problem) = foreign.first() {

@@ -78,10 +78,16 @@ impl Network {
 
     /// Starts our program inside.
     pub fn start(&self, words: &[&str]) -> Program {
+        self.start_other(Path::new(PROGRAM), words, &[])
+    }
+
+    /// Starts another program inside.
+    pub fn start_other(&self, program: &Path, words: &[&str], environment: &[(&str, &str)]) -> Program {
         let mut command = Command::new("ip");
-        command.args(["netns", "exec", &self.name, PROGRAM]).args(words);
+        command.args(["netns", "exec", &self.name]).arg(program).args(words);
         command.env_remove("ROS_DOMAIN_ID").env_remove("RMW_IMPLEMENTATION").env_remove("ROS_LOCALHOST_ONLY");
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.envs(environment.iter().copied());
         Program { child: command.spawn().unwrap() }
     }
 }
@@ -151,6 +157,19 @@ pub fn messages<M: excavator_msgs::Message>(bag: &Path, topic: &str) -> Vec<(f64
         }
     }
     found
+}
+
+/// An interpreter with another DDS, Eclipse Cyclone; `None`, with a line that says so, where there is none.
+pub fn python_with_cyclone() -> Option<PathBuf> {
+    let python = match std::env::var_os("EXCAVATOR_PYTHON") {
+        Some(path) => PathBuf::from(path),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../.venv/bin/python"),
+    };
+    let found = Command::new(&python).args(["-c", "import cyclonedds"]).output().is_ok_and(|run| run.status.success());
+    if !found {
+        println!("skipped: {} has no cyclonedds (set EXCAVATOR_PYTHON to an interpreter that has)", python.display());
+    }
+    found.then_some(python)
 }
 
 /// Number that `custom_data` of a bag's metadata has under a key.

@@ -1,5 +1,6 @@
 """A program that runs beside the test."""
 
+import os
 import signal
 import subprocess
 import tempfile
@@ -9,19 +10,25 @@ import time
 LONGEST_CLEAN_END = 10.0
 
 
+def _hear_interrupts():
+    """A shell starts what runs in its background deaf to SIGINT, and that is inherited all the way down to here."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Process:
     """Started at once; its output goes to a file and is shown when a test fails on it."""
 
     def __init__(self, command, environment):
         self.command = [str(word) for word in command]
         self._may_end = False
-        self._output = tempfile.TemporaryFile(mode="w+")
+        self._output = tempfile.TemporaryFile()
         self._process = subprocess.Popen(
             self.command,
             env=environment,
             stdin=subprocess.DEVNULL,
             stdout=self._output,
             stderr=subprocess.STDOUT,
+            preexec_fn=_hear_interrupts,
         )
 
     @property
@@ -32,9 +39,9 @@ class Process:
         return self._process.poll() is None
 
     def output(self):
-        self._output.flush()
-        self._output.seek(0)
-        return self._output.read()
+        # without moving the place in the file, which the program shares with us and writes at
+        file = self._output.fileno()
+        return os.pread(file, os.fstat(file).st_size, 0).decode(errors="replace")
 
     def check_not_failed(self):
         """AssertionError when it ended with an error that nobody waits for."""
@@ -49,6 +56,12 @@ class Process:
     def terminate(self):
         """What a service manager does; returns as `interrupt`."""
         return self._end(signal.SIGTERM)
+
+    def vanish(self):
+        """What `kill -9` does: nobody is told."""
+        self._may_end = True
+        self._process.kill()
+        self._process.wait()
 
     def wait(self, timeout):
         """The exit status, whatever it is; AssertionError when it takes longer."""

@@ -94,9 +94,13 @@ class Session:
     def listen(self, msg_type, topic, qos=10):
         """A list that fills with the messages of the topic while spinning."""
         received = []
-        subscription = self.node.create_subscription(msg_type, topic, received.append, qos)
-        self._undo.append(lambda: self.node.destroy_subscription(subscription))
+        self.listen_with(msg_type, topic, received.append, qos)
         return received
+
+    def listen_with(self, msg_type, topic, callback, qos=10):
+        """Calls back with each message of the topic while spinning."""
+        subscription = self.node.create_subscription(msg_type, topic, callback, qos)
+        self._undo.append(lambda: self.node.destroy_subscription(subscription))
 
     def publisher(self, msg_type, topic, qos=10):
         """A publisher that somebody already listens to."""
