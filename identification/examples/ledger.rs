@@ -18,8 +18,8 @@ fn main() {
             let a = analyse(&fitted, &rec, EnergySettings::default()).unwrap();
             println!("{case} {n} {:?} windows {}", t.elapsed(), a.windows.len());
             for p in &a.places {
-                println!("  {:20} rms {:7.2} explained {:7.2} outside {:.3}", p.place.equation(&fitted), p.root_mean_square, p.explained, p.share_outside);
-                for r in &p.regimes { println!("      {:15} n {:4} mean {:8.3} peak {:8.2} noise {:6.3} par {:6.3} flow {:7.1} band {:6.2} {}", r.regime.name(), r.windows, r.mean, r.peak, r.noise, r.parameters, r.flow, r.band, if r.is_explained() {""} else {"<<<"}); }
+                println!("  {:20} outside {:.3}", p.place.equation(&fitted), p.share_outside);
+                for r in &p.regimes { println!("      {:15} n {:4} mean {:8.3} peak {:8.2} size {:6.2} band {:6.2} noise {:6.3} par {:6.3} flow {:7.1} {}", r.regime.name(), r.windows, r.mean, r.peak, r.size, r.band, r.noise, r.parameters, r.flow, if r.is_explained() {""} else {"<<<"}); }
             }
             for m in missing_power(&fitted, &a) { println!("  {}", m.sentence); }
         }

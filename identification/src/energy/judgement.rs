@@ -15,20 +15,22 @@ pub struct RegimeJudgement {
     pub mean: f64,
     /// Largest of the windows' powers by size, with its sign, W.
     pub peak: f64,
-    /// Standard error of the mean from sensor noise, W.
+    /// Root mean square of the windows' powers, W. A fit moves a missing effect's mean to zero, not its size.
+    pub size: f64,
+    /// Standard deviation of a window's power from sensor noise, W.
     pub noise: f64,
-    /// Standard error of the mean from the parameters' standard errors, W; zero where the model has none.
+    /// Standard deviation from the parameters' standard errors, W; zero where the model has none.
     pub parameters: f64,
     /// Mean power that flows through the place, W.
     pub flow: f64,
-    /// Half width of the band within which the mean is explained, W.
+    /// Largest size that noise, parameters and tolerance explain, W; infinite where windows are too few to judge.
     pub band: f64,
 }
 
 impl RegimeJudgement {
-    /// Whether noise, the parameters' errors and the tolerance explain the mean.
+    /// Whether noise, the parameters' errors and the tolerance explain what is missing.
     pub fn is_explained(&self) -> bool {
-        self.mean.abs() <= self.band
+        self.size <= self.band
     }
 }
 
@@ -39,16 +41,12 @@ pub struct PlaceJudgement {
     pub place: Place,
     /// One entry per [`Regime`], in that order.
     pub regimes: Vec<RegimeJudgement>,
-    /// Root mean square of what is missing in the windows, W.
-    pub root_mean_square: f64,
-    /// Root mean square that sensor noise and parameters explain, W.
-    pub explained: f64,
     /// Share of the windows that are outside their own band.
     pub share_outside: f64,
 }
 
 impl PlaceJudgement {
-    /// Whether the ledger closes at this place under every condition.
+    /// Whether the ledger closes at this place: over the whole recording and under every condition.
     pub fn is_explained(&self) -> bool {
         self.regimes.iter().all(RegimeJudgement::is_explained)
     }
@@ -56,14 +54,13 @@ impl PlaceJudgement {
     /// The condition under which most is missing, relative to its band; `None` where all is explained.
     pub fn worst(&self) -> Option<&RegimeJudgement> {
         let outside = self.regimes.iter().filter(|regime| !regime.is_explained());
-        outside.max_by(|a, b| (a.mean / a.band).abs().total_cmp(&(b.mean / b.band).abs()))
+        outside.max_by(|a, b| (a.size / a.band).total_cmp(&(b.size / b.band)))
     }
 }
 
-/// Fewest windows that a condition is judged by.
-const FEWEST: usize = 6;
-/// Windows overlap so that neighbours share their noise: this many are worth one.
-const WORTH_ONE: f64 = 2.0;
+/// Fewest windows that a condition is judged by. Windows overlap, so this is worth half as many: noise alone exceeds
+/// twice its standard deviation over six in one of two thousand cases.
+const FEWEST: usize = 12;
 
 /// Sums over windows.
 #[derive(Debug, Clone)]
@@ -71,8 +68,6 @@ pub(super) struct Judge {
     settings: EnergySettings,
     places: Vec<(Place, Option<usize>)>,
     sums: Vec<Vec<Sum>>,
-    squares: Vec<f64>,
-    explained: Vec<f64>,
     outside: Vec<usize>,
     windows: usize,
     last_noise: Option<WindowNoise>,
@@ -82,9 +77,10 @@ pub(super) struct Judge {
 struct Sum {
     windows: usize,
     residual: f64,
+    squares: f64,
     peak: f64,
     variance: f64,
-    parameters: Vec<f64>,
+    parameter_variance: f64,
     flow: f64,
 }
 
@@ -105,8 +101,6 @@ impl Judge {
             settings,
             places,
             sums: vec![vec![Sum::default(); Regime::ALL.len()]; count],
-            squares: vec![0.0; count],
-            explained: vec![0.0; count],
             outside: vec![0; count],
             windows: 0,
             last_noise: None,
@@ -141,11 +135,10 @@ impl Judge {
             // The mean of the repeats that was taken off has noise of its own.
             let variance = noise.map_or(0.0, |noise| noise.variance[index] * (1.0 + 1.0 / draws));
             let parameters = noise.map_or(&[][..], |noise| &noise.parameters[index]);
-            let total = variance + parameters.iter().map(|change| change * change).sum::<f64>();
+            let parameter_variance: f64 = parameters.iter().map(|change| change * change).sum();
             let flow = window.flows[index];
-            let band = self.settings.significance * total.sqrt() + self.settings.tolerance * flow;
-            self.squares[index] += residual * residual;
-            self.explained[index] += total;
+            // A single window of thousands must be further out than the root mean square of many.
+            let band = 2.0 * band(&self.settings, variance, parameter_variance, flow);
             self.outside[index] += usize::from(residual.abs() > band);
             for (regime, sum) in Regime::ALL.iter().zip(&mut self.sums[index]) {
                 let met = match cylinder {
@@ -153,7 +146,7 @@ impl Judge {
                     None => window.situations.iter().any(|situation| situation.is(*regime)),
                 };
                 if met {
-                    sum.add(residual, variance, parameters, flow);
+                    sum.add(residual, variance, parameter_variance, flow);
                 }
             }
             judged.residuals.push(residual);
@@ -171,47 +164,50 @@ impl Judge {
             .map(|(index, &(place, _))| PlaceJudgement {
                 place,
                 regimes: Regime::ALL.iter().zip(&self.sums[index]).map(|(r, sum)| sum.judge(*r, &self.settings)).collect(),
-                root_mean_square: (self.squares[index] / count).sqrt(),
-                explained: (self.explained[index] / count).sqrt(),
                 share_outside: self.outside[index] as f64 / count,
             })
             .collect()
     }
 }
 
+/// Size that is explained, W: standard deviations that are each as wide as they may be, and the tolerance.
+fn band(settings: &EnergySettings, variance: f64, parameter_variance: f64, flow: f64) -> f64 {
+    let noise = settings.significance.powi(2) * variance;
+    let parameters = settings.parameter_significance.powi(2) * parameter_variance;
+    (noise + parameters + (settings.tolerance * flow).powi(2)).sqrt()
+}
+
 impl Sum {
-    fn add(&mut self, residual: f64, variance: f64, parameters: &[f64], flow: f64) {
+    fn add(&mut self, residual: f64, variance: f64, parameter_variance: f64, flow: f64) {
         self.windows += 1;
         self.residual += residual;
+        self.squares += residual * residual;
         if residual.abs() > self.peak.abs() {
             self.peak = residual;
         }
         self.variance += variance;
-        self.parameters.resize(parameters.len().max(self.parameters.len()), 0.0);
-        self.parameters.iter_mut().zip(parameters).for_each(|(sum, change)| *sum += change);
+        self.parameter_variance += parameter_variance;
         self.flow += flow;
     }
 
     fn judge(&self, regime: Regime, settings: &EnergySettings) -> RegimeJudgement {
         let count = self.windows.max(1) as f64;
-        let noise = (self.variance * WORTH_ONE).sqrt() / count;
-        // A wrong parameter is wrong in all windows alike: its part does not average out.
-        let parameters = self.parameters.iter().map(|sum| (sum / count).powi(2)).sum::<f64>().sqrt();
+        let (variance, parameter_variance) = (self.variance / count, self.parameter_variance / count);
         let flow = self.flow / count;
-        let band = if self.windows < FEWEST {
-            f64::INFINITY
-        } else {
-            settings.significance * noise.hypot(parameters) + settings.tolerance * flow
-        };
         RegimeJudgement {
             regime,
             windows: self.windows,
             mean: self.residual / count,
             peak: self.peak,
-            noise,
-            parameters,
+            size: (self.squares / count).sqrt(),
+            noise: variance.sqrt(),
+            parameters: parameter_variance.sqrt(),
             flow,
-            band,
+            band: if self.windows < FEWEST {
+                f64::INFINITY
+            } else {
+                band(settings, variance, parameter_variance, flow)
+            },
         }
     }
 }

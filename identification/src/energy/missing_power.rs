@@ -15,11 +15,13 @@ pub struct MissingPower {
     pub regime: Regime,
     /// Mean power, W; negative: it goes missing, positive: it appears.
     pub mean: f64,
-    /// Largest power by size in one window, W.
+    /// Root mean square of the power, W: a fit hides a missing effect's mean, not its size.
+    pub size: f64,
+    /// Largest power by size in one window, W; negative: it goes missing.
     pub peak: f64,
-    /// Power that noise, the parameters' errors and the tolerance explain, W.
+    /// Size that noise, the parameters' errors and the tolerance explain, W.
     pub band: f64,
-    /// The mean as a share of the power that flows through the place.
+    /// The size as a share of the power that flows through the place.
     pub share_of_flow: f64,
     /// All of it in one sentence.
     pub sentence: String,
@@ -32,7 +34,7 @@ pub fn missing_power(model: &Model, analysis: &EnergyAnalysis) -> Vec<MissingPow
         .iter()
         .filter_map(|judgement| {
             let worst = judgement.worst()?;
-            Some(((worst.mean / worst.band).abs(), evidence(model, judgement, worst)))
+            Some((worst.size / worst.band, evidence(model, judgement, worst)))
         })
         .collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -43,13 +45,13 @@ fn evidence(model: &Model, judgement: &PlaceJudgement, worst: &RegimeJudgement) 
     let place = judgement.place;
     let cylinder = place.cylinder(model).and_then(|index| model.machine.cylinders.get(index));
     let cylinder = cylinder.map(|cylinder| cylinder.name.clone());
-    let verb = if worst.mean < 0.0 { "go missing" } else { "appear from nowhere" };
+    let verb = if worst.peak < 0.0 { "go missing" } else { "appear from nowhere" };
     let sentence = format!(
-        "{}, {} W {verb} {} (at most {} W in one window; {} W would be within the noise).",
+        "{}, up to {} W {verb} {} ({} W root mean square, where {} W would be within the noise).",
         capitalised(worst.regime.words()),
-        watts(worst.mean.abs()),
-        whereabouts(place, cylinder.as_deref()),
         watts(worst.peak.abs()),
+        whereabouts(place, cylinder.as_deref()),
+        watts(worst.size),
         watts(worst.band),
     );
     MissingPower {
@@ -57,9 +59,10 @@ fn evidence(model: &Model, judgement: &PlaceJudgement, worst: &RegimeJudgement) 
         equation: place.equation(model),
         regime: worst.regime,
         mean: worst.mean,
+        size: worst.size,
         peak: worst.peak,
         band: worst.band,
-        share_of_flow: worst.mean.abs() / worst.flow,
+        share_of_flow: worst.size / worst.flow,
         sentence,
     }
 }

@@ -12,10 +12,13 @@ pub struct EnergySettings {
     /// Half width of the windows in which the ledger is judged, s: shorter than a stroke, so that a window belongs to
     /// one regime.
     pub window_half_width: f64,
-    /// Standard errors that missing power must exceed to be told.
+    /// Standard deviations of sensor noise that the root mean square of missing power must exceed to be told.
     pub significance: f64,
-    /// Missing power below this share of the power that flows through its place is not told, whatever the noise: sensors
-    /// are not synchronised, and slopes not sharp, to more than that.
+    /// The same for the standard errors of the parameters. Less than for noise: standard errors of an identification
+    /// have grown already with what its model does not explain.
+    pub parameter_significance: f64,
+    /// Missing power below this share of the power that flows through its place is not told, whatever the noise: clocks
+    /// of sensors and slopes of signals are no sharper.
     pub tolerance: f64,
     /// Repeats with added sensor noise.
     pub draws: usize,
@@ -38,8 +41,9 @@ impl Default for EnergySettings {
             half_width: 0.01,
             motion_half_width: 0.02,
             window_half_width: 0.2,
-            significance: 5.0,
-            tolerance: 0.02,
+            significance: 2.0,
+            parameter_significance: 1.5,
+            tolerance: 0.01,
             draws: 6,
             head: 120.0,
             block: 20.0,
