@@ -28,6 +28,8 @@ pub enum Verb {
     Identify(IdentifyArguments),
     /// Simulate with a recording's input and compare every output with the measurement.
     Compare(CompareArguments),
+    /// Where the energy went, and whether the model's ledger closes: H, dH/dt, losses by effect, pump line.
+    Energy(EnergyArguments),
     /// Find out which physical effect the model is missing.
     Diagnose(DiagnoseArguments),
     /// Add effects, refit, and measure the error again.
@@ -262,6 +264,23 @@ pub struct CompareArguments {
     #[command(flatten)]
     pub mapping: Mapping,
     /// Write a page with plots of every signal, residuals, and error against command, speed, pressure and position.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct EnergyArguments {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    /// Recording, of any length.
+    #[arg(long, value_name = "BAG")]
+    pub bag: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    /// Write a page with the flow of energy, rates of the stored energy, losses by effect, and the ledger.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     #[command(flatten)]

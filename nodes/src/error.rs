@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use excavator_bags::BagError;
 use excavator_identification::diagnosis::DiagnosisError;
+use excavator_identification::energy::EnergyError;
 use excavator_identification::fit::FitError;
 use excavator_identification::gate::GateError;
 use excavator_identification::refinement::RefineError;
@@ -31,6 +32,8 @@ pub enum VerbError {
     Fit(#[from] FitError),
     #[error(transparent)]
     Diagnosis(#[from] DiagnosisError),
+    #[error(transparent)]
+    Energy(#[from] EnergyError),
     #[error(transparent)]
     Refine(#[from] RefineError),
     #[error(transparent)]

@@ -25,7 +25,9 @@
     var xAxis = axis(spec.last ? "time (s)" : null, spec.last ? 28 : 8, spec.last);
     var yAxis = axis(spec.label + " (" + spec.unit + ")", 52, true);
     if (spec.height < 150) yAxis.space = 26;
+    var bands = (spec.bands || []).map(function (b) { return { series: [b.high + 1, b.low + 1], fill: b.fill }; });
     var plot = new uPlot({
+      bands: bands,
       width: box.clientWidth || 1000, height: spec.height, series: series, axes: [xAxis, yAxis], padding: [8, 8, 0, 0],
       scales: { x: { time: false } }, legend: { live: true, markers: { dash: function (_, i) { return i > 0 && spec.series[i - 1].dash ? "dashed" : "solid"; } } },
       cursor: { sync: { key: spec.group, setSeries: false }, drag: { x: true, y: false }, points: { size: 6 } }
