@@ -46,6 +46,8 @@ pub enum Verb {
     Play(PlayArguments),
     /// Simulator, energy monitor and recorder in one command.
     Up(UpArguments),
+    /// A page with state, energies, ledger and alarms of the live topics as moving plots.
+    Dashboard(DashboardArguments),
     /// A live ROS 2 node.
     #[command(subcommand)]
     Node(NodeVerb),
@@ -123,6 +125,16 @@ pub struct UpArguments {
     /// Stop after this time, s.
     #[arg(short, long, value_name = "SECONDS", value_parser = positive)]
     pub duration: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct DashboardArguments {
+    /// Port of the page; 0: any that is free.
+    #[arg(long, default_value_t = 8050)]
+    pub port: u16,
+    /// Address that the page is offered at; 0.0.0.0: to everybody on the network.
+    #[arg(long, default_value = "127.0.0.1")]
+    pub host: String,
 }
 
 #[derive(Debug, Args)]

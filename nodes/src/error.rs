@@ -56,6 +56,8 @@ pub enum VerbError {
     ProfileSyntax { path: PathBuf, reason: String },
     #[error("profile: {machine} has no cylinder \"{cylinder}\"; it has {known}")]
     ProfileCylinder { machine: String, cylinder: String, known: String },
+    #[error("cannot offer a page at {address}: {source}; choose another --port or --host")]
+    Listen { address: String, source: std::io::Error },
     #[error("cannot write JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error("{0}")]

@@ -63,7 +63,8 @@ impl ReadReport {
         self.infinite_values += block.infinite_values;
         self.repeated_cylinders += block.repeated_cylinders;
         self.malformed_commands += block.malformed_commands;
-        let room = MOST_GAPS.saturating_sub(self.gaps.len()).max(if self.gaps.is_empty() { block.gaps.len() } else { 0 });
+        let room =
+            MOST_GAPS.saturating_sub(self.gaps.len()).max(if self.gaps.is_empty() { block.gaps.len() } else { 0 });
         self.gaps.extend(block.gaps.into_iter().take(room));
         for name in block.commands_without_cylinder {
             if !self.commands_without_cylinder.contains(&name) {

@@ -152,8 +152,10 @@ impl<'m> Analyser<'m> {
         if let Some(frequency) = frequency {
             self.traces.measure_phases(frequency);
         }
-        let parameters_have_errors =
-            self.model.parameters().any(|(_, p)| p.standard_error.is_some_and(|error| error.is_finite() && error > 0.0));
+        let parameters_have_errors = self
+            .model
+            .parameters()
+            .any(|(_, p)| p.standard_error.is_some_and(|error| error.is_finite() && error > 0.0));
         Ok(EnergyAnalysis {
             source: self.source,
             samples: self.samples,
@@ -258,11 +260,8 @@ impl<'m> Analyser<'m> {
             .into_par_iter()
             .map(|block| {
                 let books = measured_books(system, &parameters, &block, settings)?;
-                let noise = if block.with_noise {
-                    Some(study_noise(system, &block, &books, places, settings)?)
-                } else {
-                    None
-                };
+                let noise =
+                    if block.with_noise { Some(study_noise(system, &block, &books, places, settings)?) } else { None };
                 let windows = windows(system.model(), &books, places, block.own, settings);
                 Ok(Done { block, books, windows, noise })
             })

@@ -99,11 +99,7 @@ pub(super) fn measured_books(
 }
 
 /// The books of a simulation on the clock of a block: its states as they are.
-pub(super) fn simulated_books(
-    system: &System<'_>,
-    block: &Block,
-    simulated: &Recording,
-) -> Result<Books, SignalError> {
+pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Recording) -> Result<Books, SignalError> {
     let model = system.model();
     let layout = system.layout();
     let parameters = model.parameter_values();

@@ -163,7 +163,11 @@ impl Judge {
             .enumerate()
             .map(|(index, &(place, _))| PlaceJudgement {
                 place,
-                regimes: Regime::ALL.iter().zip(&self.sums[index]).map(|(r, sum)| sum.judge(*r, &self.settings)).collect(),
+                regimes: Regime::ALL
+                    .iter()
+                    .zip(&self.sums[index])
+                    .map(|(r, sum)| sum.judge(*r, &self.settings))
+                    .collect(),
                 share_outside: self.outside[index] as f64 / count,
             })
             .collect()

@@ -79,7 +79,13 @@ fn whereabouts(place: Place, cylinder: Option<&str>) -> String {
 
 /// Watts to two significant digits.
 fn watts(power: f64) -> String {
-    let decimals = if power >= 10.0 { 0 } else if power >= 1.0 { 1 } else { 2 };
+    let decimals = if power >= 10.0 {
+        0
+    } else if power >= 1.0 {
+        1
+    } else {
+        2
+    };
     format!("{power:.decimals$}")
 }
 

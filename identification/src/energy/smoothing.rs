@@ -39,8 +39,12 @@ impl Parabola {
             s[4] += square * square;
         }
         // Rows of the inverse of [s0 s1 s2; s1 s2 s3; s2 s3 s4] that give value and slope.
-        let cofactors =
-            [s[2] * s[4] - s[3] * s[3], s[2] * s[3] - s[1] * s[4], s[1] * s[3] - s[2] * s[2], s[0] * s[4] - s[2] * s[2]];
+        let cofactors = [
+            s[2] * s[4] - s[3] * s[3],
+            s[2] * s[3] - s[1] * s[4],
+            s[1] * s[3] - s[2] * s[2],
+            s[0] * s[4] - s[2] * s[2],
+        ];
         let corner = s[1] * s[2] - s[0] * s[3];
         let determinant = s[0] * cofactors[0] + s[1] * cofactors[1] + s[2] * cofactors[2];
         if determinant.abs() < 1e-12 {

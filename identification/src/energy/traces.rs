@@ -192,9 +192,7 @@ impl CylinderTraces {
             (&mut self.rod_internal, |c| &c.rod_internal),
         ] {
             let members = &self.members;
-            column.extend(
-                range.clone().map(|k| members.iter().map(|&m| part(&books.cylinders[m])[k]).sum::<f64>()),
-            );
+            column.extend(range.clone().map(|k| members.iter().map(|&m| part(&books.cylinders[m])[k]).sum::<f64>()));
         }
         for (band, part) in [
             (&mut self.hamiltonian, (|d| &d.hamiltonian) as fn(&Derived) -> &Vec<f64>),
@@ -233,8 +231,7 @@ impl CylinderTraces {
         };
         self.numerical_supply = column(&|k| members.iter().map(|&m| books.supply(m, k)).sum());
         self.numerical_dissipation = column(&|k| members.iter().map(|&m| books.dissipation(m, k)).sum());
-        self.numerical =
-            self.numerical_supply.iter().zip(&self.numerical_dissipation).map(|(s, d)| s + d).collect();
+        self.numerical = self.numerical_supply.iter().zip(&self.numerical_dissipation).map(|(s, d)| s + d).collect();
         for term in &mut self.terms {
             term.numerical = column(&|k| power_of(books, term.effect, members, k));
         }
@@ -242,7 +239,9 @@ impl CylinderTraces {
 
     fn phases(&self, frequency: f64) -> PhaseDelays {
         let lag = |ahead: &[f64], behind: &[f64]| {
-            (behind.len() == self.time.len()).then(|| phase_delay_degrees(&self.time, ahead, behind, frequency)).flatten()
+            (behind.len() == self.time.len())
+                .then(|| phase_delay_degrees(&self.time, ahead, behind, frequency))
+                .flatten()
         };
         PhaseDelays {
             frequency,
@@ -254,8 +253,9 @@ impl CylinderTraces {
 }
 
 fn power_of(books: &Books, effect: &str, members: &[usize], entry: usize) -> f64 {
-    let own = books.effects.iter().filter(|own| {
-        own.effect == effect && matches!(own.site, Site::Cylinder(index) if members.contains(&index))
-    });
+    let own = books
+        .effects
+        .iter()
+        .filter(|own| own.effect == effect && matches!(own.site, Site::Cylinder(index) if members.contains(&index)));
     own.map(|own| own.into_cylinders(entry)).sum()
 }

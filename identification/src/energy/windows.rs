@@ -94,7 +94,11 @@ fn window(
         .map(|(cylinder, machine)| {
             let largest = machine.chambers.map_or(f64::INFINITY, |chambers| chambers.maximum_orifice_area);
             let opening = |k: usize| cylinder.opening[k].abs() / largest;
-            Situation { velocity: mean(&|k| cylinder.velocity[k]), opening: mean(&opening), opening_rate: rate(&opening) }
+            Situation {
+                velocity: mean(&|k| cylinder.velocity[k]),
+                opening: mean(&opening),
+                opening_rate: rate(&opening),
+            }
         })
         .collect();
     Some(Window { time: centre, residuals, flows, situations })

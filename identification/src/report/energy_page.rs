@@ -191,7 +191,7 @@ fn residual_plots(model: &Model, analysis: &EnergyAnalysis) -> Markup {
         @let plot = PowerPlot { group: "ledger", label: "missing", unit: "W", height: 140, last: index + 1 == analysis.places.len(), budget: 1200 };
         h3 { (words::equation(&label)) }
         (plot.markup(&time, &[
-            PowerLine { label: "explained", colour: "#0072b2", width: 0.0, dashed: false, values: &zero, errors: Some(&half) },
+            PowerLine { label: "explained by noise", colour: "#0072b2", width: 1.0, dashed: false, values: &zero, errors: Some(&half) },
             line("stored without explanation", EXPERIMENTAL, false, &residual),
         ]))
     } }

@@ -111,25 +111,23 @@ pub(super) fn pump_line(model: &Model, analysis: &EnergyAnalysis) -> Markup {
 /// Power that is missing, place by place and condition by condition.
 pub(super) fn ledger(model: &Model, analysis: &EnergyAnalysis) -> Markup {
     html! {
+        p.note { "All powers in W." }
         div.wide { table.data {
             thead { tr {
-                th { "Equation" } th { "Condition" } th.n { "Windows" } th.n { "Mean, W" } th.n { "Peak, W" } th.n { "Size (rms), W" }
-                th.n { "Within the noise up to, W" } th.n { "of which sensors, W" } th.n { "parameters, W" } th.n { "Power through, W" } th { "Ledger" }
+                th { "Condition" } th { "Ledger" } th.n { "Missing, rms" } th.n { "explained" } th.n { "sensors" } th.n { "parameters" }
+                th.n { "Mean" } th.n { "Peak" } th.n { "Flow" } th.n { "Windows" }
             } }
             tbody { @for place in &analysis.places {
-                @for (number, judged) in place.regimes.iter().enumerate().filter(|(_, judged)| judged.windows > 0) {
-                    tr class=[(number == 0).then_some("first")] {
-                        td { @if number == 0 { (words::equation(&place.place.equation(model))) " " code.code-name { (place.place.equation(model)) } } }
+                tr.group { td colspan="10" { (words::equation(&place.place.equation(model))) " " code.code-name { (place.place.equation(model)) } } }
+                @for judged in place.regimes.iter().filter(|judged| judged.windows > 0) {
+                    tr {
                         td { (Regime::words(judged.regime)) }
-                        td.n { (judged.windows) }
-                        td.n { (significant(judged.mean, 2)) }
-                        td.n { (significant(judged.peak, 2)) }
-                        td.n { (significant(judged.size, 2)) }
-                        td.n { (significant(judged.band, 2)) }
-                        td.n { (significant(judged.noise, 2)) }
-                        td.n { (significant(judged.parameters, 2)) }
-                        td.n { (significant(judged.flow, 3)) }
                         td { @if judged.is_explained() { span.chip { "closes" } } @else { span.chip.named { "does not close" } } }
+                        @for power in [judged.size, judged.band, judged.noise, judged.parameters, judged.mean, judged.peak] {
+                            td.n { (significant(power, 2)) }
+                        }
+                        td.n { (significant(judged.flow, 3)) }
+                        td.n { (judged.windows) }
                     }
                 }
             } }

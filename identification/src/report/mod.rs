@@ -32,6 +32,7 @@ mod words;
 #[cfg(test)]
 mod tests;
 
+pub use assets::plotting;
 pub use comparison_page::comparison_page;
 pub use diagnosis_page::diagnosis_page;
 pub use energy_page::energy_page;

@@ -61,10 +61,11 @@ impl PowerPlot<'_> {
                 bands.push(format!(r#"{{"high":{number},"low":{},"fill":"{fill}"}}"#, number + 1));
                 for (side, label) in [(1.0, "+ 2 standard errors"), (-1.0, "− 2 standard errors")] {
                     let label = format!("{} {label}", line.label);
-                    series.push(one(&label, "#00000000", 0.0, false, &edge(side), &kept));
+                    series.push(one(&label, "#00000000", 0.0, r#","edge":true"#, &edge(side), &kept));
                 }
             }
-            series.push(one(line.label, line.colour, line.width, line.dashed, line.values, &kept));
+            let style = if line.dashed { r#","dash":[6,3]"# } else { "" };
+            series.push(one(line.label, line.colour, line.width, style, line.values, &kept));
         }
         let seconds: Vec<String> =
             kept.iter().filter_map(|&index| time.get(index)).map(|t| shortest(&format!("{t:.4}"))).collect();
@@ -83,11 +84,10 @@ impl PowerPlot<'_> {
     }
 }
 
-fn one(label: &str, colour: &str, width: f64, dashed: bool, values: &[f64], kept: &[usize]) -> String {
+fn one(label: &str, colour: &str, width: f64, style: &str, values: &[f64], kept: &[usize]) -> String {
     format!(
-        r#"{{"label":{},"colour":"{colour}","width":{width}{},"values":{}}}"#,
+        r#"{{"label":{},"colour":"{colour}","width":{width}{style},"values":{}}}"#,
         text(label),
-        if dashed { r#","dash":[6,3]"# } else { "" },
         array(values, 1.0, kept)
     )
 }

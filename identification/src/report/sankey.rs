@@ -44,8 +44,7 @@ const TOP: f64 = 14.0;
 pub(super) fn sankey(nodes: &[Node], ribbons: &[Ribbon], description: &str) -> Markup {
     let ribbons: Vec<Ribbon> = ribbons.iter().copied().filter(|ribbon| ribbon.amount > 0.0).collect();
     let sum = |of: &dyn Fn(&Ribbon) -> bool| ribbons.iter().filter(|r| of(r)).map(|r| r.amount).sum::<f64>();
-    let sizes: Vec<f64> =
-        (0..nodes.len()).map(|node| sum(&|r| r.from == node).max(sum(&|r| r.to == node))).collect();
+    let sizes: Vec<f64> = (0..nodes.len()).map(|node| sum(&|r| r.from == node).max(sum(&|r| r.to == node))).collect();
     let columns = nodes.iter().map(|node| node.column + 1).max().unwrap_or(0);
     let column_size = |column: usize| {
         nodes.iter().zip(&sizes).filter(|(node, _)| node.column == column).map(|(_, size)| size).sum::<f64>()
@@ -111,7 +110,8 @@ mod tests {
 
     #[test]
     fn bars_are_as_tall_as_what_flows() {
-        let node = |label: &str, column: usize| Node { label: label.into(), amount: String::new(), column, colour: "#123456" };
+        let node =
+            |label: &str, column: usize| Node { label: label.into(), amount: String::new(), column, colour: "#123456" };
         let nodes = [node("in", 0), node("most", 1), node("little", 1), node("nothing", 1)];
         let ribbons = [
             Ribbon { from: 0, to: 1, amount: 75.0 },

@@ -1,7 +1,7 @@
 //! The energy of a recording, for people and for programs.
 
 use comfy_table::{Cell, Table};
-use excavator_identification::energy::{EnergyAnalysis, PlaceJudgement, Regime, Totals, missing_power};
+use excavator_identification::energy::{EnergyAnalysis, MissingPower, PlaceJudgement, Regime, Totals, missing_power};
 use excavator_model::Model;
 use excavator_model::effects::ActsOn;
 use excavator_model::site_name;
@@ -17,7 +17,8 @@ pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
     let cycle = analysis.cycle.as_ref().map(|cycle| (lines(model, &cycle.mean), lines(model, &cycle.deviation)));
     let whole = input(model, &analysis.totals);
     for (index, (name, energy)) in all.iter().enumerate() {
-        let per_cycle = cycle.as_ref().and_then(|(mean, deviation)| Some((mean.get(index)?.1, deviation.get(index)?.1)));
+        let per_cycle =
+            cycle.as_ref().and_then(|(mean, deviation)| Some((mean.get(index)?.1, deviation.get(index)?.1)));
         rows.add_row([
             Cell::new(name),
             right(format!("{energy:.1}")),
@@ -38,7 +39,9 @@ fn lines(model: &Model, totals: &Totals) -> Vec<(String, f64)> {
     let mut lines = Vec::new();
     if matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) {
         lines.push(("pump".to_string(), totals.pump));
-        for effect in totals.effects.iter().filter(|e| e.acts_on != ActsOn::Valve && !e.stores && e.into_pump_line != 0.0) {
+        for effect in
+            totals.effects.iter().filter(|e| e.acts_on != ActsOn::Valve && !e.stores && e.into_pump_line != 0.0)
+        {
             lines.push((format!("  lost: {} at the pump line", effect.effect), -effect.into_pump_line));
         }
         lines.push(("  stored in the pump line".to_string(), totals.pump_line));
@@ -104,13 +107,7 @@ pub fn energy_json(model: &Model, analysis: &EnergyAnalysis) -> Value {
             ))
         })
         .collect();
-    let missing: Vec<Value> = missing_power(model, analysis)
-        .iter()
-        .map(|m| {
-            json!({"cylinder": m.cylinder, "equation": m.equation, "condition": m.regime.name(), "mean_power": finite(m.mean),
-                   "size": finite(m.size), "peak_power": finite(m.peak), "band": finite(m.band), "sentence": m.sentence})
-        })
-        .collect();
+    let missing: Vec<Value> = missing_power(model, analysis).iter().map(missing_power_json).collect();
     json!({
         "source": analysis.source,
         "samples": analysis.samples,
@@ -130,6 +127,15 @@ pub fn energy_json(model: &Model, analysis: &EnergyAnalysis) -> Value {
         "missing_power": missing,
         "simulation_failed": analysis.simulation_failed,
         "parameters_have_errors": analysis.parameters_have_errors,
+    })
+}
+
+/// Power that is missing at one equation.
+pub fn missing_power_json(missing: &MissingPower) -> Value {
+    json!({
+        "cylinder": missing.cylinder, "equation": missing.equation, "condition": missing.regime.name(),
+        "mean_power": finite(missing.mean), "size": finite(missing.size), "peak_power": finite(missing.peak),
+        "band": finite(missing.band), "sentence": missing.sentence,
     })
 }
 

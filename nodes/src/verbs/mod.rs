@@ -30,6 +30,7 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Record(arguments) => crate::record::run(&arguments, ros),
         Verb::Play(arguments) => crate::play::run(&arguments, ros),
         Verb::Up(arguments) => crate::up::run(&arguments, ros_words),
+        Verb::Dashboard(arguments) => crate::dashboard::run(&arguments, ros),
         Verb::Node(which) => node::run(which, ros),
         Verb::Import(arguments) => import::run(&arguments),
     }

@@ -32,6 +32,9 @@
       scales: { x: { time: false } }, legend: { live: true, markers: { dash: function (_, i) { return i > 0 && spec.series[i - 1].dash ? "dashed" : "solid"; } } },
       cursor: { sync: { key: spec.group, setSeries: false }, drag: { x: true, y: false }, points: { size: 6 } }
     }, [spec.time].concat(spec.series.map(function (s) { return s.values; })), box);
+    // Edges of bands have no line of their own to hide.
+    var rows = box.querySelectorAll(".u-legend .u-series");
+    spec.series.forEach(function (s, i) { if (s.edge && rows[i + 1]) rows[i + 1].style.display = "none"; });
     plots.push({ plot: plot, box: box, height: spec.height });
   }
   function fit(width) {
