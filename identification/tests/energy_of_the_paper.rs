@@ -11,7 +11,9 @@ use excavator_model::simulation::{InputSignals, Tolerances, rest_state, simulate
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// The machine of the paper moved by `1e-4 sin(2 pi f t)` m², measured at 500 Hz by sensors with noise.
+/// The machine of the paper moved by `1e-4 sin(2 pi f t)` m², measured at 500 Hz by sensors with noise. It starts nearly
+/// extended, from where it drifts in as in the paper: pressures, and with them leakage, are high there. About mid-stroke
+/// of this machine external leakage is no greater than Coulomb friction.
 fn measured(model: &Model, frequency: f64) -> Recording {
     let time: Vec<f64> = (0..6000).map(|index| f64::from(index) * 2e-3).collect();
     let mut recording = Recording::unmeasured("simulated experiment", time, &["arm"]);
@@ -23,7 +25,7 @@ fn measured(model: &Model, frequency: f64) -> Recording {
     let system = System::new(model);
     let mut inputs = Inputs::zero(1);
     signals.between(0, 0.0, &mut inputs);
-    let start = rest_state(&system, &[0.1], &inputs);
+    let start = rest_state(&system, &[0.27], &inputs);
     let mut recording = simulate_from(model, &recording, &signals, start, Tolerances::default()).unwrap();
     recording.cylinders[0].velocity.fill(f64::NAN);
     recording.cylinders[0].joint_angle.fill(f64::NAN);
@@ -125,7 +127,7 @@ fn coulomb_friction_is_much_smaller_and_leakage_is_there_at_supply_peaks_only() 
             let busy = mean(powers, |k| trace.supply.value[k] > 0.5 * supply_peak).abs();
             println!("  {leakage}: {quiet:.2} W away from supply peaks, {busy:.2} W at them");
             assert!(quiet < 0.1 * peak(powers), "{leakage}: {quiet}");
-            assert!(quiet < 0.25 * busy, "{leakage}: {quiet} {busy}");
+            assert!(quiet < 0.2 * busy, "{leakage}: {quiet} {busy}");
         }
     }
 }
@@ -147,6 +149,7 @@ fn the_page_has_the_figures_of_the_paper() {
         ] {
             assert!(page.contains(text), "{text}");
         }
+        // For people who want to see them.
         if let Some(folder) = std::env::var_os("EXCAVATOR_PAGES") {
             let file = std::path::Path::new(&folder).join(format!("energy-{frequency}-hz.html"));
             std::fs::write(file, page).unwrap();

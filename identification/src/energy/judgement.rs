@@ -19,7 +19,8 @@ pub struct RegimeJudgement {
     pub size: f64,
     /// Standard deviation of a window's power from sensor noise, W.
     pub noise: f64,
-    /// Standard deviation from the parameters' standard errors, W; zero where the model has none.
+    /// Standard deviation from the parameters' standard errors, where the model has them, and from the width of the
+    /// parabolas through the measurements, W.
     pub parameters: f64,
     /// Mean power that flows through the place, W.
     pub flow: f64,

@@ -18,7 +18,8 @@ pub(super) struct WindowNoise {
     pub bias: Vec<f64>,
     /// Variance that noise adds, W².
     pub variance: Vec<f64>,
-    /// Change of the residual by one standard error of each parameter that has one, W.
+    /// Changes of the residual by what is the same in all windows, W: by one standard error of each parameter that has
+    /// one, and by wider parabolas.
     pub parameters: Vec<Vec<f64>>,
 }
 
@@ -33,6 +34,9 @@ pub(super) struct NoiseStudy {
 
 /// Windows over which a variance is averaged, to each side: a handful of repeats alone would leave it a third uncertain.
 const POOLED: usize = 4;
+
+/// Factor of the half widths by which the rounding of parabolas is found out.
+const WIDER: f64 = 1.4;
 
 /// Repeats the books of a block with as much noise added as each sensor has (its level is taken from the signal's second
 /// differences). The repeats' residuals scatter as the noise scatters the residual itself; and as much as their mean is
@@ -66,6 +70,13 @@ pub(super) fn study_noise(
         values[index] += error;
         moved.push(residuals_of(&measured_books(system, &values, block, settings)?));
     }
+    // What wider parabolas change is of the size of what the parabolas have rounded off.
+    let wider = EnergySettings {
+        half_width: WIDER * settings.half_width,
+        motion_half_width: WIDER * settings.motion_half_width,
+        ..*settings
+    };
+    moved.push(residuals_of(&measured_books(system, &parameters, block, &wider)?));
     let difference = |draw: &[Vec<f64>], window: usize, place: usize| {
         Some(draw.get(window)?.get(place)? - base.get(window)?.residuals.get(place)?)
     };

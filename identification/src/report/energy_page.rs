@@ -66,9 +66,10 @@ pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
                 (ledger(model, analysis))
                 p.note {
                     "At each equation of the model: the energy that is stored there, less the power that the model says flows in, averaged over windows of "
-                    "0.4 s. Negative: power goes missing. Noise moves it as much as repeats with added sensor noise say, parameters as much as their standard errors; "
+                    "0.4 s. Negative: power goes missing. Noise moves it as much as repeats with added sensor noise say, parameters as much as their standard errors, "
+                    "and slopes are no sharper than the parabolas through the measurements; "
                     "1 % of the power that flows through is always allowed for."
-                    @if !analysis.parameters_have_errors { " The parameters of this model carry no standard errors, so their part is zero: identify it first." }
+                    @if !analysis.parameters_have_errors { " The parameters of this model carry no standard errors, so they are taken for exact: identify it first." }
                 }
             },
         },

@@ -114,7 +114,7 @@ pub(super) fn ledger(model: &Model, analysis: &EnergyAnalysis) -> Markup {
         p.note { "All powers in W." }
         div.wide { table.data {
             thead { tr {
-                th { "Condition" } th { "Ledger" } th.n { "Missing, rms" } th.n { "explained" } th.n { "sensors" } th.n { "parameters" }
+                th { "Condition" } th { "Ledger" } th.n { "Missing, rms" } th.n { "explained" } th.n { "sensors" } th.n { "parameters, slopes" }
                 th.n { "Mean" } th.n { "Peak" } th.n { "Flow" } th.n { "Windows" }
             } }
             tbody { @for place in &analysis.places {

@@ -17,6 +17,11 @@ use crate::verbs::print;
 /// Time between two frames: 25 per second.
 const FRAME: Duration = Duration::from_millis(40);
 
+/// Reliable, with room for two seconds at 1 kHz.
+fn newest(depth: u32) -> TopicQos {
+    TopicQos::reliable(depth).with_room(2_000)
+}
+
 /// Serves the page until it is told to stop.
 ///
 /// # Errors
@@ -30,18 +35,12 @@ pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), Ver
     let board = Arc::new(Board::default());
     let of = || Arc::clone(&board);
     let (states, commands, energies, parts) = (of(), of(), of(), of());
-    supervisor
-        .link
-        .subscribe("/arm/state", TopicQos::reliable(50), move |state: ArmState, _| states.take_state(state))?;
-    supervisor.link.subscribe("/arm/orifice_command", TopicQos::reliable(10), move |command: OrificeCommand, _| {
+    supervisor.link.subscribe("/arm/state", newest(50), move |state: ArmState, _| states.take_state(state))?;
+    supervisor.link.subscribe("/arm/orifice_command", newest(10), move |command: OrificeCommand, _| {
         commands.take_command(command);
     })?;
-    supervisor
-        .link
-        .subscribe("/arm/energy", TopicQos::reliable(50), move |energy: EnergyState, _| energies.take_energy(energy))?;
-    supervisor
-        .link
-        .subscribe("/diagnostics", TopicQos::reliable(10), move |array: DiagnosticArray, _| parts.take_health(array))?;
+    supervisor.link.subscribe("/arm/energy", newest(50), move |energy: EnergyState, _| energies.take_energy(energy))?;
+    supervisor.link.subscribe("/diagnostics", newest(10), move |array: DiagnosticArray, _| parts.take_health(array))?;
     let stop = supervisor.stop_flag();
     let server = std::thread::spawn(move || serve_frames(listener, board, &stop));
     supervisor.diagnostics.tell("page", Health::Ok, format!("http://{address}/"), &[]);

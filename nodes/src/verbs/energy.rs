@@ -100,9 +100,7 @@ fn show(model: &Model, analysis: &EnergyAnalysis) {
     }
     print(&ledger_table(model, analysis).to_string());
     if !analysis.parameters_have_errors {
-        print(
-            "The model's parameters carry no standard errors: the bands are of sensor noise alone. Identify it first.",
-        );
+        print("The model's parameters carry no standard errors and are taken for exact. Identify it first.");
     }
     let missing = missing_power(model, analysis);
     if missing.is_empty() {

@@ -40,7 +40,7 @@
 
   function clear() { plots.forEach(function (p) { p.data.forEach(function (column) { column.length = 0; }); }); means.length = 0; }
 
-  function take(frame) {
+  function take(frame, live) {
     number += 1;
     if (lastNumber !== null && frame.number > lastNumber + 1) missed += frame.number - lastNumber - 1;
     // A server that began anew counts anew.
@@ -59,7 +59,7 @@
       if (p.data[0].length > KEPT) p.data.forEach(function (column) { column.shift(); });
     });
     if (frame.powers) { means.push(frame.powers); if (means.length > MEAN) means.shift(); }
-    rates.push([performance.now(), frame.states, frame.balances]);
+    if (live) rates.push([performance.now(), frame.states, frame.balances]);
     if (rates.length > 50) rates.shift();
   }
 
@@ -111,9 +111,12 @@
     });
     // The cylinder's own part is small beside the bypass: it has a scale of its own.
     var whole = right.reduce(function (sum, r) { return sum + Math.max(r[1], 0); }, 0), own_scale = 110 / Math.max(whole, 1e-9), at = 20;
+    var narrow = Math.max(Math.max(supply, 0) * scale, 1), start = from;
     right.forEach(function (part) {
-      var h = Math.max(part[1], 0) * own_scale;
-      ribbon(139, from + Math.max(supply, 0) * scale / 2, 290, at + h / 2, h, part[2]);
+      var h = Math.max(part[1], 0) * own_scale, w = narrow * Math.max(part[1], 0) / Math.max(whole, 1e-9);
+      // Widens from its share of the cylinder's bar to the scale of the right side.
+      out.push('<path d="M139 ' + start + "C215 " + start + " 215 " + at + " 290 " + at + "V" + (at + h) + "C215 " + (at + h) + " 215 " + (start + w) + " 139 " + (start + w) + 'Z" fill="' + part[2] + '" fill-opacity="0.4"/>');
+      start += w;
       bar(290, at, h, part[2], part[1] < 0 ? part[0] + " (gives)" : part[0], part[1]);
       at += Math.max(h, 1) + 28;
     });
@@ -165,14 +168,14 @@
     stream.onopen = function () { link("live", "live"); };
     stream.onerror = function () { link("no connection", "lost"); };
     stream.onmessage = function (event) {
-      take(JSON.parse(event.data));
+      take(JSON.parse(event.data), true);
       if (!waiting) { waiting = true; requestAnimationFrame(function () { waiting = false; redraw(); }); }
     };
   }
 
   build();
   byId("cylinder").addEventListener("change", function () { chosen = this.value; clear(); });
-  fetch("/history").then(function (reply) { return reply.json(); }).then(function (frames) { frames.forEach(take); redraw(); }).catch(function () {}).then(connect);
+  fetch("/history").then(function (reply) { return reply.json(); }).then(function (frames) { frames.forEach(function (frame) { take(frame, false); }); redraw(); }).catch(function () {}).then(connect);
   // For whoever watches the watcher.
   window.dashboard = { frames: function () { return number; }, points: function () { return plots[0].data[0].length; }, last: function () { return plots.map(function (p) { return p.data.map(function (c) { return c[c.length - 1]; }); }); } };
 })();
