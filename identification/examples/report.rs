@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     write("refinement", refinement_page(&refinement))?;
     if let (Some(diagnosis), Some(first)) = (&refinement.diagnosis, refinement.steps.first()) {
         println!("{}", verdict_sentence(&model, diagnosis));
-        write("diagnosis", diagnosis_page(&model, diagnosis, &first.comparisons))?;
+        write("diagnosis", diagnosis_page(&model, diagnosis, &first.comparisons, &[]))?;
         write("comparison", comparison_page(&first.fit.model, &first.comparisons))?;
     }
     Ok(())

@@ -5,6 +5,7 @@
 //! report. This crate reads no files and knows no ROS.
 
 pub mod diagnosis;
+pub mod energy;
 pub mod fit;
 pub mod gate;
 pub mod refinement;

@@ -28,6 +28,8 @@ pub enum Verb {
     Identify(IdentifyArguments),
     /// Simulate with a recording's input and compare every output with the measurement.
     Compare(CompareArguments),
+    /// Where the energy went, and whether the model's ledger closes: H, dH/dt, losses by effect, pump line.
+    Energy(EnergyArguments),
     /// Find out which physical effect the model is missing.
     Diagnose(DiagnoseArguments),
     /// Add effects, refit, and measure the error again.
@@ -44,6 +46,8 @@ pub enum Verb {
     Play(PlayArguments),
     /// Simulator, energy monitor and recorder in one command.
     Up(UpArguments),
+    /// A page with state, energies, ledger and alarms of the live topics as moving plots.
+    Dashboard(DashboardArguments),
     /// A live ROS 2 node.
     #[command(subcommand)]
     Node(NodeVerb),
@@ -121,6 +125,16 @@ pub struct UpArguments {
     /// Stop after this time, s.
     #[arg(short, long, value_name = "SECONDS", value_parser = positive)]
     pub duration: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct DashboardArguments {
+    /// Port of the page; 0: any that is free.
+    #[arg(long, default_value_t = 8050)]
+    pub port: u16,
+    /// Address that the page is offered at; 0.0.0.0: to everybody on the network.
+    #[arg(long, default_value = "127.0.0.1")]
+    pub host: String,
 }
 
 #[derive(Debug, Args)]
@@ -262,6 +276,23 @@ pub struct CompareArguments {
     #[command(flatten)]
     pub mapping: Mapping,
     /// Write a page with plots of every signal, residuals, and error against command, speed, pressure and position.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct EnergyArguments {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    /// Recording, of any length.
+    #[arg(long, value_name = "BAG")]
+    pub bag: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    /// Write a page with the flow of energy, rates of the stored energy, losses by effect, and the ledger.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     #[command(flatten)]

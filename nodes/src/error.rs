@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use excavator_bags::BagError;
 use excavator_identification::diagnosis::DiagnosisError;
+use excavator_identification::energy::EnergyError;
 use excavator_identification::fit::FitError;
 use excavator_identification::gate::GateError;
 use excavator_identification::refinement::RefineError;
@@ -32,6 +33,8 @@ pub enum VerbError {
     #[error(transparent)]
     Diagnosis(#[from] DiagnosisError),
     #[error(transparent)]
+    Energy(#[from] EnergyError),
+    #[error(transparent)]
     Refine(#[from] RefineError),
     #[error(transparent)]
     Run(#[from] RunError),
@@ -53,6 +56,8 @@ pub enum VerbError {
     ProfileSyntax { path: PathBuf, reason: String },
     #[error("profile: {machine} has no cylinder \"{cylinder}\"; it has {known}")]
     ProfileCylinder { machine: String, cylinder: String, known: String },
+    #[error("cannot offer a page at {address}: {source}; choose another --port or --host")]
+    Listen { address: String, source: std::io::Error },
     #[error("cannot write JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error("{0}")]

@@ -4,6 +4,7 @@ mod arm_bridge;
 mod arm_simulator;
 mod cli;
 mod command;
+pub mod dashboard;
 pub mod demo;
 mod energy_monitor;
 mod error;

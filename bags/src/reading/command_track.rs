@@ -46,12 +46,21 @@ impl CommandTrack {
         }
     }
 
+    /// A track that begins with the commands that are held at the end of this one.
+    pub fn continued(&self) -> Self {
+        let held = |own: &CylinderCommands| {
+            let last = own.commands.iter().max_by_key(|(stamp, _)| *stamp).copied();
+            CylinderCommands { name: own.name.clone(), commands: last.into_iter().collect() }
+        };
+        CommandTrack { cylinders: self.cylinders.iter().map(held).collect(), ..CommandTrack::default() }
+    }
+
     /// Fills in the commands of the recording, whose clock in ns since the epoch is `stamps`: at each sample the
     /// latest command with a stamp not after it, `NaN` before the first. Of commands with equal stamps the last counts.
     pub fn hold(mut self, recording: &mut Recording, stamps: &[i64], report: &mut ReadReport) {
         report.infinite_values += self.infinite_values;
-        report.malformed_commands = self.malformed;
-        report.reordered_commands = count_late(&self.stamps);
+        report.malformed_commands += self.malformed;
+        report.reordered_commands += count_late(&self.stamps);
         for commanded in &mut self.cylinders {
             let Some(cylinder) = recording.cylinders.iter_mut().find(|cylinder| cylinder.name == commanded.name) else {
                 report.commands_without_cylinder.push(commanded.name.clone());

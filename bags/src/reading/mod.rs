@@ -7,7 +7,7 @@ mod state_decoder;
 mod state_table;
 mod topic_check;
 
-pub use read_recording::read_recording;
 pub(crate) use read_recording::{TopicCounts, truncated_after};
+pub use read_recording::{read_recording, read_recording_in_blocks};
 pub use report::{Gap, ReadReport};
 pub(crate) use state_table::{count_late, gaps};

@@ -1,5 +1,6 @@
 //! State and command messages of a bag as one recording.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -25,6 +26,26 @@ use crate::{BagError, Damage, RawMessage, RawMessages, Topic, Topics};
 /// [`BagError::WrongType`], [`BagError::OtherDefinition`], [`BagError::UnsupportedSerialization`] for either topic;
 /// [`BagError::Undecodable`] when not one message of a topic can be decoded.
 pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadReport), BagError> {
+    let mut recording = Recording::default();
+    let report = read_recording_in_blocks(path, topics, usize::MAX, |whole| {
+        recording = whole;
+        ControlFlow::Continue(())
+    })?;
+    Ok((recording, report))
+}
+
+/// As [`read_recording`], in blocks of `samples` state messages, which `take` gets one after the other as they are read:
+/// for recordings that do not fit into memory. `take` can end the reading. Messages are sorted by their stamps within a
+/// block; the first samples of a block can be older than the last ones of the block before.
+///
+/// # Errors
+/// As [`read_recording`]; blocks may have been taken before.
+pub fn read_recording_in_blocks(
+    path: &Path,
+    topics: &Topics,
+    samples: usize,
+    mut take: impl FnMut(Recording) -> ControlFlow<()>,
+) -> Result<ReadReport, BagError> {
     let mut messages = RawMessages::open(path)?;
     let mut report = ReadReport::default();
     let mut states = TopicReader::<ArmState>::new(path, &topics.state);
@@ -34,6 +55,7 @@ pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadRe
     let mut track = CommandTrack::default();
     let mut counts = TopicCounts::default();
     let mut first_log_time = None;
+    let mut blocks = BlockMaker { source: path.display().to_string(), start: None };
     for message in &mut messages {
         let message = message?;
         first_log_time.get_or_insert(message.log_time);
@@ -41,6 +63,12 @@ pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadRe
         if message.topic.name == topics.state {
             if let Some(state) = states.decode(&message, |bytes| decoder.decode(bytes))? {
                 table.push(state);
+                if table.len() >= samples {
+                    let block = blocks.make(std::mem::take(&mut table), &mut track, &mut report);
+                    if take(block).is_break() {
+                        return Ok(report);
+                    }
+                }
             }
         } else if message.topic.name == topics.command
             && let Some(command) = commands.decode(&message, cdr::decode::<OrificeCommand>)?
@@ -55,12 +83,33 @@ pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadRe
     report.missing_messages = messages.promised_messages().unwrap_or(0).saturating_sub(found);
     states.finish(&mut report)?;
     commands.finish(&mut report)?;
-    if table.is_empty() {
+    if !table.is_empty() {
+        let _ = take(blocks.make(table, &mut track, &mut report));
+    } else if blocks.start.is_none() {
         return Err(no_state(&messages, topics, &report));
     }
-    let (mut recording, stamps) = table.into_recording(&path.display().to_string(), &mut report);
-    track.hold(&mut recording, &stamps, &mut report);
-    Ok((recording, report))
+    Ok(report)
+}
+
+/// Makes recordings of tables, and adds up what is said about them.
+struct BlockMaker {
+    source: String,
+    /// Stamp of the first sample of the first block, ns.
+    start: Option<i64>,
+}
+
+impl BlockMaker {
+    fn make(&mut self, table: StateTable, track: &mut CommandTrack, report: &mut ReadReport) -> Recording {
+        let mut own = ReadReport::default();
+        let (mut recording, stamps) = table.into_recording(&self.source, &mut own);
+        let next = track.continued();
+        std::mem::replace(track, next).hold(&mut recording, &stamps, &mut own);
+        let start = *self.start.get_or_insert(recording.start_nanoseconds);
+        let offset = (recording.start_nanoseconds - start) as f64 * 1e-9;
+        own.gaps.iter_mut().for_each(|gap| gap.after += offset);
+        report.add_block(own);
+        recording
+    }
 }
 
 fn no_state(messages: &RawMessages, topics: &Topics, report: &ReadReport) -> BagError {

@@ -51,7 +51,28 @@ pub struct ReadReport {
     pub notes: Vec<String>,
 }
 
+/// Gaps that a report keeps at most.
+const MOST_GAPS: usize = 10_000;
+
 impl ReadReport {
+    /// Adds what was found in one block of a recording.
+    pub(super) fn add_block(&mut self, block: ReadReport) {
+        self.duplicates += block.duplicates;
+        self.reordered += block.reordered;
+        self.reordered_commands += block.reordered_commands;
+        self.infinite_values += block.infinite_values;
+        self.repeated_cylinders += block.repeated_cylinders;
+        self.malformed_commands += block.malformed_commands;
+        let room =
+            MOST_GAPS.saturating_sub(self.gaps.len()).max(if self.gaps.is_empty() { block.gaps.len() } else { 0 });
+        self.gaps.extend(block.gaps.into_iter().take(room));
+        for name in block.commands_without_cylinder {
+            if !self.commands_without_cylinder.contains(&name) {
+                self.commands_without_cylinder.push(name);
+            }
+        }
+    }
+
     /// Bytes lost to damage, in all files together.
     pub fn lost_bytes(&self) -> u64 {
         self.damage.iter().map(|damage| damage.lost_bytes).fold(0, u64::saturating_add)

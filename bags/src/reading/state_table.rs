@@ -71,6 +71,11 @@ impl StateTable {
         }
     }
 
+    /// Number of messages.
+    pub fn len(&self) -> usize {
+        self.stamps.len()
+    }
+
     /// Whether there is no message yet.
     pub fn is_empty(&self) -> bool {
         self.stamps.is_empty()

@@ -22,3 +22,8 @@ pub(super) fn uplot_script() -> &'static str {
         _ => UPLOT_SCRIPT,
     }
 }
+
+/// uPlot for pages of others: its script, its style sheet, and its licence, which has to go with them.
+pub fn plotting() -> (&'static str, &'static str, &'static str) {
+    (uplot_script(), UPLOT_STYLE, UPLOT_LICENCE)
+}

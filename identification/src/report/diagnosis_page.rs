@@ -8,21 +8,31 @@ use super::effect_cards::effect_card;
 use super::error_plots::{Errors, error_plots};
 use super::evidence_tables::{evidence, regimes};
 use super::page::{Section, page};
-use super::parameter_table;
 use super::time_plots::MODEL;
 use super::unexplained_plot::unexplained_plot;
 use super::verdict_text::{tied, verdict_sentence};
+use super::{energy_tables, parameter_table};
 use crate::diagnosis::{Candidate, Diagnosis, Verdict};
+use crate::energy::MissingPower;
 use crate::validation::Comparison;
 
 /// A page with a diagnosis: the verdict, the evidence, and where the model fails. `comparisons_before` are the model
-/// without additions on the validation recordings.
-pub fn diagnosis_page(model: &Model, diagnosis: &Diagnosis, comparisons_before: &[Comparison]) -> String {
+/// without additions on the validation recordings; `missing` is what the energy ledger of the refitted model says of each
+/// of them.
+pub fn diagnosis_page(
+    model: &Model,
+    diagnosis: &Diagnosis,
+    comparisons_before: &[Comparison],
+    missing: &[(String, Vec<MissingPower>)],
+) -> String {
     let lead = html! {
         p.about { (model.machine.description) }
         (verdict(model, diagnosis))
     };
     let mut sections = diagnosis_sections(diagnosis, comparisons_before);
+    if !missing.is_empty() {
+        sections.push(Section { anchor: "energy", title: "Missing power".into(), body: missing_power(missing) });
+    }
     sections.push(Section {
         anchor: "measures",
         title: "Errors of the model".into(),
@@ -40,6 +50,20 @@ pub fn diagnosis_page(model: &Model, diagnosis: &Diagnosis, comparisons_before: 
         body: parameter_table::of_model(&diagnosis.nominal.model, &[]),
     });
     page("Diagnosis", &model.machine.name, &lead, &sections)
+}
+
+/// What the energy ledger says, recording by recording.
+fn missing_power(missing: &[(String, Vec<MissingPower>)]) -> Markup {
+    html! {
+        @for (source, found) in missing {
+            @if missing.len() > 1 { h3 { (source) } }
+            (energy_tables::evidence(found))
+        }
+        p.note {
+            "The energy ledger of the refitted model on what was measured: energy stored at each equation, less the power that the model says flows in. "
+            code { "excavator energy" } " has the figures."
+        }
+    }
 }
 
 /// The verdict in its box.

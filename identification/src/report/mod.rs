@@ -8,12 +8,17 @@ mod assets;
 mod comparison_page;
 mod diagnosis_page;
 mod effect_cards;
+mod energy_flow;
+mod energy_page;
+mod energy_tables;
 mod error_plots;
 mod evidence_tables;
 mod numbers;
 mod page;
 mod parameter_table;
+mod power_plots;
 mod refinement_page;
+mod sankey;
 mod signal_tables;
 mod step_plot;
 mod svg;
@@ -27,7 +32,9 @@ mod words;
 #[cfg(test)]
 mod tests;
 
+pub use assets::plotting;
 pub use comparison_page::comparison_page;
 pub use diagnosis_page::diagnosis_page;
+pub use energy_page::energy_page;
 pub use refinement_page::refinement_page;
 pub use verdict_text::verdict_sentence;

@@ -48,6 +48,7 @@ fn plain(value: f64) -> String {
 pub(super) fn percent(fraction: f64) -> String {
     match 100.0 * fraction {
         value if !value.is_finite() => NOTHING.to_string(),
+        value if value < 0.0 && value > -0.05 => "0 %".to_string(),
         value if value > 0.0 && value < 0.05 => "< 0.1 %".to_string(),
         value if value.abs() < 10.0 && value != 0.0 => format!("{} %", with_minus(&format!("{value:.1}"))),
         value => format!("{} %", with_minus(&format!("{value:.0}"))),

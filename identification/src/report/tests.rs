@@ -12,6 +12,7 @@ use super::{comparison_page, diagnosis_page, refinement_page, verdict_sentence};
 use crate::diagnosis::{Candidate, Diagnosis, Evidence, Share, Unexplained, Verdict};
 use excavator_model::equations::Channel;
 
+use crate::energy::{MissingPower, Regime};
 use crate::fit::{Fit, Instrument};
 use crate::refinement::{Refinement, Step};
 use crate::validation::{Comparison, SignalComparison};
@@ -236,6 +237,20 @@ fn verdicts_name_effect_and_place_and_admit_ties() {
     assert!(left.contains("force balance of the arm does not close") && left.contains("piston position"), "{left}");
 }
 
+fn missing() -> MissingPower {
+    MissingPower {
+        cylinder: Some("arm".into()),
+        equation: "arm.motion".into(),
+        regime: Regime::ClosingStroke,
+        mean: -3.0,
+        size: 4.0,
+        peak: -9.0,
+        band: 1.0,
+        share_of_flow: 0.1,
+        sentence: "On closing strokes, up to 9 W go missing.".into(),
+    }
+}
+
 #[test]
 fn diagnosis_shows_evidence_cards_and_what_is_left() {
     let first = candidate("valve_dead_zone", 2.0, true, true);
@@ -243,19 +258,26 @@ fn diagnosis_shows_evidence_cards_and_what_is_left() {
         &model(),
         &diagnosis(Verdict::MissingEffect, vec![first, candidate("valve_leakage", 1.95, true, true)]),
         &[comparison(0.2)],
+        &[(HOSTILE.into(), vec![missing()])],
     );
     assert_sound(&page);
-    for text in
-        ["valve_dead_zone", "valve_leakage", "hose_loss", "not told apart", "arm.cap_continuity", "valve closed"]
-    {
+    for text in [
+        "9 W go missing",
+        "valve_dead_zone",
+        "valve_leakage",
+        "hose_loss",
+        "not told apart",
+        "arm.cap_continuity",
+        "valve closed",
+    ] {
         assert!(page.contains(text), "{text}");
     }
     let experiment = effects::find("valve_dead_zone").unwrap().card().experiment;
     assert!(page.contains(experiment) && page.contains("arm.dead_zone_positive"));
-    let page = diagnosis_page(&model(), &diagnosis(Verdict::Unexplained, vec![]), &[]);
+    let page = diagnosis_page(&model(), &diagnosis(Verdict::Unexplained, vec![]), &[], &[]);
     assert_sound(&page);
     assert!(page.contains("piston position (mm)") && page.contains("residual (N m)"));
-    assert_sound(&diagnosis_page(&model(), &diagnosis(Verdict::Adequate, vec![]), &[comparison(0.0)]));
+    assert_sound(&diagnosis_page(&model(), &diagnosis(Verdict::Adequate, vec![]), &[comparison(0.0)], &[]));
 }
 
 #[test]

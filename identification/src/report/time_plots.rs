@@ -149,12 +149,12 @@ impl Plot<'_> {
 }
 
 /// JSON text that cannot end the script it stands in.
-fn text(words: &str) -> String {
+pub(super) fn text(words: &str) -> String {
     serde_json::Value::from(words).to_string().replace('<', "\\u003c")
 }
 
 /// JSON array of the kept values with five significant digits; what is not a number is `null`.
-fn array(values: &[f64], factor: f64, kept: &[usize]) -> String {
+pub(super) fn array(values: &[f64], factor: f64, kept: &[usize]) -> String {
     let entries: Vec<String> = kept
         .iter()
         .map(|&index| match values.get(index).map(|value| value * factor) {
@@ -167,7 +167,7 @@ fn array(values: &[f64], factor: f64, kept: &[usize]) -> String {
     format!("[{}]", entries.join(","))
 }
 
-fn shortest(decimal: &str) -> String {
+pub(super) fn shortest(decimal: &str) -> String {
     decimal.parse::<f64>().map_or_else(|_| "null".to_string(), |value| value.to_string())
 }
 

@@ -24,7 +24,7 @@ pub fn write_json(path: &Path, value: &Value) -> Result<(), VerbError> {
 }
 
 /// JSON has no NaN: what is not a number is null.
-fn finite(value: f64) -> Value {
+pub(super) fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }
 

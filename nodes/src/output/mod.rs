@@ -1,9 +1,11 @@
 //! What people and programs see of results.
 
+mod energy;
 mod json;
 mod progress;
 mod tables;
 
+pub use energy::{energy_json, energy_table, ledger_table, missing_power_json};
 pub use json::{comparison_json, diagnosis_json, identification_json, refinement_json, write_json};
 pub use progress::Progress;
 pub use tables::{candidate_table, comparison_table, number, parameter_table, step_table};

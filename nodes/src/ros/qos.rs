@@ -18,22 +18,29 @@ pub struct TopicQos {
     pub transient_local: bool,
     /// Seconds after which a sample is of no use, `None` for never.
     pub lifespan: Option<u32>,
+    /// Samples that a reliable endpoint has room for.
+    pub room: i32,
 }
 
 impl TopicQos {
     /// Reliable, volatile, the last `depth` samples.
     pub const fn reliable(depth: u32) -> Self {
-        TopicQos { depth, reliable: true, transient_local: false, lifespan: None }
+        TopicQos { depth, reliable: true, transient_local: false, lifespan: None, room: UNACKNOWLEDGED }
+    }
+
+    /// The same for a reader that only ever wants the newest: middleware keeps what was read until the room is full.
+    pub const fn with_room(self, samples: i32) -> Self {
+        TopicQos { room: samples, ..self }
     }
 
     /// Reliable, the last sample also for late joiners.
     pub const fn latched() -> Self {
-        TopicQos { depth: 1, reliable: true, transient_local: true, lifespan: None }
+        TopicQos { depth: 1, reliable: true, transient_local: true, lifespan: None, room: UNACKNOWLEDGED }
     }
 
     /// Sent once, volatile.
     pub const fn best_effort(depth: u32) -> Self {
-        TopicQos { depth, reliable: false, transient_local: false, lifespan: None }
+        TopicQos { depth, reliable: false, transient_local: false, lifespan: None, room: UNACKNOWLEDGED }
     }
 
     pub(crate) fn to_dds(self) -> QosPolicies {
@@ -55,9 +62,9 @@ impl TopicQos {
             .history(History::KeepLast { depth });
         let builder = if self.reliable {
             builder.resource_limits(ResourceLimits {
-                max_samples: UNACKNOWLEDGED,
+                max_samples: self.room,
                 max_instances: 1,
-                max_samples_per_instance: UNACKNOWLEDGED,
+                max_samples_per_instance: self.room,
             })
         } else {
             builder

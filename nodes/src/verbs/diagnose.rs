@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
+use excavator_identification::energy::{EnergySettings, MissingPower, analyse, missing_power};
 use excavator_identification::report::{diagnosis_page, verdict_sentence};
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
@@ -11,7 +12,7 @@ use excavator_model::recording::Recording;
 use super::print;
 use crate::cli::DiagnoseArguments;
 use crate::error::VerbError;
-use crate::output::{Progress, candidate_table, diagnosis_json, write_json};
+use crate::output::{Progress, candidate_table, diagnosis_json, missing_power_json, write_json};
 use crate::sources;
 
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
@@ -28,17 +29,36 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&model, &diagnosis, &validation);
     }
+    let missing = ledgers(&diagnosis.nominal.model, &validation);
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        for (source, found) in &missing {
+            found.iter().for_each(|one| print(&format!("Energy in {source}: {}", one.sentence)));
+        }
+    }
     if let Some(path) = &arguments.report {
         let comparisons = validation
             .iter()
             .map(|recording| compare(&diagnosis.nominal.model, recording))
             .collect::<Result<Vec<Comparison>, _>>()?;
-        sources::write_text(path, &diagnosis_page(&model, &diagnosis, &comparisons))?;
+        sources::write_text(path, &diagnosis_page(&model, &diagnosis, &comparisons, &missing))?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &diagnosis_json(&diagnosis, &validation))?;
+        let mut value = diagnosis_json(&diagnosis, &validation);
+        let sentences = |found: &[MissingPower]| found.iter().map(missing_power_json).collect::<Vec<_>>();
+        value["missing_power"] = missing
+            .iter()
+            .map(|(source, found)| serde_json::json!({"source": source, "found": sentences(found)}))
+            .collect();
+        write_json(path, &value)?;
     }
     Ok(())
+}
+
+/// What the energy ledger of the refitted model says of each recording in which energy is known.
+fn ledgers(model: &Model, recordings: &[&Recording]) -> Vec<(String, Vec<MissingPower>)> {
+    let analyses = recordings.iter().map(|recording| analyse(model, recording, EnergySettings::default()));
+    // Without the pressures there is no ledger; the diagnosis does not need it.
+    analyses.flatten().map(|analysis| (analysis.source.clone(), missing_power(model, &analysis))).collect()
 }
 
 /// Shares of the residual that are worth a line.

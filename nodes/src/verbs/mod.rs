@@ -3,6 +3,7 @@
 mod compare;
 mod diagnose;
 mod effects;
+mod energy;
 mod identify;
 mod import;
 mod info;
@@ -21,6 +22,7 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Identify(arguments) => identify::run(&arguments),
         Verb::Compare(arguments) => compare::run(&arguments),
+        Verb::Energy(arguments) => energy::run(&arguments),
         Verb::Diagnose(arguments) => diagnose::run(&arguments),
         Verb::Refine(arguments) => refine::run(&arguments),
         Verb::Effects(arguments) => effects::run(&arguments),
@@ -28,6 +30,7 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Record(arguments) => crate::record::run(&arguments, ros),
         Verb::Play(arguments) => crate::play::run(&arguments, ros),
         Verb::Up(arguments) => crate::up::run(&arguments, ros_words),
+        Verb::Dashboard(arguments) => crate::dashboard::run(&arguments, ros),
         Verb::Node(which) => node::run(which, ros),
         Verb::Import(arguments) => import::run(&arguments),
     }

@@ -25,11 +25,16 @@
     var xAxis = axis(spec.last ? "time (s)" : null, spec.last ? 28 : 8, spec.last);
     var yAxis = axis(spec.label + " (" + spec.unit + ")", 52, true);
     if (spec.height < 150) yAxis.space = 26;
+    var bands = (spec.bands || []).map(function (b) { return { series: [b.high + 1, b.low + 1], fill: b.fill }; });
     var plot = new uPlot({
+      bands: bands,
       width: box.clientWidth || 1000, height: spec.height, series: series, axes: [xAxis, yAxis], padding: [8, 8, 0, 0],
       scales: { x: { time: false } }, legend: { live: true, markers: { dash: function (_, i) { return i > 0 && spec.series[i - 1].dash ? "dashed" : "solid"; } } },
       cursor: { sync: { key: spec.group, setSeries: false }, drag: { x: true, y: false }, points: { size: 6 } }
     }, [spec.time].concat(spec.series.map(function (s) { return s.values; })), box);
+    // Edges of bands have no line of their own to hide.
+    var rows = box.querySelectorAll(".u-legend .u-series");
+    spec.series.forEach(function (s, i) { if (s.edge && rows[i + 1]) rows[i + 1].style.display = "none"; });
     plots.push({ plot: plot, box: box, height: spec.height });
   }
   function fit(width) {

@@ -1,0 +1,133 @@
+//! What an analysis found.
+
+use excavator_model::Model;
+
+use super::{PlaceJudgement, Totals, Traces};
+
+/// Energies per cycle of the work.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycle {
+    /// Length of a cycle, s.
+    pub period: f64,
+    /// Whole cycles.
+    pub count: usize,
+    /// Mean over the cycles.
+    pub mean: Totals,
+    /// Standard deviation from cycle to cycle.
+    pub deviation: Totals,
+}
+
+/// By how many degrees one rate of the Hamiltonian lags behind another at the frequency of the excitation; \[A\] wants
+/// less than 90. `None` where one of them has no component there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhaseDelays {
+    /// Frequency, Hz.
+    pub frequency: f64,
+    /// Analytical behind experimental.
+    pub analytical: Option<f64>,
+    /// Numerical behind experimental.
+    pub numerical: Option<f64>,
+    /// Numerical behind analytical.
+    pub numerical_behind_analytical: Option<f64>,
+}
+
+impl PhaseDelays {
+    /// The largest by size, degrees.
+    pub fn largest(&self) -> Option<f64> {
+        let all = [self.analytical, self.numerical, self.numerical_behind_analytical];
+        all.into_iter().flatten().map(f64::abs).max_by(f64::total_cmp)
+    }
+}
+
+/// What is missing in one window.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WindowPoint {
+    /// Centre of the window, s.
+    pub time: f64,
+    /// Power that is stored at each place without the model saying from where, W.
+    pub residuals: Vec<f64>,
+    /// Half width of the band within which it is explained, W.
+    pub bands: Vec<f64>,
+}
+
+/// Share of one valve section in the balance of the pump line, J.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// Name of its cylinder.
+    pub cylinder: String,
+    /// Lost in the section.
+    pub metering_loss: f64,
+    /// Passed on to the cylinder.
+    pub into_cylinder: f64,
+}
+
+/// Balance of the pump line: `pump = bypass_loss + sum(metering_loss + into_cylinder) + stored - residual`, J.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PumpLine {
+    /// Delivered by the pump.
+    pub pump: f64,
+    /// Lost through bypass, relief valve and pump leakage.
+    pub bypass_loss: f64,
+    /// One entry per cylinder with a valve.
+    pub sections: Vec<Section>,
+    /// Gain of the line's own energy.
+    pub stored: f64,
+    /// Gained without the model saying from where; negative: it went missing.
+    pub residual: f64,
+}
+
+/// The energy of one recording under one model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnergyAnalysis {
+    /// The recording.
+    pub source: String,
+    /// Samples read.
+    pub samples: usize,
+    /// Time from the first to the last of them, s.
+    pub duration: f64,
+    /// Gaps that were left out.
+    pub gaps: usize,
+    /// Energies over the recording.
+    pub totals: Totals,
+    /// Energies per cycle, where the command repeats.
+    pub cycle: Option<Cycle>,
+    /// The ledger place by place.
+    pub places: Vec<PlaceJudgement>,
+    /// The same over time; thinned in recordings of many hours.
+    pub windows: Vec<WindowPoint>,
+    /// Everything over time for the head of the recording.
+    pub traces: Traces,
+    /// Why there are no numerical results.
+    pub simulation_failed: Option<String>,
+    /// Whether parameters of the model carry standard errors; without, their part of the bands is zero.
+    pub parameters_have_errors: bool,
+}
+
+impl EnergyAnalysis {
+    /// The balance of the pump line; `None` for machines whose supply is not part of the model.
+    pub fn pump_line(&self, model: &Model) -> Option<PumpLine> {
+        if !matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) {
+            return None;
+        }
+        let sections = model.machine.cylinders.iter().zip(&self.totals.cylinders);
+        Some(PumpLine {
+            pump: self.totals.pump,
+            bypass_loss: self.totals.bypass_loss(),
+            sections: sections
+                .filter(|(cylinder, _)| cylinder.chambers.is_some())
+                .map(|(cylinder, totals)| Section {
+                    cylinder: cylinder.name.clone(),
+                    metering_loss: totals.metering_loss,
+                    into_cylinder: totals.supplied,
+                })
+                .collect(),
+            stored: self.totals.pump_line,
+            residual: self.totals.pump_residual(),
+        })
+    }
+
+    /// Whether the ledger closes at every place.
+    pub fn is_explained(&self) -> bool {
+        self.places.iter().all(PlaceJudgement::is_explained)
+    }
+}

@@ -1,0 +1,143 @@
+//! A stretch of a recording, and the books of what was measured in it.
+
+use excavator_model::SignalError;
+use excavator_model::energy::ledger;
+use excavator_model::equations::{Inputs, System};
+use excavator_model::machine::Supply;
+use excavator_model::recording::{Recording, is_measured};
+use excavator_model::simulation::{InputSignals, undistorted};
+
+use super::smoothing::Parabola;
+use super::{Books, EnergySettings};
+
+/// A stretch without gaps. Its entries are those samples whose number in the recording is a multiple of `stride`, so that
+/// neighbouring blocks that overlap have the same.
+#[derive(Debug, Clone)]
+pub(super) struct Block {
+    /// The samples, with what the windows at the ends need.
+    pub recording: Recording,
+    /// Time of the first sample since the start of the recording, s.
+    pub start: f64,
+    /// Number of the first sample in the recording.
+    pub first_sample: usize,
+    /// Samples per entry.
+    pub stride: usize,
+    /// Part that counts, s since the start of the recording.
+    pub own: (f64, f64),
+    /// Whether the effect of noise is found out by repeats.
+    pub with_noise: bool,
+}
+
+impl Block {
+    /// Numbers of the samples that have an entry.
+    fn entries(&self) -> impl Iterator<Item = usize> + use<> {
+        let first = self.first_sample.next_multiple_of(self.stride) - self.first_sample;
+        (first..self.recording.len()).step_by(self.stride)
+    }
+}
+
+/// The books of what was measured: positions and pressures by parabolas through their samples, valves by the estimate that
+/// drives simulations too. Entries whose windows are cut off by the ends or touch a sample that was not measured are not
+/// there.
+pub(super) fn measured_books(
+    system: &System<'_>,
+    parameters: &[f64],
+    block: &Block,
+    settings: &EnergySettings,
+) -> Result<Books, SignalError> {
+    let model = system.model();
+    let layout = system.layout();
+    let recording = undistorted(model, &block.recording);
+    let signals = InputSignals::from_recording(model, &recording)?;
+    let sources = model
+        .machine
+        .cylinders
+        .iter()
+        .map(|cylinder| {
+            let signals = recording.cylinder(&cylinder.name)?;
+            let displacement = if is_measured(&signals.displacement) {
+                signals.displacement.clone()
+            } else {
+                signals.joint_angle.iter().map(|&joint| cylinder.linkage.displacement(joint)).collect()
+            };
+            Ok((displacement, signals))
+        })
+        .collect::<Result<Vec<_>, SignalError>>()?;
+    let mut books = Books::new(model);
+    let mut state = vec![0.0; layout.len];
+    let mut inputs = Inputs::zero(model.machine.cylinders.len());
+    let (mut motion, mut pressure) = (Parabola::default(), Parabola::default());
+    for sample in block.entries() {
+        if !motion.set(&recording.time, sample, settings.motion_half_width)
+            || !pressure.set(&recording.time, sample, settings.half_width)
+        {
+            continue;
+        }
+        signals.between(sample, 0.0, &mut inputs);
+        inputs.time = block.start + recording.time[sample];
+        for (number, (cylinder, (displacement, measured))) in model.machine.cylinders.iter().zip(&sources).enumerate() {
+            let joint = cylinder.linkage.joint(motion.value(displacement));
+            let velocity = match measured.velocity[sample] {
+                known if known.is_finite() => pressure.value(&measured.velocity),
+                _ => motion.slope(displacement),
+            };
+            state[layout.joint(number)] = joint;
+            state[layout.rate(number)] = velocity / cylinder.linkage.lever(joint);
+            if let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) {
+                state[cap] = pressure.value(&measured.cap_pressure);
+                state[rod] = pressure.value(&measured.rod_pressure);
+            }
+        }
+        match (layout.pump, model.machine.supply) {
+            (Some(pump), _) => state[pump] = pressure.value(&recording.pump_pressure),
+            (None, Supply::MeasuredPressure) => inputs.supply_pressure = pressure.value(&recording.pump_pressure),
+            (None, _) => {}
+        }
+        enter(system, parameters, &mut state, &inputs, &mut books);
+    }
+    Ok(books)
+}
+
+/// The books of a simulation on the clock of a block: its states as they are.
+pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Recording) -> Result<Books, SignalError> {
+    let model = system.model();
+    let layout = system.layout();
+    let parameters = model.parameter_values();
+    let truth = undistorted(model, simulated);
+    let signals = InputSignals::from_recording(model, &block.recording)?;
+    let mut books = Books::new(model);
+    let mut state = vec![0.0; layout.len];
+    let mut inputs = Inputs::zero(model.machine.cylinders.len());
+    for sample in block.entries() {
+        signals.between(sample, 0.0, &mut inputs);
+        inputs.time = block.start + truth.time[sample];
+        for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
+            let own = truth.cylinder(&cylinder.name)?;
+            let joint = cylinder.linkage.joint(own.displacement[sample]);
+            state[layout.joint(number)] = joint;
+            state[layout.rate(number)] = own.velocity[sample] / cylinder.linkage.lever(joint);
+            if let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) {
+                state[cap] = own.cap_pressure[sample];
+                state[rod] = own.rod_pressure[sample];
+            }
+        }
+        if let Some(pump) = layout.pump {
+            state[pump] = truth.pump_pressure[sample];
+        }
+        enter(system, &parameters, &mut state, &inputs, &mut books);
+    }
+    Ok(books)
+}
+
+fn enter(system: &System<'_>, parameters: &[f64], state: &mut [f64], inputs: &Inputs<f64>, books: &mut Books) {
+    // Where the spool of a lagging valve really is, is what its sensor says.
+    for (effect, &(first, states)) in system.model().effects.iter().zip(&system.layout().effect_states) {
+        if let excavator_model::effects::Site::Cylinder(number) = effect.site {
+            state[first..first + states].fill(inputs.orifice_area[number]);
+        }
+    }
+    if state.iter().all(|value| value.is_finite()) {
+        let ledger = ledger(system, parameters, state, inputs);
+        books.enter(system.model(), system.layout(), &ledger, state, inputs);
+    }
+}

@@ -1,0 +1,218 @@
+//! Does the ledger close, place by place?
+
+use super::noise::WindowNoise;
+use super::windows::Window;
+use super::{EnergySettings, Place, Regime};
+
+/// What is missing at a place under one condition.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RegimeJudgement {
+    /// The condition.
+    pub regime: Regime,
+    /// Windows in which it was met.
+    pub windows: usize,
+    /// Mean power that is stored without the model saying from where, W; negative: it goes missing. Zero for no windows.
+    pub mean: f64,
+    /// Largest of the windows' powers by size, with its sign, W.
+    pub peak: f64,
+    /// Root mean square of the windows' powers, W. A fit moves a missing effect's mean to zero, not its size.
+    pub size: f64,
+    /// Standard deviation of a window's power from sensor noise, W.
+    pub noise: f64,
+    /// Standard deviation from the parameters' standard errors, where the model has them, and from the width of the
+    /// parabolas through the measurements, W.
+    pub parameters: f64,
+    /// Mean power that flows through the place, W.
+    pub flow: f64,
+    /// Largest size that noise, parameters and tolerance explain, W; infinite where windows are too few to judge.
+    pub band: f64,
+}
+
+impl RegimeJudgement {
+    /// Whether noise, the parameters' errors and the tolerance explain what is missing.
+    pub fn is_explained(&self) -> bool {
+        self.size <= self.band
+    }
+}
+
+/// The ledger of one place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaceJudgement {
+    /// The place.
+    pub place: Place,
+    /// One entry per [`Regime`], in that order.
+    pub regimes: Vec<RegimeJudgement>,
+    /// Share of the windows that are outside their own band.
+    pub share_outside: f64,
+}
+
+impl PlaceJudgement {
+    /// Whether the ledger closes at this place: over the whole recording and under every condition.
+    pub fn is_explained(&self) -> bool {
+        self.regimes.iter().all(RegimeJudgement::is_explained)
+    }
+
+    /// The condition under which most is missing, relative to its band; `None` where all is explained.
+    pub fn worst(&self) -> Option<&RegimeJudgement> {
+        let outside = self.regimes.iter().filter(|regime| !regime.is_explained());
+        outside.max_by(|a, b| (a.size / a.band).total_cmp(&(b.size / b.band)))
+    }
+}
+
+/// Fewest windows that a condition is judged by. Windows overlap, so this is worth half as many: noise alone exceeds
+/// twice its standard deviation over six in one of two thousand cases.
+const FEWEST: usize = 12;
+
+/// Sums over windows.
+#[derive(Debug, Clone)]
+pub(super) struct Judge {
+    settings: EnergySettings,
+    places: Vec<(Place, Option<usize>)>,
+    sums: Vec<Vec<Sum>>,
+    outside: Vec<usize>,
+    windows: usize,
+    last_noise: Option<WindowNoise>,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Sum {
+    windows: usize,
+    residual: f64,
+    squares: f64,
+    peak: f64,
+    variance: f64,
+    parameter_variance: f64,
+    flow: f64,
+}
+
+/// A window with its errors.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Judged {
+    /// Residual of each place with what noise adds to it on average taken off, W.
+    pub residuals: Vec<f64>,
+    /// Half width of its band, W.
+    pub bands: Vec<f64>,
+}
+
+impl Judge {
+    /// `places` with the cylinder whose doings make their regimes.
+    pub fn new(places: Vec<(Place, Option<usize>)>, settings: EnergySettings) -> Self {
+        let count = places.len();
+        Judge {
+            settings,
+            places,
+            sums: vec![vec![Sum::default(); Regime::ALL.len()]; count],
+            outside: vec![0; count],
+            windows: 0,
+            last_noise: None,
+        }
+    }
+
+    /// Takes over the noise of a block for windows that come without.
+    pub fn learn(&mut self, noises: &[WindowNoise]) {
+        let Some(first) = noises.first() else { return };
+        let count = noises.len() as f64;
+        let mean = |of: &dyn Fn(&WindowNoise) -> f64| noises.iter().map(of).sum::<f64>() / count;
+        let places = self.places.len();
+        self.last_noise = Some(WindowNoise {
+            bias: (0..places).map(|place| mean(&|noise| noise.bias[place])).collect(),
+            variance: (0..places).map(|place| mean(&|noise| noise.variance[place])).collect(),
+            parameters: (0..places)
+                .map(|place| {
+                    (0..first.parameters[place].len()).map(|j| mean(&|noise| noise.parameters[place][j])).collect()
+                })
+                .collect(),
+        });
+    }
+
+    /// Judges one window and adds it to the sums.
+    pub fn judge(&mut self, window: &Window, noise: Option<&WindowNoise>) -> Judged {
+        let noise = noise.or(self.last_noise.as_ref());
+        let draws = self.settings.draws.max(1) as f64;
+        let mut judged = Judged { residuals: Vec::new(), bands: Vec::new() };
+        self.windows += 1;
+        for (index, &(_, cylinder)) in self.places.iter().enumerate() {
+            let residual = window.residuals[index] - noise.map_or(0.0, |noise| noise.bias[index]);
+            // The mean of the repeats that was taken off has noise of its own.
+            let variance = noise.map_or(0.0, |noise| noise.variance[index] * (1.0 + 1.0 / draws));
+            let parameters = noise.map_or(&[][..], |noise| &noise.parameters[index]);
+            let parameter_variance: f64 = parameters.iter().map(|change| change * change).sum();
+            let flow = window.flows[index];
+            // A single window of thousands must be further out than the root mean square of many.
+            let band = 2.0 * band(&self.settings, variance, parameter_variance, flow);
+            self.outside[index] += usize::from(residual.abs() > band);
+            for (regime, sum) in Regime::ALL.iter().zip(&mut self.sums[index]) {
+                let met = match cylinder {
+                    Some(cylinder) => window.situations[cylinder].is(*regime),
+                    None => window.situations.iter().any(|situation| situation.is(*regime)),
+                };
+                if met {
+                    sum.add(residual, variance, parameter_variance, flow);
+                }
+            }
+            judged.residuals.push(residual);
+            judged.bands.push(band);
+        }
+        judged
+    }
+
+    /// The judgement over all windows.
+    pub fn finish(&self) -> Vec<PlaceJudgement> {
+        let count = self.windows.max(1) as f64;
+        self.places
+            .iter()
+            .enumerate()
+            .map(|(index, &(place, _))| PlaceJudgement {
+                place,
+                regimes: Regime::ALL
+                    .iter()
+                    .zip(&self.sums[index])
+                    .map(|(r, sum)| sum.judge(*r, &self.settings))
+                    .collect(),
+                share_outside: self.outside[index] as f64 / count,
+            })
+            .collect()
+    }
+}
+
+/// Size that is explained, W: standard deviations that are each as wide as they may be, and the tolerance.
+fn band(settings: &EnergySettings, variance: f64, parameter_variance: f64, flow: f64) -> f64 {
+    let noise = settings.significance.powi(2) * variance;
+    let parameters = settings.parameter_significance.powi(2) * parameter_variance;
+    (noise + parameters + (settings.tolerance * flow).powi(2)).sqrt()
+}
+
+impl Sum {
+    fn add(&mut self, residual: f64, variance: f64, parameter_variance: f64, flow: f64) {
+        self.windows += 1;
+        self.residual += residual;
+        self.squares += residual * residual;
+        if residual.abs() > self.peak.abs() {
+            self.peak = residual;
+        }
+        self.variance += variance;
+        self.parameter_variance += parameter_variance;
+        self.flow += flow;
+    }
+
+    fn judge(&self, regime: Regime, settings: &EnergySettings) -> RegimeJudgement {
+        let count = self.windows.max(1) as f64;
+        let (variance, parameter_variance) = (self.variance / count, self.parameter_variance / count);
+        let flow = self.flow / count;
+        RegimeJudgement {
+            regime,
+            windows: self.windows,
+            mean: self.residual / count,
+            peak: self.peak,
+            size: (self.squares / count).sqrt(),
+            noise: variance.sqrt(),
+            parameters: parameter_variance.sqrt(),
+            flow,
+            band: if self.windows < FEWEST {
+                f64::INFINITY
+            } else {
+                band(settings, variance, parameter_variance, flow)
+            },
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! What sensor noise and inexact parameters do to the ledger.
+
+use excavator_model::SignalError;
+use excavator_model::equations::System;
+use excavator_model::recording::{Recording, is_measured, noise_level};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::block::{Block, measured_books};
+use super::windows::windows;
+use super::{Books, EnergySettings, Place};
+
+/// Errors of the residuals of one window, one entry per place.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct WindowNoise {
+    /// Mean that noise adds, W.
+    pub bias: Vec<f64>,
+    /// Variance that noise adds, W².
+    pub variance: Vec<f64>,
+    /// Changes of the residual by what is the same in all windows, W: by one standard error of each parameter that has
+    /// one, and by wider parabolas.
+    pub parameters: Vec<Vec<f64>>,
+}
+
+/// A block with its noise.
+#[derive(Debug, Clone)]
+pub(super) struct NoiseStudy {
+    /// The books with noise added, one per repeat.
+    pub draws: Vec<Books>,
+    /// One entry per window.
+    pub windows: Vec<WindowNoise>,
+}
+
+/// Windows over which a variance is averaged, to each side: a handful of repeats alone would leave it a third uncertain.
+const POOLED: usize = 4;
+
+/// Factor of the half widths by which the rounding of parabolas is found out.
+const WIDER: f64 = 1.4;
+
+/// Repeats the books of a block with as much noise added as each sensor has (its level is taken from the signal's second
+/// differences). The repeats' residuals scatter as the noise scatters the residual itself; and as much as their mean is
+/// off, noise has moved the residual already (simulation and extrapolation, Cook and Stefanski 1994): squares, sizes and
+/// square roots of noisy signals do not average out. Parameters are moved by one standard error each.
+pub(super) fn study_noise(
+    system: &System<'_>,
+    block: &Block,
+    books: &Books,
+    places: &[Place],
+    settings: &EnergySettings,
+) -> Result<NoiseStudy, SignalError> {
+    let model = system.model();
+    let parameters = model.parameter_values();
+    let base = windows(model, books, places, block.own, settings);
+    let mut random = ChaCha8Rng::seed_from_u64(settings.seed.wrapping_add(block.first_sample as u64));
+    let draws = (0..settings.draws)
+        .map(|_| {
+            let noisy = Block { recording: with_more_noise(&block.recording, &mut random), ..block.clone() };
+            measured_books(system, &parameters, &noisy, settings)
+        })
+        .collect::<Result<Vec<Books>, SignalError>>()?;
+    let residuals_of = |books: &Books| -> Vec<Vec<f64>> {
+        windows(model, books, places, block.own, settings).into_iter().map(|window| window.residuals).collect()
+    };
+    let drawn: Vec<Vec<Vec<f64>>> = draws.iter().map(residuals_of).collect();
+    let mut moved = Vec::new();
+    for (index, (_, parameter)) in model.parameters().enumerate() {
+        let Some(error) = parameter.standard_error.filter(|error| error.is_finite() && *error > 0.0) else { continue };
+        let mut values = parameters.clone();
+        values[index] += error;
+        moved.push(residuals_of(&measured_books(system, &values, block, settings)?));
+    }
+    // What wider parabolas change is of the size of what the parabolas have rounded off.
+    let wider = EnergySettings {
+        half_width: WIDER * settings.half_width,
+        motion_half_width: WIDER * settings.motion_half_width,
+        ..*settings
+    };
+    moved.push(residuals_of(&measured_books(system, &parameters, block, &wider)?));
+    let difference = |draw: &[Vec<f64>], window: usize, place: usize| {
+        Some(draw.get(window)?.get(place)? - base.get(window)?.residuals.get(place)?)
+    };
+    let of_window = |window: usize| -> Vec<(f64, f64)> {
+        (0..places.len())
+            .map(|place| {
+                let found: Vec<f64> = drawn.iter().filter_map(|draw| difference(draw, window, place)).collect();
+                let count = found.len().max(1) as f64;
+                (found.iter().sum::<f64>() / count, found.iter().map(|d| d * d).sum::<f64>() / count)
+            })
+            .collect()
+    };
+    let raw: Vec<Vec<(f64, f64)>> = (0..base.len()).map(of_window).collect();
+    let pooled = (0..base.len()).map(|index| {
+        let near = index.saturating_sub(POOLED)..(index + POOLED + 1).min(base.len());
+        let mean = |place: usize, part: fn(&(f64, f64)) -> f64| {
+            near.clone().map(|k| part(&raw[k][place])).sum::<f64>() / near.len() as f64
+        };
+        WindowNoise {
+            bias: (0..places.len()).map(|place| mean(place, |both| both.0)).collect(),
+            variance: (0..places.len()).map(|place| mean(place, |both| both.1)).collect(),
+            parameters: (0..places.len())
+                .map(|place| moved.iter().map(|draw| difference(draw, index, place).unwrap_or(0.0)).collect())
+                .collect(),
+        }
+    });
+    Ok(NoiseStudy { windows: pooled.collect(), draws })
+}
+
+/// The recording with white noise of each sensor's own level added. Commands have none.
+fn with_more_noise(recording: &Recording, random: &mut ChaCha8Rng) -> Recording {
+    let mut noisy = recording.clone();
+    let mut add = |signal: &mut Vec<f64>| {
+        if !is_measured(signal) {
+            return;
+        }
+        let level = noise_level(signal);
+        for value in signal {
+            let normal: f64 = StandardNormal.sample(random);
+            *value += level * normal;
+        }
+    };
+    for cylinder in &mut noisy.cylinders {
+        add(&mut cylinder.joint_angle);
+        add(&mut cylinder.displacement);
+        add(&mut cylinder.velocity);
+        add(&mut cylinder.cap_pressure);
+        add(&mut cylinder.rod_pressure);
+        add(&mut cylinder.orifice_area);
+        add(&mut cylinder.rod_force);
+    }
+    add(&mut noisy.pump_pressure);
+    add(&mut noisy.tank_pressure);
+    add(&mut noisy.pump_flow);
+    noisy
+}

@@ -1,0 +1,101 @@
+//! Value and slope of several noisy signals on one uneven clock.
+
+/// Weights that give value and slope, at one time, of the least-squares parabola through the samples around it.
+#[derive(Debug, Default)]
+pub(super) struct Parabola {
+    first: usize,
+    value: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+/// Fewest samples: three coefficients, one more to average.
+const FEWEST: usize = 4;
+/// Rounding of times, s: it must not decide whether a window is symmetric.
+const ROUNDING: f64 = 1e-7;
+
+impl Parabola {
+    /// The parabola at sample `centre` through the samples within `half_width` of it. `false` where there are too few of
+    /// them or the window is cut off on one side; then there are no weights.
+    pub fn set(&mut self, time: &[f64], centre: usize, half_width: f64) -> bool {
+        self.value.clear();
+        self.slope.clear();
+        let (at, reach) = (time[centre], half_width + ROUNDING);
+        let first = centre - time[..centre].iter().rev().take_while(|&&t| at - t <= reach).count();
+        let last = centre + time[centre..].iter().take_while(|&&t| t - at <= reach).count();
+        self.first = first;
+        // A window that is cut off ends well before its half width.
+        let cut = at - time[first] < 0.6 * half_width || time[last - 1] - at < 0.6 * half_width;
+        if last - first < FEWEST || cut {
+            return false;
+        }
+        let mut s = [0.0_f64; 5];
+        for &t in &time[first..last] {
+            let x = (t - at) / half_width;
+            let square = x * x;
+            s[0] += 1.0;
+            s[1] += x;
+            s[2] += square;
+            s[3] += square * x;
+            s[4] += square * square;
+        }
+        // Rows of the inverse of [s0 s1 s2; s1 s2 s3; s2 s3 s4] that give value and slope.
+        let cofactors = [
+            s[2] * s[4] - s[3] * s[3],
+            s[2] * s[3] - s[1] * s[4],
+            s[1] * s[3] - s[2] * s[2],
+            s[0] * s[4] - s[2] * s[2],
+        ];
+        let corner = s[1] * s[2] - s[0] * s[3];
+        let determinant = s[0] * cofactors[0] + s[1] * cofactors[1] + s[2] * cofactors[2];
+        if determinant.abs() < 1e-12 {
+            return false;
+        }
+        for &t in &time[first..last] {
+            let x = (t - at) / half_width;
+            self.value.push((cofactors[0] + cofactors[1] * x + cofactors[2] * x * x) / determinant);
+            self.slope.push((cofactors[1] + cofactors[3] * x + corner * x * x) / determinant / half_width);
+        }
+        true
+    }
+
+    /// Value of a signal; `NaN` where one of its samples is.
+    pub fn value(&self, signal: &[f64]) -> f64 {
+        dot(&self.value, &signal[self.first..])
+    }
+
+    /// Slope of a signal.
+    pub fn slope(&self, signal: &[f64]) -> f64 {
+        // The weights add up to zero; taking off the first sample keeps rounding small.
+        let origin = signal[self.first];
+        self.slope.iter().zip(&signal[self.first..]).map(|(weight, sample)| weight * (sample - origin)).sum()
+    }
+}
+
+fn dot(weights: &[f64], samples: &[f64]) -> f64 {
+    weights.iter().zip(samples).map(|(weight, sample)| weight * sample).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parabolas_come_back_exactly_on_an_uneven_clock() {
+        let time: Vec<f64> = (0..40).map(|k| f64::from(k) * 1e-3 + 2e-4 * f64::from(k * 7 % 5)).collect();
+        let signal: Vec<f64> = time.iter().map(|t| 3.0 - 2.0 * t + 500.0 * t * t).collect();
+        let mut parabola = Parabola::default();
+        assert!(parabola.set(&time, 20, 0.01));
+        let t = time[20];
+        assert!((parabola.value(&signal) - (3.0 - 2.0 * t + 500.0 * t * t)).abs() < 1e-10);
+        assert!((parabola.slope(&signal) - (-2.0 + 1000.0 * t)).abs() < 1e-8);
+    }
+
+    #[test]
+    fn cut_windows_have_no_slope() {
+        let time: Vec<f64> = (0..40).map(|k| f64::from(k) * 1e-3).collect();
+        let mut parabola = Parabola::default();
+        assert!(!parabola.set(&time, 2, 0.01));
+        assert!(!parabola.set(&time, 38, 0.01));
+        assert!(parabola.set(&time, 10, 0.01));
+    }
+}

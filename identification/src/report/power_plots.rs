@@ -1,0 +1,93 @@
+//! Energies and powers over time, with error bands.
+
+use maud::{Markup, PreEscaped, html};
+
+use super::thinning;
+use super::time_plots::{array, shortest, text};
+
+/// One line of a plot.
+pub(super) struct PowerLine<'a> {
+    /// In the legend.
+    pub label: &'a str,
+    /// CSS colour.
+    pub colour: &'a str,
+    /// Width, px.
+    pub width: f64,
+    /// Dashed, so that lines differ without colour.
+    pub dashed: bool,
+    /// Values.
+    pub values: &'a [f64],
+    /// Standard errors; drawn as a band of two on each side.
+    pub errors: Option<&'a [f64]>,
+}
+
+/// One plot.
+pub(super) struct PowerPlot<'a> {
+    /// Plots of a group are zoomed together.
+    pub group: &'a str,
+    /// What is on the axis.
+    pub label: &'a str,
+    /// Its unit.
+    pub unit: &'a str,
+    /// px.
+    pub height: usize,
+    /// Whether the axis of time is under it.
+    pub last: bool,
+    /// Points of a line at most.
+    pub budget: usize,
+}
+
+/// Width of a band, standard errors on each side.
+const BAND: f64 = 2.0;
+
+impl PowerPlot<'_> {
+    /// The plot of lines over `time`.
+    pub fn markup(&self, time: &[f64], lines: &[PowerLine<'_>]) -> Markup {
+        let drawn: Vec<&PowerLine<'_>> =
+            lines.iter().filter(|line| line.values.iter().any(|value| value.is_finite())).collect();
+        if drawn.is_empty() {
+            return html! { p.empty { "No values to plot." } };
+        }
+        let guides: Vec<&[f64]> = drawn.iter().map(|line| line.values).collect();
+        let kept = thinning::indices(&guides, time.len(), self.budget * guides.len());
+        let (mut series, mut bands) = (Vec::new(), Vec::new());
+        for line in &drawn {
+            if let Some(errors) = line.errors.filter(|errors| errors.iter().any(|error| error.is_finite())) {
+                let edge = |side: f64| -> Vec<f64> {
+                    line.values.iter().zip(errors).map(|(value, error)| value + side * BAND * error).collect()
+                };
+                let number = series.len();
+                let fill = format!("{}33", line.colour);
+                bands.push(format!(r#"{{"high":{number},"low":{},"fill":"{fill}"}}"#, number + 1));
+                for (side, label) in [(1.0, "+ 2 standard errors"), (-1.0, "− 2 standard errors")] {
+                    let label = format!("{} {label}", line.label);
+                    series.push(one(&label, "#00000000", 0.0, r#","edge":true"#, &edge(side), &kept));
+                }
+            }
+            let style = if line.dashed { r#","dash":[6,3]"# } else { "" };
+            series.push(one(line.label, line.colour, line.width, style, line.values, &kept));
+        }
+        let seconds: Vec<String> =
+            kept.iter().filter_map(|&index| time.get(index)).map(|t| shortest(&format!("{t:.4}"))).collect();
+        let json = format!(
+            r#"{{"group":{},"label":{},"unit":{},"height":{},"last":{},"time":[{}],"bands":[{}],"series":[{}]}}"#,
+            text(self.group),
+            text(self.label),
+            text(self.unit),
+            self.height,
+            self.last,
+            seconds.join(","),
+            bands.join(","),
+            series.join(",")
+        );
+        html! { div.time-plot { script type="application/json" { (PreEscaped(json)) } } }
+    }
+}
+
+fn one(label: &str, colour: &str, width: f64, style: &str, values: &[f64], kept: &[usize]) -> String {
+    format!(
+        r#"{{"label":{},"colour":"{colour}","width":{width}{style},"values":{}}}"#,
+        text(label),
+        array(values, 1.0, kept)
+    )
+}

@@ -1,0 +1,242 @@
+//! What the page shows, from the messages that came.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use excavator_msgs::common::DiagnosticArray;
+use excavator_msgs::{ArmState, CylinderEnergy, EnergyState, OrificeCommand};
+use serde_json::{Map, Value, json};
+use tokio::sync::watch;
+
+/// Frames that are kept for a page that opens: half a minute at 25 Hz.
+const HISTORY: usize = 750;
+/// Parts of nodes of which the state of health is kept.
+const MOST_PARTS: usize = 200;
+/// Cylinders, and effects of each, that are shown.
+const MOST_SHOWN: usize = 32;
+/// A part that has not been heard of for so long is not there any more.
+const FORGOTTEN: Duration = Duration::from_secs(10);
+/// Time without a state after which that is an alarm.
+const SILENT: Duration = Duration::from_secs(2);
+
+/// What has come, shared between the subscriptions and the server.
+pub struct Board {
+    content: Mutex<Content>,
+    newest: watch::Sender<Arc<str>>,
+}
+
+#[derive(Default)]
+struct Content {
+    number: u64,
+    states: u64,
+    balances: u64,
+    state: Option<(ArmState, Instant)>,
+    command: Option<OrificeCommand>,
+    energy: Option<EnergyState>,
+    /// Sums of the powers that came since the last frame.
+    powers: Powers,
+    health: BTreeMap<String, Part>,
+    history: VecDeque<Arc<str>>,
+}
+
+#[derive(Default)]
+struct Powers {
+    count: f64,
+    machine: [f64; 3],
+    cylinders: BTreeMap<String, (usize, [f64; 4], BTreeMap<String, f64>)>,
+}
+
+struct Part {
+    level: u8,
+    message: String,
+    values: Vec<(String, String)>,
+    heard: Instant,
+}
+
+impl Default for Board {
+    fn default() -> Self {
+        Board { content: Mutex::default(), newest: watch::channel(Arc::from("{}")).0 }
+    }
+}
+
+impl Board {
+    fn lock(&self) -> MutexGuard<'_, Content> {
+        self.content.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A state of the arm.
+    pub fn take_state(&self, state: ArmState) {
+        let mut content = self.lock();
+        content.states += 1;
+        content.state = Some((state, Instant::now()));
+    }
+
+    /// A command.
+    pub fn take_command(&self, command: OrificeCommand) {
+        self.lock().command = Some(command);
+    }
+
+    /// A balance of the energy monitor.
+    pub fn take_energy(&self, energy: EnergyState) {
+        let mut content = self.lock();
+        content.balances += 1;
+        content.powers.add(&energy);
+        content.energy = Some(energy);
+    }
+
+    /// How parts of nodes are.
+    pub fn take_health(&self, array: DiagnosticArray) {
+        let mut content = self.lock();
+        for status in array.status {
+            if content.health.len() >= MOST_PARTS && !content.health.contains_key(&status.name) {
+                continue;
+            }
+            let values = status.values.into_iter().take(MOST_SHOWN).map(|entry| (entry.key, entry.value)).collect();
+            let part = Part { level: status.level, message: status.message, values, heard: Instant::now() };
+            content.health.insert(status.name, part);
+        }
+    }
+
+    /// Makes a frame of what there is; pages are sent the newest.
+    pub fn frame(&self) -> Arc<str> {
+        let mut content = self.lock();
+        content.number += 1;
+        let frame: Arc<str> = Arc::from(content.to_json().to_string());
+        content.powers = Powers::default();
+        content.history.push_back(Arc::clone(&frame));
+        if content.history.len() > HISTORY {
+            content.history.pop_front();
+        }
+        drop(content);
+        self.newest.send_replace(Arc::clone(&frame));
+        frame
+    }
+
+    /// The frames of the last half minute, oldest first, as a JSON array.
+    pub fn history(&self) -> String {
+        let frames: Vec<Arc<str>> = self.lock().history.iter().cloned().collect();
+        format!("[{}]", frames.join(","))
+    }
+
+    /// Whoever wants the newest frame.
+    pub fn subscribe(&self) -> watch::Receiver<Arc<str>> {
+        self.newest.subscribe()
+    }
+}
+
+impl Powers {
+    fn add(&mut self, energy: &EnergyState) {
+        self.count += 1.0;
+        let machine = [energy.pump_power, energy.bypass_loss, energy.metering_loss];
+        self.machine.iter_mut().zip(machine).for_each(|(sum, power)| *sum += power);
+        for cylinder in energy.cylinders.iter().take(MOST_SHOWN) {
+            if self.cylinders.len() >= MOST_SHOWN && !self.cylinders.contains_key(&cylinder.name) {
+                continue;
+            }
+            let (count, sums, terms) = self.cylinders.entry(cylinder.name.clone()).or_default();
+            // A balance without a rate, as at the ends of gaps, would take all others with it.
+            if !powers_of(cylinder).iter().all(|power| power.is_finite()) {
+                continue;
+            }
+            *count += 1;
+            sums.iter_mut().zip(powers_of(cylinder)).for_each(|(sum, power)| *sum += power);
+            for term in cylinder.terms.iter().take(MOST_SHOWN) {
+                *terms.entry(term.effect.clone()).or_default() += term.power;
+            }
+        }
+    }
+}
+
+fn powers_of(cylinder: &CylinderEnergy) -> [f64; 4] {
+    [cylinder.hamiltonian_rate, cylinder.supply, cylinder.dissipation, cylinder.balance_residual]
+}
+
+/// JSON has no NaN; seven digits are more than a plot shows.
+fn finite(value: f64) -> Value {
+    if value.is_finite() { json!(format!("{value:.6e}").parse::<f64>().unwrap_or(value)) } else { Value::Null }
+}
+
+impl Content {
+    fn to_json(&self) -> Value {
+        let (stamp, silent) = match &self.state {
+            Some((state, heard)) => (state.header.stamp.nanoseconds() as f64 * 1e-9, heard.elapsed() > SILENT),
+            None => (f64::NAN, true),
+        };
+        json!({
+            "number": self.number,
+            "stamp": if stamp.is_finite() { json!(stamp) } else { Value::Null },
+            "states": self.states,
+            "balances": self.balances,
+            "pump_pressure": finite(self.state.as_ref().map_or(f64::NAN, |(state, _)| state.pump_pressure)),
+            "cylinders": self.cylinders(),
+            "powers": self.powers(),
+            "alarms": self.alarms(silent),
+        })
+    }
+
+    fn cylinders(&self) -> Map<String, Value> {
+        let Some((state, _)) = &self.state else { return Map::new() };
+        state
+            .cylinders
+            .iter()
+            .take(MOST_SHOWN)
+            .map(|own| {
+                let command = self.command.as_ref().and_then(|command| {
+                    let index = command.names.iter().position(|name| *name == own.name)?;
+                    command.areas.get(index).copied()
+                });
+                let numbers = json!({
+                    "displacement": finite(own.displacement), "velocity": finite(own.velocity),
+                    "cap_pressure": finite(own.cap_pressure), "rod_pressure": finite(own.rod_pressure),
+                    "orifice_area": finite(own.orifice_area), "command": finite(command.unwrap_or(f64::NAN)),
+                });
+                (own.name.clone(), numbers)
+            })
+            .collect()
+    }
+
+    /// Means since the last frame; `null` where no balance came.
+    fn powers(&self) -> Value {
+        let Some(energy) = &self.energy else { return Value::Null };
+        if self.powers.count == 0.0 {
+            return Value::Null;
+        }
+        let [pump, bypass, metering] = self.powers.machine.map(|sum| finite(sum / self.powers.count));
+        let cylinders: Map<String, Value> = energy
+            .cylinders
+            .iter()
+            .filter_map(|own| {
+                let (count, sums, terms) = self.powers.cylinders.get(&own.name)?;
+                let count = *count as f64;
+                let [rate, supply, dissipation, residual] = sums.map(|sum| finite(sum / count));
+                let terms: Map<String, Value> =
+                    terms.iter().map(|(effect, sum)| (effect.clone(), finite(sum / count))).collect();
+                let numbers = json!({
+                    "kinetic": finite(own.kinetic), "potential": finite(own.potential),
+                    "cap_internal": finite(own.cap_internal), "rod_internal": finite(own.rod_internal),
+                    "hamiltonian": finite(own.hamiltonian), "hamiltonian_rate": rate, "supply": supply,
+                    "dissipation": dissipation, "residual": residual, "terms": terms,
+                });
+                Some((own.name.clone(), numbers))
+            })
+            .collect();
+        json!({"pump_power": pump, "bypass_loss": bypass, "metering_loss": metering, "cylinders": cylinders})
+    }
+
+    /// Everything that is not well, worst first.
+    fn alarms(&self, silent: bool) -> Vec<Value> {
+        let mut alarms = Vec::new();
+        if silent {
+            alarms.push(json!({"level": 2, "part": "dashboard", "message": "no states on /arm/state", "values": {}}));
+        }
+        let unwell = self.health.iter().filter(|(_, part)| part.level > 0 && part.heard.elapsed() < FORGOTTEN);
+        for (name, part) in unwell {
+            let values: Map<String, Value> =
+                part.values.iter().map(|(key, value)| (key.clone(), Value::from(value.clone()))).collect();
+            alarms.push(json!({"level": part.level, "part": name, "message": part.message, "values": values}));
+        }
+        alarms.sort_by_key(|alarm| std::cmp::Reverse(alarm["level"].as_u64()));
+        alarms
+    }
+}

@@ -1,0 +1,75 @@
+//! The dashboard on the graph.
+
+use std::net::TcpListener;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use excavator_msgs::common::DiagnosticArray;
+use excavator_msgs::{ArmState, EnergyState, OrificeCommand};
+
+use super::{Board, serve};
+use crate::cli::DashboardArguments;
+use crate::error::VerbError;
+use crate::ros::{Health, RosArguments, Supervisor, TopicQos};
+use crate::verbs::print;
+
+/// Time between two frames: 25 per second.
+const FRAME: Duration = Duration::from_millis(40);
+
+/// Reliable, with room for two seconds at 1 kHz.
+fn newest(depth: u32) -> TopicQos {
+    TopicQos::reliable(depth).with_room(2_000)
+}
+
+/// Serves the page until it is told to stop.
+///
+/// # Errors
+/// [`VerbError`] when the graph cannot be joined or the address cannot be used.
+pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), VerbError> {
+    let address = (arguments.host.as_str(), arguments.port);
+    let listener = TcpListener::bind(address)
+        .map_err(|source| VerbError::Listen { address: format!("{}:{}", arguments.host, arguments.port), source })?;
+    let address = listener.local_addr()?;
+    let supervisor = Supervisor::start("dashboard", ros, Vec::new())?;
+    let board = Arc::new(Board::default());
+    let of = || Arc::clone(&board);
+    let (states, commands, energies, parts) = (of(), of(), of(), of());
+    supervisor.link.subscribe("/arm/state", newest(50), move |state: ArmState, _| states.take_state(state))?;
+    supervisor.link.subscribe("/arm/orifice_command", newest(10), move |command: OrificeCommand, _| {
+        commands.take_command(command);
+    })?;
+    supervisor.link.subscribe("/arm/energy", newest(50), move |energy: EnergyState, _| energies.take_energy(energy))?;
+    supervisor.link.subscribe("/diagnostics", newest(10), move |array: DiagnosticArray, _| parts.take_health(array))?;
+    let stop = supervisor.stop_flag();
+    let server = std::thread::spawn(move || serve_frames(listener, board, &stop));
+    supervisor.diagnostics.tell("page", Health::Ok, format!("http://{address}/"), &[]);
+    print(&format!("dashboard: http://{address}/"));
+    supervisor.run(|| {});
+    supervisor.leave();
+    match server.join() {
+        Ok(served) => Ok(served?),
+        Err(panic) => std::panic::resume_unwind(panic),
+    }
+}
+
+/// A thread of its own: neither a slow page nor a busy graph waits for the other.
+fn serve_frames(listener: TcpListener, board: Arc<Board>, stop: &AtomicBool) -> std::io::Result<()> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    let (end, ended) = tokio::sync::oneshot::channel::<()>();
+    runtime.block_on(async {
+        let ticking = async {
+            let mut tick = tokio::time::interval(FRAME);
+            tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Skip);
+            while !stop.load(Ordering::Relaxed) {
+                tick.tick().await;
+                board.frame();
+            }
+            let _ = end.send(());
+        };
+        let serving = serve(listener, Arc::clone(&board), async {
+            let _ = ended.await;
+        });
+        futures::future::join(ticking, serving).await.1
+    })
+}

@@ -1,0 +1,112 @@
+//! `excavator energy`
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::mpsc::sync_channel;
+
+use excavator_bags::map::TopicMap;
+use excavator_bags::table::Table;
+use excavator_bags::{BagError, Topics, read_recording_in_blocks};
+use excavator_identification::energy::{Analyser, EnergyAnalysis, EnergyError, EnergySettings, analyse, missing_power};
+use excavator_identification::report::energy_page;
+use excavator_model::Model;
+
+use super::print;
+use crate::cli::{EnergyArguments, Mapping};
+use crate::error::VerbError;
+use crate::output::{energy_json, energy_table, ledger_table, write_json};
+use crate::sources;
+
+/// Samples per block: ten seconds at 1 kHz.
+const BLOCK: usize = 10_000;
+/// Blocks that may wait for the analysis.
+const WAITING: usize = 4;
+
+pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
+    let model = sources::model(&arguments.model)?;
+    let analysis = analyse_bag(&model, &arguments.bag, &arguments.mapping)?;
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        show(&model, &analysis);
+    }
+    if let Some(path) = &arguments.report {
+        sources::write_text(path, &energy_page(&model, &analysis))?;
+    }
+    if let Some(path) = &arguments.json.json {
+        write_json(path, &energy_json(&model, &analysis))?;
+    }
+    Ok(())
+}
+
+/// A bag of our own topics goes through in blocks, whatever its length; what needs a map is read whole.
+fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAnalysis, VerbError> {
+    let settings = EnergySettings::default();
+    if mapping.map.is_some() || TopicMap::beside(bag).is_some() || Table::is_table(bag) {
+        return Ok(analyse(model, &sources::recording(bag, mapping, model)?, settings)?);
+    }
+    if !bag.exists() {
+        return Err(BagError::DoesNotExist { path: bag.to_path_buf() }.into());
+    }
+    let (sender, blocks) = sync_channel(WAITING);
+    let (report, analysis) = std::thread::scope(|scope| {
+        let reader = scope.spawn(move || {
+            read_recording_in_blocks(bag, &Topics::default(), BLOCK, |block| match sender.send(block) {
+                Ok(()) => ControlFlow::Continue(()),
+                // The analysis has ended; it says why.
+                Err(_) => ControlFlow::Break(()),
+            })
+        });
+        let analysis = (|| {
+            let mut analyser = Analyser::new(model, settings);
+            for block in blocks {
+                analyser.push(&block)?;
+            }
+            Ok::<_, EnergyError>(analyser)
+        })();
+        (reader.join(), analysis)
+    });
+    let report = match report {
+        Ok(report) => report?,
+        Err(panic) => std::panic::resume_unwind(panic),
+    };
+    for problem in report.problems() {
+        eprintln!("{}: {problem}", bag.display());
+    }
+    Ok(analysis?.finish()?)
+}
+
+fn show(model: &Model, analysis: &EnergyAnalysis) {
+    print(&format!(
+        "{} over {:.1} s of {} ({} samples)",
+        model.machine.name, analysis.duration, analysis.source, analysis.samples
+    ));
+    print(&energy_table(model, analysis).to_string());
+    if let Some(cycle) = &analysis.cycle {
+        print(&format!("energies per cycle are means over {} cycles of {:.3} s", cycle.count, cycle.period));
+    }
+    for trace in &analysis.traces.cylinders {
+        if let Some(phase) = &trace.phase {
+            let degrees = |lag: Option<f64>| lag.map_or("-".to_string(), |lag| format!("{lag:.1}°"));
+            print(&format!(
+                "dH/dt of {} at {:.2} Hz lags behind the experimental: analytical {}, numerical {}",
+                trace.name,
+                phase.frequency,
+                degrees(phase.analytical),
+                degrees(phase.numerical)
+            ));
+        }
+    }
+    if let Some(reason) = &analysis.simulation_failed {
+        print(&format!("there is no numerical dH/dt: {reason}"));
+    }
+    print(&ledger_table(model, analysis).to_string());
+    if !analysis.parameters_have_errors {
+        print("The model's parameters carry no standard errors and are taken for exact. Identify it first.");
+    }
+    let missing = missing_power(model, analysis);
+    if missing.is_empty() {
+        print("The ledger closes: noise explains what is left at every equation.");
+    }
+    for evidence in missing {
+        print(&format!("{}: {}", evidence.equation, evidence.sentence));
+    }
+}

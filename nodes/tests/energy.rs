@@ -1,0 +1,191 @@
+//! The verb energy on recordings by an independent simulator, and on a long one.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+mod common;
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use common::{assert_one_clear_line, excavator, json, shared};
+use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_model::document::built_in;
+use excavator_model::equations::{Inputs, System};
+use excavator_model::recording::Recording;
+use excavator_model::simulation::{InputSignals, Tolerances, rest_state, simulate_from};
+use serde_json::Value;
+
+/// Identifies the nominal model on a case's first recording, and gives the ledgers of both.
+fn ledgers(case: &str) -> Option<[Value; 2]> {
+    let case = shared()?.join("practice").join(case);
+    let folder = tempfile::tempdir().unwrap();
+    let bag = |name: &str| case.join(name).to_str().unwrap().to_string();
+    let words = ["identify", "--model", "zx30u-arm", "-o", "fitted.toml", "--bag", &bag("identification")];
+    assert!(excavator(folder.path(), &words).status.success());
+    Some(["identification", "validation"].map(|name| {
+        let words = ["energy", "--model", "fitted.toml", "--json", "-", "--bag", &bag(name)];
+        json(&excavator(folder.path(), &words))
+    }))
+}
+
+/// Equations at which the ledger does not close, with size and band of the whole recording.
+fn outside(result: &Value) -> Vec<String> {
+    let mut found = Vec::new();
+    for place in result["ledger"].as_array().unwrap() {
+        let (name, always) = (place["equation"].as_str().unwrap(), &place["conditions"]["always"]);
+        println!("{name}: {} W rms, explained {} W, closes: {}", always["size"], always["band"], place["closes"]);
+        if place["closes"] == false {
+            found.push(name.to_string());
+        }
+    }
+    found
+}
+
+#[test]
+fn with_nothing_missing_the_ledger_closes_within_its_noise() {
+    let Some(results) = ledgers("p00") else { return };
+    for result in results {
+        assert_eq!(outside(&result), Vec::<String>::new());
+        assert_eq!(result["ledger_closes"], true);
+        assert_eq!(result["missing_power"].as_array().unwrap().len(), 0);
+        for place in result["ledger"].as_array().unwrap() {
+            let always = &place["conditions"]["always"];
+            // The band says something: it is of the size of what is left, not wider by orders of magnitude.
+            assert!(always["size"].as_f64().unwrap() > 0.05 * always["band"].as_f64().unwrap(), "{place:#}");
+        }
+    }
+}
+
+#[test]
+fn leaking_valves_show_where_oil_is_balanced_and_nowhere_else() {
+    let Some(results) = ledgers("p02") else { return };
+    for result in results {
+        let found = outside(&result);
+        for equation in ["arm.cap_continuity", "arm.rod_continuity", "pump.continuity"] {
+            assert!(found.iter().any(|name| name == equation), "{equation}: {found:?}");
+        }
+        assert!(!found.iter().any(|name| name == "arm.motion"));
+    }
+}
+
+#[test]
+fn losses_in_hoses_show_between_pressure_and_link_and_nowhere_else() {
+    let Some(results) = ledgers("p03") else { return };
+    for result in results {
+        assert_eq!(outside(&result), ["arm.motion"]);
+        let evidence = &result["missing_power"][0];
+        assert_eq!(evidence["cylinder"], "arm");
+        assert!(evidence["sentence"].as_str().unwrap().contains("between the oil's pressure and the moving links"));
+    }
+}
+
+/// A minute of the arm that swings at 0.5 Hz, at 1 kHz.
+fn minute() -> Recording {
+    let model = built_in("zx30u-arm").unwrap();
+    let time: Vec<f64> = (0..60_000).map(|index| f64::from(index) * 1e-3).collect();
+    let mut recording = Recording::unmeasured("minute", time, &["arm"]);
+    recording.tank_pressure.fill(0.0);
+    recording.pump_flow.fill(3.8e-4);
+    let areas: Vec<f64> = recording.time.iter().map(|t| 6e-5 * (std::f64::consts::PI * t).sin()).collect();
+    recording.cylinders[0].orifice_command.clone_from(&areas);
+    recording.cylinders[0].orifice_area = areas;
+    let signals = InputSignals::from_recording(&model, &recording).unwrap();
+    let system = System::new(&model);
+    let mut inputs = Inputs::zero(1);
+    signals.between(0, 0.0, &mut inputs);
+    let state = rest_state(&system, &[0.0], &inputs);
+    simulate_from(&model, &recording, &signals, state, Tolerances::default()).unwrap()
+}
+
+/// The minute `times` over, with a pause between that keeps them apart.
+fn repeated(minute: &Recording, times: usize) -> Recording {
+    let mut long = minute.clone();
+    for column in long.columns_mut() {
+        let once = column.clone();
+        *column = once.iter().copied().cycle().take(once.len() * times).collect();
+    }
+    for (index, time) in long.time.iter_mut().enumerate() {
+        *time += (index / minute.len()) as f64 * 60.2;
+    }
+    long
+}
+
+#[test]
+fn a_long_bag_goes_through_in_blocks_and_gives_what_it_gives_in_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = folder.path().join("bag");
+    let long = repeated(&minute(), 4);
+    write_recording(&bag, &long, &Topics::default(), &WriteOptions::default()).unwrap();
+    let words = ["energy", "--model", "zx30u-arm", "--json", "-", "--report", "page.html", "--bag", "bag"];
+    let result = json(&excavator(folder.path(), &words));
+    let model = built_in("zx30u-arm").unwrap();
+    let whole = excavator_identification::energy::analyse(&model, &long, Default::default()).unwrap();
+    let close = |found: &Value, wanted: f64, what: &str| {
+        let found = found.as_f64().unwrap();
+        assert!((found - wanted).abs() <= 1e-6 * wanted.abs().max(1.0), "{what}: {found} {wanted}");
+    };
+    assert_eq!(result["gaps"], 3);
+    close(&result["energy"]["pump"], whole.totals.pump, "pump");
+    close(&result["energy"]["cylinders"]["arm"]["supplied"], whole.totals.cylinders[0].supplied, "supplied");
+    close(&result["pump_line"]["bypass_loss"], whole.totals.bypass_loss(), "bypass");
+    let period = result["cycle"]["period"].as_f64().unwrap();
+    assert!((period / 2.0 - 1.0).abs() < 5e-3, "{period}");
+    // What goes in comes out.
+    let line = &result["pump_line"];
+    let part = |name: &str| line[name].as_f64().unwrap();
+    let arm = |name: &str| line["sections"]["arm"][name].as_f64().unwrap();
+    let out = part("bypass_loss") + arm("metering_loss") + arm("into_cylinder") + part("stored") - part("residual");
+    assert!((out / part("pump") - 1.0).abs() < 1e-9, "{line:#}");
+    assert!(part("residual").abs() < 1e-3 * part("pump"), "{line:#}");
+    let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
+    assert!(page.contains("Where the energy went") && page.contains("<svg") && !page.contains("http://"));
+}
+
+#[test]
+fn what_is_not_measured_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recording = minute();
+    recording.cylinders[0].rod_pressure.fill(f64::NAN);
+    let bag = folder.path().join("bag");
+    write_recording(&bag, &recording, &Topics::default(), &WriteOptions::default()).unwrap();
+    let output = excavator(folder.path(), &["energy", "--model", "zx30u-arm", "--bag", "bag"]);
+    assert_one_clear_line(&output, &["arm.rod_pressure"]);
+    let output = excavator(folder.path(), &["energy", "--model", "zx30u-arm", "--bag", "nowhere"]);
+    assert_one_clear_line(&output, &["nowhere"]);
+}
+
+/// Largest resident memory of a process that is running, MB.
+fn peak_memory(process: u32) -> Option<f64> {
+    let status = std::fs::read_to_string(Path::new("/proc").join(process.to_string()).join("status")).ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? / 1024.0)
+}
+
+#[test]
+#[ignore = "writes an hour of bag; tests/run --long"]
+fn an_hour_at_one_kilohertz_takes_seconds_and_little_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = folder.path().join("hour");
+    write_recording(&bag, &repeated(&minute(), 60), &Topics::default(), &WriteOptions::default()).unwrap();
+    let started = Instant::now();
+    let mut process = Command::new(env!("CARGO_BIN_EXE_excavator"))
+        .args(["energy", "--model", "zx30u-arm", "--bag", "hour", "--report", "page.html"])
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut peak = 0.0_f64;
+    let status = loop {
+        peak = peak_memory(process.id()).map_or(peak, |now| now.max(peak));
+        if let Some(status) = process.try_wait().unwrap() {
+            break status;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    let seconds = started.elapsed().as_secs_f64();
+    println!("3.6 million samples in {seconds:.1} s with {peak:.0} MB at most");
+    assert!(status.success());
+    assert!(peak < 400.0, "{peak} MB");
+    assert!(seconds < 20.0 || cfg!(debug_assertions), "{seconds} s");
+}
