@@ -30,6 +30,9 @@ impl Stamps {
     /// Stamp of the sample taken when the system's clock shows `clock` (ns), and whether it is a new beginning.
     pub fn stamp(&mut self, clock: i64) -> (i64, bool) {
         let (stamp, jumped) = match self.next {
+            // No sample is of the future: the first ones came late, and the schedule has caught up with them since. Half
+            // steps bring the stamps back within a few samples, and they still go forward.
+            Some(expected) if (self.period..=JUMP).contains(&(expected - clock)) => (expected - self.period / 2, false),
             Some(expected) if (clock - expected).abs() <= JUMP => {
                 let most = (self.period as f64 * SLEW) as i64;
                 (expected + (clock - expected).clamp(-most, most), false)
@@ -56,6 +59,16 @@ mod tests {
             assert!((stamp - previous - 1_000_000).abs() <= 1000);
             previous = stamp;
         }
+    }
+
+    #[test]
+    fn a_late_beginning_does_not_put_later_stamps_into_the_future() {
+        let mut stamps = Stamps::new(4_000_000);
+        // The first sample is taken 20 ms late, the next ones at once, until the schedule is met.
+        let clocks = (0..100_i64).map(|sample| (sample * 4_000_000).max(20_000_000 + sample * 1000));
+        let ahead: Vec<(i64, i64)> = clocks.map(|clock| (stamps.stamp(clock).0, clock)).collect();
+        assert!(ahead.windows(2).all(|pair| pair[1].0 > pair[0].0));
+        assert!(ahead[20..].iter().all(|(stamp, clock)| stamp - clock <= 4_000_000), "{ahead:?}");
     }
 
     #[test]
