@@ -90,7 +90,13 @@ pub(super) fn measured_books(
         }
         match (layout.pump, model.machine.supply) {
             (Some(pump), _) => state[pump] = pressure.value(&recording.pump_pressure),
-            (None, Supply::MeasuredPressure) => inputs.supply_pressure = pressure.value(&recording.pump_pressure),
+            (None, Supply::PressureSource(_)) => {
+                // Where it is not measured the machine's constant is there already.
+                let measured = pressure.value(&recording.pump_pressure);
+                if measured.is_finite() {
+                    inputs.supply_pressure = measured;
+                }
+            }
             (None, _) => {}
         }
         enter(system, parameters, &mut state, &inputs, &mut books);

@@ -69,7 +69,7 @@ pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
 pub(super) fn whole(model: &Model, totals: &Totals) -> f64 {
     match model.machine.supply {
         Supply::PumpLine(_) => totals.pump,
-        Supply::MeasuredPressure | Supply::None => {
+        Supply::PressureSource(_) | Supply::None => {
             totals.cylinders.iter().map(|own| own.supplied.abs() + own.metering_loss.max(0.0)).sum()
         }
     }
