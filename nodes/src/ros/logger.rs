@@ -7,7 +7,7 @@ use super::clock::system_nanoseconds;
 use super::{Level, Link, Outlet, RosArguments, RosError, TopicQos};
 
 /// Log lines that late joiners of `/rosout` get, and for how long, s: as rcl has it.
-const ROSOUT: TopicQos = TopicQos { depth: 1000, reliable: true, transient_local: true, lifespan: Some(10) };
+const ROSOUT: TopicQos = TopicQos { depth: 1000, lifespan: Some(10), ..TopicQos::latched() };
 
 /// The log of a node; clones share it.
 #[derive(Clone)]
