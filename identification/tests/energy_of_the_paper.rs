@@ -124,7 +124,7 @@ fn coulomb_friction_is_much_smaller_and_leakage_is_there_at_supply_peaks_only() 
         for leakage in ["internal_leakage", "external_leakage"] {
             let powers = term(trace, leakage);
             let quiet = mean(powers, |k| trace.supply.value[k].abs() < 0.1 * supply_peak).abs();
-            let busy = mean(powers, |k| trace.supply.value[k] > 0.5 * supply_peak).abs();
+            let busy = mean(powers, |k| trace.supply.value[k].abs() > 0.5 * supply_peak).abs();
             println!("  {leakage}: {quiet:.2} W away from supply peaks, {busy:.2} W at them");
             assert!(quiet < 0.1 * peak(powers), "{leakage}: {quiet}");
             assert!(quiet < 0.2 * busy, "{leakage}: {quiet} {busy}");

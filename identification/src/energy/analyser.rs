@@ -20,6 +20,8 @@ use crate::validation::dominant_frequency;
 
 /// Blocks that are worked off at the same time.
 const AT_ONCE: usize = 4;
+/// Time from the start in which the frequency of the excitation is searched, s.
+const SEARCHED: f64 = 40.0;
 /// Windows that are kept for a plot; of more, every other one.
 const MOST_WINDOWS: usize = 40_000;
 
@@ -43,6 +45,8 @@ pub struct Analyser<'m> {
     blocks: usize,
     stride: usize,
     head: Option<Recording>,
+    /// Frequency at which the head is excited most, Hz.
+    frequency: Option<f64>,
     waiting: VecDeque<Block>,
     places: Vec<Place>,
     judge: Judge,
@@ -82,6 +86,7 @@ impl<'m> Analyser<'m> {
             blocks: 0,
             stride: 1,
             head: None,
+            frequency: None,
             waiting: VecDeque::new(),
             judge: Judge::new(with_cylinder, settings),
             places,
@@ -148,8 +153,7 @@ impl<'m> Analyser<'m> {
             });
         }
         let simulation_failed = self.simulate_head();
-        let frequency = self.head.as_ref().and_then(|head| excitation(self.model, head).1);
-        if let Some(frequency) = frequency {
+        if let Some(frequency) = self.frequency {
             self.traces.measure_phases(frequency);
         }
         let parameters_have_errors = self
@@ -208,7 +212,9 @@ impl<'m> Analyser<'m> {
         // Two entries per half width carry everything that parabolas of that width let pass.
         let per_half_width = self.settings.half_width / head.sample_interval();
         self.stride = (per_half_width / 2.5 + 1e-6).floor().max(1.0) as usize;
-        self.cycles = excitation(self.model, &head).0.map(|period| Cycles::new(self.model, period));
+        let (period, frequency) = excitation(self.model, &head);
+        self.frequency = frequency;
+        self.cycles = period.map(|period| Cycles::new(self.model, period));
         self.head = Some(head);
     }
 
@@ -237,6 +243,7 @@ impl<'m> Analyser<'m> {
                         first_sample: self.first_sample + from,
                         stride: self.stride,
                         own: (self.cut, end),
+                        quick: self.cut >= self.settings.head,
                         with_noise: studied,
                     });
                     from = index + 1;
@@ -322,6 +329,7 @@ impl<'m> Analyser<'m> {
             first_sample: 0,
             stride: self.stride,
             own: (0.0, self.settings.head),
+            quick: false,
             with_noise: false,
         };
         match simulated_books(&self.system, &block, &simulated) {
@@ -354,7 +362,11 @@ fn excitation(model: &Model, head: &Recording) -> (Option<f64>, Option<f64>) {
     } else {
         head.cylinders.first().map(|cylinder| cylinder.rod_force.as_slice())
     };
-    strongest.map_or((None, None), |values| (period(&head.time, values), dominant_frequency(&head.time, values)))
+    // The search takes the square of the time that it looks at.
+    let end = head.time.partition_point(|&t| t <= SEARCHED);
+    let frequency = strongest.and_then(|values| dominant_frequency(&head.time[..end], &values[..end]));
+    let found = strongest.zip(frequency).and_then(|(values, frequency)| period(&head.time, values, frequency));
+    (found, frequency)
 }
 
 /// Samples of a range; times of a block start at zero.

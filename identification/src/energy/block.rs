@@ -24,6 +24,9 @@ pub(super) struct Block {
     pub stride: usize,
     /// Part that counts, s since the start of the recording.
     pub own: (f64, f64),
+    /// Whether valve openings may come from the spool sensor alone. The estimate that also listens to the command is a
+    /// little sharper and takes longer than everything else together.
+    pub quick: bool,
     /// Whether the effect of noise is found out by repeats.
     pub with_noise: bool,
 }
@@ -47,7 +50,12 @@ pub(super) fn measured_books(
 ) -> Result<Books, SignalError> {
     let model = system.model();
     let layout = system.layout();
-    let recording = undistorted(model, &block.recording);
+    let mut recording = undistorted(model, &block.recording);
+    if block.quick {
+        for cylinder in recording.cylinders.iter_mut().filter(|cylinder| is_measured(&cylinder.orifice_area)) {
+            cylinder.orifice_command.fill(f64::NAN);
+        }
+    }
     let signals = InputSignals::from_recording(model, &recording)?;
     let sources = model
         .machine

@@ -4,21 +4,18 @@ use excavator_model::Model;
 
 use super::analysis::Cycle;
 use super::{Books, Totals};
-use crate::validation::dominant_frequency;
 
 /// Least correlation of the command with itself one period later.
 const LEAST_CORRELATION: f64 = 0.9;
 /// Fewest periods that a mean is taken over.
 const FEWEST_CYCLES: f64 = 3.0;
 
-/// Period of a signal, s; `None` where it does not repeat.
-pub(super) fn period(time: &[f64], signal: &[f64]) -> Option<f64> {
-    let frequency = dominant_frequency(time, signal)?;
+/// Period (s) of a signal that is strongest about `frequency` (Hz); `None` where it does not repeat.
+pub(super) fn period(time: &[f64], signal: &[f64], frequency: f64) -> Option<f64> {
     let duration = time.last()? - time.first()?;
-    // The spectrum knows the frequency to about half of one over the duration; correlation knows it better.
-    let resolution = 0.5 / duration;
-    let (best, correlation) = (-20..=20)
-        .map(|step| frequency + f64::from(step) * 0.1 * resolution)
+    // The spectrum knows the frequency to about half of one over the duration that it saw; correlation knows it better.
+    let (best, correlation) = (-40..=40)
+        .map(|step| frequency * (1.0 + f64::from(step) * 1e-3))
         .filter(|frequency| *frequency > 0.0)
         .map(|frequency| (1.0 / frequency, repetition(time, signal, 1.0 / frequency)))
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -120,9 +117,9 @@ mod tests {
     fn a_sine_repeats_and_a_sweep_does_not() {
         let time: Vec<f64> = (0..20_000).map(|k| f64::from(k) * 1e-3).collect();
         let sine: Vec<f64> = time.iter().map(|t| (std::f64::consts::TAU * 0.731 * t).sin()).collect();
-        let found = period(&time, &sine).unwrap_or(f64::NAN);
+        let found = period(&time, &sine, 0.725).unwrap_or(f64::NAN);
         assert!((found * 0.731 - 1.0).abs() < 2e-3, "{found}");
         let sweep: Vec<f64> = time.iter().map(|t| (std::f64::consts::TAU * (0.3 + 0.05 * t) * t).sin()).collect();
-        assert_eq!(period(&time, &sweep), None);
+        assert_eq!(period(&time, &sweep, 0.8), None);
     }
 }

@@ -47,7 +47,7 @@ impl Default for EnergySettings {
             draws: 6,
             head: 120.0,
             block: 20.0,
-            blocks_per_draw: 32,
+            blocks_per_draw: 64,
             gap: 0.05,
             seed: 1,
         }

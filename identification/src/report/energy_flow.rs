@@ -95,7 +95,7 @@ impl Flow {
 
     /// `amount` from a node to what took it; where that gave instead, from it to the node.
     fn give(&mut self, node: usize, label: &str, amount: f64, column: usize, colour: &'static str) {
-        if !(amount.abs() >= SMALLEST * self.whole.abs()) {
+        if !amount.is_finite() || amount.abs() < SMALLEST * self.whole.abs() {
             return;
         }
         if amount >= 0.0 {

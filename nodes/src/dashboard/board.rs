@@ -44,7 +44,14 @@ struct Content {
 struct Powers {
     count: f64,
     machine: [f64; 3],
-    cylinders: BTreeMap<String, (usize, [f64; 4], BTreeMap<String, f64>)>,
+    cylinders: BTreeMap<String, CylinderPowers>,
+}
+
+#[derive(Default)]
+struct CylinderPowers {
+    count: usize,
+    sums: [f64; 4],
+    terms: BTreeMap<String, f64>,
 }
 
 struct Part {
@@ -134,7 +141,7 @@ impl Powers {
             if self.cylinders.len() >= MOST_SHOWN && !self.cylinders.contains_key(&cylinder.name) {
                 continue;
             }
-            let (count, sums, terms) = self.cylinders.entry(cylinder.name.clone()).or_default();
+            let CylinderPowers { count, sums, terms } = self.cylinders.entry(cylinder.name.clone()).or_default();
             // A balance without a rate, as at the ends of gaps, would take all others with it.
             if !powers_of(cylinder).iter().all(|power| power.is_finite()) {
                 continue;
@@ -207,7 +214,7 @@ impl Content {
             .cylinders
             .iter()
             .filter_map(|own| {
-                let (count, sums, terms) = self.powers.cylinders.get(&own.name)?;
+                let CylinderPowers { count, sums, terms } = self.powers.cylinders.get(&own.name)?;
                 let count = *count as f64;
                 let [rate, supply, dissipation, residual] = sums.map(|sum| finite(sum / count));
                 let terms: Map<String, Value> =
