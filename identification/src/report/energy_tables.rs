@@ -30,7 +30,7 @@ pub(super) fn energies(model: &Model, analysis: &EnergyAnalysis) -> Markup {
                     td.n { (significant(line.energy / analysis.totals.duration, 3)) }
                     @if let Some((mean, deviation)) = &cycle {
                         td.n { (mean.get(index).map_or(NOTHING.to_string(), |own| significant(own.energy, 3))) " ± "
-                            (deviation.get(index).map_or(NOTHING.to_string(), |own| significant(own.energy.abs(), 2))) }
+                            (deviation.get(index).filter(|own| !own.derived).map_or(NOTHING.to_string(), |own| significant(own.energy, 2))) }
                     }
                 }
             } }
@@ -45,17 +45,23 @@ pub(super) fn energies(model: &Model, analysis: &EnergyAnalysis) -> Markup {
     }
 }
 
+/// What a ledger that does not close has gained.
+const UNEXPLAINED: &str = "gained without explanation";
+
 struct Line {
     what: String,
     effect: Option<&'static str>,
     energy: f64,
     heading: bool,
+    /// A difference of others: its deviation is not the difference of theirs.
+    derived: bool,
 }
 
 fn lines(model: &Model, totals: &Totals) -> Vec<Line> {
     let mut lines = Vec::new();
     let mut add = |what: String, effect: Option<&'static str>, energy: f64, heading: bool| {
-        lines.push(Line { what, effect, energy, heading });
+        let derived = what.starts_with(UNEXPLAINED);
+        lines.push(Line { what, effect, energy, heading, derived });
     };
     if matches!(model.machine.supply, Supply::PumpLine(_)) {
         add("Pump".into(), None, totals.pump, true);
@@ -68,7 +74,7 @@ fn lines(model: &Model, totals: &Totals) -> Vec<Line> {
             add(format!("lost metering in the {} valve section", cylinder.name), None, own.metering_loss, false);
         }
         add("stored in the pump line".into(), None, totals.pump_line, false);
-        add("gained without explanation in the pump line".into(), None, totals.pump_residual(), false);
+        add(format!("{UNEXPLAINED} in the pump line"), None, totals.pump_residual(), false);
     }
     for (index, (cylinder, own)) in model.machine.cylinders.iter().zip(&totals.cylinders).enumerate() {
         add(format!("Supplied to the {} cylinder", cylinder.name), None, own.supplied, true);
@@ -81,7 +87,7 @@ fn lines(model: &Model, totals: &Totals) -> Vec<Line> {
         add("gain of potential energy".into(), None, own.potential, false);
         add("gain of compression energy, cap side".into(), None, own.cap_internal, false);
         add("gain of compression energy, rod side".into(), None, own.rod_internal, false);
-        add("gained without explanation".into(), None, totals.residual(index), false);
+        add(UNEXPLAINED.into(), None, totals.residual(index), false);
     }
     lines
 }

@@ -16,14 +16,18 @@ pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
     let all = lines(model, &analysis.totals);
     let cycle = analysis.cycle.as_ref().map(|cycle| (lines(model, &cycle.mean), lines(model, &cycle.deviation)));
     let whole = input(model, &analysis.totals);
-    for (index, (name, energy)) in all.iter().enumerate() {
+    for (index, (name, energy, _)) in all.iter().enumerate() {
         let per_cycle =
-            cycle.as_ref().and_then(|(mean, deviation)| Some((mean.get(index)?.1, deviation.get(index)?.1)));
+            cycle.as_ref().and_then(|(mean, deviation)| Some((mean.get(index)?.1, deviation.get(index)?)));
         rows.add_row([
             Cell::new(name),
             right(format!("{energy:.1}")),
             right(format!("{:.1}", 100.0 * energy / whole)),
-            right(per_cycle.map_or("-".into(), |(mean, deviation)| format!("{mean:.2} ± {deviation:.2}"))),
+            right(per_cycle.map_or("-".into(), |(mean, deviation)| match deviation {
+                // A sum or difference of others: its deviation is not the sum or difference of theirs.
+                (_, _, true) => format!("{mean:.2}"),
+                (_, deviation, false) => format!("{mean:.2} ± {:.2}", deviation.abs()),
+            })),
         ]);
     }
     rows
@@ -35,31 +39,32 @@ fn input(model: &Model, totals: &Totals) -> f64 {
     if matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) { totals.pump } else { supplied }
 }
 
-fn lines(model: &Model, totals: &Totals) -> Vec<(String, f64)> {
+/// What, how much in J, and whether it is a sum or difference of others.
+fn lines(model: &Model, totals: &Totals) -> Vec<(String, f64, bool)> {
     let mut lines = Vec::new();
     if matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) {
-        lines.push(("pump".to_string(), totals.pump));
+        lines.push(("pump".to_string(), totals.pump, false));
         for effect in
             totals.effects.iter().filter(|e| e.acts_on != ActsOn::Valve && !e.stores && e.into_pump_line != 0.0)
         {
-            lines.push((format!("  lost: {} at the pump line", effect.effect), -effect.into_pump_line));
+            lines.push((format!("  lost: {} at the pump line", effect.effect), -effect.into_pump_line, false));
         }
-        lines.push(("  stored in the pump line".to_string(), totals.pump_line));
-        lines.push(("  not explained in the pump line".to_string(), totals.pump_residual()));
+        lines.push(("  stored in the pump line".to_string(), totals.pump_line, false));
+        lines.push(("  not explained in the pump line".to_string(), totals.pump_residual(), true));
     }
     for (index, (cylinder, own)) in model.machine.cylinders.iter().zip(&totals.cylinders).enumerate() {
         let name = &cylinder.name;
         if cylinder.chambers.is_some() {
-            lines.push((format!("  lost: metering at the {name} valve"), own.metering_loss));
+            lines.push((format!("  lost: metering at the {name} valve"), own.metering_loss, false));
         }
-        lines.push((format!("supplied to the {name}"), own.supplied));
+        lines.push((format!("supplied to the {name}"), own.supplied, false));
         for effect in totals.effects.iter().filter(|e| e.acts_on != ActsOn::Valve && !e.stores) {
             if site_name(&model.machine, effect.site) == name {
-                lines.push((format!("  lost: {} at the {name}", effect.effect), -effect.into_cylinders));
+                lines.push((format!("  lost: {} at the {name}", effect.effect), -effect.into_cylinders, false));
             }
         }
-        lines.push((format!("  stored in the {name}"), own.stored()));
-        lines.push((format!("  not explained at the {name}"), totals.residual(index)));
+        lines.push((format!("  stored in the {name}"), own.stored(), true));
+        lines.push((format!("  not explained at the {name}"), totals.residual(index), true));
     }
     lines
 }
@@ -113,12 +118,12 @@ pub fn energy_json(model: &Model, analysis: &EnergyAnalysis) -> Value {
         "samples": analysis.samples,
         "duration": analysis.duration,
         "gaps": analysis.gaps,
-        "energy": totals_json(model, &analysis.totals),
+        "energy": totals_json(model, &analysis.totals, true),
         "cycle": analysis.cycle.as_ref().map(|cycle| json!({
             "period": cycle.period,
             "count": cycle.count,
-            "mean": totals_json(model, &cycle.mean),
-            "standard_deviation": totals_json(model, &cycle.deviation),
+            "mean": totals_json(model, &cycle.mean, true),
+            "standard_deviation": totals_json(model, &cycle.deviation, false),
         })),
         "pump_line": pump_line,
         "phase_delays_degrees": phases,
@@ -156,7 +161,8 @@ fn place_json(model: &Model, place: &PlaceJudgement) -> Value {
     json!({"equation": place.place.equation(model), "closes": place.is_explained(), "windows_outside": place.share_outside, "conditions": regimes})
 }
 
-fn totals_json(model: &Model, totals: &Totals) -> Value {
+/// Sums and differences of others only where `derived`: those of standard deviations mean nothing.
+fn totals_json(model: &Model, totals: &Totals, derived: bool) -> Value {
     let cylinders: Map<String, Value> = model
         .machine
         .cylinders
@@ -164,11 +170,16 @@ fn totals_json(model: &Model, totals: &Totals) -> Value {
         .zip(&totals.cylinders)
         .enumerate()
         .map(|(index, (cylinder, own))| {
-            let numbers = json!({
+            let mut numbers = json!({
                 "supplied": own.supplied, "kinetic": own.kinetic, "potential": own.potential,
-                "cap_internal": own.cap_internal, "rod_internal": own.rod_internal, "stored": own.stored(),
-                "dissipation": totals.dissipation(index), "metering_loss": own.metering_loss, "residual": totals.residual(index),
+                "cap_internal": own.cap_internal, "rod_internal": own.rod_internal,
+                "metering_loss": own.metering_loss,
             });
+            if derived {
+                numbers["stored"] = json!(own.stored());
+                numbers["dissipation"] = json!(totals.dissipation(index));
+                numbers["residual"] = json!(totals.residual(index));
+            }
             (cylinder.name.clone(), numbers)
         })
         .collect();
