@@ -17,8 +17,7 @@ pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
     let cycle = analysis.cycle.as_ref().map(|cycle| (lines(model, &cycle.mean), lines(model, &cycle.deviation)));
     let whole = input(model, &analysis.totals);
     for (index, (name, energy, _)) in all.iter().enumerate() {
-        let per_cycle =
-            cycle.as_ref().and_then(|(mean, deviation)| Some((mean.get(index)?.1, deviation.get(index)?)));
+        let per_cycle = cycle.as_ref().and_then(|(mean, deviation)| Some((mean.get(index)?.1, deviation.get(index)?)));
         rows.add_row([
             Cell::new(name),
             right(format!("{energy:.1}")),
