@@ -25,7 +25,7 @@ fn newest(depth: u32) -> TopicQos {
 /// Serves the page until it is told to stop.
 ///
 /// # Errors
-/// [`VerbError`] when the graph cannot be joined or the address cannot be used.
+/// `VerbError` when the graph cannot be joined or the address cannot be used.
 pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), VerbError> {
     let address = (arguments.host.as_str(), arguments.port);
     let listener = TcpListener::bind(address)
