@@ -80,5 +80,6 @@ def test_a_simulator_that_was_stopped_with_an_open_valve_closes_it(ros, simulato
     ros.spin_until(
         lambda: since() and cylinder(simulator.last).orifice_area == 0.0, "the valve to close", 10.0
     )
-    closed = next(state for state in since() if cylinder(state).orifice_area == 0.0)
-    assert seconds(closed.header.stamp) - resumed < 0.5
+    # The simulator's own time: a millisecond per state, whatever share of the processor it gets.
+    still_open = sum(cylinder(state).orifice_area != 0.0 for state in since())
+    assert still_open < 0.5 * RATE
