@@ -16,6 +16,15 @@ pub enum Interpolation {
     Hold,
 }
 
+/// Distance from a straight line that does not matter, m²: a two-hundredth of the noise of a good spool sensor.
+const STRAIGHT_AREA: f64 = 1e-9;
+/// The same for rod forces, N: a three-hundredth of a load cell's noise.
+const STRAIGHT_FORCE: f64 = 0.03;
+/// The same for tank and supply pressure, Pa: a tenth of the noise of a good sensor.
+const STRAIGHT_PRESSURE: f64 = 200.0;
+/// The same for the pump's flow, m³/s: a few millionths of a small excavator's.
+const STRAIGHT_FLOW: f64 = 2e-9;
+
 /// Inputs of a model on the clock of a recording, without holes: gaps of single signals are bridged by straight lines.
 #[derive(Debug, Clone)]
 pub struct InputSignals {
@@ -124,6 +133,25 @@ impl InputSignals {
         &self.tank_pressure
     }
 
+    /// Whether all inputs run straight from sample `first` to sample `last`: lines within a small part of what good
+    /// sensors resolve, held ones without any change.
+    pub fn is_straight(&self, first: usize, last: usize) -> bool {
+        let (start, duration) = (self.time[first], self.time[last] - self.time[first]);
+        let near_line = |values: &[f64], most: f64| {
+            let slope = (values[last] - values[first]) / duration;
+            (first + 1..last)
+                .all(|index| (values[index] - values[first] - slope * (self.time[index] - start)).abs() <= most)
+        };
+        self.orifice_area.iter().all(|(interpolation, values)| match interpolation {
+            // Another edge of the valve opens where the sign changes.
+            Interpolation::Linear => near_line(values, STRAIGHT_AREA) && !changes_sign(&values[first..=last]),
+            Interpolation::Hold => values[first + 1..last].iter().all(|&value| value == values[first]),
+        }) && self.rod_force.iter().all(|values| near_line(values, STRAIGHT_FORCE))
+            && near_line(&self.supply_pressure, STRAIGHT_PRESSURE)
+            && near_line(&self.tank_pressure, STRAIGHT_PRESSURE)
+            && near_line(&self.pump_flow, STRAIGHT_FLOW)
+    }
+
     /// Inputs at `fraction` (0 to 1) of the way from sample `index` to the next, into `inputs`.
     pub fn between(&self, index: usize, fraction: f64, inputs: &mut Inputs<f64>) {
         let next = (index + 1).min(self.time.len().saturating_sub(1));
@@ -145,6 +173,10 @@ impl InputSignals {
         inputs.tank_pressure = line(&self.tank_pressure);
         inputs.pump_flow = line(&self.pump_flow);
     }
+}
+
+fn changes_sign(values: &[f64]) -> bool {
+    values.iter().any(|&value| value > 0.0) && values.iter().any(|&value| value < 0.0)
 }
 
 /// Tank pressure and pump flow where nothing measures them.

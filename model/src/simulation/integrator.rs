@@ -91,15 +91,15 @@ pub struct Integrator<'m, 's> {
     tolerances: Vec<f64>,
     settings: Tolerances,
     workspace: Workspace<'m, f64>,
-    linearisation: Linearisation<'m>,
+    pub(super) linearisation: Linearisation<'m>,
     /// State and inputs of `linearisation`; the state is empty before the first.
     linearised_at: (Vec<f64>, Inputs<f64>),
-    inputs: Inputs<f64>,
-    later_inputs: Inputs<f64>,
-    factors: Factors,
+    pub(super) inputs: Inputs<f64>,
+    pub(super) later_inputs: Inputs<f64>,
+    pub(super) factors: Factors,
     drift: Vec<f64>,
     stages: [Vec<f64>; 4],
-    trial: Vec<f64>,
+    pub(super) trial: Vec<f64>,
     trial_rates: Vec<f64>,
     step: f64,
     /// Steps taken and refused so far, for benchmarks.
@@ -107,7 +107,7 @@ pub struct Integrator<'m, 's> {
 }
 
 /// Diagonal coefficient of Rodas3.
-const GAMMA: f64 = 0.5;
+pub(super) const GAMMA: f64 = 0.5;
 
 impl<'m, 's> Integrator<'m, 's> {
     /// An integrator for `system` with these parameter values (in the model's order). `sensitivity_parameters` are the
@@ -172,16 +172,12 @@ impl<'m, 's> Integrator<'m, 's> {
             signals.between(index, end, &mut self.later_inputs);
             let error = self.attempt(state, step);
             let time = signals.time[index] + done;
-            if error.is_nan() || error > 1.0 {
-                self.steps.1 += 1;
-                let factor = if error.is_finite() { (0.9 * error.powf(-1.0 / 3.0)).clamp(0.1, 0.7) } else { 0.1 };
-                self.step = step * factor;
+            if !self.judge(error, step) {
                 if self.step < self.settings.minimum_step {
                     return Err(self.give_up(time, state));
                 }
                 continue;
             }
-            self.steps.0 += 1;
             if let Some(sensitivity) = sensitivity.as_deref_mut() {
                 sensitivity.begin(&self.linearisation);
             }
@@ -192,15 +188,33 @@ impl<'m, 's> Integrator<'m, 's> {
                 sensitivity.finish(&self.linearisation, step);
             }
             done = if pieces <= 1.0 { interval } else { done + step };
-            let growth = if error > 0.0 { (0.9 * error.powf(-1.0 / 3.0)).clamp(0.3, 4.0) } else { 4.0 };
-            self.step = (step * growth).max(self.settings.minimum_step);
         }
         Ok(())
     }
 
+    /// The longest step that the last one's error recommends, s.
+    pub(super) fn next_step(&self) -> f64 {
+        self.step.min(self.settings.maximum_step)
+    }
+
+    /// Whether a step of this length and error (in units of the tolerance) counts, and sets the length of the next one.
+    pub(super) fn judge(&mut self, error: f64, step: f64) -> bool {
+        let counts = error <= 1.0;
+        if counts {
+            self.steps.0 += 1;
+            let growth = if error > 0.0 { (0.9 * error.powf(-1.0 / 3.0)).clamp(0.3, 4.0) } else { 4.0 };
+            self.step = (step * growth).max(self.settings.minimum_step);
+        } else {
+            self.steps.1 += 1;
+            let factor = if error.is_finite() { (0.9 * error.powf(-1.0 / 3.0)).clamp(0.1, 0.7) } else { 0.1 };
+            self.step = step * factor;
+        }
+        counts
+    }
+
     /// Linearises at `state` and `self.inputs`, unless that is where it was done last: the end of a step with
     /// sensitivities is the start of the next one, but for inputs that jump there or a state set by the caller.
-    fn linearise(&mut self, state: &[f64]) {
+    pub(super) fn linearise(&mut self, state: &[f64]) {
         let (known_state, known_inputs) = &mut self.linearised_at;
         if known_state == state && *known_inputs == self.inputs {
             return;
@@ -212,7 +226,7 @@ impl<'m, 's> Integrator<'m, 's> {
     }
 
     /// One Rodas3 step of length `step` from `state` into `self.trial`; returns the error in units of the tolerance.
-    fn attempt(&mut self, state: &[f64], step: f64) -> f64 {
+    pub(super) fn attempt(&mut self, state: &[f64], step: f64) -> f64 {
         let states = state.len();
         self.factors.factorise(1.0 / (GAMMA * step), 1.0, self.linearisation.by_state.as_slice());
         let factors = &self.factors;
@@ -265,12 +279,16 @@ impl<'m, 's> Integrator<'m, 's> {
         let mut sum = 0.0;
         for index in 0..states {
             self.trial[index] += k4[index];
-            let scale =
-                self.tolerances[index] + self.settings.relative * state[index].abs().max(self.trial[index].abs());
-            let error = k4[index] / scale;
+            let largest = state[index].abs().max(self.trial[index].abs());
+            let error = k4[index] / (self.tolerances[index] + self.settings.relative * largest);
             sum += error * error;
         }
         (sum / states as f64).sqrt()
+    }
+
+    /// Error that a step may make in one state that has this value, in the state's unit.
+    pub(super) fn scale(&self, index: usize, value: f64) -> f64 {
+        self.tolerances[index] + self.settings.relative * value.abs()
     }
 
     fn give_up(&self, time: f64, state: &[f64]) -> SimulationError {

@@ -12,6 +12,7 @@ mod rest;
 mod run;
 mod sensitivity;
 mod spool_estimate;
+mod trajectory;
 mod undistorted;
 
 pub use initial::initial_state;

@@ -54,12 +54,7 @@ pub fn simulate_from(
     if let Supply::PressureSource(_) = model.machine.supply {
         simulated.pump_pressure.copy_from_slice(signals.supply_pressure());
     }
-    for index in 0..signals.len() {
-        observer.record(signals, index, &state, &mut simulated);
-        if index + 1 < signals.len() {
-            integrator.advance(signals, index, &mut state, None)?;
-        }
-    }
+    integrator.follow(signals, &mut state, |index, state| observer.record(signals, index, state, &mut simulated))?;
     Ok(simulated)
 }
 
