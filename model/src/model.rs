@@ -137,7 +137,9 @@ impl ModelEffect {
                 card,
                 value: match card.start {
                     effects::Start::At(values) => values.first().copied().unwrap_or(card.typical),
-                    effects::Start::PumpPressureQuantiles(_) => card.typical,
+                    effects::Start::PumpPressureQuantiles(_)
+                    | effects::Start::WorstStretchBegin
+                    | effects::Start::WorstStretchDuration => card.typical,
                 },
                 known: false,
                 standard_error: None,

@@ -72,6 +72,7 @@ fn parameters_are_complete_and_start_within_their_bounds() {
                     assert!(!quantiles.is_empty(), "{name} {}", card.name);
                     assert!(quantiles.iter().all(|quantile| (0.0..=1.0).contains(quantile)), "{name} {}", card.name);
                 }
+                Start::WorstStretchBegin | Start::WorstStretchDuration => assert_eq!(card.unit, "s"),
             }
         }
     }

@@ -4,8 +4,10 @@ use excavator_model::Model;
 use excavator_model::recording::Recording;
 
 use super::candidate::CandidateError;
-use super::race::{Race, Round};
-use super::{Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, additions, residual_map, unexplained};
+use super::chain::Chains;
+use super::race::Round;
+use super::starts::within_bounds;
+use super::{Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, residual_map, unexplained};
 use crate::fit::{Fit, FitError, evaluate, fit};
 use crate::regression::{RegressionError, WeakFormSettings, weak_form};
 
@@ -91,36 +93,12 @@ pub fn diagnose(
     progress("where the model fails", 0.1);
     let map = residual_map(&nominal.model, validation)?;
 
-    let mut chain: Vec<Candidate> = Vec::new();
-    let mut first_round: Option<Round> = None;
-    while chain.len() < settings.most_effects {
-        let (base, base_validation) =
-            chain.last().map_or((&nominal, &nominal_validation), |last| (&last.fit, &last.validation));
-        let start = 0.15 + 0.8 * chain.len() as f64 / settings.most_effects as f64;
-        let span = 0.8 / settings.most_effects as f64;
-        let wanted = additions(&base.model);
-        let adequate = is_adequate(base_validation, validation, settings);
-        if adequate && !chain.is_empty() {
-            break;
-        }
-        let least_gain = if adequate { settings.least_gain_when_adequate } else { settings.least_gain };
-        let race = Race { base, base_validation, identification, validation, least_gain, settings };
-        let round = race.run(&wanted, &|what, fraction| progress(what, start + span * fraction))?;
-        let best = round.fitted.iter().find(|candidate| candidate.accepted).cloned();
-        if first_round.is_none() {
-            first_round = Some(round);
-        }
-        match best {
-            Some(best) => chain.push(best),
-            None => break,
-        }
-    }
-    let Round { fitted, unpromising, failed } = first_round.unwrap_or_default();
+    let chains =
+        Chains { nominal: &nominal, nominal_validation: &nominal_validation, identification, validation, settings };
+    let (chain, first_round) = chains.best(progress)?;
+    let explained = chains.explains(&chain);
+    let Round { fitted, unpromising, failed } = first_round;
     let (candidates, rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);
-
-    let final_validation = chain.last().map_or(&nominal_validation, |last| &last.validation);
-    let explained = is_adequate(final_validation, validation, settings)
-        || final_validation.loss() <= (1.0 - settings.explained_share) * nominal_validation.loss();
     let verdict = match (chain.is_empty(), explained) {
         (true, true) => Verdict::Adequate,
         (false, true) => Verdict::MissingEffect,
@@ -157,19 +135,27 @@ pub(crate) fn fit_nominal(
     identification: &[&Recording],
     settings: &DiagnosisSettings,
 ) -> Result<Fit, FitError> {
-    // Where the regression cannot say anything the given values are the start.
     let quick = WeakFormSettings { rounds: 2, with_errors: false, ..WeakFormSettings::default() };
-    let start = weak_form(model, identification, &quick).map(|regression| regression.model);
-    if let Ok(start) = start
-        && let Ok(fitted) = fit(&start, identification, &settings.fit)
-    {
-        return Ok(fitted);
+    let regressed = weak_form(model, identification, &quick)
+        .map(|regression| within_bounds(regression.model))
+        .ok()
+        .and_then(|start| fit(&start, identification, &settings.fit).ok());
+    match regressed {
+        Some(fitted) if fitted.loss() <= LOST => Ok(fitted),
+        // The regression cannot say anything, or an instrument that is far off has led it astray: from the given values.
+        regressed => match (regressed, fit(model, identification, &settings.fit)) {
+            (Some(first), Ok(second)) if first.loss() <= second.loss() => Ok(first),
+            (Some(first), Err(_)) => Ok(first),
+            (_, second) => second,
+        },
     }
-    fit(model, identification, &settings.fit)
 }
 
+/// Loss above which a fit may have ended in the wrong valley: thirty times the sensors' noise.
+const LOST: f64 = 7.0;
+
 /// Whether what is left is noise but for a few moments, or too small to act on.
-fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
+pub(super) fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
     fit.typical_loss() <= settings.adequate_loss || normalised_error(fit, recordings) <= settings.adequate_error
 }
 

@@ -1,16 +1,19 @@
 //! Which physical effect is missing: candidates, evidence, verdict.
 
 mod candidate;
+mod chain;
 mod diagnose;
 mod evidence;
 mod race;
 mod residual_map;
 mod settings;
 mod starts;
+mod worst_stretch;
 
 pub(crate) use candidate::fit_addition;
 pub use candidate::{Candidate, CandidateError, Unpromising, additions};
 pub(crate) use diagnose::fit_nominal;
+use diagnose::is_adequate;
 pub use diagnose::{Diagnosis, DiagnosisError, Verdict, diagnose, normalised_error};
 pub use evidence::{Evidence, compare_losses};
 pub use residual_map::{Share, Unexplained, residual_map, unexplained};

@@ -6,11 +6,13 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use excavator_model::Model;
 use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
 use super::candidate::{CandidateError, best_start};
+use super::starts::acts_in_a_window;
 use super::{Candidate, DiagnosisSettings, Unpromising, compare_losses};
 use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, predict};
 
@@ -147,7 +149,10 @@ impl Race<'_> {
         fit: Fit,
         settings: &FitSettings,
     ) -> Result<Candidate, CandidateError> {
-        let validation = evaluate(&fit.model, self.validation, settings)?;
+        let validation = match fit.model.effects.last() {
+            Some(effect) if acts_in_a_window(effect) => in_its_own_window(&fit.model, self.validation, settings)?,
+            _ => evaluate(&fit.model, self.validation, settings)?,
+        };
         let evidence = compare_losses(self.base_validation, &validation);
         let identification_gain = compare_losses(self.base, &fit).gain;
         let accepted = evidence.gain >= self.least_gain
@@ -165,6 +170,16 @@ impl Race<'_> {
             tied_with_first: false,
         })
     }
+}
+
+/// A model whose last effect acts in a window of time, with the window that recordings have themselves. Three numbers of
+/// a fit are no evidence against thousands of readings; whether they lower the loss is.
+fn in_its_own_window(model: &Model, recordings: &[&Recording], settings: &FitSettings) -> Result<Fit, CandidateError> {
+    let mut fixed = model.clone();
+    let Some(last) = fixed.effects.pop() else { return Ok(evaluate(model, recordings, settings)?) };
+    fixed.parameters_mut().for_each(|parameter| parameter.known = true);
+    let start = best_start(&fixed, last.physics, last.site, recordings, settings)?;
+    Ok(fit(&start.model, recordings, settings)?)
 }
 
 fn mark_ties(candidates: &mut [Candidate], settings: &DiagnosisSettings) {

@@ -32,6 +32,9 @@ pub struct DiagnosisSettings {
     /// right effects take away 80 % and more; in the blind benchmark effects that only resemble one that no catalogue
     /// has took away 35 % at most.
     pub explained_share: f64,
+    /// And only when the typical loss left is below this: seven times the noise variance. Whoever takes most of an error
+    /// away that large may still be the wrong one, as a share of it says nothing about what is left.
+    pub explained_loss: f64,
     /// Most effects added one after the other.
     pub most_effects: usize,
     /// Steps of a fit in the race.
@@ -54,6 +57,7 @@ impl Default for DiagnosisSettings {
             adequate_loss: 0.6,
             adequate_error: 1.5e-4,
             explained_share: 0.65,
+            explained_loss: 2.0,
             most_effects: 3,
             race_steps: 3,
             finalists: 4,

@@ -1,9 +1,11 @@
 //! Where the fit of a candidate effect starts.
 
 use excavator_model::Model;
+use excavator_model::ModelEffect;
 use excavator_model::effects::{Kind, Start};
 use excavator_model::recording::Recording;
 
+use super::worst_stretch::worst_stretches;
 use crate::regression::{WeakFormSettings, weak_form};
 
 /// The model with the last effect's parameters at each combination of their start values, each also as a regression on
@@ -31,18 +33,49 @@ fn thinned_to(recording: &Recording, rate: f64) -> Recording {
 }
 
 /// Unknown parameters moved to the nearest possible value.
-fn within_bounds(mut model: Model) -> Model {
+pub(super) fn within_bounds(mut model: Model) -> Model {
     for parameter in model.parameters_mut().filter(|parameter| !parameter.known) {
         parameter.value = parameter.value.clamp(parameter.card.minimum, parameter.card.maximum);
     }
     model
 }
 
+/// Whether an effect acts in a window of time, which belongs to one recording and says nothing about another.
+pub(super) fn acts_in_a_window(effect: &ModelEffect) -> bool {
+    effect.parameters.iter().any(|parameter| parameter.card.start == Start::WorstStretchBegin)
+}
+
+/// Windows of time that are tried as starts.
+const WINDOWS: usize = 2;
+
+/// The model with the last effect in each of the stretches of time in which the model without it fails most.
+fn windows(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
+    let mut without = model.clone();
+    let Some(last) = without.effects.pop() else { return Vec::new() };
+    let stretches = worst_stretches(&without, last.site, recordings, WINDOWS);
+    stretches
+        .into_iter()
+        .map(|stretch| {
+            let mut start = model.clone();
+            for parameter in start.effects.iter_mut().rev().take(1).flat_map(|effect| &mut effect.parameters) {
+                match parameter.card.start {
+                    Start::WorstStretchBegin => parameter.value = stretch.begin,
+                    Start::WorstStretchDuration => parameter.value = stretch.duration,
+                    Start::At(_) | Start::PumpPressureQuantiles(_) => {}
+                }
+            }
+            start
+        })
+        .collect()
+}
+
 fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
-    let mut starts = vec![model.clone()];
-    let Some(last) = model.effects.last() else { return starts };
+    let Some(last) = model.effects.last() else { return vec![model.clone()] };
+    let mut starts = if acts_in_a_window(last) { windows(model, recordings) } else { vec![model.clone()] };
     for (number, parameter) in last.parameters.iter().enumerate() {
         let values: Vec<f64> = match parameter.card.start {
+            // Set by the windows.
+            Start::WorstStretchBegin | Start::WorstStretchDuration => continue,
             Start::At(values) => values.to_vec(),
             Start::PumpPressureQuantiles(levels) => {
                 levels.iter().map(|&level| pump_pressure(recordings, level)).collect()

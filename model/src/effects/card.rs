@@ -49,6 +49,10 @@ pub enum Start {
     At(&'static [f64]),
     /// At these quantiles of the measured pump pressure: a threshold can only show inside the range that was visited.
     PumpPressureQuantiles(&'static [f64]),
+    /// At the beginning (s) of the stretches of time in which the equation of motion fails most.
+    WorstStretchBegin,
+    /// At the length (s) of those stretches.
+    WorstStretchDuration,
 }
 
 /// One parameter of an effect.

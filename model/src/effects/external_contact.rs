@@ -32,7 +32,7 @@ const START: ParameterCard = ParameterCard {
     minimum: 0.0,
     maximum: 1e5,
     typical: 1.0,
-    start: Start::At(&[2.0, 8.0, 16.0]),
+    start: Start::WorstStretchBegin,
 };
 
 const DURATION: ParameterCard = ParameterCard {
@@ -44,7 +44,7 @@ const DURATION: ParameterCard = ParameterCard {
     minimum: 0.02,
     maximum: 1e5,
     typical: 1.0,
-    start: Start::At(&[4.0]),
+    start: Start::WorstStretchDuration,
 };
 
 static LINK: &[ParameterCard] = &[
