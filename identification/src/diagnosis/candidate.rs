@@ -49,12 +49,13 @@ pub struct Unpromising {
     pub promised_gain: f64,
 }
 
-/// Every candidate effect at every place of the machine where it can act and is not yet.
+/// Every candidate effect, and every loss of the nominal model, at every place of the machine where it can act and is not
+/// yet.
 pub fn additions(model: &Model) -> Vec<(&'static dyn Effect, Site)> {
     effects::CATALOGUE
         .iter()
         .copied()
-        .filter(|effect| effect.card().family == Family::Candidate)
+        .filter(|effect| effect.card().family != Family::Base)
         .flat_map(|effect| model.free_sites(effect).into_iter().map(move |site| (effect, site)))
         .collect()
 }

@@ -35,7 +35,7 @@ pub struct DiagnosisSettings {
     /// And only when the typical loss left is below this: seven times the noise variance. Whoever takes most of an error
     /// away that large may still be the wrong one, as a share of it says nothing about what is left.
     pub explained_loss: f64,
-    /// Most effects added one after the other.
+    /// Most effects added one after the other: \[B\] adds five to its preliminary model.
     pub most_effects: usize,
     /// Steps of a fit in the race.
     pub race_steps: usize,
@@ -58,7 +58,7 @@ impl Default for DiagnosisSettings {
             adequate_error: 1.5e-4,
             explained_share: 0.65,
             explained_loss: 2.0,
-            most_effects: 3,
+            most_effects: 5,
             race_steps: 3,
             finalists: 4,
             finalist_margin: 0.5,

@@ -27,6 +27,8 @@ pub enum Site {
 pub enum Family {
     /// Part of the nominal model of \[A\] or of the frame every simulation needs.
     Base,
+    /// A loss that the nominal model of \[A\] has, and a candidate where another model leaves it out.
+    Loss,
     /// A candidate for what a nominal model may be missing.
     Candidate,
 }

@@ -11,7 +11,7 @@ pub struct CoulombFriction;
 static CARD: Card = Card {
     name: "coulomb_friction",
     acts_on: ActsOn::Cylinder,
-    family: Family::Base,
+    family: Family::Loss,
     summary: "Friction force of constant size against the motion.",
     equation: "force -Fc sgn(v), the sign rounded over 1 mm/s",
     source: "[A] Eq. 1. Eq. 11 of [A] prints its power with G22 squared, which has the wrong unit; -Fc |v| \

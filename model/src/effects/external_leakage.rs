@@ -10,7 +10,7 @@ pub struct ExternalLeakage;
 static CARD: Card = Card {
     name: "external_leakage",
     acts_on: ActsOn::Cylinder,
-    family: Family::Base,
+    family: Family::Loss,
     summary: "Laminar leakage from each chamber to the outside.",
     equation: "Q+ = -Ce+ p+, Q- = -Ce- p-",
     source: "[A] Eq. 1",

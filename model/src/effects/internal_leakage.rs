@@ -10,7 +10,7 @@ pub struct InternalLeakage;
 static CARD: Card = Card {
     name: "internal_leakage",
     acts_on: ActsOn::Cylinder,
-    family: Family::Base,
+    family: Family::Loss,
     summary: "Laminar leakage from one chamber to the other.",
     equation: "Q+ = -Ci (p+ - p-), Q- = +Ci (p+ - p-)",
     source: "[A] Eq. 1",

@@ -10,7 +10,7 @@ pub struct ViscousDamping;
 static CARD: Card = Card {
     name: "viscous_damping",
     acts_on: ActsOn::Cylinder,
-    family: Family::Base,
+    family: Family::Loss,
     summary: "Friction force that grows with speed.",
     equation: "force -Fd v",
     source: "[A] Eq. 1, [B] Eq. 5",

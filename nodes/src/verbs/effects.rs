@@ -39,7 +39,11 @@ fn place(acts_on: ActsOn) -> &'static str {
 }
 
 fn list(all: &[&'static dyn Effect]) {
-    for (family, title) in [(Family::Base, "In the nominal model"), (Family::Candidate, "Candidates beyond it")] {
+    for (family, title) in [
+        (Family::Base, "In the nominal model"),
+        (Family::Loss, "Losses of the nominal model, candidates where a model leaves them out"),
+        (Family::Candidate, "Candidates beyond it"),
+    ] {
         print(title);
         for effect in all.iter().filter(|effect| effect.card().family == family) {
             let card = effect.card();
@@ -102,6 +106,6 @@ fn card_json(effect: &dyn Effect) -> Result<Value, VerbError> {
     Ok(json!({
         "name": card.name, "acts_on": place(card.acts_on), "summary": card.summary, "equation": card.equation,
         "source": card.source, "shows": card.shows, "experiment": card.experiment, "energy": card.energy,
-        "candidate": card.family == Family::Candidate, "parameters": parameters,
+        "candidate": card.family != Family::Base, "parameters": parameters,
     }))
 }
