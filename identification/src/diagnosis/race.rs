@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::candidate::{CandidateError, best_start};
 use super::starts::acts_in_a_window;
-use super::{Candidate, DiagnosisSettings, Unpromising, compare_losses};
+use super::{Candidate, DiagnosisSettings, Unpromising, compare_losses, is_adequate};
 use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, predict};
 
 /// What became of all candidates.
@@ -36,6 +36,9 @@ enum Outcome {
 
 /// Losses that differ by less belong to models that behave alike.
 const NEXT_TO_BASE: f64 = 0.5;
+
+/// A share of the loss that does not end the search for something better.
+const LITTLE: f64 = 0.25;
 
 /// What candidates are measured against and on.
 pub(super) struct Race<'a> {
@@ -97,11 +100,35 @@ impl Race<'_> {
                     || best - candidate.identification_gain < self.settings.finalist_margin)
         };
         let finalists = tried.iter().enumerate().filter(|&entry| finalist(entry)).count();
-        let mut rejected = tried.split_off(finalists);
-        for candidate in &mut rejected {
+        let mut others = tried.split_off(finalists);
+        self.to_the_end(tried, &mut round, &advance);
+        if self.is_at_a_loss(&round) {
+            // An effect with a threshold may need a dozen steps until it gains at all: before it is said that nothing
+            // explains the error, all that were still on their way get theirs.
+            let (arrived, on_their_way) = others.into_iter().partition(|candidate| candidate.fit.converged);
+            others = arrived;
+            self.to_the_end(on_their_way, &mut round, &advance);
+        }
+        for candidate in &mut others {
             candidate.accepted = false;
         }
-        let full: Vec<Result<Candidate, CandidateError>> = tried
+        round.fitted.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
+        mark_ties(&mut round.fitted, self.settings);
+        round.fitted.extend(others);
+        Ok(round)
+    }
+
+    /// Whether something is missing and no candidate so far takes much of it away.
+    fn is_at_a_loss(&self, round: &Round) -> bool {
+        let best = round.fitted.iter().filter(|candidate| candidate.accepted).map(|candidate| candidate.evidence.gain);
+        let best = best.fold(0.0, f64::max);
+        !is_adequate(self.base_validation, self.validation, self.settings)
+            && best < LITTLE * self.base_validation.loss()
+    }
+
+    /// Full fits of candidates that ran the race, into `round`.
+    fn to_the_end(&self, candidates: Vec<Candidate>, round: &mut Round, advance: &(dyn Fn(&str) + Sync)) {
+        let full: Vec<Result<Candidate, CandidateError>> = candidates
             .par_iter()
             .map(|candidate| {
                 let fit = fit(&candidate.fit.model, self.identification, &self.settings.fit)?;
@@ -109,16 +136,12 @@ impl Race<'_> {
                 self.judged(candidate.physics, candidate.site, candidate.place.clone(), fit, &self.settings.fit)
             })
             .collect();
-        for (result, heat) in full.into_iter().zip(tried) {
+        for (result, heat) in full.into_iter().zip(candidates) {
             match result {
                 Ok(candidate) => round.fitted.push(candidate),
                 Err(error) => round.failed.push((format!("{}@{}", heat.name(), heat.place), error)),
             }
         }
-        round.fitted.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
-        mark_ties(&mut round.fitted, self.settings);
-        round.fitted.extend(rejected);
-        Ok(round)
     }
 
     /// A few steps from the start that promises most. `start_loss`: of the base, its segments started as measured.
