@@ -251,3 +251,70 @@ pub(super) fn moderate_sines(model: &Model, cylinders: &[usize]) -> Vec<Profile>
     }
     Plan { chosen: Vec::new(), duration: 0.0, moves: plan, states: Vec::new() }.profiles(&model.machine)
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use excavator_model::document::built_in;
+
+    fn named(names: &[&str]) -> Vec<Rival> {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_string()).collect();
+        Rival::named(&built_in("zx30u-arm").unwrap(), &names).unwrap()
+    }
+
+    fn settings() -> DesignSettings {
+        DesignSettings::usual(&built_in("zx30u-arm").unwrap().machine)
+    }
+
+    /// What a refit of the second rival to the first one's noise-free motion under moderate sines leaves.
+    fn left(rivals: &[Rival]) -> crate::fit::Remainder {
+        let profiles = moderate_sines(&rivals[0].model, &[0]);
+        let recordings: Vec<Recording> =
+            rivals.iter().map(|rival| noise_free(rival, &profiles, &settings()).unwrap()).collect();
+        let refitted = refits(rivals, &recordings, &settings());
+        let remainder = LinearRefit::remainder(&rivals[1].model, &[refitted[0].as_ref().unwrap()]);
+        assert_eq!(remainder.counts.len(), 4, "displacement and three pressures");
+        remainder
+    }
+
+    #[test]
+    fn what_a_refit_takes_away_does_not_count() {
+        let mut rivals = named(&["none"]);
+        rivals.push(rivals[0].clone());
+        let same = left(&rivals).distance();
+        // A little more inertia and friction: far from the other model as it is, and within its span.
+        let names = ["arm.inertia", "arm.coulomb_friction"];
+        let changed: Vec<(String, f64)> =
+            names.iter().map(|name| ((*name).to_string(), 1.01 * rivals[0].model.value_of(name).unwrap())).collect();
+        rivals[0].set(&changed);
+        let refitted = left(&rivals).distance();
+        assert!(same < 20.0, "{same}");
+        assert!(refitted < 40.0, "{refitted}");
+        // The same change where nothing may be fitted again.
+        rivals[1].model.parameters_mut().for_each(|parameter| parameter.known = true);
+        let held = left(&rivals).distance();
+        assert!(held > 5.0 * refitted, "{held} {refitted}");
+    }
+
+    #[test]
+    fn what_a_refit_cannot_take_away_counts() {
+        let rivals = named(&["valve_dead_zone@arm", "none"]);
+        let left = left(&rivals);
+        assert!(left.distance() > 1000.0, "{}", left.distance());
+        assert!(left.gain() > 1.0, "{}", left.gain());
+        assert!(left.log_likelihood_ratio() > 0.0);
+    }
+
+    #[test]
+    fn one_rival_alone_and_impossible_durations_are_refused() {
+        let quiet = |_: &str, _: f64| ();
+        let alone = separate(named(&["hose_loss@arm"]), false, &settings(), &quiet).unwrap_err();
+        assert_eq!(alone, DesignError::Alone { rival: "hose_loss@arm".into() });
+        for duration in [3.0, f64::NAN, 1e6] {
+            let settings = DesignSettings { duration, ..settings() };
+            let error = separate(named(&["hose_loss", "valve_lag"]), false, &settings, &quiet).unwrap_err();
+            assert!(matches!(error, DesignError::Duration { .. }), "{error}");
+        }
+    }
+}

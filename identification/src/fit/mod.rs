@@ -11,6 +11,8 @@ mod settings;
 mod typical_loss;
 
 pub use instruments::{Instrument, instruments, standard_deviation};
+#[cfg(test)]
+pub(crate) use linear_refit::Remainder;
 pub(crate) use linear_refit::{LinearRefit, scales};
 pub use output_error::{Fit, FitError, evaluate, fit};
 pub use prediction::{Prediction, predict};
