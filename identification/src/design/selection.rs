@@ -42,7 +42,10 @@ pub(super) fn screen(
     for outcome in outcomes {
         match outcome {
             Ok(one) => screened.push(one),
-            Err(violation) => last = Some(violation),
+            Err(violation) => {
+                eprintln!("DBG {violation}");
+                last = Some(violation)
+            }
         }
     }
     match (screened.is_empty(), last) {

@@ -6,7 +6,7 @@ use super::ride::Rider;
 use super::{DesignError, Violation};
 
 /// Opening on the way, share of the largest.
-const OPENING: f64 = 0.6;
+const OPENING: f64 = 0.9;
 /// Time for opening and for closing, s.
 const RAMP: f64 = 0.2;
 /// Longest way, s.
