@@ -176,3 +176,37 @@ fn ties_are_settled() {
         assert_eq!(story.after_verdict, "missing_effect", "{effect}");
     }
 }
+
+#[test]
+fn bad_input_is_one_clear_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let design = |words: &[&str]| {
+        excavator(folder.path(), &[&["design", "--model", "zx30u-arm", "-o", "p.toml"][..], words].concat())
+    };
+    let output = design(&["--between", "valve_dead_zone,hysteresis"]);
+    assert_one_clear_line(&output, &["unknown effect \"hysteresis\"", "did you mean"]);
+    let output = design(&["--between", "valve_dead_zone,valve_dead_zone@arm"]);
+    assert_one_clear_line(&output, &["valve_dead_zone@arm is named twice"]);
+    assert_one_clear_line(&design(&["--parameter", "arm.inertai"]), &["did you mean \"arm.inertia\"?"]);
+    assert_one_clear_line(&design(&["--parameter", "arm.vapour_pressure"]), &["known constant"]);
+    assert_one_clear_line(&design(&["--diagnosis", "nowhere.json"]), &["nowhere.json"]);
+    std::fs::write(folder.path().join("odd.json"), "{}").unwrap();
+    assert_one_clear_line(&design(&["--diagnosis", "odd.json"]), &["odd.json", "verdict"]);
+
+    let alone = design(&["--between", "valve_dead_zone"]);
+    assert_eq!(alone.status.code(), Some(2));
+    assert!(complaint(&alone).contains("valve_dead_zone@arm alone has nothing to be told from"));
+    for words in
+        [&["--between", "hose_loss,none", "--duration", "5"][..], &["--between", "a,b", "--duration", "x"], &[]]
+    {
+        assert_eq!(design(words).status.code(), Some(2), "{words:?}");
+    }
+    assert!(!folder.path().join("p.toml").exists());
+}
+
+#[test]
+fn a_drive_without_a_valve_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["design", "--model", "emps", "-o", "p.toml", "--between", "stribeck_friction,hose_loss"];
+    assert_one_clear_line(&excavator(folder.path(), &words), &["emps", "no valve"]);
+}

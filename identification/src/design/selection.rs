@@ -42,10 +42,7 @@ pub(super) fn screen(
     for outcome in outcomes {
         match outcome {
             Ok(one) => screened.push(one),
-            Err(violation) => {
-                eprintln!("DBG {violation}");
-                last = Some(violation)
-            }
+            Err(violation) => last = Some(violation),
         }
     }
     match (screened.is_empty(), last) {

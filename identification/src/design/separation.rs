@@ -12,7 +12,7 @@ use super::rival::cylinders;
 use super::selection::{Screened, join, screen};
 use super::{DesignError, DesignSettings, Plan, Rehearsed, Rival, library};
 use crate::diagnosis::DiagnosisSettings;
-use crate::fit::{FitError, FitSettings, LinearRefit, evaluate};
+use crate::fit::{FitError, FitSettings, LinearRefit, evaluate, fit};
 
 /// What is expected of a pair of rivals under the proposed profile. The worse of the two directions (either may be the
 /// truth) counts everywhere.
@@ -108,17 +108,20 @@ pub fn separate(
     let screened = screen([with_general, manoeuvres].concat(), &riders, settings)?;
     let is_general = |one: &Screened| one.manoeuvre.name == "moderate sine";
     let general = screened.iter().position(is_general);
-    progress("differences after refits", 0.3);
-    let parts: Vec<Vec<Option<LinearRefit>>> =
-        screened.par_iter().map(|one| refits(&rivals, &one.recordings, settings)).collect();
+    progress("refits to all manoeuvres", 0.25);
     let pairs = directions(rivals.len());
+    let models: Vec<Model> =
+        pairs.par_iter().map(|&(truth, model)| compromise(&rivals[model].model, truth, &screened, settings)).collect();
+    progress("differences after refits", 0.4);
+    let parts: Vec<Vec<Option<LinearRefit>>> =
+        screened.par_iter().map(|one| refits(&models, &one.recordings, settings)).collect();
     let score = |chosen: &[usize]| -> f64 {
-        pairs
+        models
             .iter()
             .enumerate()
-            .map(|(number, &(_, model))| {
+            .map(|(number, model)| {
                 let own: Vec<&LinearRefit> = chosen.iter().filter_map(|&index| parts[index][number].as_ref()).collect();
-                let left = LinearRefit::remainder(&rivals[model].model, &own);
+                let left = LinearRefit::remainder(model, &own);
                 (1.0 + left.log_likelihood_ratio()).ln()
             })
             .sum()
@@ -132,10 +135,10 @@ pub fn separate(
         .iter()
         .map(|rival| noise_free(rival, &profiles, settings))
         .collect::<Result<Vec<Recording>, DesignError>>()?;
-    let refitted = refits(&rivals, &whole, settings);
+    let refitted = refits(&models, &whole, settings);
     let rehearsals = rehearse(&rivals, &profiles, settings, &|what, done| progress(what, 0.65 + 0.35 * done))?;
     let within = screened.iter().filter(|one| !is_general(one)).count();
-    let pairs = judged(&rivals, &before, &refitted, &rehearsals);
+    let pairs = judged(&rivals, &before, &models, &refitted, &rehearsals);
     Ok(SeparationDesign { pairs, plan, profiles, rehearsals, manoeuvres: (tried, within), rivals })
 }
 
@@ -146,13 +149,26 @@ fn directions(count: usize) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// For every ordered pair the refit of the model to the truth's recording; `None` where it cannot be simulated.
-fn refits(rivals: &[Rival], recordings: &[Recording], settings: &DesignSettings) -> Vec<Option<LinearRefit>> {
-    let fit = FitSettings { sample_rate: f64::INFINITY, ..settings.fit };
-    directions(rivals.len())
+/// Steps of the fit to all manoeuvres.
+const COMPROMISE_STEPS: usize = 4;
+
+/// A model fitted to all manoeuvres of a truth at once, from where one linearised step to any choice of them is short. Where
+/// it cannot be fitted it stays as it is.
+fn compromise(model: &Model, truth: usize, screened: &[Screened], settings: &DesignSettings) -> Model {
+    let recordings: Vec<&Recording> = screened.iter().filter_map(|one| one.recordings.get(truth)).collect();
+    let few = FitSettings { sample_rate: f64::INFINITY, maximum_steps: COMPROMISE_STEPS, ..settings.fit };
+    fit(model, &recordings, &few).map_or_else(|_| model.clone(), |found| found.model)
+}
+
+/// For every ordered pair the refit of its model to the truth's recording; `None` where it cannot be simulated. `models` come
+/// in the order of the directions.
+fn refits(models: &[Model], recordings: &[Recording], settings: &DesignSettings) -> Vec<Option<LinearRefit>> {
+    let all = FitSettings { sample_rate: f64::INFINITY, ..settings.fit };
+    directions(recordings.len())
         .into_iter()
-        .map(|(truth, model)| {
-            LinearRefit::new(&rivals[model].model, &recordings[truth], &fit, &|instrument| {
+        .zip(models)
+        .map(|((truth, _), model)| {
+            LinearRefit::new(model, &recordings[truth], &all, &|instrument| {
                 settings.sensors.of(&instrument.name).unwrap_or(instrument.noise)
             })
             .ok()
@@ -178,6 +194,7 @@ pub(super) fn noise_free(
 fn judged(
     rivals: &[Rival],
     before: &[Option<f64>],
+    models: &[Model],
     refitted: &[Option<LinearRefit>],
     rehearsals: &[Rehearsed],
 ) -> Vec<PairSeparation> {
@@ -189,9 +206,9 @@ fn judged(
             let both = [(first, second), (second, first)];
             let (mut distance, mut linear_gain) = (f64::INFINITY, f64::INFINITY);
             let (mut gain, mut significance) = (f64::INFINITY, f64::INFINITY);
-            for (number, &(_, model)) in directed.iter().enumerate().filter(|(_, pair)| both.contains(pair)) {
+            for (number, _) in directed.iter().enumerate().filter(|(_, pair)| both.contains(pair)) {
                 if let Some(part) = &refitted[number] {
-                    let left = LinearRefit::remainder(&rivals[model].model, &[part]);
+                    let left = LinearRefit::remainder(&models[number], &[part]);
                     distance = distance.min(left.distance());
                     linear_gain = linear_gain.min(left.gain());
                 }
@@ -272,7 +289,8 @@ mod tests {
         let profiles = moderate_sines(&rivals[0].model, &[0]);
         let recordings: Vec<Recording> =
             rivals.iter().map(|rival| noise_free(rival, &profiles, &settings()).unwrap()).collect();
-        let refitted = refits(rivals, &recordings, &settings());
+        let models = [rivals[1].model.clone(), rivals[0].model.clone()];
+        let refitted = refits(&models, &recordings, &settings());
         let remainder = LinearRefit::remainder(&rivals[1].model, &[refitted[0].as_ref().unwrap()]);
         assert_eq!(remainder.counts.len(), 4, "displacement and three pressures");
         remainder
