@@ -157,11 +157,12 @@ segments = [
 ]
 "#;
 
-/// A lag of the valve and late sensors look alike in slow sines; the proposed profile leaves the lag alone.
+/// A short lag of the valve leaves no name under slow sines: it is below what a diagnosis acts on, like late sensors. Under
+/// the proposed profile it is named, alone.
 #[test]
 fn a_tie_is_settled_by_the_proposed_profile() {
     let story = story("valve_lag@arm", &[("lag_time", 0.006)], SHORT_SINES, "valve_lag@arm,sensor_delay@arm", "20");
-    assert!(story.before.len() > 1 && story.before.contains(&"valve_lag".to_string()), "{:?}", story.before);
+    assert_ne!(story.before, ["valve_lag"], "the sines must leave it open");
     assert_eq!(story.design["all_settled"], true, "{}", story.design["pairs"]);
     let duration = &story.design["plan"]["duration"];
     assert!(duration.as_f64().unwrap() <= 20.0, "{duration}");
