@@ -32,6 +32,8 @@ pub enum Verb {
     Energy(EnergyArguments),
     /// Find out which physical effect the model is missing.
     Diagnose(DiagnoseArguments),
+    /// Propose a manoeuvre that separates tied effects, or shows a parameter, within the machine's limits.
+    Design(DesignArguments),
     /// Add effects, refit, and measure the error again.
     Refine(RefineArguments),
     /// The catalogue of physical effects, or one of them in full.
@@ -186,6 +188,14 @@ fn positive(text: &str) -> Result<f64, String> {
 
 fn not_negative(text: &str) -> Result<f64, String> {
     number(text, |value| value >= 0.0, "zero or a positive number")
+}
+
+fn profile_duration(text: &str) -> Result<f64, String> {
+    number(text, |value| (15.0..=600.0).contains(&value), "a number from 15 to 600")
+}
+
+fn stroke_margin(text: &str) -> Result<f64, String> {
+    number(text, |value| (0.0..=0.4).contains(&value), "a share from 0 to 0.4")
 }
 
 fn number(text: &str, fits: fn(f64) -> bool, what: &str) -> Result<f64, String> {
@@ -345,6 +355,38 @@ pub struct RefineArguments {
     /// Write a page with the story.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+#[command(group(clap::ArgGroup::new("what").required(true).multiple(true).args(["between", "parameter", "diagnosis"])))]
+pub struct DesignArguments {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    /// Effects to be told apart, with commas: EFFECT, EFFECT@CYLINDER, EFFECT@pump, or none for the model as it is. With
+    /// --parameter: effects that the model is to have besides.
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "EFFECT[@PLACE],...")]
+    pub between: Vec<String>,
+    /// Parameter to be determined (arm.inertia), instead of effects to be told apart.
+    #[arg(long, value_name = "NAME")]
+    pub parameter: Option<String>,
+    /// What `diagnose --json` wrote: tied effects, fitted values and the sensors' noise are taken from there.
+    #[arg(long, value_name = "FILE.json")]
+    pub diagnosis: Option<PathBuf>,
+    /// Profile to write.
+    #[arg(short, long, value_name = "PROFILE.toml")]
+    pub output: PathBuf,
+    /// Longest profile, s: 15 to 600.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = profile_duration)]
+    pub duration: f64,
+    /// Share of the stroke that is kept free at each end.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.08, value_parser = stroke_margin)]
+    pub stroke_margin: f64,
+    /// Highest pressure anywhere, Pa.
+    #[arg(long, value_name = "PA", default_value_t = 2e7, value_parser = positive)]
+    pub highest_pressure: f64,
     #[command(flatten)]
     pub json: Json,
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use excavator_bags::BagError;
+use excavator_identification::design::DesignError;
 use excavator_identification::diagnosis::DiagnosisError;
 use excavator_identification::energy::EnergyError;
 use excavator_identification::fit::FitError;
@@ -33,6 +34,8 @@ pub enum VerbError {
     #[error(transparent)]
     Diagnosis(#[from] DiagnosisError),
     #[error(transparent)]
+    Design(#[from] DesignError),
+    #[error(transparent)]
     Energy(#[from] EnergyError),
     #[error(transparent)]
     Refine(#[from] RefineError),
@@ -54,6 +57,8 @@ pub enum VerbError {
     Write { path: PathBuf, source: std::io::Error },
     #[error("{} is not a profile: {reason}", path.display())]
     ProfileSyntax { path: PathBuf, reason: String },
+    #[error("cannot write the profile: {0}")]
+    ProfileWrite(String),
     #[error("profile: {machine} has no cylinder \"{cylinder}\"; it has {known}")]
     ProfileCylinder { machine: String, cylinder: String, known: String },
     #[error("cannot offer a page at {address}: {source}; choose another --port or --host")]
@@ -66,6 +71,12 @@ pub enum VerbError {
     PartEnded { part: &'static str, status: String },
     #[error("no bag is given; name at least one recording")]
     NoBags,
+    #[error("{} is not what `excavator diagnose --json` writes: {reason}", path.display())]
+    DiagnosisSyntax { path: PathBuf, reason: String },
+    #[error("{} has no tie: {found}; name rivals with --between", path.display())]
+    NoTie { path: PathBuf, found: String },
+    #[error("no manoeuvre within the limits settles this, no profile is written: {0}")]
+    NothingSettles(String),
     #[error("cannot add {0} twice")]
     AddedTwice(String),
 }
@@ -74,7 +85,7 @@ impl VerbError {
     /// 2 for wrong usage, 1 for everything that failed.
     pub fn exit_code(&self) -> u8 {
         match self {
-            VerbError::Ros(RosError::Arguments(_)) => 2,
+            VerbError::Ros(RosError::Arguments(_)) | VerbError::Design(DesignError::Alone { .. }) => 2,
             _ => 1,
         }
     }

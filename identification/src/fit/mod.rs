@@ -1,6 +1,7 @@
 //! Output-error fit: simulate, compare with what was measured, improve the parameters.
 
 mod instruments;
+mod linear_refit;
 mod normal_equations;
 mod output_error;
 mod prediction;
@@ -10,6 +11,9 @@ mod settings;
 mod typical_loss;
 
 pub use instruments::{Instrument, instruments, standard_deviation};
+#[cfg(test)]
+pub(crate) use linear_refit::Remainder;
+pub(crate) use linear_refit::{LinearRefit, scales};
 pub use output_error::{Fit, FitError, evaluate, fit};
 pub use prediction::{Prediction, predict};
 pub use segments::{Segment, SegmentedRecording};

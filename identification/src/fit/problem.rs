@@ -8,7 +8,7 @@ use excavator_model::simulation::Tolerances;
 use rayon::prelude::*;
 
 use super::normal_equations::{InitialStatePrior, RawSums, SegmentSums, Shared};
-use super::{FitError, FitSettings, Instrument, SegmentedRecording, instruments};
+use super::{FitError, FitSettings, Instrument, SegmentedRecording, instruments, scales};
 
 /// A model, recordings, and which parameters are free.
 pub(super) struct Problem<'s, 'm> {
@@ -56,11 +56,7 @@ impl<'s, 'm> Problem<'s, 'm> {
             .map(|recording| recording.segments.iter().map(|segment| segment.state.clone()).collect())
             .collect();
         let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card).collect();
-        let values = model.parameter_values();
-        let scales = fitted
-            .iter()
-            .map(|&index| if values[index] != 0.0 { values[index].abs() } else { cards[index].typical.abs() })
-            .collect();
+        let scales = scales(model, &fitted);
         let noise = instruments.iter().map(|instrument| instrument.noise).collect();
         let prior = InitialStatePrior::of(system);
         Ok(Problem { system, prior, anchors, segmented, instruments, noise, fitted, scales, cards })

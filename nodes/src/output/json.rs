@@ -105,6 +105,7 @@ fn candidate_json(candidate: &Candidate, before: f64, validation: &[&Recording])
         "significance": finite(candidate.evidence.significance),
         "tied_with_first": candidate.tied_with_first,
         "parameters": parameters(&candidate.fit.model, &own),
+        "refitted": parameters(&candidate.fit.model, &candidate.fit.model.unknown_parameters()),
     })
 }
 
@@ -131,6 +132,12 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
         .iter()
         .map(|c| json!({"effect": c.name(), "cylinder": c.place, "loss_after": finite(c.validation.loss())}))
         .collect();
+    let instruments: Vec<Value> = diagnosis
+        .nominal
+        .instruments
+        .iter()
+        .map(|one| json!({"name": one.name, "noise": finite(one.noise), "unit": one.unit}))
+        .collect();
     json!({
         "verdict": diagnosis.verdict.name(),
         "candidates": candidates(&diagnosis.candidates),
@@ -145,6 +152,8 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
             "curve": rest.curve,
         })),
         "loss": {"nominal": finite(diagnosis.nominal_validation.loss())},
+        "refitted": parameters(&diagnosis.nominal.model, &diagnosis.nominal.model.unknown_parameters()),
+        "instruments": instruments,
     })
 }
 

@@ -1,10 +1,12 @@
 //! What people and programs see of results.
 
+mod design;
 mod energy;
 mod json;
 mod progress;
 mod tables;
 
+pub use design::{determination_json, pair_table, separation_json};
 pub use energy::{energy_json, energy_table, ledger_table, missing_power_json};
 pub use json::{comparison_json, diagnosis_json, identification_json, refinement_json, write_json};
 pub use progress::Progress;

@@ -1,6 +1,7 @@
 //! One file per verb.
 
 mod compare;
+mod design;
 mod diagnose;
 mod effects;
 mod energy;
@@ -24,6 +25,7 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Compare(arguments) => compare::run(&arguments),
         Verb::Energy(arguments) => energy::run(&arguments),
         Verb::Diagnose(arguments) => diagnose::run(&arguments),
+        Verb::Design(arguments) => design::run(&arguments),
         Verb::Refine(arguments) => refine::run(&arguments),
         Verb::Effects(arguments) => effects::run(&arguments),
         Verb::Info(arguments) => info::run(&arguments),

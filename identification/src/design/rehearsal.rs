@@ -1,0 +1,97 @@
+//! The profile run by each rival in turn with noisy sensors, and all rivals fitted to it, as a diagnosis would.
+
+use excavator_model::recording::Recording;
+use excavator_model::simulation::Profile;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::ride::Rider;
+use super::{DesignError, DesignSettings, Rival};
+use crate::diagnosis::{CandidateError, Evidence, compare_losses, fit_addition};
+use crate::fit::{Fit, FitError, evaluate, fit};
+
+/// What a rehearsal says when one rival is the truth and another is held against it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rehearsed {
+    /// Name of the rival that made the recordings.
+    pub truth: String,
+    /// Name of the rival that was fitted to them.
+    pub other: String,
+    /// By how much the truth explains the recording that was not fitted better.
+    pub evidence: Evidence,
+}
+
+/// Samples per second of the recordings, as usual recorders have.
+const RATE: f64 = 500.0;
+
+/// Two recordings of a rival under the profiles, from rest at mid-stroke, that differ in their noise.
+///
+/// # Errors
+/// [`DesignError`] when it cannot be simulated.
+pub(super) fn record(
+    rival: &Rival,
+    profiles: &[Profile],
+    settings: &DesignSettings,
+    stream: u64,
+) -> Result<[Recording; 2], DesignError> {
+    let rider = Rider::new(&rival.model);
+    let machine = &rival.model.machine;
+    let start = rider.at_rest(&vec![0.0; machine.cylinders.len()])?;
+    let mut clean = rider.run_profiles(profiles, start, 0.0, RATE)?.recording;
+    let layout = rider.system.layout();
+    settings.sensors.hide_unmeasured(machine, layout, &mut clean);
+    let mut generator = ChaCha8Rng::seed_from_u64(settings.seed);
+    generator.set_stream(stream);
+    let mut noisy = || {
+        let mut recording = clean.clone();
+        settings.sensors.disturb(machine, layout, &mut recording, &mut generator);
+        recording
+    };
+    Ok([noisy(), noisy()])
+}
+
+/// Fits a rival to a recording, from its own values and from the starts that a diagnosis tries; the better one counts.
+///
+/// # Errors
+/// [`FitError`] when neither can be fitted.
+pub(super) fn best_fit(rival: &Rival, recording: &Recording, settings: &DesignSettings) -> Result<Fit, FitError> {
+    let own = fit(&rival.model, &[recording], &settings.fit);
+    let Some((physics, site)) = rival.addition else { return own };
+    let fresh = fit_addition(&rival.base(), physics, site, &[recording], &settings.fit);
+    match (own, fresh) {
+        (Ok(own), Ok(fresh)) => Ok(if fresh.loss() < own.loss() { fresh } else { own }),
+        (Ok(one), Err(_)) | (Err(_), Ok(one)) => Ok(one),
+        (Err(error), Err(CandidateError::Model(_))) => Err(error),
+        (Err(_), Err(CandidateError::Fit(error))) => Err(error),
+    }
+}
+
+/// Every rival as the truth in turn, against every other.
+///
+/// # Errors
+/// [`DesignError`].
+pub(super) fn rehearse(
+    rivals: &[Rival],
+    profiles: &[Profile],
+    settings: &DesignSettings,
+    progress: &(dyn Fn(&str, f64) + Sync),
+) -> Result<Vec<Rehearsed>, DesignError> {
+    let mut rehearsed = Vec::new();
+    let total = (rivals.len() * rivals.len()) as f64;
+    for (number, truth) in rivals.iter().enumerate() {
+        let [fitted, kept] = record(truth, profiles, settings, number as u64)?;
+        let own = fit(&truth.model, &[&fitted], &settings.fit)?;
+        let own = evaluate(&own.model, &[&kept], &settings.fit)?;
+        for (index, other) in rivals.iter().enumerate().filter(|(index, _)| *index != number) {
+            progress("rehearsal", (number * rivals.len() + index) as f64 / total);
+            let refitted = best_fit(other, &fitted, settings)?;
+            let refitted = evaluate(&refitted.model, &[&kept], &settings.fit)?;
+            rehearsed.push(Rehearsed {
+                truth: truth.name.clone(),
+                other: other.name.clone(),
+                evidence: compare_losses(&refitted, &own),
+            });
+        }
+    }
+    Ok(rehearsed)
+}

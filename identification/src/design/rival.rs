@@ -1,0 +1,97 @@
+//! Models that are to be told apart.
+
+use excavator_model::effects::{Effect, Site};
+use excavator_model::{Model, site_name};
+
+use super::DesignError;
+
+/// One explanation: the model with one more effect, or as it is.
+#[derive(Debug, Clone)]
+pub struct Rival {
+    /// `EFFECT@PLACE`, or `none`.
+    pub name: String,
+    /// The effect and its place; `None` for the model as it is.
+    pub addition: Option<(&'static dyn Effect, Site)>,
+    /// The model with it.
+    pub model: Model,
+}
+
+/// What a rival is called that adds nothing.
+const NONE: &str = "none";
+
+impl Rival {
+    /// The rivals that a person names: each `EFFECT` at every place where it can act, `EFFECT@PLACE` at one, `none` for the
+    /// model as it is. Effects have their typical size.
+    ///
+    /// # Errors
+    /// [`DesignError::Model`], [`DesignError::Twice`].
+    pub fn named(model: &Model, names: &[String]) -> Result<Vec<Rival>, DesignError> {
+        let mut rivals: Vec<Rival> = Vec::new();
+        for name in names {
+            let more = if name == NONE {
+                vec![Rival { name: NONE.into(), addition: None, model: model.clone() }]
+            } else {
+                let additions = model.parse_addition(name)?;
+                additions
+                    .into_iter()
+                    .map(|(physics, site)| Rival::with(model, physics, site))
+                    .collect::<Result<_, DesignError>>()?
+            };
+            for rival in more {
+                if rivals.iter().any(|other| other.name == rival.name) {
+                    return Err(DesignError::Twice { rival: rival.name });
+                }
+                rivals.push(rival);
+            }
+        }
+        Ok(rivals)
+    }
+
+    fn with(model: &Model, physics: &'static dyn Effect, site: Site) -> Result<Rival, DesignError> {
+        let mut extended = model.with_effect(physics, site)?;
+        if let Some(added) = extended.effects.last_mut() {
+            for parameter in &mut added.parameters {
+                parameter.value = parameter.card.typical.clamp(parameter.card.minimum, parameter.card.maximum);
+            }
+        }
+        let name = format!("{}@{}", physics.card().name, site_name(&model.machine, site));
+        Ok(Rival { name, addition: Some((physics, site)), model: extended })
+    }
+
+    /// Sets parameters by their contract names, as far as the rival has them as unknowns.
+    pub fn set(&mut self, values: &[(String, f64)]) {
+        let names = self.model.parameter_names();
+        for (parameter, name) in self.model.parameters_mut().zip(&names) {
+            if !parameter.known
+                && let Some((_, value)) = values.iter().find(|(wanted, _)| wanted == name)
+            {
+                parameter.value = *value;
+            }
+        }
+    }
+
+    /// The model without the addition, its parameters as they are.
+    pub(super) fn base(&self) -> Model {
+        let mut base = self.model.clone();
+        if self.addition.is_some() {
+            base.effects.pop();
+        }
+        base
+    }
+}
+
+/// Cylinders that manoeuvres may use: those where a rival's effect sits; all where one sits elsewhere.
+pub(super) fn cylinders(model: &Model, sites: &[Option<Site>]) -> Vec<usize> {
+    let all: Vec<usize> = (0..model.machine.cylinders.len()).collect();
+    let mut wanted = Vec::new();
+    for site in sites {
+        match site {
+            Some(Site::Cylinder(cylinder)) => wanted.push(*cylinder),
+            Some(Site::PumpLine) => return all,
+            None => {}
+        }
+    }
+    wanted.sort_unstable();
+    wanted.dedup();
+    if wanted.is_empty() { all } else { wanted }
+}

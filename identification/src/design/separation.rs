@@ -1,0 +1,338 @@
+//! A profile under which rivals cannot all stay tied.
+
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+use excavator_model::simulation::{Profile, Segment};
+use rayon::prelude::*;
+
+use super::manoeuvre::general;
+use super::rehearsal::{best_fit, record, rehearse};
+use super::ride::Rider;
+use super::rival::cylinders;
+use super::selection::{Screened, join, screen};
+use super::{DesignError, DesignSettings, Plan, Rehearsed, Rival, library};
+use crate::diagnosis::DiagnosisSettings;
+use crate::fit::{FitError, FitSettings, LinearRefit, evaluate, fit};
+
+/// What is expected of a pair of rivals under the proposed profile. The worse of the two directions (either may be the
+/// truth) counts everywhere.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairSeparation {
+    /// Name of one rival.
+    pub first: String,
+    /// Name of the other.
+    pub second: String,
+    /// Difference of their losses on moderate sines that both were fitted to; `None` where rivals came with fitted values.
+    pub gain_before: Option<f64>,
+    /// Distance in standard deviations of sensor noise after a linearised refit: root of the sum over all readings of the
+    /// squared difference that is left.
+    pub distance: f64,
+    /// Gain of loss that goes with it, without noise on the spools.
+    pub linear_gain: f64,
+    /// Gain of loss of the truth in the rehearsal.
+    pub expected_gain: f64,
+    /// The same in standard errors.
+    pub expected_significance: f64,
+    /// Whether a diagnosis would no longer call them tied.
+    pub settled: bool,
+}
+
+/// A proposed profile and what to expect of it.
+#[derive(Debug, Clone)]
+pub struct SeparationDesign {
+    /// The rivals, with the parameters that they were compared with.
+    pub rivals: Vec<Rival>,
+    /// What is to be done.
+    pub plan: Plan,
+    /// The same as commands, one profile per cylinder with a valve.
+    pub profiles: Vec<Profile>,
+    /// Expectations of every pair.
+    pub pairs: Vec<PairSeparation>,
+    /// Every rehearsal, truth by truth.
+    pub rehearsals: Vec<Rehearsed>,
+    /// Manoeuvres in the library, and how many of them stay inside the limits.
+    pub manoeuvres: (usize, usize),
+}
+
+impl SeparationDesign {
+    /// Whether every pair is expected to be told apart.
+    pub fn all_settled(&self) -> bool {
+        self.pairs.iter().all(|pair| pair.settled)
+    }
+
+    /// Whether any pair is.
+    pub fn any_settled(&self) -> bool {
+        self.pairs.iter().any(|pair| pair.settled)
+    }
+}
+
+/// Proposes a profile that tells `rivals` apart. `fitted`: whether they carry the values of a fit to recordings on which they
+/// are tied; otherwise the others are first fitted to the first one's motion under moderate sines, so that no difference
+/// counts that a fit takes away. `progress` is told what is being done, with the fraction done.
+///
+/// # Errors
+/// [`DesignError`].
+pub fn separate(
+    rivals: Vec<Rival>,
+    fitted: bool,
+    settings: &DesignSettings,
+    progress: &(dyn Fn(&str, f64) + Sync),
+) -> Result<SeparationDesign, DesignError> {
+    settings.check()?;
+    let first = match rivals.as_slice() {
+        [] | [_] => {
+            let rival = rivals.first().map_or("nothing".to_string(), |rival| rival.name.clone());
+            return Err(DesignError::Alone { rival });
+        }
+        [first, ..] => first,
+    };
+    let machine = first.model.machine.clone();
+    let sites: Vec<_> = rivals.iter().map(|rival| rival.addition.map(|(_, site)| site)).collect();
+    let wanted = cylinders(&first.model, &sites);
+    let manoeuvres = library(&machine, &wanted);
+    if manoeuvres.is_empty() {
+        return Err(DesignError::NoValve { machine: machine.name.clone() });
+    }
+    let (rivals, before) = if fitted {
+        let nothing = vec![None; rivals.len() * rivals.len()];
+        (rivals, nothing)
+    } else {
+        progress("making rivals alike", 0.05);
+        made_alike(rivals, &wanted, settings)?
+    };
+
+    progress("manoeuvres within limits", 0.2);
+    let riders: Vec<Rider<'_>> = rivals.iter().map(|rival| Rider::new(&rival.model)).collect();
+    let tried = manoeuvres.len();
+    let with_general: Vec<_> = wanted.first().and_then(|&cylinder| general(&machine, cylinder)).into_iter().collect();
+    let screened = screen([with_general, manoeuvres].concat(), &riders, settings)?;
+    let is_general = |one: &Screened| one.manoeuvre.name == "moderate sine";
+    let general = screened.iter().position(is_general);
+    progress("refits to all manoeuvres", 0.25);
+    let pairs = directions(rivals.len());
+    let models: Vec<Model> =
+        pairs.par_iter().map(|&(truth, model)| compromise(&rivals[model].model, truth, &screened, settings)).collect();
+    progress("differences after refits", 0.4);
+    let parts: Vec<Vec<Option<LinearRefit>>> =
+        screened.par_iter().map(|one| refits(&models, &one.recordings, settings)).collect();
+    let score = |chosen: &[usize]| -> f64 {
+        models
+            .iter()
+            .enumerate()
+            .map(|(number, model)| {
+                let own: Vec<&LinearRefit> = chosen.iter().filter_map(|&index| parts[index][number].as_ref()).collect();
+                let left = LinearRefit::remainder(model, &own);
+                (1.0 + left.log_likelihood_ratio()).ln()
+            })
+            .sum()
+    };
+    progress("joining manoeuvres", 0.5);
+    let plan = join(&screened, general, &wanted, &riders, settings, &score)?;
+    let profiles = plan.profiles(&machine);
+
+    progress("expected separation", 0.6);
+    let whole = rivals
+        .iter()
+        .map(|rival| noise_free(rival, &profiles, settings))
+        .collect::<Result<Vec<Recording>, DesignError>>()?;
+    let refitted = refits(&models, &whole, settings);
+    let rehearsals = rehearse(&rivals, &profiles, settings, &|what, done| progress(what, 0.65 + 0.35 * done))?;
+    let within = screened.iter().filter(|one| !is_general(one)).count();
+    let pairs = judged(&rivals, &before, &models, &refitted, &rehearsals);
+    Ok(SeparationDesign { pairs, plan, profiles, rehearsals, manoeuvres: (tried, within), rivals })
+}
+
+/// Every ordered pair (truth, model) of `count` rivals.
+fn directions(count: usize) -> Vec<(usize, usize)> {
+    (0..count)
+        .flat_map(|truth| (0..count).filter(move |model| *model != truth).map(move |model| (truth, model)))
+        .collect()
+}
+
+/// Steps of the fit to all manoeuvres.
+const COMPROMISE_STEPS: usize = 4;
+
+/// A model fitted to all manoeuvres of a truth at once, from where one linearised step to any choice of them is short. Where
+/// it cannot be fitted it stays as it is.
+fn compromise(model: &Model, truth: usize, screened: &[Screened], settings: &DesignSettings) -> Model {
+    let recordings: Vec<&Recording> = screened.iter().filter_map(|one| one.recordings.get(truth)).collect();
+    let few = FitSettings { sample_rate: f64::INFINITY, maximum_steps: COMPROMISE_STEPS, ..settings.fit };
+    fit(model, &recordings, &few).map_or_else(|_| model.clone(), |found| found.model)
+}
+
+/// For every ordered pair the refit of its model to the truth's recording; `None` where it cannot be simulated. `models` come
+/// in the order of the directions.
+fn refits(models: &[Model], recordings: &[Recording], settings: &DesignSettings) -> Vec<Option<LinearRefit>> {
+    let all = FitSettings { sample_rate: f64::INFINITY, ..settings.fit };
+    directions(recordings.len())
+        .into_iter()
+        .zip(models)
+        .map(|((truth, _), model)| {
+            LinearRefit::new(model, &recordings[truth], &all, &|instrument| {
+                settings.sensors.of(&instrument.name).unwrap_or(instrument.noise)
+            })
+            .ok()
+        })
+        .collect()
+}
+
+/// What a rival's instruments would report without noise, at the rate of a fit.
+pub(super) fn noise_free(
+    rival: &Rival,
+    profiles: &[Profile],
+    settings: &DesignSettings,
+) -> Result<Recording, DesignError> {
+    let rider = Rider::new(&rival.model);
+    let machine = &rival.model.machine;
+    let start = rider.at_rest(&vec![0.0; machine.cylinders.len()])?;
+    let mut ride = rider.run_profiles(profiles, start, 0.0, super::plan::RATE)?;
+    settings.sensors.hide_unmeasured(machine, rider.system.layout(), &mut ride.recording);
+    Ok(ride.recording)
+}
+
+/// Expectations of every unordered pair.
+fn judged(
+    rivals: &[Rival],
+    before: &[Option<f64>],
+    models: &[Model],
+    refitted: &[Option<LinearRefit>],
+    rehearsals: &[Rehearsed],
+) -> Vec<PairSeparation> {
+    let rules = DiagnosisSettings::default();
+    let directed = directions(rivals.len());
+    let mut pairs = Vec::new();
+    for first in 0..rivals.len() {
+        for second in first + 1..rivals.len() {
+            let both = [(first, second), (second, first)];
+            let (mut distance, mut linear_gain) = (f64::INFINITY, f64::INFINITY);
+            let (mut gain, mut significance) = (f64::INFINITY, f64::INFINITY);
+            for (number, _) in directed.iter().enumerate().filter(|(_, pair)| both.contains(pair)) {
+                if let Some(part) = &refitted[number] {
+                    let left = LinearRefit::remainder(&models[number], &[part]);
+                    distance = distance.min(left.distance());
+                    linear_gain = linear_gain.min(left.gain());
+                }
+                // Rehearsals come in the order of the directions.
+                gain = gain.min(rehearsals[number].evidence.gain);
+                significance = significance.min(rehearsals[number].evidence.significance);
+            }
+            pairs.push(PairSeparation {
+                first: rivals[first].name.clone(),
+                second: rivals[second].name.clone(),
+                gain_before: before[first * rivals.len() + second],
+                distance,
+                linear_gain,
+                expected_gain: gain,
+                expected_significance: significance,
+                settled: gain >= rules.tie_gain && significance >= rules.tie_significance,
+            });
+        }
+    }
+    pairs
+}
+
+/// Fits all rivals but the first to the first one's motion under moderate sines. Also gives, row by row, the difference of
+/// any two rivals' losses there.
+fn made_alike(
+    mut rivals: Vec<Rival>,
+    cylinders: &[usize],
+    settings: &DesignSettings,
+) -> Result<(Vec<Rival>, Vec<Option<f64>>), DesignError> {
+    let profiles = moderate_sines(&rivals[0].model, cylinders);
+    let [fitted, kept] = record(&rivals[0], &profiles, settings, u64::MAX)?;
+    let fits =
+        rivals[1..].par_iter().map(|rival| best_fit(rival, &fitted, settings)).collect::<Result<Vec<_>, FitError>>()?;
+    for (rival, fit) in rivals[1..].iter_mut().zip(fits) {
+        rival.model = fit.model;
+    }
+    let losses = rivals
+        .par_iter()
+        .map(|rival| Ok(evaluate(&rival.model, &[&kept], &settings.fit)?.loss()))
+        .collect::<Result<Vec<f64>, FitError>>()?;
+    let differences = losses.iter().flat_map(|a| losses.iter().map(move |b| Some((a - b).abs()))).collect();
+    Ok((rivals, differences))
+}
+
+/// The kind of recording that leaves effects tied: two sines of moderate size for each cylinder.
+pub(super) fn moderate_sines(model: &Model, cylinders: &[usize]) -> Vec<Profile> {
+    let mut plan: Vec<(usize, Segment)> = Vec::new();
+    for &cylinder in cylinders {
+        let Some(chambers) = model.machine.cylinders.get(cylinder).and_then(|cylinder| cylinder.chambers) else {
+            continue;
+        };
+        for (share, frequency) in [(0.5, 0.5), (0.35, 0.8)] {
+            let amplitude = share * chambers.maximum_orifice_area;
+            plan.push((cylinder, Segment::Hold { duration: 0.5, area: 0.0 }));
+            plan.push((cylinder, Segment::Sine { duration: 6.0, amplitude, frequency }));
+        }
+    }
+    Plan { chosen: Vec::new(), duration: 0.0, moves: plan, states: Vec::new() }.profiles(&model.machine)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use excavator_model::document::built_in;
+
+    fn named(names: &[&str]) -> Vec<Rival> {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_string()).collect();
+        Rival::named(&built_in("zx30u-arm").unwrap(), &names).unwrap()
+    }
+
+    fn settings() -> DesignSettings {
+        DesignSettings::usual(&built_in("zx30u-arm").unwrap().machine)
+    }
+
+    /// What a refit of the second rival to the first one's noise-free motion under moderate sines leaves.
+    fn left(rivals: &[Rival]) -> crate::fit::Remainder {
+        let profiles = moderate_sines(&rivals[0].model, &[0]);
+        let recordings: Vec<Recording> =
+            rivals.iter().map(|rival| noise_free(rival, &profiles, &settings()).unwrap()).collect();
+        let models = [rivals[1].model.clone(), rivals[0].model.clone()];
+        let refitted = refits(&models, &recordings, &settings());
+        let remainder = LinearRefit::remainder(&rivals[1].model, &[refitted[0].as_ref().unwrap()]);
+        assert_eq!(remainder.counts.len(), 4, "displacement and three pressures");
+        remainder
+    }
+
+    #[test]
+    fn what_a_refit_takes_away_does_not_count() {
+        let mut rivals = named(&["none"]);
+        rivals.push(rivals[0].clone());
+        let same = left(&rivals).distance();
+        // A little more inertia and friction: far from the other model as it is, and within its span.
+        let names = ["arm.inertia", "arm.coulomb_friction"];
+        let changed: Vec<(String, f64)> =
+            names.iter().map(|name| ((*name).to_string(), 1.01 * rivals[0].model.value_of(name).unwrap())).collect();
+        rivals[0].set(&changed);
+        let refitted = left(&rivals).distance();
+        assert!(same < 20.0, "{same}");
+        assert!(refitted < 40.0, "{refitted}");
+        // The same change where nothing may be fitted again.
+        rivals[1].model.parameters_mut().for_each(|parameter| parameter.known = true);
+        let held = left(&rivals).distance();
+        assert!(held > 5.0 * refitted, "{held} {refitted}");
+    }
+
+    #[test]
+    fn what_a_refit_cannot_take_away_counts() {
+        let rivals = named(&["valve_dead_zone@arm", "none"]);
+        let left = left(&rivals);
+        assert!(left.distance() > 1000.0, "{}", left.distance());
+        assert!(left.gain() > 1.0, "{}", left.gain());
+        assert!(left.log_likelihood_ratio() > 0.0);
+    }
+
+    #[test]
+    fn one_rival_alone_and_impossible_durations_are_refused() {
+        let quiet = |_: &str, _: f64| ();
+        let alone = separate(named(&["hose_loss@arm"]), false, &settings(), &quiet).unwrap_err();
+        assert_eq!(alone, DesignError::Alone { rival: "hose_loss@arm".into() });
+        for duration in [3.0, f64::NAN, 1e6] {
+            let settings = DesignSettings { duration, ..settings() };
+            let error = separate(named(&["hose_loss", "valve_lag"]), false, &settings, &quiet).unwrap_err();
+            assert!(matches!(error, DesignError::Duration { .. }), "{error}");
+        }
+    }
+}

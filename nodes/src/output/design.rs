@@ -1,0 +1,109 @@
+//! What people and programs see of a design.
+
+use std::path::Path;
+
+use comfy_table::{Cell, Table};
+use excavator_identification::design::{ParameterDesign, Plan, SeparationDesign};
+use excavator_model::Model;
+use serde_json::{Value, json};
+
+use super::json::finite;
+use super::tables::{number, right, table};
+
+/// What is expected of every pair.
+pub fn pair_table(design: &SeparationDesign) -> Table {
+    let header = ["one", "other", "gain on sines", "distance, std. dev.", "expected gain", "significance", "expected"];
+    let mut table = table(&header);
+    for pair in &design.pairs {
+        table.add_row([
+            Cell::new(&pair.first),
+            Cell::new(&pair.second),
+            right(pair.gain_before.map_or("-".into(), |gain| format!("{gain:.2}"))),
+            right(number(pair.distance)),
+            right(format!("{:.2}", pair.expected_gain)),
+            right(format!("{:.1}", pair.expected_significance)),
+            Cell::new(if pair.settled { "told apart" } else { "stay tied" }),
+        ]);
+    }
+    table
+}
+
+fn plan_json(plan: &Plan, manoeuvres: (usize, usize)) -> Value {
+    let chosen: Vec<Value> =
+        plan.chosen.iter().map(|(name, start)| json!({"name": name, "start": finite(*start)})).collect();
+    json!({
+        "duration": finite(plan.duration),
+        "manoeuvres": chosen,
+        "library": manoeuvres.0,
+        "within_limits": manoeuvres.1,
+    })
+}
+
+fn unknowns(model: &Model) -> Vec<Value> {
+    let names = model.parameter_names();
+    let all: Vec<_> = model.parameters().map(|(_, parameter)| parameter).collect();
+    model
+        .unknown_parameters()
+        .into_iter()
+        .map(|index| json!({"name": names[index], "value": finite(all[index].value), "unit": all[index].card.unit}))
+        .collect()
+}
+
+/// Result of `design` for rivals; `profile` is the file written, if one was.
+pub fn separation_json(design: &SeparationDesign, profile: Option<&Path>) -> Value {
+    let rivals: Vec<Value> =
+        design.rivals.iter().map(|rival| json!({"name": rival.name, "parameters": unknowns(&rival.model)})).collect();
+    let pairs: Vec<Value> = design
+        .pairs
+        .iter()
+        .map(|pair| {
+            json!({
+                "first": pair.first,
+                "second": pair.second,
+                "gain_on_sines": pair.gain_before.map_or(Value::Null, finite),
+                "distance": finite(pair.distance),
+                "linear_gain": finite(pair.linear_gain),
+                "expected_gain": finite(pair.expected_gain),
+                "expected_significance": finite(pair.expected_significance),
+                "settled": pair.settled,
+            })
+        })
+        .collect();
+    let rehearsals: Vec<Value> = design
+        .rehearsals
+        .iter()
+        .map(|one| {
+            json!({
+                "truth": one.truth,
+                "other": one.other,
+                "gain": finite(one.evidence.gain),
+                "significance": finite(one.evidence.significance),
+            })
+        })
+        .collect();
+    json!({
+        "profile": profile.map(|path| path.display().to_string()),
+        "all_settled": design.all_settled(),
+        "rivals": rivals,
+        "pairs": pairs,
+        "rehearsals": rehearsals,
+        "plan": plan_json(&design.plan, design.manoeuvres),
+    })
+}
+
+/// Result of `design` for a parameter; `profile` is the file written, if one was.
+pub fn determination_json(design: &ParameterDesign, profile: Option<&Path>) -> Value {
+    json!({
+        "profile": profile.map(|path| path.display().to_string()),
+        "parameter": design.name,
+        "unit": design.unit,
+        "value": finite(design.value),
+        "std_error_given": design.given_error.map_or(Value::Null, finite),
+        "std_error_on_sines": finite(design.sine_error),
+        "std_error_expected": finite(design.expected_error),
+        "std_error_rehearsed": finite(design.rehearsed_error),
+        "value_rehearsed": finite(design.rehearsed_value),
+        "determined": design.determined,
+        "plan": plan_json(&design.plan, design.manoeuvres),
+    })
+}

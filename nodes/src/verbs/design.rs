@@ -1,0 +1,202 @@
+//! `excavator design`
+
+use std::path::Path;
+
+use excavator_identification::design::{
+    DesignSettings, ParameterDesign, Plan, Rival, SeparationDesign, determine, separate,
+};
+use excavator_model::Model;
+use excavator_model::simulation::Profile;
+
+use super::print;
+use crate::cli::DesignArguments;
+use crate::diagnosis_file::DiagnosisFile;
+use crate::error::VerbError;
+use crate::output::{Progress, determination_json, number, pair_table, separation_json, write_json};
+use crate::profile_file::{ProfileFile, usual_rate};
+use crate::sources;
+
+pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {
+    let model = sources::model(&arguments.model)?;
+    let diagnosis = arguments.diagnosis.as_deref().map(DiagnosisFile::read).transpose()?;
+    let mut settings = DesignSettings::usual(&model.machine);
+    settings.duration = arguments.duration;
+    settings.limits.stroke_margin = arguments.stroke_margin;
+    settings.limits.highest_pressure = arguments.highest_pressure;
+    if let Some(file) = &diagnosis {
+        file.noise_into(&mut settings.sensors);
+    }
+    match &arguments.parameter {
+        Some(name) => for_parameter(arguments, &model, name, diagnosis.as_ref(), &settings),
+        None => between_rivals(arguments, &model, diagnosis.as_ref(), &settings),
+    }
+}
+
+fn between_rivals(
+    arguments: &DesignArguments,
+    model: &Model,
+    diagnosis: Option<&DiagnosisFile>,
+    settings: &DesignSettings,
+) -> Result<(), VerbError> {
+    let names = match (arguments.between.as_slice(), diagnosis) {
+        ([], Some(file)) => file.tied()?,
+        (names, _) => names.to_vec(),
+    };
+    let mut rivals = Rival::named(model, &names)?;
+    // Only values of all rivals from one diagnosis make them as alike as the recordings did.
+    let fitted = diagnosis.is_some_and(|file| rivals.iter().all(|rival| file.has(&rival.name)));
+    if let Some(file) = diagnosis {
+        rivals.iter_mut().for_each(|rival| rival.set(file.values(&rival.name)));
+    }
+    let progress = Progress::new();
+    let design = separate(rivals, fitted, settings, &|what, done| progress.tell(what, done))?;
+    drop(progress);
+    let written = design.any_settled().then_some(arguments.output.as_path());
+    if let Some(path) = written {
+        let expectation = design.pairs.iter().map(|pair| {
+            format!(
+                "{} from {}: expected gain {:.2} ({:.1} standard errors), {}",
+                pair.first,
+                pair.second,
+                pair.expected_gain,
+                pair.expected_significance,
+                if pair.settled { "told apart" } else { "stay tied" }
+            )
+        });
+        write(path, model, &design.profiles, &design.plan, expectation.collect())?;
+    }
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        show(&design, written);
+    }
+    if let Some(path) = &arguments.json.json {
+        write_json(path, &separation_json(&design, written))?;
+    }
+    if written.is_some() { Ok(()) } else { Err(VerbError::NothingSettles(sentence(&design))) }
+}
+
+/// The pairs that stay tied, in words.
+fn sentence(design: &SeparationDesign) -> String {
+    let tied = design.pairs.iter().filter(|pair| !pair.settled);
+    let each = tied.map(|pair| {
+        format!(
+            "{} and {} stay tied (expected gain {:.2}, {:.1} standard errors)",
+            pair.first, pair.second, pair.expected_gain, pair.expected_significance
+        )
+    });
+    each.collect::<Vec<_>>().join("; ")
+}
+
+fn show(design: &SeparationDesign, written: Option<&Path>) {
+    let (all, within) = design.manoeuvres;
+    print(&format!("{within} of {all} manoeuvres stay within the limits with every rival."));
+    show_plan(&design.plan);
+    print(&pair_table(design).to_string());
+    if !design.all_settled() && design.any_settled() {
+        print(&format!("{}.", sentence(design)));
+    }
+    if let Some(path) = written {
+        show_use(path);
+    }
+}
+
+fn show_plan(plan: &Plan) {
+    print(&format!("{:.1} s, from rest at mid-stroke and back:", plan.duration));
+    for (name, start) in &plan.chosen {
+        print(&format!("  {start:6.1} s  {name}"));
+    }
+}
+
+fn show_use(path: &Path) {
+    print(&format!(
+        "written: {0}\nRun it twice, once to fit and once to judge; `excavator simulate --input {0}` makes the commands a bag.",
+        path.display()
+    ));
+}
+
+fn for_parameter(
+    arguments: &DesignArguments,
+    model: &Model,
+    name: &str,
+    diagnosis: Option<&DiagnosisFile>,
+    settings: &DesignSettings,
+) -> Result<(), VerbError> {
+    let mut rival = Rival { name: "none".into(), addition: None, model: model.clone() };
+    for one in &arguments.between {
+        for more in Rival::named(&rival.model, std::slice::from_ref(one))? {
+            rival = more;
+        }
+    }
+    if let Some(file) = diagnosis {
+        rival.set(file.values(&rival.name));
+    }
+    let model = rival.model;
+    let progress = Progress::new();
+    let design = determine(&model, name, settings, &|what, done| progress.tell(what, done))?;
+    drop(progress);
+    let written = design.determined.then_some(arguments.output.as_path());
+    if let Some(path) = written {
+        let expectation = format!(
+            "{}: expected standard error {} {} of {}",
+            design.name,
+            number(design.rehearsed_error),
+            design.unit,
+            number(design.value)
+        );
+        write(path, &model, &design.profiles, &design.plan, vec![expectation])?;
+    }
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        show_parameter(&design);
+        if let Some(path) = written {
+            show_use(path);
+        }
+    }
+    if let Some(path) = &arguments.json.json {
+        write_json(path, &determination_json(&design, written))?;
+    }
+    if written.is_some() {
+        return Ok(());
+    }
+    Err(VerbError::NothingSettles(format!(
+        "{} = {} {} would keep a standard error of {} (a fit reports {})",
+        design.name,
+        number(design.value),
+        design.unit,
+        number(design.expected_error),
+        number(design.rehearsed_error)
+    )))
+}
+
+fn show_parameter(design: &ParameterDesign) {
+    let (all, within) = design.manoeuvres;
+    print(&format!("{within} of {all} manoeuvres stay within the limits."));
+    show_plan(&design.plan);
+    let line = |what: &str, error: f64| {
+        let share = 100.0 * error / design.value.abs();
+        print(&format!("  {what:52} {:>10} {}  ({share:.2} %)", number(error), design.unit));
+    };
+    print(&format!("Standard error of {} = {} {}:", design.name, number(design.value), design.unit));
+    if let Some(given) = design.given_error {
+        line("as the model says", given);
+    }
+    line("moderate sines as long, sensor noise alone", design.sine_error);
+    line("this profile, sensor noise alone", design.expected_error);
+    line("this profile, as a fit to a rehearsal reports it", design.rehearsed_error);
+}
+
+fn write(
+    path: &Path,
+    model: &Model,
+    profiles: &[Profile],
+    plan: &Plan,
+    expectation: Vec<String>,
+) -> Result<(), VerbError> {
+    let file =
+        ProfileFile { rate: usual_rate(), start: std::collections::BTreeMap::new(), profiles: profiles.to_vec() };
+    let mut comment = vec![format!(
+        "Proposed by `excavator design` for {}: {:.1} s from rest at mid-stroke. Areas in m2, times in s.",
+        model.machine.name, plan.duration
+    )];
+    comment.extend(plan.chosen.iter().map(|(name, start)| format!("{start:6.1} s  {name}")));
+    comment.extend(expectation);
+    sources::write_text(path, &file.text(&comment)?)
+}
