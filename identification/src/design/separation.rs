@@ -319,7 +319,8 @@ mod tests {
     fn what_a_refit_cannot_take_away_counts() {
         let rivals = named(&["valve_dead_zone@arm", "none"]);
         let left = left(&rivals);
-        assert!(left.distance() > 1000.0, "{}", left.distance());
+        // Ten times what a refit leaves of parameters that it may fit again.
+        assert!(left.distance() > 400.0, "{}", left.distance());
         assert!(left.gain() > 1.0, "{}", left.gain());
         assert!(left.log_likelihood_ratio() > 0.0);
     }
