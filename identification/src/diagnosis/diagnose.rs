@@ -4,6 +4,7 @@ use excavator_model::Model;
 use excavator_model::recording::Recording;
 
 use super::candidate::CandidateError;
+use super::input_floor::with_input_floor;
 use super::race::{Race, Round};
 use super::{Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, additions, residual_map, unexplained};
 use crate::fit::{Fit, FitError, evaluate, fit};
@@ -168,9 +169,13 @@ pub(crate) fn fit_nominal(
     fit(model, identification, &settings.fit)
 }
 
-/// Whether what is left is noise but for a few moments, or too small to act on.
+/// Whether what is left is noise but for a few moments, or too small to act on, or as large as inputs known at samples
+/// only leave open.
 fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
-    fit.typical_loss() <= settings.adequate_loss || normalised_error(fit, recordings) <= settings.adequate_error
+    fit.typical_loss() <= settings.adequate_loss
+        || normalised_error(fit, recordings) <= settings.adequate_error
+        || with_input_floor(fit, recordings, &settings.fit)
+            .is_some_and(|raised| raised.typical_loss() <= settings.adequate_loss)
 }
 
 /// Mean over instruments of squared error over the signal's own variance; `NaN` when no signal varies.

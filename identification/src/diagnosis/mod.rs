@@ -3,6 +3,7 @@
 mod candidate;
 mod diagnose;
 mod evidence;
+mod input_floor;
 mod race;
 mod residual_map;
 mod settings;
