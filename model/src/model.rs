@@ -168,8 +168,11 @@ fn why_not(physics: &dyn Effect, machine: &Machine, site: Site) -> Option<&'stat
     match (physics.card().acts_on, site) {
         (ActsOn::Cylinder | ActsOn::Valve | ActsOn::CylinderOrPumpLine, Site::Cylinder(index)) => {
             let Some(cylinder) = machine.cylinders.get(index) else { return Some("no such cylinder") };
-            let needs_oil = effects::needs_chambers(physics);
-            (needs_oil && cylinder.chambers.is_none()).then_some("it acts on oil, and this cylinder has no chambers")
+            let oil = cylinder.chambers.is_some();
+            // Friction of seals needs pressures only, which are measured where the motion is imposed.
+            let seals = cylinder.imposed_motion.is_some() && effects::needs_pressures_only(physics);
+            (effects::needs_chambers(physics) && !oil && !seals)
+                .then_some("it acts on oil, and this cylinder has no chambers")
         }
         (ActsOn::PumpLine | ActsOn::CylinderOrPumpLine, Site::PumpLine) => {
             (!pump_line).then_some("the machine has no pump line")

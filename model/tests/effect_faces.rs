@@ -41,6 +41,7 @@ fn lift(inputs: &Inputs<f64>) -> Inputs<Dual> {
         time: constant(inputs.time),
         orifice_area: inputs.orifice_area.iter().map(|&value| constant(value)).collect(),
         rod_force: inputs.rod_force.iter().map(|&value| constant(value)).collect(),
+        imposed: inputs.imposed.iter().map(|state| state.each(|&value| constant(value))).collect(),
         supply_pressure: constant(inputs.supply_pressure),
         tank_pressure: constant(inputs.tank_pressure),
         pump_flow: constant(inputs.pump_flow),

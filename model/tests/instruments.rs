@@ -62,7 +62,7 @@ fn offsets_are_added_to_reports_and_nothing_else() {
             Channel::CapPressure(_) => 3e4,
             Channel::RodPressure(_) => -2e4,
             Channel::PumpPressure => 5e4,
-            Channel::JointAngle(_) | Channel::Velocity(_) => 0.0,
+            Channel::JointAngle(_) | Channel::Velocity(_) | Channel::RodForce(_) => 0.0,
         };
         let pairs = signal(&clean, &truth, channel).into_iter().zip(signal(&reported, &poor, channel));
         for (clean, reported) in pairs {

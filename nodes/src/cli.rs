@@ -260,7 +260,7 @@ pub struct IdentifyArguments {
     /// Model: built-in name or TOML file.
     #[arg(long)]
     pub model: String,
-    /// Recordings.
+    /// Recordings; `BAG@20..40` is the part of one from 20 s to 40 s.
     #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
     pub bag: Vec<PathBuf>,
     #[command(flatten)]
@@ -280,7 +280,7 @@ pub struct CompareArguments {
     /// Model: built-in name or TOML file.
     #[arg(long)]
     pub model: String,
-    /// Recording.
+    /// Recording; `BAG@20..40` is the part of one from 20 s to 40 s.
     #[arg(long, value_name = "BAG")]
     pub bag: PathBuf,
     #[command(flatten)]
@@ -311,7 +311,7 @@ pub struct EnergyArguments {
 
 #[derive(Debug, Args)]
 pub struct Recordings {
-    /// Recordings that parameters are fitted to.
+    /// Recordings that parameters are fitted to; `BAG@20..40` is the part of one from 20 s to 40 s.
     #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
     pub identification: Vec<PathBuf>,
     /// Recordings that evidence is taken from; never fitted.

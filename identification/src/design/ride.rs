@@ -116,7 +116,7 @@ impl<'m> Rider<'m> {
                 Channel::CapPressure(_) | Channel::RodPressure(_) | Channel::PumpPressure => {
                     extremes.see_pressure(channel.value(&self.system, state));
                 }
-                Channel::JointAngle(_) | Channel::Velocity(_) => {}
+                Channel::JointAngle(_) | Channel::Velocity(_) | Channel::RodForce(_) => {}
             }
         }
     }

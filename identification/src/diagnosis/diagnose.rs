@@ -5,6 +5,7 @@ use excavator_model::recording::Recording;
 
 use super::candidate::CandidateError;
 use super::chain::Chains;
+use super::input_floor::with_input_floor;
 use super::race::Round;
 use super::starts::within_bounds;
 use super::{Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, residual_map, unexplained};
@@ -154,9 +155,13 @@ pub(crate) fn fit_nominal(
 /// Loss above which a fit may have ended in the wrong valley: thirty times the sensors' noise.
 const LOST: f64 = 7.0;
 
-/// Whether what is left is noise but for a few moments, or too small to act on.
+/// Whether what is left is noise but for a few moments, or too small to act on, or as large as inputs known at samples
+/// only leave open.
 pub(super) fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
-    fit.typical_loss() <= settings.adequate_loss || normalised_error(fit, recordings) <= settings.adequate_error
+    fit.typical_loss() <= settings.adequate_loss
+        || normalised_error(fit, recordings) <= settings.adequate_error
+        || with_input_floor(fit, recordings, &settings.fit)
+            .is_some_and(|raised| raised.typical_loss() <= settings.adequate_loss)
 }
 
 /// Mean over instruments of squared error over the signal's own variance; `NaN` when no signal varies.

@@ -4,6 +4,7 @@ mod candidate;
 mod chain;
 mod diagnose;
 mod evidence;
+mod input_floor;
 mod race;
 mod residual_map;
 mod settings;

@@ -1,6 +1,7 @@
 //! Where a model fails: in which equation, in which regime, along which variable.
 
 use excavator_model::Model;
+use excavator_model::machine::Mechanism;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{InputSignals, undistorted};
 
@@ -30,7 +31,7 @@ pub struct Unexplained {
     pub share_of_residual: f64,
     /// The curve: variable, mean residual, its standard error; both in SI units.
     pub curve: Vec<[f64; 3]>,
-    /// Unit of the residual: N m or m³/s.
+    /// Unit of the residual: N m, N for a load without joint, or m³/s.
     pub unit: &'static str,
 }
 
@@ -184,7 +185,11 @@ pub fn unexplained(model: &Model, recordings: &[&Recording]) -> Result<Option<Un
         variable,
         share_of_residual,
         curve,
-        unit: if matches!(worst, EquationKind::Motion(_)) { "N m" } else { "m3/s" },
+        unit: match (worst, model.machine.mechanism) {
+            (EquationKind::Motion(_), Mechanism::LinearLoad) => "N",
+            (EquationKind::Motion(_), _) => "N m",
+            _ => "m3/s",
+        },
     }))
 }
 
@@ -196,6 +201,10 @@ fn curve(points: &[&Point], of: fn(&Point) -> f64) -> Option<(f64, Vec<[f64; 3]>
         return None;
     }
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Bins of a variable that stands still would be bins of time.
+    if sorted[0].0 == sorted[sorted.len() - 1].0 {
+        return None;
+    }
     let total: f64 = sorted.iter().map(|pair| pair.1 * pair.1).sum();
     let mut explained = 0.0;
     let mut curve = Vec::with_capacity(BINS);

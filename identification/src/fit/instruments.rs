@@ -23,7 +23,11 @@ const LEAST_RELATIVE_NOISE: f64 = 1e-4;
 /// The instruments that `recordings` have in common for the outputs of a model, with their noise.
 pub fn instruments(system: &System<'_>, recordings: &[&Recording]) -> Vec<Instrument> {
     let machine = &system.model().machine;
-    let channels = Channel::all(system.layout());
+    let mut channels = Channel::all(system.layout());
+    if system.layout().rod_forces.is_some() {
+        // An imposed motion is no output.
+        channels.retain(|channel| matches!(channel, Channel::RodForce(_)));
+    }
     // A position counts once: the displacement where it is measured, else the joint angle.
     let (angles, others): (Vec<Channel>, Vec<Channel>) =
         channels.into_iter().partition(|channel| matches!(channel, Channel::JointAngle(_)));
@@ -51,6 +55,7 @@ fn unit(channel: Channel) -> &'static str {
         Channel::JointAngle(_) => "rad",
         Channel::Displacement(_) => "m",
         Channel::Velocity(_) => "m/s",
+        Channel::RodForce(_) => "N",
         Channel::CapPressure(_) | Channel::RodPressure(_) | Channel::PumpPressure => "Pa",
     }
 }

@@ -63,6 +63,17 @@ impl Fit {
         let noise: Vec<f64> = self.instruments.iter().map(|instrument| instrument.noise).collect();
         loss_per_reading(&self.errors, &noise)
     }
+
+    /// Names of the fitted parameters whose 95 % intervals include zero: not even their sign is known.
+    pub fn undetermined(&self) -> Vec<String> {
+        let names = self.model.parameter_names();
+        let parameters: Vec<_> = self.model.parameters().map(|(_, parameter)| parameter).collect();
+        let unknown = |&&index: &&usize| {
+            let parameter = parameters[index];
+            parameter.standard_error.is_none_or(|error| error.is_nan() || 1.96 * error >= parameter.value.abs())
+        };
+        self.fitted.iter().filter(unknown).map(|&index| names[index].clone()).collect()
+    }
 }
 
 /// Fits the unknown parameters of `model` to `recordings`, starting from its values.

@@ -92,6 +92,18 @@ pub enum GateError {
         /// SI unit.
         unit: &'static str,
     },
+    /// The piston moves against its valve.
+    #[error(
+        "{source_name}: {cylinder} retracts where its valve feeds the cap side and extends where it feeds the rod side (correlation {correlation:.2}); check the signs of displacement and opening"
+    )]
+    WrongSign {
+        /// The recording.
+        source_name: String,
+        /// The cylinder.
+        cylinder: String,
+        /// Correlation of piston travel with opening.
+        correlation: f64,
+    },
     /// The recording has no cylinder of the machine.
     #[error(transparent)]
     Recording(#[from] excavator_model::recording::RecordingError),
@@ -145,8 +157,22 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
             for (signal, values) in [("cap_pressure", &signals.cap_pressure), ("rod_pressure", &signals.rod_pressure)] {
                 pressure(model, recording, &name(signal), values)?;
             }
+            let opening =
+                if is_measured(&signals.orifice_area) { &signals.orifice_area } else { &signals.orifice_command };
+            let correlation = travel_by_opening(&recording.time, &signals.displacement, opening);
+            if correlation < AGAINST_THE_VALVE {
+                return Err(GateError::WrongSign {
+                    source_name: recording.source.clone(),
+                    cylinder: cylinder.name.clone(),
+                    correlation,
+                });
+            }
         } else {
             at_most(model, recording, &name("rod_force"), &signals.rod_force, "N", 1e8)?;
+            if cylinder.imposed_motion.is_some() {
+                pressure(model, recording, &name("cap_pressure"), &signals.cap_pressure)?;
+                pressure(model, recording, &name("rod_pressure"), &signals.rod_pressure)?;
+            }
         }
     }
     if machine.has_chambers() {
@@ -155,6 +181,32 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
         at_most(model, recording, "pump_flow", &recording.pump_flow, "m3/s", 0.1)?;
     }
     Ok(())
+}
+
+/// Correlation of travel with opening below which a sign must be wrong: a load may move a piston against its valve now and
+/// then, not most of the time.
+const AGAINST_THE_VALVE: f64 = -0.5;
+
+/// Time over which travel is taken, s: longer than valves and oil take to follow.
+const TRAVEL_TIME: f64 = 0.2;
+
+/// Correlation of the piston's travel over [`TRAVEL_TIME`] with the mean opening meanwhile; zero where there is none.
+fn travel_by_opening(time: &[f64], displacement: &[f64], opening: &[f64]) -> f64 {
+    let (mut first, mut sums, mut count) = (0, [0.0; 3], 0usize);
+    while let Some(&start) = time.get(first) {
+        let last = time.partition_point(|&t| t < start + TRAVEL_TIME);
+        let Some(&end) = displacement.get(last) else { break };
+        let known: Vec<f64> = opening[first..last].iter().copied().filter(|area| area.is_finite()).collect();
+        let travel = end - displacement[first];
+        if travel.is_finite() && !known.is_empty() {
+            let mean = known.iter().sum::<f64>() / known.len() as f64;
+            sums = [sums[0] + travel * mean, sums[1] + travel * travel, sums[2] + mean * mean];
+            count += 1;
+        }
+        first = last;
+    }
+    let size = (sums[1] * sums[2]).sqrt();
+    if count >= 10 && size > 0.0 { sums[0] / size } else { 0.0 }
 }
 
 fn range(signal: &[f64]) -> (f64, f64) {
@@ -193,8 +245,9 @@ fn at_most(
 fn pressure(model: &Model, recording: &Recording, name: &str, signal: &[f64]) -> Result<(), GateError> {
     at_most(model, recording, name, signal, "Pa", HIGHEST_PRESSURE)?;
     match usual_size(signal) {
-        // A working hydraulic pressure is never below 1 kPa all the time; 30 is what 3 MPa are in bar.
-        Some(value) if value < 1e3 => Err(GateError::TooSmall {
+        // A working hydraulic pressure is never below 1 kPa all the time; 30 is what 3 MPa are in bar. Zero throughout is
+        // no measurement in another unit but a side that is open to the air, given as a constant.
+        Some(value) if value < 1e3 && value > 0.0 => Err(GateError::TooSmall {
             source_name: recording.source.clone(),
             signal: name.to_string(),
             value,

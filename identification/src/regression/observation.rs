@@ -40,6 +40,9 @@ pub struct CylinderObservation {
 /// swing of an arm (0.1 s).
 const SLOPE_HALF_WIDTH: f64 = 0.02;
 
+/// The same in sample intervals, for slow recordings: five samples for three coefficients.
+const SLOPE_HALF_WIDTH_SAMPLES: f64 = 2.5;
+
 /// The state along `recording`, as far as it is measured.
 ///
 /// # Errors
@@ -76,7 +79,8 @@ fn observe_against(
         let displacement = displacement(signals, |joint| cylinder.linkage.displacement(joint));
         let joint: Vec<f64> = displacement.iter().map(|&s| cylinder.linkage.joint(s)).collect();
         let measured_velocity = signals.velocity.iter().any(|v| v.is_finite());
-        let (smooth_displacement, slope) = parabolas(&recording.time, &displacement);
+        let half_width = SLOPE_HALF_WIDTH.max(SLOPE_HALF_WIDTH_SAMPLES * recording.sample_interval());
+        let (smooth_displacement, slope) = parabolas(&recording.time, &displacement, half_width);
         cylinders.push(CylinderObservation {
             joint,
             smooth_displacement,
@@ -122,39 +126,40 @@ fn smooth(signal: &[f64], guide: Option<&Vec<f64>>) -> Vec<f64> {
     smooth
 }
 
-/// Value and slope, at each sample, of the least-squares parabola through the samples within [`SLOPE_HALF_WIDTH`].
-fn parabolas(time: &[f64], signal: &[f64]) -> (Vec<f64>, Vec<f64>) {
+/// Value and slope, at each sample, of the least-squares parabola through the samples within `half_width`, s.
+fn parabolas(time: &[f64], signal: &[f64], half_width: f64) -> (Vec<f64>, Vec<f64>) {
     let mut values = Vec::with_capacity(signal.len());
     let mut slopes = Vec::with_capacity(signal.len());
     let (mut first, mut last) = (0, 0);
     let (start, end) = (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(0.0));
     for &centre in time {
-        while time[first] < centre - SLOPE_HALF_WIDTH {
+        while time[first] < centre - half_width {
             first += 1;
         }
-        while last < time.len() && time[last] <= centre + SLOPE_HALF_WIDTH {
+        while last < time.len() && time[last] <= centre + half_width {
             last += 1;
         }
-        let (value, slope) = parabola(&time[first..last], &signal[first..last], centre).unwrap_or((f64::NAN, f64::NAN));
+        let (value, slope) =
+            parabola(&time[first..last], &signal[first..last], centre, half_width).unwrap_or((f64::NAN, f64::NAN));
         values.push(value);
         // One-sided slopes at the ends are several times noisier; what needs them is left out there.
-        let whole = centre - SLOPE_HALF_WIDTH >= start && centre + SLOPE_HALF_WIDTH <= end;
+        let whole = centre - half_width >= start && centre + half_width <= end;
         slopes.push(if whole { slope } else { f64::NAN });
     }
     (values, slopes)
 }
 
-fn parabola(time: &[f64], signal: &[f64], centre: f64) -> Option<(f64, f64)> {
+fn parabola(time: &[f64], signal: &[f64], centre: f64, half_width: f64) -> Option<(f64, f64)> {
     let mut matrix = nalgebra::Matrix3::zeros();
     let mut right = nalgebra::Vector3::zeros();
     let origin = *signal.first()?;
     for (&t, &value) in time.iter().zip(signal) {
         // In units of the half width, so that the normal equations are well conditioned.
-        let x = (t - centre) / SLOPE_HALF_WIDTH;
+        let x = (t - centre) / half_width;
         let powers = nalgebra::Vector3::new(1.0, x, x * x);
         matrix += powers * powers.transpose();
         right += powers * (value - origin);
     }
     let solution = matrix.cholesky()?.solve(&right);
-    Some((solution[0] + origin, solution[1] / SLOPE_HALF_WIDTH))
+    Some((solution[0] + origin, solution[1] / half_width))
 }

@@ -9,14 +9,24 @@ use crate::diagnosis::{Candidate, Diagnosis, Verdict};
 /// What a diagnosis found, in one or two plain sentences. Effects that the recordings cannot tell apart are all named.
 pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
     let machine = &model.machine.name;
-    match diagnosis.verdict {
+    let verdict = match diagnosis.verdict {
         Verdict::Adequate => format!(
             "Nothing is missing in {machine} that these recordings can show: what is left of the error is noise, or too \
-             small to act on."
+             small to act on, or what inputs known at samples only leave open."
         ),
         Verdict::MissingEffect => missing(machine, diagnosis),
         Verdict::Unexplained => unexplained(machine, diagnosis),
+    };
+    let (undetermined, fitted) = (diagnosis.nominal.undetermined(), diagnosis.nominal.fitted.len());
+    if 2 * undetermined.len() <= fitted {
+        return verdict;
     }
+    format!(
+        "{verdict} Beware: the 95 % intervals of {} of {fitted} parameters include zero ({}), so these recordings say \
+         little about the model.",
+        undetermined.len(),
+        undetermined.join(", ")
+    )
 }
 
 fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
@@ -43,25 +53,34 @@ fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
     text
 }
 
+/// Share of a residual that a variable must explain to be named.
+const LEAST_SHARE: f64 = 0.1;
+
 fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
-    let mut text = format!("Something is missing in {machine}, and it is none of the effects in the catalogue");
+    let helpful: Vec<String> = diagnosis.chain.iter().map(place_of).collect();
+    let mut text = if helpful.is_empty() {
+        format!("Something is missing in {machine}, and it is none of the effects in the catalogue")
+    } else {
+        format!("Something is missing in {machine} that no effect in the catalogue explains wholly")
+    };
     if let Some(left) = &diagnosis.unexplained {
-        text += &format!(
-            ": the {} does not close; {} of its residual follows the {}",
-            words::equation(&left.equation),
-            percent(left.share_of_residual),
-            words::variable(left.variable)
-        );
+        text += &format!(": the {} does not close; ", words::equation(&left.equation));
+        text += &if left.share_of_residual < LEAST_SHARE {
+            "its residual follows no single variable".to_string()
+        } else {
+            let share = percent(left.share_of_residual);
+            format!("{share} of its residual follows the {}", words::variable(left.variable))
+        };
     }
     text += ".";
-    let helpful: Vec<String> = diagnosis.chain.iter().map(place_of).collect();
-    if !helpful.is_empty() {
-        let verb = if helpful.len() == 1 { "lowers" } else { "lower" };
-        text +=
-            &format!(" Of the catalogue, {} {verb} the error but does not explain it.", words::list(&helpful, "and"));
-        if helpful.len() > 1 {
-            text = text.replace(" but does not explain it.", " but do not explain it.");
-        }
+    if let Some(last) = diagnosis.chain.last() {
+        let (verb, explain) = if helpful.len() == 1 { ("makes", "does") } else { ("make", "do") };
+        let times = ratio((diagnosis.nominal_validation.loss() - last.validation.loss()).exp());
+        text += &format!(
+            " Of the catalogue, {} {verb} the squared error on recordings it was not fitted to {times} times smaller, but \
+             {explain} not explain all of it.",
+            words::list(&helpful, "and")
+        );
     }
     text
 }

@@ -63,11 +63,17 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
     let inputs = InputSignals::from_recording(model, recording)?;
     let excitation_frequency = if model.machine.has_chambers() {
         dominant_frequency(&recording.time, inputs.orifice_area(0))
+    } else if model.machine.has_imposed_motion() {
+        None
     } else {
         dominant_frequency(&recording.time, &measured.cylinders[0].rod_force)
     };
     let mut names = Vec::new();
     for cylinder in &model.machine.cylinders {
+        if cylinder.imposed_motion.is_some() {
+            names.push(format!("{}.rod_force", cylinder.name));
+            continue;
+        }
         for signal in ["displacement", "velocity", "cap_pressure", "rod_pressure"] {
             if cylinder.chambers.is_some() || !signal.ends_with("pressure") {
                 names.push(format!("{}.{signal}", cylinder.name));

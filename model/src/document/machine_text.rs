@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::DocumentError;
 use super::quantity::{Must, Quantity};
-use crate::machine::{Chambers, Cylinder, Linkage, Machine, Mechanism, PressureSource, PumpLine, Supply};
+use crate::machine::{
+    Chambers, Cylinder, ImposedMotion, Linkage, Machine, Mechanism, PressureSource, PumpLine, Supply,
+};
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -41,6 +43,8 @@ struct CylinderText {
     linkage: LinkageText,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     chambers: Option<ChambersText>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    imposed_motion: Option<ImposedMotionText>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -58,6 +62,13 @@ struct ChambersText {
     cap_dead_volume: Quantity,
     rod_dead_volume: Quantity,
     maximum_orifice_area: Quantity,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ImposedMotionText {
+    cap_area: Quantity,
+    rod_area: Quantity,
 }
 
 impl MachineText {
@@ -98,6 +109,12 @@ impl MachineText {
         }
         if (with_chambers != 0) == (supply == Supply::None) {
             return Err(inconsistent("cylinders with chambers need a supply, cylinders without must have none".into()));
+        }
+        let imposed = cylinders.iter().filter(|c| c.imposed_motion.is_some()).count();
+        if imposed != 0 && (with_chambers != 0 || imposed != cylinders.len()) {
+            return Err(inconsistent(
+                "imposed_motion is for all cylinders or none, and in the place of chambers: pressures are measured then".into(),
+            ));
         }
         for (index, cylinder) in cylinders.iter().enumerate() {
             if cylinder.name == "pump" || cylinders[..index].iter().any(|other| other.name == cylinder.name) {
@@ -168,6 +185,13 @@ impl CylinderText {
                 maximum_orifice_area: positive(&text.maximum_orifice_area, "chambers.maximum_orifice_area", "m2")?,
             }),
         };
+        let imposed_motion = match &self.imposed_motion {
+            None => None,
+            Some(text) => Some(ImposedMotion {
+                cap_area: positive(&text.cap_area, "imposed_motion.cap_area", "m2")?,
+                rod_area: positive(&text.rod_area, "imposed_motion.rod_area", "m2")?,
+            }),
+        };
         let stroke = positive(&self.stroke, "stroke", "m")?;
         for end in [-stroke / 2.0, stroke / 2.0] {
             if !linkage.joint(end).is_finite() {
@@ -177,7 +201,7 @@ impl CylinderText {
                 });
             }
         }
-        Ok(Cylinder { name: self.name.clone(), linkage, stroke, chambers })
+        Ok(Cylinder { name: self.name.clone(), linkage, stroke, chambers, imposed_motion })
     }
 
     fn of(cylinder: &Cylinder) -> Self {
@@ -199,6 +223,10 @@ impl CylinderText {
                 cap_dead_volume: Quantity::new(chambers.cap_dead_volume, "m3"),
                 rod_dead_volume: Quantity::new(chambers.rod_dead_volume, "m3"),
                 maximum_orifice_area: Quantity::new(chambers.maximum_orifice_area, "m2"),
+            }),
+            imposed_motion: cylinder.imposed_motion.map(|imposed| ImposedMotionText {
+                cap_area: Quantity::new(imposed.cap_area, "m2"),
+                rod_area: Quantity::new(imposed.rod_area, "m2"),
             }),
         }
     }

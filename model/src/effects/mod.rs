@@ -29,6 +29,7 @@ mod internal_leakage;
 mod load_check_valve;
 mod oil_compressibility;
 mod open_centre_bypass;
+mod opening_scale;
 mod orifice_flow;
 mod payload;
 mod pressure_dependent_friction;
@@ -81,6 +82,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &relief_valve::ReliefValve,
     &pump_leakage::PumpLeakage,
     &bypass_overlap::BypassOverlap,
+    &opening_scale::OpeningScale,
     &pressure_sensor_offset::PressureSensorOffset,
     &displacement_sensor_offset::DisplacementSensorOffset,
     &sensor_delay::SensorDelay,
@@ -129,6 +131,11 @@ pub fn needs_chambers(effect: &dyn Effect) -> bool {
         return false;
     }
     effect.card().acts_on != ActsOn::Cylinder || OIL_EFFECTS.contains(&name)
+}
+
+/// Whether an effect of oil needs pressures but no flows, so that measured pressures do.
+pub(crate) fn needs_pressures_only(effect: &dyn Effect) -> bool {
+    effect.card().name == "pressure_dependent_friction"
 }
 
 /// Effects that act on cylinders, but only on their oil.

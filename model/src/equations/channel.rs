@@ -19,6 +19,8 @@ pub enum Channel {
     CapPressure(usize),
     /// Rod side pressure, Pa.
     RodPressure(usize),
+    /// Force on the rod, N; an output only where the motion is imposed.
+    RodForce(usize),
     /// Pump pressure, Pa.
     PumpPressure,
 }
@@ -33,6 +35,7 @@ impl Channel {
             if layout.chambers {
                 channels.extend([Channel::CapPressure(cylinder), Channel::RodPressure(cylinder)]);
             }
+            channels.extend(layout.rod_forces.map(|_| Channel::RodForce(cylinder)));
         }
         channels.extend(layout.pump.map(|_| Channel::PumpPressure));
         channels
@@ -49,6 +52,7 @@ impl Channel {
             Channel::Velocity(cylinder) => of(cylinder, "velocity"),
             Channel::CapPressure(cylinder) => of(cylinder, "cap_pressure"),
             Channel::RodPressure(cylinder) => of(cylinder, "rod_pressure"),
+            Channel::RodForce(cylinder) => of(cylinder, "rod_force"),
             Channel::PumpPressure => "pump_pressure".to_string(),
         }
     }
@@ -61,6 +65,7 @@ impl Channel {
             Channel::Velocity(cylinder) => (cylinder, |signals| &mut signals.velocity),
             Channel::CapPressure(cylinder) => (cylinder, |signals| &mut signals.cap_pressure),
             Channel::RodPressure(cylinder) => (cylinder, |signals| &mut signals.rod_pressure),
+            Channel::RodForce(cylinder) => (cylinder, |signals| &mut signals.rod_force),
             Channel::PumpPressure => return Some(&mut recording.pump_pressure),
         };
         let name = &machine.cylinders.get(cylinder)?.name;
@@ -78,6 +83,7 @@ impl Channel {
             Channel::Velocity(c) => linkage(c).lever(state[layout.joint(c)]) * state[layout.rate(c)],
             Channel::CapPressure(c) => at(layout.cap_pressure(c)),
             Channel::RodPressure(c) => at(layout.rod_pressure(c)),
+            Channel::RodForce(c) => at(layout.rod_force(c)),
             Channel::PumpPressure => at(layout.pump),
         }
     }
@@ -101,6 +107,7 @@ impl Channel {
             }
             Channel::CapPressure(c) => single(layout.cap_pressure(c)),
             Channel::RodPressure(c) => single(layout.rod_pressure(c)),
+            Channel::RodForce(c) => single(layout.rod_force(c)),
             Channel::PumpPressure => single(layout.pump),
         }
     }

@@ -2,6 +2,34 @@
 
 use crate::scalar::{Dual, Scalar, constant};
 
+/// Motion and pressures imposed on one cylinder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImposedState<T> {
+    /// Joint coordinate q, rad (m for a linear load).
+    pub joint: T,
+    /// Its rate, rad/s (m/s).
+    pub rate: T,
+    /// Its acceleration, rad/s² (m/s²).
+    pub acceleration: T,
+    /// Cap side pressure p+, Pa.
+    pub cap_pressure: T,
+    /// Rod side pressure p-, Pa.
+    pub rod_pressure: T,
+}
+
+impl<T> ImposedState<T> {
+    /// What `of` makes of each.
+    pub fn each<U>(&self, of: impl Fn(&T) -> U) -> ImposedState<U> {
+        ImposedState {
+            joint: of(&self.joint),
+            rate: of(&self.rate),
+            acceleration: of(&self.acceleration),
+            cap_pressure: of(&self.cap_pressure),
+            rod_pressure: of(&self.rod_pressure),
+        }
+    }
+}
+
 /// Inputs of the model at one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inputs<T> {
@@ -9,8 +37,11 @@ pub struct Inputs<T> {
     pub time: T,
     /// Spool opening per cylinder: measured orifice area, or the commanded one where no spool sensor exists, m².
     pub orifice_area: Vec<T>,
-    /// Force measured on the rod, per cylinder, N; used only by cylinders without chambers.
+    /// Force that drives the piston, per cylinder, N; used only by cylinders without chambers. Measured on the rod, and
+    /// where the motion is imposed with the force of the measured pressures.
     pub rod_force: Vec<T>,
+    /// What is imposed on each cylinder; used only where the motion is.
+    pub imposed: Vec<ImposedState<T>>,
     /// Supply pressure in Pa; used only where the pump line is not a state.
     pub supply_pressure: T,
     /// Tank pressure pt, Pa.
@@ -27,6 +58,16 @@ impl<T: Scalar> Inputs<T> {
             time: zero,
             orifice_area: vec![zero; cylinders],
             rod_force: vec![zero; cylinders],
+            imposed: vec![
+                ImposedState {
+                    joint: zero,
+                    rate: zero,
+                    acceleration: zero,
+                    cap_pressure: zero,
+                    rod_pressure: zero
+                };
+                cylinders
+            ],
             supply_pressure: zero,
             tank_pressure: zero,
             pump_flow: zero,
@@ -38,6 +79,7 @@ impl<T: Scalar> Inputs<T> {
         self.time = other.time;
         self.orifice_area.copy_from_slice(&other.orifice_area);
         self.rod_force.copy_from_slice(&other.rod_force);
+        self.imposed.copy_from_slice(&other.imposed);
         self.supply_pressure = other.supply_pressure;
         self.tank_pressure = other.tank_pressure;
         self.pump_flow = other.pump_flow;
@@ -53,6 +95,9 @@ impl Inputs<Dual> {
         }
         for (slot, &value) in self.rod_force.iter_mut().zip(&plain.rod_force) {
             *slot = constant(value);
+        }
+        for (slot, plain) in self.imposed.iter_mut().zip(&plain.imposed) {
+            *slot = plain.each(|&value| constant(value));
         }
         self.supply_pressure = constant(plain.supply_pressure);
         self.tank_pressure = constant(plain.tank_pressure);

@@ -32,15 +32,15 @@ impl<T: Scalar> Distortion<T> {
 /// All instruments of a machine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Instruments<T> {
-    /// Per cylinder: joint angle, displacement, velocity, cap pressure, rod pressure.
-    cylinders: Vec<[Distortion<T>; 5]>,
+    /// Per cylinder: joint angle, displacement, velocity, cap pressure, rod pressure, rod force.
+    cylinders: Vec<[Distortion<T>; 6]>,
     pump_pressure: Distortion<T>,
 }
 
 impl<T: Scalar> Instruments<T> {
     /// Instruments of `cylinders` cylinders that report what is.
     pub fn true_ones(cylinders: usize) -> Self {
-        Instruments { cylinders: vec![[Distortion::none(); 5]; cylinders], pump_pressure: Distortion::none() }
+        Instruments { cylinders: vec![[Distortion::none(); 6]; cylinders], pump_pressure: Distortion::none() }
     }
 
     /// What the instrument of a channel does.
@@ -73,6 +73,7 @@ fn place(channel: Channel) -> Option<(usize, usize)> {
         Channel::Velocity(cylinder) => Some((cylinder, 2)),
         Channel::CapPressure(cylinder) => Some((cylinder, 3)),
         Channel::RodPressure(cylinder) => Some((cylinder, 4)),
+        Channel::RodForce(cylinder) => Some((cylinder, 5)),
         Channel::PumpPressure => None,
     }
 }

@@ -4,7 +4,7 @@ use crate::Model;
 use crate::machine::Supply;
 
 /// Order of the state vector: joint coordinates q, joint rates, cap and rod pressure of each cylinder, pump pressure,
-/// states of effects.
+/// force on the rod of each cylinder whose motion is imposed, states of effects.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Layout {
     /// Number of joints, which is also the number of cylinders.
@@ -13,6 +13,8 @@ pub struct Layout {
     pub chambers: bool,
     /// Index of the pump pressure.
     pub pump: Option<usize>,
+    /// Index of the first cylinder's rod force, where motions are imposed.
+    pub rod_forces: Option<usize>,
     /// First state of each effect of the model, in the model's order, and how many it has.
     pub effect_states: Vec<(usize, usize)>,
     /// Number of states.
@@ -27,13 +29,15 @@ impl Layout {
         let mut len = 2 * joints + if chambers { 2 * joints } else { 0 };
         let pump = matches!(model.machine.supply, Supply::PumpLine(_)).then_some(len);
         len += usize::from(pump.is_some());
+        let rod_forces = model.machine.has_imposed_motion().then_some(len);
+        len += if rod_forces.is_some() { joints } else { 0 };
         let mut effect_states = Vec::with_capacity(model.effects.len());
         for effect in &model.effects {
             let states = effect.physics.states();
             effect_states.push((len, states));
             len += states;
         }
-        Layout { joints, chambers, pump, effect_states, len }
+        Layout { joints, chambers, pump, rod_forces, effect_states, len }
     }
 
     /// Index of the joint coordinate q.
@@ -49,6 +53,11 @@ impl Layout {
     /// Index of the cap side pressure; `None` without chambers.
     pub fn cap_pressure(&self, cylinder: usize) -> Option<usize> {
         self.chambers.then_some(2 * self.joints + 2 * cylinder)
+    }
+
+    /// Index of the force on the rod; `None` unless the motion is imposed.
+    pub fn rod_force(&self, cylinder: usize) -> Option<usize> {
+        self.rod_forces.map(|first| first + cylinder)
     }
 
     /// Index of the rod side pressure; `None` without chambers.

@@ -10,7 +10,7 @@ pub mod smooth;
 mod system;
 
 pub use channel::Channel;
-pub use inputs::Inputs;
+pub use inputs::{ImposedState, Inputs};
 pub use instruments::{Distortion, Instruments};
 pub use layout::Layout;
 pub use rows::Rows;

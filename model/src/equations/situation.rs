@@ -17,7 +17,7 @@ pub struct Piston<T> {
     pub velocity: T,
     /// Lever G = ds/dq, m.
     pub lever: T,
-    /// Cap side pressure p+, Pa; zero without chambers.
+    /// Cap side pressure p+, Pa; zero without chambers, unless the motion is imposed.
     pub cap_pressure: T,
     /// Rod side pressure p-, Pa.
     pub rod_pressure: T,
@@ -33,7 +33,8 @@ pub struct Piston<T> {
     pub bypass_closing: T,
     /// Share of a flow back from the chamber to the pump that passes the valve section: 1 without a check valve.
     pub backflow: T,
-    /// Force measured on the rod, N; drives a cylinder without chambers.
+    /// Force that drives a cylinder without chambers, N: measured on the rod, and with the pressures' where the motion is
+    /// imposed.
     pub rod_force: T,
 }
 

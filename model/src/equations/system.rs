@@ -100,7 +100,11 @@ impl<'m> System<'m> {
                 &mut workspace.rows,
             );
         }
-        self.assemble(workspace, rates);
+        if self.layout.rod_forces.is_some() {
+            self.assemble_rod_forces(workspace, state, rates);
+        } else {
+            self.assemble(workspace, rates);
+        }
     }
 
     /// Fills the situation: kinematics, pressures, and the spool after the effects that act on it, whose state rates
@@ -134,6 +138,14 @@ impl<'m> System<'m> {
                 }
                 piston.cap_volume = chambers.cap_volume(cylinder.stroke, piston.displacement);
                 piston.rod_volume = chambers.rod_volume(cylinder.stroke, piston.displacement);
+            }
+            if cylinder.imposed_motion.is_some() {
+                // The states run along with what is imposed; a state set elsewhere returns to it.
+                let imposed = &inputs.imposed[index];
+                piston.cap_pressure = imposed.cap_pressure;
+                piston.rod_pressure = imposed.rod_pressure;
+                rates[layout.joint(index)] = imposed.rate + (imposed.joint - piston.joint) / TRACKING;
+                rates[layout.rate(index)] = imposed.acceleration + (imposed.rate - piston.rate) / TRACKING;
             }
             piston.spool = inputs.orifice_area[index];
         }
@@ -221,7 +233,32 @@ impl<'m> System<'m> {
             rates[pump] = rows.pump_flow / rows.pump_compliance;
         }
     }
+
+    /// The force that each imposed motion takes: inertia, less what effects and pressures do.
+    fn assemble_rod_forces<T: Number>(&self, workspace: &Workspace<'m, T>, state: &[T], rates: &mut [T]) {
+        let layout = &self.layout;
+        let Workspace { situation, rows, .. } = workspace;
+        let joints = layout.joints;
+        for (index, piston) in situation.pistons.iter().enumerate() {
+            let (Some(force), Some(imposed)) =
+                (layout.rod_force(index), situation.machine.cylinders[index].imposed_motion)
+            else {
+                continue;
+            };
+            let mut torque = -rows.torque[index];
+            for other in 0..joints {
+                torque += rows.mass[index * joints + other] * rates[layout.rate(other)];
+            }
+            let pushed = imposed.pressure_force(piston.cap_pressure, piston.rod_pressure);
+            let needed = torque / piston.lever - rows.piston_force[index] - pushed;
+            rates[force] = (needed - state[force]) / TRACKING;
+        }
+    }
 }
+
+/// How fast the states of an imposed motion return to it and a force sensor follows, s: shorter than the sample intervals
+/// of recordings, so that nothing is smoothed that was measured.
+const TRACKING: f64 = 2e-3;
 
 /// Solves the small symmetric positive definite system `matrix x = right` in place by elimination without pivoting,
 /// which is stable for positive definite matrices. Written here because it runs on dual numbers, a few entries each.

@@ -14,6 +14,24 @@ pub struct Cylinder {
     pub stroke: f64,
     /// Oil chambers; `None` for a drive whose force is measured instead.
     pub chambers: Option<Chambers>,
+    /// The rod is moved from outside, whatever force that takes; only without chambers.
+    pub imposed_motion: Option<ImposedMotion>,
+}
+
+/// A rod that a testing machine moves: displacement and chamber pressures are inputs, the force on the rod is the output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImposedMotion {
+    /// Piston area on the cap side A+, m².
+    pub cap_area: f64,
+    /// Piston area on the rod side A-, m².
+    pub rod_area: f64,
+}
+
+impl ImposedMotion {
+    /// Force of both pressures on the piston, N.
+    pub fn pressure_force<T: Scalar>(&self, cap_pressure: T, rod_pressure: T) -> T {
+        cap_pressure * self.cap_area - rod_pressure * self.rod_area
+    }
 }
 
 /// Known constants of the two oil chambers and of the valve section that feeds them.

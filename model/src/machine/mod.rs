@@ -5,7 +5,7 @@ mod linkage;
 mod mechanism;
 mod supply;
 
-pub use cylinder::{Chambers, Cylinder};
+pub use cylinder::{Chambers, Cylinder, ImposedMotion};
 pub use linkage::Linkage;
 pub use mechanism::Mechanism;
 pub use supply::{PressureSource, PumpLine, Supply};
@@ -36,5 +36,10 @@ impl Machine {
     /// Whether the cylinders have chambers; a machine without is driven by a measured force.
     pub fn has_chambers(&self) -> bool {
         self.cylinders.iter().any(|cylinder| cylinder.chambers.is_some())
+    }
+
+    /// Whether the rods are moved from outside, and the forces on them are the outputs.
+    pub fn has_imposed_motion(&self) -> bool {
+        self.cylinders.iter().any(|cylinder| cylinder.imposed_motion.is_some())
     }
 }

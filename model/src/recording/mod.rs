@@ -67,6 +67,20 @@ impl Recording {
         }
     }
 
+    /// The samples from `from` to `to`, s after the first; the first of them is time 0 of the part.
+    pub fn part(&self, from: f64, to: f64) -> Self {
+        let (first, last) = (self.time.partition_point(|&t| t < from), self.time.partition_point(|&t| t <= to));
+        let mut part = self.clone();
+        for column in part.columns_mut() {
+            column.truncate(last);
+            column.drain(..first.min(last));
+        }
+        let start = part.time.first().copied().unwrap_or(0.0);
+        part.time.iter_mut().for_each(|t| *t -= start);
+        part.start_nanoseconds += (start * 1e9).round() as i64;
+        part
+    }
+
     /// The clock and every signal, to change all of them sample by sample in the same way.
     pub fn columns_mut(&mut self) -> Vec<&mut Vec<f64>> {
         let own = [

@@ -1,6 +1,6 @@
 //! The state at which a simulation starts, from what was measured there.
 
-use crate::equations::{Channel, Distortion, Layout, System};
+use crate::equations::{Channel, Distortion, Inputs, Layout, System};
 use crate::recording::Recording;
 use crate::{Model, SignalError};
 
@@ -10,7 +10,7 @@ const WINDOW: f64 = 0.02;
 
 /// State of `model` at sample `index` of a recording. Positions and pressures come from straight lines through the
 /// samples within 0.02 s after it, velocity is the slope of the displacement's line (\[A\] Section 4.1: "estimated by just
-/// first order differentiation") unless it is measured. Pressures that nobody measures start at tank pressure. `spool`
+/// first order differentiation") unless it is measured. Pressures that nobody measures start where forces balance. `spool`
 /// gives the valve openings at the sample, m². What the model's sensor effects add to measurements is taken away.
 ///
 /// # Errors
@@ -29,6 +29,7 @@ pub fn initial_state(
         start_line(&recording.time, signal, index, delay).map(|(value, slope)| (value - offset, slope))
     };
     let mut state = vec![0.0; layout.len];
+    let mut unmeasured = Vec::new();
     for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
         let signals = recording.cylinder(&cylinder.name)?;
         let missing = |reason: &str| SignalError::NoInitialState {
@@ -56,8 +57,19 @@ pub fn initial_state(
         state[layout.rate(number)] = rate;
         if let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) {
             let at_start = |channel, signal: &[f64]| line(channel, signal).map(|(value, _)| value);
-            state[cap] = at_start(Channel::CapPressure(number), &signals.cap_pressure).unwrap_or(tank_pressure);
-            state[rod] = at_start(Channel::RodPressure(number), &signals.rod_pressure).unwrap_or(tank_pressure);
+            let cap_measured = at_start(Channel::CapPressure(number), &signals.cap_pressure);
+            let rod_measured = at_start(Channel::RodPressure(number), &signals.rod_pressure);
+            state[cap] = cap_measured.unwrap_or(tank_pressure);
+            state[rod] = rod_measured.unwrap_or(tank_pressure);
+            unmeasured.push([cap_measured.is_none(), rod_measured.is_none()]);
+        } else {
+            unmeasured.push([false; 2]);
+        }
+    }
+    for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
+        if let Some(force) = layout.rod_force(number) {
+            let measured = line(Channel::RodForce(number), &recording.cylinder(&cylinder.name)?.rod_force);
+            state[force] = measured.map_or(0.0, |(value, _)| value);
         }
     }
     if let Some(pump) = layout.pump {
@@ -69,7 +81,37 @@ pub fn initial_state(
             state[first..first + states].fill(spool.get(number).copied().unwrap_or(0.0));
         }
     }
+    if unmeasured.iter().any(|sides| sides[0] || sides[1]) {
+        balance(system, spool, tank_pressure, &unmeasured, &mut state);
+    }
     Ok(state)
+}
+
+/// Sets pressures that nobody measures so that the forces on the piston balance, as far as pressures above tank can: where
+/// both sides of a cylinder are unmeasured, the one that has to push has more than tank pressure.
+fn balance(system: &System<'_>, spool: &[f64], tank_pressure: f64, unmeasured: &[[bool; 2]], state: &mut [f64]) {
+    let (model, layout) = (system.model(), system.layout());
+    let mut inputs = Inputs::<f64>::zero(layout.joints);
+    inputs.tank_pressure = tank_pressure;
+    for (slot, &area) in inputs.orifice_area.iter_mut().zip(spool) {
+        *slot = area;
+    }
+    let mut workspace = system.workspace::<f64>();
+    let mut rates = vec![0.0; layout.len];
+    system.rates(&mut workspace, &model.parameter_values(), state, &inputs, &mut rates);
+    for (number, &[no_cap, no_rod]) in unmeasured.iter().enumerate() {
+        let Some(chambers) = model.machine.cylinders[number].chambers else { continue };
+        let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) else { continue };
+        let piston = &workspace.situation.pistons[number];
+        let load = workspace.rows.torque[number] / piston.lever + workspace.rows.piston_force[number];
+        let cap_needed = (state[rod] * chambers.rod_area - load) / chambers.cap_area;
+        let rod_needed = (state[cap] * chambers.cap_area + load) / chambers.rod_area;
+        if no_cap && cap_needed.is_finite() && cap_needed > tank_pressure {
+            state[cap] = cap_needed;
+        } else if no_rod && rod_needed.is_finite() && rod_needed > tank_pressure {
+            state[rod] = rod_needed;
+        }
+    }
 }
 
 /// Value and slope of a signal that is `delay` s late, at sample `index`: of the straight line through the values that

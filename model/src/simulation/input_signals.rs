@@ -1,8 +1,9 @@
 //! The inputs of a simulation as functions of time.
 
 use super::coarse_inputs::{interval_means, nearest_lines};
+use super::imposed_motion::imposed_signals;
 use super::spool_estimate::spool_estimate;
-use crate::equations::Inputs;
+use crate::equations::{ImposedState, Inputs};
 use crate::machine::{Machine, Supply};
 use crate::recording::{CylinderSignals, Recording, is_measured};
 use crate::{Model, SignalError};
@@ -32,6 +33,7 @@ pub struct InputSignals {
     pub time: Vec<f64>,
     orifice_area: Vec<(Interpolation, Vec<f64>)>,
     rod_force: Vec<Vec<f64>>,
+    imposed: Vec<Option<ImposedState<Vec<f64>>>>,
     supply_pressure: Vec<f64>,
     tank_pressure: Vec<f64>,
     pump_flow: Vec<f64>,
@@ -53,6 +55,7 @@ impl InputSignals {
         let samples = recording.len();
         let mut orifice_area = Vec::new();
         let mut rod_force = Vec::new();
+        let mut imposed = Vec::new();
         for cylinder in &machine.cylinders {
             let signals = recording.cylinder(&cylinder.name)?;
             if cylinder.chambers.is_some() {
@@ -60,9 +63,19 @@ impl InputSignals {
                     .ok_or_else(|| missing(format!("{}.orifice_area (nor a command)", cylinder.name)))?;
                 orifice_area.push(area);
                 rod_force.push(vec![0.0; samples]);
+                imposed.push(None);
             } else {
-                let force = without_holes(&recording.time, &signals.rod_force)
+                let mut force = without_holes(&recording.time, &signals.rod_force)
                     .ok_or_else(|| missing(format!("{}.rod_force", cylinder.name)))?;
+                let motion = cylinder.imposed_motion.map(|constants| {
+                    let motion = imposed_signals(cylinder, signals, &recording.time)
+                        .ok_or_else(|| missing(format!("{}.displacement", cylinder.name)))?;
+                    for ((force, &cap), &rod) in force.iter_mut().zip(&motion.cap_pressure).zip(&motion.rod_pressure) {
+                        *force += constants.pressure_force(cap, rod);
+                    }
+                    Ok::<_, SignalError>(motion)
+                });
+                imposed.push(motion.transpose()?);
                 rod_force.push(force);
                 orifice_area.push((Interpolation::Linear, vec![0.0; samples]));
             }
@@ -78,6 +91,7 @@ impl InputSignals {
         Ok(InputSignals {
             orifice_area,
             rod_force,
+            imposed,
             supply_pressure,
             tank_pressure: smoothed(&or_constant(&recording.tank_pressure, default_tank)),
             pump_flow: or_constant(&recording.pump_flow, default_flow),
@@ -97,6 +111,11 @@ impl InputSignals {
             time: self.time.iter().copied().step_by(stride).collect(),
             orifice_area: self.orifice_area.iter().map(thin).collect(),
             rod_force: self.rod_force.iter().map(|values| lines(values)).collect(),
+            imposed: self
+                .imposed
+                .iter()
+                .map(|motion| motion.as_ref().map(|motion| motion.each(|v| lines(v))))
+                .collect(),
             supply_pressure: lines(&self.supply_pressure),
             tank_pressure: lines(&self.tank_pressure),
             pump_flow: lines(&self.pump_flow),
@@ -167,6 +186,11 @@ impl InputSignals {
         }
         for (slot, values) in inputs.rod_force.iter_mut().zip(&self.rod_force) {
             *slot = line(values);
+        }
+        for (slot, motion) in inputs.imposed.iter_mut().zip(&self.imposed) {
+            if let Some(motion) = motion {
+                *slot = motion.each(|values| line(values));
+            }
         }
         inputs.time = line(&self.time);
         inputs.supply_pressure = line(&self.supply_pressure);

@@ -2,6 +2,7 @@
 
 mod coarse_inputs;
 mod factors;
+mod imposed_motion;
 mod initial;
 mod input_signals;
 mod integrator;

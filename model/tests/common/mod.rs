@@ -245,5 +245,6 @@ pub fn good_noise(channel: Channel) -> f64 {
         Channel::JointAngle(_) | Channel::Displacement(_) => 5e-5,
         Channel::Velocity(_) => 1e-3,
         Channel::CapPressure(_) | Channel::RodPressure(_) | Channel::PumpPressure => 2e3,
+        Channel::RodForce(_) => 1.0,
     }
 }

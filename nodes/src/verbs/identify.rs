@@ -77,16 +77,28 @@ fn method_name(method: Method) -> &'static str {
 
 fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<Identified, VerbError> {
     let regression = match method {
-        Method::LeastSquares => least_squares(model, recordings)?,
-        Method::WeakForm | Method::OutputError => weak_form(model, recordings, &WeakFormSettings::default())?,
+        Method::LeastSquares => Some(least_squares(model, recordings)?),
+        Method::WeakForm => Some(weak_form(model, recordings, &WeakFormSettings::default())?),
+        // Where the equations lack signals the given values are the start.
+        Method::OutputError => weak_form(model, recordings, &WeakFormSettings::default()).ok(),
     };
-    let mut result = Identified {
-        model: regression.model,
-        fitted: regression.fitted,
-        conditions: regression.condition_numbers,
-        rows: regression.rows,
-        equations: regression.equations,
-        not_identified: regression.not_identified,
+    let mut result = match regression {
+        Some(regression) => Identified {
+            model: regression.model,
+            fitted: regression.fitted,
+            conditions: regression.condition_numbers,
+            rows: regression.rows,
+            equations: regression.equations,
+            not_identified: regression.not_identified,
+        },
+        None => Identified {
+            model: model.clone(),
+            fitted: Vec::new(),
+            conditions: Vec::new(),
+            rows: 0,
+            equations: Vec::new(),
+            not_identified: Vec::new(),
+        },
     };
     if method == Method::OutputError {
         let settings = FitSettings { sample_rate: f64::INFINITY, ..FitSettings::default() };

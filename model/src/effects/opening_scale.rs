@@ -1,0 +1,51 @@
+//! A full opening that is not what was assumed.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Machine;
+
+/// A full opening that is not what was assumed.
+///
+/// Where a command is known in volts or per cent only, its scale is a guess. Flow gains take up the factor; what remains
+/// of it is the opening at which the bypass is closed.
+pub struct OpeningScale;
+
+static CARD: Card = Card {
+    name: "opening_scale",
+    acts_on: ActsOn::Valve,
+    family: Family::Candidate,
+    summary: "The bypass closes sooner or later than recorded openings say: the full scale of the command or of the spool sensor is not what was assumed.",
+    equation: "section of the bypass umax - (1 + k) |u| in place of umax - |u|; flow gains are those of the opening as recorded",
+    source: "ours: commands in volts or per cent",
+    shows: "Pump pressure at large openings is too low or too high, however the flow gains are fitted.",
+    experiment: "Trapezoids up to the full opening.",
+    energy: "Changes what the bypass loses; dissipates nothing itself.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "opening_scale",
+    symbol: "k",
+    unit: "-",
+    meaning: "relative error of the full scale: recorded openings times 1 + k are the true ones",
+    kind: Kind::Shape,
+    minimum: -0.9,
+    maximum: 4.0,
+    typical: 0.1,
+    start: Start::At(&[0.0, -0.2]),
+}];
+
+impl Physics for OpeningScale {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &mut now.pistons[cylinder];
+        piston.bypass_closing *= parameters[0] + 1.0;
+    }
+}
