@@ -6,7 +6,7 @@
 use excavator_model::recording::Recording;
 
 use super::race::{Race, Round};
-use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, is_adequate};
+use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, is_adequate, is_adequate_as_given};
 use crate::fit::Fit;
 
 /// A gain below this part of the best one's is no other way to begin.
@@ -51,8 +51,10 @@ impl Chains<'_> {
     /// Whether a chain of effects explains the recordings: the model is adequate with them, or so much better and good
     /// enough.
     pub fn explains(&self, chain: &[Candidate]) -> bool {
-        let last = chain.last().map_or(self.nominal_validation, |last| &last.validation);
         let settings = self.settings;
+        let Some(last) = chain.last().map(|last| &last.validation) else {
+            return is_adequate_as_given(self.nominal_validation, self.validation, settings);
+        };
         is_adequate(last, self.validation, settings)
             || last.typical_loss() <= settings.explained_loss
                 && last.loss() <= (1.0 - settings.explained_share) * self.nominal_validation.loss()
@@ -82,7 +84,11 @@ impl Chains<'_> {
         let settings = self.settings;
         let (base, base_validation) =
             chain.last().map_or((self.nominal, self.nominal_validation), |last| (&last.fit, &last.validation));
-        let adequate = is_adequate(base_validation, self.validation, settings);
+        let adequate = if chain.is_empty() {
+            is_adequate_as_given(base_validation, self.validation, settings)
+        } else {
+            is_adequate(base_validation, self.validation, settings)
+        };
         let least_gain = if adequate { settings.least_gain_when_adequate } else { settings.least_gain };
         let race = Race {
             base,

@@ -155,11 +155,15 @@ pub(crate) fn fit_nominal(
 /// Loss above which a fit may have ended in the wrong valley: thirty times the sensors' noise.
 const LOST: f64 = 7.0;
 
-/// Whether what is left is noise but for a few moments, or too small to act on, or as large as inputs known at samples
-/// only leave open.
+/// Whether what is left is noise but for a few moments, or too small to act on.
 pub(super) fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
-    fit.typical_loss() <= settings.adequate_loss
-        || normalised_error(fit, recordings) <= settings.adequate_error
+    fit.typical_loss() <= settings.adequate_loss || normalised_error(fit, recordings) <= settings.adequate_error
+}
+
+/// The same, or what is left is no larger than inputs known at samples only leave open. For a model as it is given; a
+/// name for what is missing asks for more.
+pub(super) fn is_adequate_as_given(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
+    is_adequate(fit, recordings, settings)
         || with_input_floor(fit, recordings, &settings.fit)
             .is_some_and(|raised| raised.typical_loss() <= settings.adequate_loss)
 }
