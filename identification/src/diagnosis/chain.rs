@@ -6,7 +6,7 @@
 use excavator_model::recording::Recording;
 
 use super::race::{Race, Round};
-use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, is_adequate, is_adequate_as_given};
+use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, is_adequate};
 use crate::fit::Fit;
 
 /// A gain below this part of the best one's is no other way to begin.
@@ -18,6 +18,8 @@ pub(super) struct Chains<'a> {
     pub nominal: &'a Fit,
     /// The same on the validation recordings.
     pub nominal_validation: &'a Fit,
+    /// Whether that is adequate as it is.
+    pub nominal_is_adequate: bool,
     /// Recordings that are fitted.
     pub identification: &'a [&'a Recording],
     /// Recordings that evidence is taken from.
@@ -53,7 +55,7 @@ impl Chains<'_> {
     pub fn explains(&self, chain: &[Candidate]) -> bool {
         let settings = self.settings;
         let Some(last) = chain.last().map(|last| &last.validation) else {
-            return is_adequate_as_given(self.nominal_validation, self.validation, settings);
+            return self.nominal_is_adequate;
         };
         is_adequate(last, self.validation, settings)
             || last.typical_loss() <= settings.explained_loss
@@ -82,12 +84,9 @@ impl Chains<'_> {
     /// All additions to a chain.
     fn round(&self, chain: &[Candidate], progress: &(dyn Fn(&str, f64) + Sync)) -> Result<Round, DiagnosisError> {
         let settings = self.settings;
-        let (base, base_validation) =
-            chain.last().map_or((self.nominal, self.nominal_validation), |last| (&last.fit, &last.validation));
-        let adequate = if chain.is_empty() {
-            is_adequate_as_given(base_validation, self.validation, settings)
-        } else {
-            is_adequate(base_validation, self.validation, settings)
+        let (base, base_validation, adequate) = match chain.last() {
+            Some(last) => (&last.fit, &last.validation, is_adequate(&last.validation, self.validation, settings)),
+            None => (self.nominal, self.nominal_validation, self.nominal_is_adequate),
         };
         let least_gain = if adequate { settings.least_gain_when_adequate } else { settings.least_gain };
         let race = Race {

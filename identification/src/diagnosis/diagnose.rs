@@ -94,8 +94,14 @@ pub fn diagnose(
     progress("where the model fails", 0.1);
     let map = residual_map(&nominal.model, validation)?;
 
-    let chains =
-        Chains { nominal: &nominal, nominal_validation: &nominal_validation, identification, validation, settings };
+    let chains = Chains {
+        nominal: &nominal,
+        nominal_validation: &nominal_validation,
+        nominal_is_adequate: is_adequate_as_given(&nominal_validation, validation, settings),
+        identification,
+        validation,
+        settings,
+    };
     let (chain, first_round) = chains.best(progress)?;
     let explained = chains.explains(&chain);
     let Round { fitted, unpromising, failed } = first_round;
@@ -162,7 +168,7 @@ pub(super) fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &Diagn
 
 /// The same, or what is left is no larger than inputs known at samples only leave open. For a model as it is given; a
 /// name for what is missing asks for more.
-pub(super) fn is_adequate_as_given(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
+fn is_adequate_as_given(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
     is_adequate(fit, recordings, settings)
         || with_input_floor(fit, recordings, &settings.fit)
             .is_some_and(|raised| raised.typical_loss() <= settings.adequate_loss)

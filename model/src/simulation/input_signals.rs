@@ -153,7 +153,8 @@ impl InputSignals {
     }
 
     /// Whether all inputs run straight from sample `first` to sample `last`: lines within a small part of what good
-    /// sensors resolve, held ones without any change.
+    /// sensors resolve, held ones without any change. An imposed motion never counts as straight: its acceleration is felt
+    /// as a force, so every sample of it matters.
     pub fn is_straight(&self, first: usize, last: usize) -> bool {
         let (start, duration) = (self.time[first], self.time[last] - self.time[first]);
         let near_line = |values: &[f64], most: f64| {
@@ -165,7 +166,8 @@ impl InputSignals {
             // Another edge of the valve opens where the sign changes.
             Interpolation::Linear => near_line(values, STRAIGHT_AREA) && !changes_sign(&values[first..=last]),
             Interpolation::Hold => values[first + 1..last].iter().all(|&value| value == values[first]),
-        }) && self.rod_force.iter().all(|values| near_line(values, STRAIGHT_FORCE))
+        }) && self.imposed.iter().all(Option::is_none)
+            && self.rod_force.iter().all(|values| near_line(values, STRAIGHT_FORCE))
             && near_line(&self.supply_pressure, STRAIGHT_PRESSURE)
             && near_line(&self.tank_pressure, STRAIGHT_PRESSURE)
             && near_line(&self.pump_flow, STRAIGHT_FLOW)
