@@ -38,14 +38,14 @@ impl Candidate {
     }
 }
 
-/// An effect that was not worth a fit.
+/// An effect that was not worth a fit to the end.
 #[derive(Debug, Clone)]
 pub struct Unpromising {
     /// The effect.
     pub physics: &'static dyn Effect,
     /// Name of the place: a cylinder, or "pump".
     pub place: String,
-    /// Fall of the loss on the identification recordings that a step of the fit promises.
+    /// Fall of the loss on the identification recordings that its first step promised, or its first steps brought.
     pub promised_gain: f64,
 }
 

@@ -45,9 +45,9 @@ pub struct Diagnosis {
     pub nominal_validation: Fit,
     /// Candidates with evidence, best first.
     pub candidates: Vec<Candidate>,
-    /// Candidates that were tried and have none, with what they gained, best first.
+    /// Candidates that were fitted to the end and have none, with what they gained, best first.
     pub rejected: Vec<Candidate>,
-    /// Effects not worth a fit, with what a step of one promised, best first.
+    /// Effects not worth a fit to the end, with what its beginning gained or promised, best first.
     pub unpromising: Vec<Unpromising>,
     /// Candidates that could not be fitted, with the reason.
     pub failed: Vec<(String, CandidateError)>,

@@ -29,9 +29,20 @@ pub(super) struct Round {
 
 /// How an effect left the race.
 enum Outcome {
-    Fitted(Box<Candidate>),
+    Ran(Box<Runner>),
     Unpromising(Unpromising),
     Failed(CandidateError),
+}
+
+/// A candidate that ran the race.
+struct Runner {
+    physics: &'static dyn Effect,
+    site: Site,
+    place: String,
+    /// After the race's steps.
+    fit: Fit,
+    /// Fall of the loss on the identification recordings in those.
+    gain: f64,
 }
 
 /// Losses that differ by less belong to models that behave alike.
@@ -83,38 +94,38 @@ impl Race<'_> {
             })
             .collect();
         let mut round = Round::default();
-        let mut tried = Vec::new();
+        let mut runners = Vec::new();
         for (name, outcome) in outcomes {
             match outcome {
-                Outcome::Fitted(candidate) => tried.push(*candidate),
+                Outcome::Ran(runner) => runners.push(*runner),
                 Outcome::Unpromising(effect) => round.unpromising.push(effect),
                 Outcome::Failed(error) => round.failed.push((name, error)),
             }
         }
-        round.unpromising.sort_by(|a, b| b.promised_gain.total_cmp(&a.promised_gain));
-        tried.sort_by(|a, b| b.identification_gain.total_cmp(&a.identification_gain));
-        let best = tried.first().map_or(0.0, |candidate| candidate.identification_gain);
-        let finalist = |(position, candidate): (usize, &Candidate)| {
-            candidate.identification_gain >= self.least_gain / 4.0
-                && (position < self.settings.finalists
-                    || best - candidate.identification_gain < self.settings.finalist_margin)
+        runners.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let best = runners.first().map_or(0.0, |runner| runner.gain);
+        let finalist = |(position, runner): (usize, &Runner)| {
+            runner.gain >= self.least_gain / 4.0
+                && (position < self.settings.finalists || best - runner.gain < self.settings.finalist_margin)
         };
-        let finalists = tried.iter().enumerate().filter(|&entry| finalist(entry)).count();
-        let mut others = tried.split_off(finalists);
-        self.to_the_end(tried, &mut round, &advance);
+        let finalists = runners.iter().enumerate().filter(|&entry| finalist(entry)).count();
+        let mut others = runners.split_off(finalists);
+        self.to_the_end(runners, &mut round, &advance);
         if self.is_at_a_loss(&round) {
             // An effect with a threshold may need a dozen steps until it gains at all: before it is said that nothing
             // explains the error, all that were still on their way get theirs.
-            let (arrived, on_their_way) = others.into_iter().partition(|candidate| candidate.fit.converged);
+            let (arrived, on_their_way) = others.into_iter().partition(|runner| runner.fit.converged);
             others = arrived;
             self.to_the_end(on_their_way, &mut round, &advance);
         }
-        for candidate in &mut others {
-            candidate.accepted = false;
-        }
+        round.unpromising.extend(others.into_iter().map(|runner| Unpromising {
+            physics: runner.physics,
+            place: runner.place,
+            promised_gain: runner.gain,
+        }));
+        round.unpromising.sort_by(|a, b| b.promised_gain.total_cmp(&a.promised_gain));
         round.fitted.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
         mark_ties(&mut round.fitted, self.settings);
-        round.fitted.extend(others);
         Ok(round)
     }
 
@@ -127,19 +138,20 @@ impl Race<'_> {
     }
 
     /// Full fits of candidates that ran the race, into `round`.
-    fn to_the_end(&self, candidates: Vec<Candidate>, round: &mut Round, advance: &(dyn Fn(&str) + Sync)) {
-        let full: Vec<Result<Candidate, CandidateError>> = candidates
-            .par_iter()
-            .map(|candidate| {
-                let fit = fit(&candidate.fit.model, self.identification, &self.settings.fit)?;
-                advance(candidate.name());
-                self.judged(candidate.physics, candidate.site, candidate.place.clone(), fit, &self.settings.fit)
+    fn to_the_end(&self, runners: Vec<Runner>, round: &mut Round, advance: &(dyn Fn(&str) + Sync)) {
+        let full: Vec<(String, Result<Candidate, CandidateError>)> = runners
+            .into_par_iter()
+            .map(|runner| {
+                let name = format!("{}@{}", runner.physics.card().name, runner.place);
+                let candidate = self.judged(runner);
+                advance(&name);
+                (name, candidate)
             })
             .collect();
-        for (result, heat) in full.into_iter().zip(candidates) {
-            match result {
+        for (name, candidate) in full {
+            match candidate {
                 Ok(candidate) => round.fitted.push(candidate),
-                Err(error) => round.failed.push((format!("{}@{}", heat.name(), heat.place), error)),
+                Err(error) => round.failed.push((name, error)),
             }
         }
     }
@@ -160,18 +172,15 @@ impl Race<'_> {
         }
         let short = FitSettings { maximum_steps: self.settings.race_steps, ..self.settings.fit };
         let fit = fit(&start.model, self.identification, &short)?;
-        self.judged(physics, site, place, fit, &short).map(|candidate| Outcome::Fitted(Box::new(candidate)))
+        let gain = compare_losses(self.base, &fit).gain;
+        Ok(Outcome::Ran(Box::new(Runner { physics, site, place, fit, gain })))
     }
 
-    /// A fitted candidate with its evidence.
-    fn judged(
-        &self,
-        physics: &'static dyn Effect,
-        site: Site,
-        place: String,
-        fit: Fit,
-        settings: &FitSettings,
-    ) -> Result<Candidate, CandidateError> {
+    /// A candidate fitted to the end, with its evidence.
+    fn judged(&self, runner: Runner) -> Result<Candidate, CandidateError> {
+        let settings = &self.settings.fit;
+        let Runner { physics, site, place, fit: start, .. } = runner;
+        let fit = fit(&start.model, self.identification, settings)?;
         let validation = match fit.model.effects.last() {
             Some(effect) if acts_in_a_window(effect) => in_its_own_window(&fit.model, self.validation, settings)?,
             _ => evaluate(&fit.model, self.validation, settings)?,

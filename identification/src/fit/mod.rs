@@ -6,6 +6,7 @@ mod normal_equations;
 mod output_error;
 mod prediction;
 mod problem;
+mod reading_rows;
 mod segments;
 mod settings;
 mod typical_loss;

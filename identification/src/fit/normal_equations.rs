@@ -4,6 +4,7 @@ use excavator_model::equations::{Channel, System};
 use excavator_model::simulation::{Integrator, Observer, Sensitivity, SimulationError, Tolerances};
 use nalgebra::{DMatrix, DVector};
 
+use super::reading_rows::ReadingRows;
 use super::{Instrument, Segment, SegmentedRecording};
 
 /// Sums over one segment, for parameters and its own initial state.
@@ -112,15 +113,19 @@ impl Shared<'_, '_> {
             .iter()
             .map(|instrument| recording.recording.signal(&instrument.name).unwrap_or(&[]))
             .collect();
-        let mut row = vec![0.0; columns];
+        let scales: Vec<f64> = self.scales.iter().copied().chain(std::iter::repeat_n(1.0, states)).collect();
+        let mut rows: Vec<ReadingRows> = self.instruments.iter().map(|_| ReadingRows::new(columns)).collect();
         let mut blocks: Vec<Vec<DVector<f64>>> = Vec::new();
         let mut block_errors: Vec<Vec<(f64, usize)>> = Vec::new();
         let start = recording.recording.time[segment.first];
         for index in segment.first..=segment.last {
             let block = ((recording.recording.time[index] - start) / BLOCK_DURATION) as usize;
-            while blocks.len() <= block {
-                blocks.push(vec![DVector::zeros(columns); self.instruments.len()]);
-                block_errors.push(vec![(0.0, 0); self.instruments.len()]);
+            if block >= blocks.len() {
+                add_rows(&mut rows, &mut information, &mut blocks);
+                while blocks.len() <= block {
+                    blocks.push(vec![DVector::zeros(columns); self.instruments.len()]);
+                    block_errors.push(vec![(0.0, 0); self.instruments.len()]);
+                }
             }
             observer.observe(&recording.inputs, index, &state, Some(&sensitivity));
             let settling = recording.recording.time[index] < start + SETTLING;
@@ -136,26 +141,17 @@ impl Shared<'_, '_> {
                 block_errors[block][number].1 += 1;
                 let weight = 1.0 / instrument.noise;
                 let slopes = observer.gradients().row(number);
-                for (column, (slot, slope)) in row.iter_mut().zip(slopes.iter()).enumerate() {
-                    let scale = if column < fitted { self.scales[column] } else { 1.0 };
-                    *slot = slope * scale * weight;
-                }
-                let scaled_error = error * weight;
-                let (gradient, information) = (&mut blocks[block][number], &mut information[number]);
-                for (column, &value) in row.iter().enumerate() {
-                    gradient[column] += value * scaled_error;
-                    for (slot, other) in information.column_mut(column).iter_mut().zip(&row).skip(column) {
-                        *slot += value * other;
-                    }
+                let scaled = slopes.iter().zip(&scales).map(|(slope, scale)| slope * scale * weight);
+                rows[number].push(scaled, error * weight);
+                if rows[number].is_full() {
+                    rows[number].add_to(&mut information[number], &mut blocks[block][number]);
                 }
             }
             if index < segment.last {
                 integrator.advance(&recording.inputs, index, &mut state, Some(&mut sensitivity))?;
             }
         }
-        for information in &mut information {
-            information.fill_upper_triangle_with_lower_triangle();
-        }
+        add_rows(&mut rows, &mut information, &mut blocks);
         let mut prior_loss = 0.0;
         let mut prior_information = DVector::zeros(states);
         let mut prior_gradient = DVector::zeros(states);
@@ -177,6 +173,14 @@ impl Shared<'_, '_> {
             block_errors,
             prior_loss,
         })
+    }
+}
+
+/// Adds what the instruments have gathered to the sums, its gradients to the last block.
+fn add_rows(rows: &mut [ReadingRows], information: &mut [DMatrix<f64>], blocks: &mut [Vec<DVector<f64>>]) {
+    let Some(block) = blocks.last_mut() else { return };
+    for ((rows, information), gradient) in rows.iter_mut().zip(information).zip(block) {
+        rows.add_to(information, gradient);
     }
 }
 

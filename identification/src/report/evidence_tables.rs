@@ -43,9 +43,9 @@ pub(super) fn evidence(diagnosis: &Diagnosis, comparisons: &[Comparison]) -> Mar
         }
         @if !diagnosis.unpromising.is_empty() {
             details {
-                summary { "Effects that promise nothing (" (diagnosis.unpromising.len()) ")" }
+                summary { "Effects left behind at the start (" (diagnosis.unpromising.len()) ")" }
                 table.data {
-                    thead { tr { th { "Effect" } th { "Where" } th.n { "Gain that one step of a fit promises" } } }
+                    thead { tr { th { "Effect" } th { "Where" } th.n { "Gain that its first steps brought or promised" } } }
                     tbody { @for effect in &diagnosis.unpromising { tr {
                         td { (words::spoken(effect.physics.card().name)) " " code.code-name { (effect.physics.card().name) } }
                         td { (effect.place) }

@@ -71,7 +71,7 @@ pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
     print(&candidate_table(&all, &diagnosis.nominal_validation, validation).to_string());
     if !diagnosis.unpromising.is_empty() {
         let names: Vec<&str> = diagnosis.unpromising.iter().map(|effect| effect.physics.card().name).collect();
-        print(&format!("Not worth a fit, one step promises nothing: {}.", names.join(", ")));
+        print(&format!("Left behind after a few steps: {}.", names.join(", ")));
     }
     for (name, error) in &diagnosis.failed {
         print(&format!("{name} could not be tried: {error}"));
