@@ -45,6 +45,6 @@ pub use error::BagError;
 pub use info::{BagInfo, EquationInfo, SignalInfo, SignalsInfo, StampTiming, Timing, TopicInfo, info};
 pub use qos::{Durability, History, Qos, Reliability};
 pub use raw_messages::{RawMessage, RawMessages, Topic};
-pub use reading::{Gap, ReadReport, read_recording, read_recording_in_blocks};
+pub use reading::{Gap, ReadReport, StateTable, read_recording, read_recording_in_blocks};
 pub use topics::Topics;
 pub use writing::{BagWriter, Compression, TopicId, TopicToWrite, WriteOptions, write_recording};

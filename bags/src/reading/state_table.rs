@@ -11,7 +11,7 @@ const NANOSECONDS_PER_SECOND: f64 = 1e9;
 
 /// The state messages read so far, in the order of the bag.
 #[derive(Debug, Default)]
-pub(super) struct StateTable {
+pub struct StateTable {
     stamps: Vec<i64>,
     cylinders: Vec<CylinderSignals>,
     pump_pressure: Vec<f64>,
@@ -81,7 +81,7 @@ impl StateTable {
         self.stamps.is_empty()
     }
 
-    /// The recording, its clock in ns since the epoch, and the counts of what had to be set right.
+    /// The recording named `source`, its clock in ns since the epoch; `report` gets the counts of what had to be set right.
     pub fn into_recording(mut self, source: &str, report: &mut ReadReport) -> (Recording, Vec<i64>) {
         report.infinite_values += self.infinite_values;
         report.repeated_cylinders = self.repeated_cylinders;

@@ -63,6 +63,10 @@ impl PlaceJudgement {
 /// twice its standard deviation over six in one of two thousand cases.
 const FEWEST: usize = 12;
 
+/// Where little power flows, the tolerance is that of this share of what flows through the place when most does: slopes of
+/// signals are no sharper for a condition in which nothing happens.
+const QUIET: f64 = 0.25;
+
 /// Sums over windows.
 #[derive(Debug, Clone)]
 pub(super) struct Judge {
@@ -162,14 +166,15 @@ impl Judge {
         self.places
             .iter()
             .enumerate()
-            .map(|(index, &(place, _))| PlaceJudgement {
-                place,
-                regimes: Regime::ALL
-                    .iter()
-                    .zip(&self.sums[index])
-                    .map(|(r, sum)| sum.judge(*r, &self.settings))
-                    .collect(),
-                share_outside: self.outside[index] as f64 / count,
+            .map(|(index, &(place, _))| {
+                let sums = &self.sums[index];
+                let overall = sums.iter().map(Sum::mean_flow).fold(0.0, f64::max);
+                let judge = |(regime, sum): (&Regime, &Sum)| sum.judge(*regime, QUIET * overall, &self.settings);
+                PlaceJudgement {
+                    place,
+                    regimes: Regime::ALL.iter().zip(sums).map(judge).collect(),
+                    share_outside: self.outside[index] as f64 / count,
+                }
             })
             .collect()
     }
@@ -195,10 +200,15 @@ impl Sum {
         self.flow += flow;
     }
 
-    fn judge(&self, regime: Regime, settings: &EnergySettings) -> RegimeJudgement {
+    fn mean_flow(&self) -> f64 {
+        self.flow / self.windows.max(1) as f64
+    }
+
+    /// `least_flow`: the tolerance is that of so much power at least.
+    fn judge(&self, regime: Regime, least_flow: f64, settings: &EnergySettings) -> RegimeJudgement {
         let count = self.windows.max(1) as f64;
         let (variance, parameter_variance) = (self.variance / count, self.parameter_variance / count);
-        let flow = self.flow / count;
+        let flow = self.mean_flow();
         RegimeJudgement {
             regime,
             windows: self.windows,
@@ -211,7 +221,7 @@ impl Sum {
             band: if self.windows < FEWEST {
                 f64::INFINITY
             } else {
-                band(settings, variance, parameter_variance, flow)
+                band(settings, variance, parameter_variance, flow.max(least_flow))
             },
         }
     }

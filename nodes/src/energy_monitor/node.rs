@@ -1,8 +1,8 @@
 //! The energy monitor on the graph.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TrySendError, sync_channel};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use excavator_model::Model;
@@ -13,6 +13,7 @@ use excavator_msgs::common::Text;
 use excavator_msgs::{ArmState, EnergyState};
 
 use super::convert::{message, sample};
+use super::ledger::{Ledger, Tally, judge_windows};
 use crate::error::VerbError;
 use crate::ros::{
     Diagnostics, Health, Logger, Outlet, Parameter, Parameters, RosArguments, Supervisor, TopicQos, Value,
@@ -44,6 +45,9 @@ fn parameters() -> Vec<Parameter> {
             .within(0.002, 10.0)
             .read_only(),
         double("watch_window", 1.0, "time over which unexplained power is averaged [s]").within(0.1, 60.0).read_only(),
+        double("ledger_window", 10.0, "time after time that the ledger is judged equation by equation [s]")
+            .within(2.0, 600.0)
+            .read_only(),
         double("significance", 5.0, "standard errors beyond which unexplained power is told")
             .within(1.0, 100.0)
             .read_only(),
@@ -151,6 +155,18 @@ impl Desk<'_> {
 
     /// Balances with one model until there is another, or the end.
     fn follow(&self, model: &Model) -> Option<Model> {
+        let tally = Mutex::new(Tally::default());
+        // One window may wait while another is judged.
+        let (sender, windows) = sync_channel(1);
+        let ledger = Ledger::new(self.parameters.double("ledger_window"), sender, &tally);
+        std::thread::scope(|scope| {
+            let (tally, diagnostics) = (&tally, self.diagnostics);
+            scope.spawn(move || judge_windows(model, &windows, tally, diagnostics));
+            self.balance(model, ledger)
+        })
+    }
+
+    fn balance(&self, model: &Model, mut ledger: Ledger<'_>) -> Option<Model> {
         let system = System::new(model);
         let settings =
             Settings { half_width: self.parameters.double("half_width"), gap: self.parameters.double("gap") };
@@ -175,6 +191,7 @@ impl Desk<'_> {
                     (newest, silent) = (Some(stamp), false);
                     has_velocity = state.cylinders.iter().all(|cylinder| cylinder.velocity.is_finite());
                     monitor.push(sample(&state, model), &mut balances);
+                    ledger.push(&state);
                 }
                 Ok(Incoming::Model(text)) => {
                     if let Some(next) = self.read(&text) {
