@@ -4,6 +4,8 @@
 //!
 //! Starts `arm-simulator` and `energy-monitor` as processes and listens to both. What is printed:
 //!
+//! - **the machine: plain datagram**: a thread sends one per ms to another over the loopback before any node runs: what
+//!   this machine gives to two threads that do nothing else, to hold the other figures against;
 //! - **lateness of publication**: publication less stamp, less the smallest of these; the stamps are an even grid;
 //! - **interval of publication**: time between two publications of a state;
 //! - **state on the wire**: from the publication of a state to its arrival here;
@@ -17,6 +19,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use std::collections::BTreeMap;
+use std::net::UdpSocket;
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -67,11 +70,33 @@ fn print(name: &str, mut values: Vec<f64>) {
     println!("{name:<28}{median:>9.3}{p99:>9.3}{p999:>9.3}{most:>9.3}   ({} samples)", values.len());
 }
 
+/// Times of datagrams from one thread to another, ms.
+fn plain_datagrams(count: usize) -> Vec<f64> {
+    let receiver = UdpSocket::bind("127.0.0.1:0").unwrap();
+    receiver.set_read_timeout(Some(Duration::from_secs(1))).unwrap();
+    let address = receiver.local_addr().unwrap();
+    let sender = std::thread::spawn(move || {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        for _ in 0..count {
+            std::thread::sleep(Duration::from_millis(1));
+            socket.send_to(&now().to_le_bytes(), address).unwrap();
+        }
+    });
+    let mut bytes = [0; 8];
+    let mut times = Vec::new();
+    while times.len() < count && receiver.recv(&mut bytes).is_ok() {
+        times.push((now() - i64::from_le_bytes(bytes)) as f64 * 1e-6);
+    }
+    sender.join().unwrap();
+    times
+}
+
 fn main() {
     let words: Vec<String> = std::env::args().collect();
     let Some(program) = words.get(1) else { panic!("usage: live_latency EXCAVATOR [SECONDS] [RATE]") };
     let seconds: f64 = words.get(2).map_or(10.0, |word| word.parse().unwrap());
     let rate = words.get(3).map_or("1000", |word| word.as_str());
+    let datagrams = plain_datagrams(3000);
     let supervisor = Supervisor::start("latency_meter", &RosArguments::default(), Vec::new()).unwrap();
     let states: Arc<Mutex<Vec<Times>>> = Arc::default();
     let energies: Arc<Mutex<Vec<Times>>> = Arc::default();
@@ -101,6 +126,7 @@ fn main() {
     let lateness: Vec<f64> = states.iter().map(|(stamp, published, _)| milliseconds(*stamp, *published)).collect();
     let least = lateness.iter().copied().fold(f64::INFINITY, f64::min);
     println!("{:<28}{:>9}{:>9}{:>9}{:>9}   ms", "", "p50", "p99", "p99.9", "max");
+    print("the machine: plain datagram", datagrams);
     print("lateness of publication", lateness.iter().map(|late| late - least).collect());
     print("interval of publication", states.windows(2).map(|pair| milliseconds(pair[0].1, pair[1].1)).collect());
     print(

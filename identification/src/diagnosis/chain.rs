@@ -1,13 +1,15 @@
 //! Effects added one after the other.
 //!
 //! The effect that lowers the error most need not be one that is missing: where two are, something in between may look
-//! better than either. So when the first way leads nowhere, the runner-up is tried as a first step too.
+//! better than either. So links that are no longer needed once others are there are taken out again, and when the first
+//! way leads nowhere, the runner-up is tried as a first step too.
 
 use excavator_model::recording::Recording;
 
 use super::race::{Race, Round};
-use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, is_adequate};
-use crate::fit::Fit;
+use super::starts::acts_in_a_window;
+use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, compare_losses, is_adequate};
+use crate::fit::{Fit, evaluate, fit};
 
 /// A gain below this part of the best one's is no other way to begin.
 const OTHER_WAY: f64 = 0.5;
@@ -66,39 +68,95 @@ impl Chains<'_> {
         chain.iter().any(|link| link.name() == other.name() && link.place == other.place)
     }
 
-    /// The chain that begins with `first`, until nothing more is gained.
+    /// The chain that begins with `first`, until nothing more is gained and every link is needed.
     fn grow(&self, first: Candidate, progress: &(dyn Fn(&str, f64) + Sync)) -> Result<Vec<Candidate>, DiagnosisError> {
         let mut chain = vec![first];
-        while chain.len() < self.settings.most_effects
-            && !chain.last().is_some_and(|last| is_adequate(&last.validation, self.validation, self.settings))
-        {
-            let best = self.round(&chain, progress)?.fitted.into_iter().find(|candidate| candidate.accepted);
-            match best {
-                Some(best) => chain.push(best),
-                None => break,
+        // Each detour costs a link that is taken out again.
+        for _ in 0..2 * self.settings.most_effects {
+            let adequate =
+                chain.last().is_some_and(|last| is_adequate(&last.validation, self.validation, self.settings));
+            let next = if adequate || chain.len() > self.settings.most_effects {
+                None
+            } else {
+                self.round(&chain, progress)?.fitted.into_iter().find(|candidate| candidate.accepted)
+            };
+            let complete = next.is_none();
+            chain.extend(next);
+            match self.without_superfluous(&chain, progress)? {
+                Some(shorter) => chain = shorter,
+                None if complete => break,
+                None => {}
             }
         }
+        // One more than the most was for a detour; there was none.
+        chain.truncate(self.settings.most_effects);
         Ok(chain)
+    }
+
+    /// The chain without the link whose removal costs least, if that is less than would have let it in.
+    fn without_superfluous(
+        &self,
+        chain: &[Candidate],
+        progress: &(dyn Fn(&str, f64) + Sync),
+    ) -> Result<Option<Vec<Candidate>>, DiagnosisError> {
+        let settings = self.settings;
+        let Some((last, earlier)) = chain.split_last() else { return Ok(None) };
+        let given = self.nominal.model.effects.len();
+        let mut least: Option<(f64, usize)> = None;
+        for link in 0..earlier.len() {
+            let mut shorter = last.fit.model.clone();
+            if shorter.effects.len() <= given + link || acts_in_a_window(&shorter.effects.remove(given + link)) {
+                continue;
+            }
+            let Ok(shorter) = fit(&shorter, self.identification, &settings.fit) else { continue };
+            let without = evaluate(&shorter.model, self.validation, &settings.fit)?;
+            let worth = compare_losses(&without, &last.validation);
+            let needed = worth.gain >= settings.least_gain && worth.significance >= settings.least_significance;
+            if !needed && least.is_none_or(|(gain, _)| worth.gain < gain) {
+                least = Some((worth.gain, link));
+            }
+        }
+        let Some((_, superfluous)) = least else { return Ok(None) };
+        let mut rebuilt: Vec<Candidate> = Vec::new();
+        for (number, link) in chain.iter().enumerate() {
+            if number < superfluous {
+                rebuilt.push(link.clone());
+            } else if number > superfluous {
+                let race = self.race(&rebuilt);
+                match race.run(&[(link.physics, link.site)], &|what, _| progress(what, 0.9))?.fitted.into_iter().next()
+                {
+                    Some(link) => rebuilt.push(link),
+                    // Without the other it cannot even be begun with: then that was needed after all.
+                    None => return Ok(None),
+                }
+            }
+        }
+        Ok(Some(rebuilt))
     }
 
     /// All additions to a chain.
     fn round(&self, chain: &[Candidate], progress: &(dyn Fn(&str, f64) + Sync)) -> Result<Round, DiagnosisError> {
+        let race = self.race(chain);
+        let start = 0.15 + 0.8 * chain.len() as f64 / (self.settings.most_effects + 1) as f64;
+        let span = 0.8 / (self.settings.most_effects + 1) as f64;
+        Ok(race.run(&additions(&race.base.model), &|what, fraction| progress(what, start + span * fraction))?)
+    }
+
+    /// What competes for the next link.
+    fn race<'c>(&'c self, chain: &'c [Candidate]) -> Race<'c> {
         let settings = self.settings;
         let (base, base_validation, adequate) = match chain.last() {
             Some(last) => (&last.fit, &last.validation, is_adequate(&last.validation, self.validation, settings)),
             None => (self.nominal, self.nominal_validation, self.nominal_is_adequate),
         };
         let least_gain = if adequate { settings.least_gain_when_adequate } else { settings.least_gain };
-        let race = Race {
+        Race {
             base,
             base_validation,
             identification: self.identification,
             validation: self.validation,
             least_gain,
             settings,
-        };
-        let start = 0.15 + 0.8 * chain.len() as f64 / settings.most_effects as f64;
-        let span = 0.8 / settings.most_effects as f64;
-        Ok(race.run(&additions(&base.model), &|what, fraction| progress(what, start + span * fraction))?)
+        }
     }
 }

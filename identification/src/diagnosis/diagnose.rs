@@ -105,7 +105,10 @@ pub fn diagnose(
     let (chain, first_round) = chains.best(progress)?;
     let explained = chains.explains(&chain);
     let Round { fitted, unpromising, failed } = first_round;
-    let (candidates, rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);
+    let (mut candidates, rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);
+    if let Some(first) = chain.first() {
+        put_first(first, &mut candidates);
+    }
     let verdict = match (chain.is_empty(), explained) {
         (true, true) => Verdict::Adequate,
         (false, true) => Verdict::MissingEffect,
@@ -131,6 +134,18 @@ pub fn diagnose(
         map,
         unexplained,
     })
+}
+
+/// What turned out to be needed comes before what only looked better alone.
+fn put_first(first: &Candidate, candidates: &mut Vec<Candidate>) {
+    let is_first = |candidate: &Candidate| candidate.name() == first.name() && candidate.place == first.place;
+    match candidates.iter().position(is_first) {
+        Some(0) => return,
+        Some(place) => candidates[..=place].rotate_right(1),
+        None => candidates.insert(0, first.clone()),
+    }
+    // Ties were with another.
+    candidates.iter_mut().for_each(|candidate| candidate.tied_with_first = false);
 }
 
 /// Fits a model's unknown parameters, starting from a regression where one is possible.

@@ -1,113 +1,20 @@
-//! Length, motion, and units that are wrong by orders of magnitude.
+//! All that is asked of a recording.
 
 use excavator_model::Model;
-use excavator_model::recording::{Recording, is_measured, noise_level};
+use excavator_model::machine::{Chambers, Supply};
+use excavator_model::recording::{CylinderSignals, Recording, is_measured, noise_level};
 
-/// Shortest recording that says anything, s: two swings of the slowest excitation in use.
-const SHORTEST: f64 = 2.0;
-
-/// Fewest samples.
-const FEWEST_SAMPLES: usize = 100;
+use super::GateError;
+use super::clipped::clipped;
+use super::error::{FEWEST_SAMPLES, SHORTEST};
+use super::stuck::{stuck_position, stuck_pressure};
+use super::swapped::swapped_chambers;
 
 /// A signal must move over this many times its noise to say something of dynamics.
 const LEAST_MOTION: f64 = 20.0;
 
 /// Largest hydraulic pressure in use, Pa (gauge): mobile machines stay under 50 MPa.
 const HIGHEST_PRESSURE: f64 = 1e8;
-
-/// A recording that cannot be used, in one line that says what to do.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum GateError {
-    /// Too short.
-    #[error(
-        "{source_name} is too short: {duration:.2} s with {samples} samples; at least {SHORTEST} s and {FEWEST_SAMPLES} samples are needed"
-    )]
-    TooShort {
-        /// The recording.
-        source_name: String,
-        /// Its length, s.
-        duration: f64,
-        /// Its samples.
-        samples: usize,
-    },
-    /// Nothing of a cylinder was measured.
-    #[error("{source_name} does not measure {signal} (all {samples} values are NaN), which {machine} needs")]
-    NotMeasured {
-        /// The recording.
-        source_name: String,
-        /// Contract name of the signal.
-        signal: String,
-        /// Samples.
-        samples: usize,
-        /// The machine.
-        machine: String,
-    },
-    /// The arm does not move.
-    #[error(
-        "{source_name} has no motion: {signal} stays within {range:.2e} {unit}, {times:.0} times its noise of {noise:.1e} {unit}; record while the arm moves"
-    )]
-    NoMotion {
-        /// The recording.
-        source_name: String,
-        /// Contract name of the signal.
-        signal: String,
-        /// Largest minus smallest value.
-        range: f64,
-        /// SI unit.
-        unit: &'static str,
-        /// Range over noise.
-        times: f64,
-        /// Noise.
-        noise: f64,
-    },
-    /// A value that cannot be in SI units.
-    #[error(
-        "{source_name}: {signal} reaches {value:.3e} {unit}, but {machine} allows at most {limit:.3e} {unit}; is it in {unit}?"
-    )]
-    ImpossibleValue {
-        /// The recording.
-        source_name: String,
-        /// Contract name of the signal.
-        signal: String,
-        /// The value of largest size.
-        value: f64,
-        /// SI unit.
-        unit: &'static str,
-        /// Largest possible size.
-        limit: f64,
-        /// The machine.
-        machine: String,
-    },
-    /// A signal far too small to be in SI units.
-    #[error(
-        "{source_name}: {signal} never exceeds {value:.3e} {unit}, far below anything hydraulic; is it in {unit}, not in bar or MPa?"
-    )]
-    TooSmall {
-        /// The recording.
-        source_name: String,
-        /// Contract name of the signal.
-        signal: String,
-        /// The value of largest size.
-        value: f64,
-        /// SI unit.
-        unit: &'static str,
-    },
-    /// The piston moves against its valve.
-    #[error(
-        "{source_name}: {cylinder} retracts where its valve feeds the cap side and extends where it feeds the rod side (correlation {correlation:.2}); check the signs of displacement and opening"
-    )]
-    WrongSign {
-        /// The recording.
-        source_name: String,
-        /// The cylinder.
-        cylinder: String,
-        /// Correlation of piston travel with opening.
-        correlation: f64,
-    },
-    /// The recording has no cylinder of the machine.
-    #[error(transparent)]
-    Recording(#[from] excavator_model::recording::RecordingError),
-}
 
 /// Checks that `recording` can be used with `model`.
 ///
@@ -150,7 +57,7 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
         }
         // Twice half the stroke: an offset of the sensor is allowed, another unit is not.
         at_most(model, recording, &name("displacement"), &signals.displacement, "m", cylinder.stroke)?;
-        if let Some(chambers) = cylinder.chambers {
+        if let Some(chambers) = &cylinder.chambers {
             let limit = 3.0 * chambers.maximum_orifice_area;
             at_most(model, recording, &name("orifice_area"), &signals.orifice_area, "m2", limit)?;
             at_most(model, recording, &name("orifice_command"), &signals.orifice_command, "m2", limit)?;
@@ -167,6 +74,7 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
                     correlation,
                 });
             }
+            sensors_of_a_cylinder(recording, signals, chambers)?;
         } else {
             at_most(model, recording, &name("rod_force"), &signals.rod_force, "N", 1e8)?;
             if cylinder.imposed_motion.is_some() {
@@ -180,7 +88,57 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
         at_most(model, recording, "tank_pressure", &recording.tank_pressure, "Pa", HIGHEST_PRESSURE)?;
         at_most(model, recording, "pump_flow", &recording.pump_flow, "m3/s", 0.1)?;
     }
+    if matches!(machine.supply, Supply::PumpLine(_)) {
+        let witnesses: Vec<&[f64]> = recording
+            .cylinders
+            .iter()
+            .filter(|signals| machine.cylinders.iter().any(|cylinder| cylinder.name == signals.name))
+            .flat_map(|signals| [&signals.cap_pressure[..], &signals.rod_pressure])
+            .collect();
+        pressure_sensor(recording, "pump_pressure", &recording.pump_pressure, &witnesses)?;
+    }
     Ok(())
+}
+
+/// Sensors that are stuck, cut off or swapped.
+fn sensors_of_a_cylinder(
+    recording: &Recording,
+    signals: &CylinderSignals,
+    chambers: &Chambers,
+) -> Result<(), GateError> {
+    let name = |signal: &str| format!("{}.{signal}", signals.name);
+    let (cap, rod, displacement) = (&signals.cap_pressure[..], &signals.rod_pressure[..], &signals.displacement[..]);
+    pressure_sensor(recording, &name("cap_pressure"), cap, &[rod, displacement])?;
+    pressure_sensor(recording, &name("rod_pressure"), rod, &[cap, displacement])?;
+    let opening = if is_measured(&signals.orifice_area) { &signals.orifice_area } else { &signals.orifice_command };
+    if let Some(stretch) = stuck_position(&recording.time, displacement, opening, &[cap, rod]) {
+        return Err(stretch.error(recording, name("displacement"), "m"));
+    }
+    if let Some(shares) = swapped_chambers(recording, signals, opening, chambers) {
+        return Err(GateError::SwappedChambers {
+            source_name: recording.source.clone(),
+            cylinder: signals.name.clone(),
+            given: 100.0 * shares.given,
+            swapped: 100.0 * shares.swapped,
+        });
+    }
+    Ok(())
+}
+
+fn pressure_sensor(recording: &Recording, name: &str, signal: &[f64], witnesses: &[&[f64]]) -> Result<(), GateError> {
+    if let Some(stretch) = stuck_pressure(&recording.time, signal, witnesses) {
+        return Err(stretch.error(recording, name.to_string(), "Pa"));
+    }
+    match clipped(&recording.time, signal) {
+        Some(cut) => Err(GateError::Clipped {
+            source_name: recording.source.clone(),
+            signal: name.to_string(),
+            value: cut.value,
+            longest: cut.longest,
+            share: 100.0 * cut.share,
+        }),
+        None => Ok(()),
+    }
 }
 
 /// Correlation of travel with opening below which a sign must be wrong: a load may move a piston against its valve now and

@@ -1,0 +1,149 @@
+//! Why a recording cannot be used.
+
+/// Shortest recording that says anything, s: two swings of the slowest excitation in use.
+pub(super) const SHORTEST: f64 = 2.0;
+
+/// Fewest samples.
+pub(super) const FEWEST_SAMPLES: usize = 100;
+
+/// A recording that cannot be used, in one line that says what to do.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GateError {
+    /// Too short.
+    #[error(
+        "{source_name} is too short: {duration:.2} s with {samples} samples; at least {SHORTEST} s and {FEWEST_SAMPLES} samples are needed"
+    )]
+    TooShort {
+        /// The recording.
+        source_name: String,
+        /// Its length, s.
+        duration: f64,
+        /// Its samples.
+        samples: usize,
+    },
+    /// Nothing of a cylinder was measured.
+    #[error("{source_name} does not measure {signal} (all {samples} values are NaN), which {machine} needs")]
+    NotMeasured {
+        /// The recording.
+        source_name: String,
+        /// Contract name of the signal.
+        signal: String,
+        /// Samples.
+        samples: usize,
+        /// The machine.
+        machine: String,
+    },
+    /// The arm does not move.
+    #[error(
+        "{source_name} has no motion: {signal} stays within {range:.2e} {unit}, {times:.0} times its noise of {noise:.1e} {unit}; record while the arm moves"
+    )]
+    NoMotion {
+        /// The recording.
+        source_name: String,
+        /// Contract name of the signal.
+        signal: String,
+        /// Largest minus smallest value.
+        range: f64,
+        /// SI unit.
+        unit: &'static str,
+        /// Range over noise.
+        times: f64,
+        /// Noise.
+        noise: f64,
+    },
+    /// A value that cannot be in SI units.
+    #[error(
+        "{source_name}: {signal} reaches {value:.3e} {unit}, but {machine} allows at most {limit:.3e} {unit}; is it in {unit}?"
+    )]
+    ImpossibleValue {
+        /// The recording.
+        source_name: String,
+        /// Contract name of the signal.
+        signal: String,
+        /// The value of largest size.
+        value: f64,
+        /// SI unit.
+        unit: &'static str,
+        /// Largest possible size.
+        limit: f64,
+        /// The machine.
+        machine: String,
+    },
+    /// A signal far too small to be in SI units.
+    #[error(
+        "{source_name}: {signal} never exceeds {value:.3e} {unit}, far below anything hydraulic; is it in {unit}, not in bar or MPa?"
+    )]
+    TooSmall {
+        /// The recording.
+        source_name: String,
+        /// Contract name of the signal.
+        signal: String,
+        /// The value of largest size.
+        value: f64,
+        /// SI unit.
+        unit: &'static str,
+    },
+    /// The piston moves against its valve.
+    #[error(
+        "{source_name}: {cylinder} retracts where its valve feeds the cap side and extends where it feeds the rod side (correlation {correlation:.2}); check the signs of displacement and opening"
+    )]
+    WrongSign {
+        /// The recording.
+        source_name: String,
+        /// The cylinder.
+        cylinder: String,
+        /// Correlation of piston travel with opening.
+        correlation: f64,
+    },
+    /// A sensor shows one value while the machine works.
+    #[error(
+        "{source_name}: {signal} stands still at {value:.4e} {unit} from {begin:.2} s to {end:.2} s while the machine works; leave that time out (BAG@FROM..TO), or the sensor"
+    )]
+    Stuck {
+        /// The recording.
+        source_name: String,
+        /// Contract name of the signal.
+        signal: String,
+        /// The value.
+        value: f64,
+        /// SI unit.
+        unit: &'static str,
+        /// First sample with it, s.
+        begin: f64,
+        /// Last sample with it, s.
+        end: f64,
+    },
+    /// A pressure goes beyond the range of its sensor.
+    #[error(
+        "{source_name}: {signal} is cut off at {value:.4e} Pa, for {longest:.2} s at most and {share:.1} % of the time; the sensor's range is too small for this recording"
+    )]
+    Clipped {
+        /// The recording.
+        source_name: String,
+        /// Contract name of the signal.
+        signal: String,
+        /// Where it is cut off, Pa.
+        value: f64,
+        /// Longest time at that value, s.
+        longest: f64,
+        /// Share of the samples at that value, %.
+        share: f64,
+    },
+    /// The sensors of the two chambers are swapped.
+    #[error(
+        "{source_name}: cap_pressure and rod_pressure of {cylinder} look swapped: as they are they leave {given:.0} % of the piston's flow unexplained, the other way round {swapped:.0} %"
+    )]
+    SwappedChambers {
+        /// The recording.
+        source_name: String,
+        /// The cylinder.
+        cylinder: String,
+        /// Unexplained flow as recorded, %.
+        given: f64,
+        /// Unexplained flow with the pressures exchanged, %.
+        swapped: f64,
+    },
+    /// The recording has no cylinder of the machine.
+    #[error(transparent)]
+    Recording(#[from] excavator_model::recording::RecordingError),
+}

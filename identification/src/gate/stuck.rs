@@ -1,0 +1,123 @@
+//! Sensors that show one value while the machine works.
+
+use excavator_model::recording::{Recording, is_measured};
+
+use super::GateError;
+use super::runs::{Run, runs, spread};
+
+/// Shortest time that is told, s: a message that comes late repeats a value for less.
+const SHORTEST: f64 = 1.0;
+
+/// Share of its range that another signal moves in a time in which something happens.
+const EVENTFUL: f64 = 0.1;
+
+/// Pressures below this, Pa, may stand still truly: a chamber that is open to the tank, seen by a sensor that knows no
+/// pressure below zero.
+const NEAR_TANK: f64 = 2e5;
+
+/// Opening, as a share of the largest, that moves a piston.
+const OPEN: f64 = 0.2;
+
+/// Share of a piston's range at each end in which it may stand still truly, at a stop.
+const NEAR_THE_END: f64 = 0.05;
+
+/// When and where a sensor is stuck.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Stretch {
+    begin: f64,
+    end: f64,
+    value: f64,
+}
+
+impl Stretch {
+    /// What to tell.
+    pub fn error(self, recording: &Recording, signal: String, unit: &'static str) -> GateError {
+        let Stretch { begin, end, value } = self;
+        GateError::Stuck { source_name: recording.source.clone(), signal, value, unit, begin, end }
+    }
+
+    fn of(run: Run, time: &[f64]) -> Self {
+        Stretch { begin: time[run.first], end: time[run.last], value: run.value }
+    }
+}
+
+/// The longest stretch in which a pressure keeps one value although all signals in `witnesses` that are measured move.
+pub(super) fn stuck_pressure(time: &[f64], signal: &[f64], witnesses: &[&[f64]]) -> Option<Stretch> {
+    longest(time, signal, |run| run.value.abs() >= NEAR_TANK && all_move(witnesses, run))
+}
+
+/// The longest stretch in which a piston seems to stand still away from its ends although its valve is open one way all
+/// the time and both pressures change.
+pub(super) fn stuck_position(time: &[f64], signal: &[f64], opening: &[f64], pressures: &[&[f64]]) -> Option<Stretch> {
+    let (least, most) = signal
+        .iter()
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
+    let margin = NEAR_THE_END * (most - least);
+    let largest = opening.iter().filter(|area| area.is_finite()).fold(0.0_f64, |most, area| most.max(area.abs()));
+    longest(time, signal, |run| {
+        let open = &opening[run.first..=run.last];
+        let one_way = open.iter().all(|&area| area > OPEN * largest) || open.iter().all(|&area| area < -OPEN * largest);
+        let inside = run.value > least + margin && run.value < most - margin;
+        inside && largest > 0.0 && one_way && all_move(pressures, run)
+    })
+}
+
+fn longest(time: &[f64], signal: &[f64], is_stuck: impl Fn(&Run) -> bool) -> Option<Stretch> {
+    runs(signal)
+        .into_iter()
+        .filter(|run| time[run.last] - time[run.first] >= SHORTEST && is_stuck(run))
+        .max_by_key(Run::len)
+        .map(|run| Stretch::of(run, time))
+}
+
+/// Whether there is a signal that is measured, and all that are move during the run.
+fn all_move(witnesses: &[&[f64]], run: &Run) -> bool {
+    let mut measured = witnesses.iter().filter(|signal| is_measured(signal)).peekable();
+    measured.peek().is_some()
+        && measured.all(|signal| {
+            let all = spread(signal);
+            all > 0.0 && spread(&signal[run.first..=run.last]) > EVENTFUL * all
+        })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::{stuck_position, stuck_pressure};
+
+    fn wave(scale: f64, time: &[f64]) -> Vec<f64> {
+        time.iter().map(|t| scale * (2.0 + (2.0 * t).sin())).collect()
+    }
+
+    #[test]
+    fn a_sensor_that_stops_is_found_and_one_at_tank_pressure_is_not() {
+        let time: Vec<f64> = (0..1000).map(|index| index as f64 * 0.01).collect();
+        let (mut cap, rod) = (wave(1e6, &time), wave(2e6, &time));
+        assert_eq!(stuck_pressure(&time, &cap, &[&rod]), None);
+        let held = cap[300];
+        cap[300..500].fill(held);
+        let found = stuck_pressure(&time, &cap, &[&rod]).unwrap();
+        assert_eq!((found.begin, found.end, found.value), (3.0, 4.99, held));
+        cap[300..500].fill(0.0);
+        assert_eq!(stuck_pressure(&time, &cap, &[&rod]), None);
+        // Nothing happens: a machine at rest.
+        cap[300..500].fill(held);
+        let resting = vec![1e6; 1000];
+        assert_eq!(stuck_pressure(&time, &cap, &[&resting]), None);
+    }
+
+    #[test]
+    fn a_piston_may_stand_at_its_stop_but_not_half_way_with_an_open_valve() {
+        let time: Vec<f64> = (0..1000).map(|index| index as f64 * 0.01).collect();
+        let pressures = (wave(1e6, &time), wave(2e6, &time));
+        let witnesses: [&[f64]; 2] = [&pressures.0, &pressures.1];
+        let open = vec![1e-5; 1000];
+        let mut position: Vec<f64> = time.iter().map(|t| (t / 8.0).min(1.0)).collect();
+        assert_eq!(stuck_position(&time, &position, &open, &witnesses), None);
+        position[300..450].fill(0.37);
+        assert_eq!(stuck_position(&time, &position, &open, &witnesses).unwrap().value, 0.37);
+        let closed = vec![0.0; 1000];
+        assert_eq!(stuck_position(&time, &position, &closed, &witnesses), None);
+    }
+}
