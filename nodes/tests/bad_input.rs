@@ -6,8 +6,11 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{assert_one_clear_line, complaint, excavator};
+use excavator::demo::{manoeuvre, plant, sealed::Sealed};
 use excavator_bags::{Topics, WriteOptions, write_recording};
 use excavator_model::recording::Recording;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 
 /// A short recording of an arm that swings, written as a bag after `change`.
 fn bag(folder: &Path, name: &str, change: impl Fn(&mut Recording)) -> PathBuf {
@@ -23,7 +26,7 @@ fn bag(folder: &Path, name: &str, change: impl Fn(&mut Recording)) -> PathBuf {
         arm.rod_pressure[index] = 9e5 - 2e5 * swing;
         arm.orifice_area[index] = 5e-5 * swing;
         arm.orifice_command[index] = 5e-5 * swing;
-        recording.pump_pressure[index] = 1.5e6;
+        recording.pump_pressure[index] = 1.5e6 + 1e5 * swing.abs();
     }
     change(&mut recording);
     let path = folder.join(name);
@@ -143,6 +146,43 @@ fn wrong_units() {
         recording.cylinders[0].cap_pressure.iter_mut().for_each(|p| *p *= 1e-5);
     });
     assert_one_clear_line(&compare(folder.path(), "zx30u-arm", &path), &["arm.cap_pressure", "bar"]);
+}
+
+#[test]
+fn sensors_that_are_stuck_or_cut_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let stuck = bag(folder.path(), "stuck", |recording| {
+        let held = recording.cylinders[0].rod_pressure[1000];
+        recording.cylinders[0].rod_pressure[1000..2000].fill(held);
+    });
+    assert_one_clear_line(
+        &compare(folder.path(), "zx30u-arm", &stuck),
+        &["arm.rod_pressure stands still", "from 2.00 s to 4.00 s", "BAG@FROM..TO"],
+    );
+    let cut = bag(folder.path(), "cut", |recording| {
+        recording.cylinders[0].cap_pressure.iter_mut().for_each(|value| *value = value.min(1.15e6));
+    });
+    assert_one_clear_line(
+        &compare(folder.path(), "zx30u-arm", &cut),
+        &["arm.cap_pressure is cut off at 1.15", "range"],
+    );
+}
+
+#[test]
+fn chambers_whose_sensors_are_swapped() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut generator = ChaCha8Rng::seed_from_u64(1);
+    let sealed = Sealed::draw_without_effect(&mut generator).unwrap();
+    let mut recording = plant::record(&sealed, &manoeuvre::validation(), &mut generator).unwrap();
+    let write = |name: &str, recording: &Recording| {
+        let path = folder.path().join(name);
+        write_recording(&path, recording, &Topics::default(), &WriteOptions::default()).unwrap();
+        compare(folder.path(), "zx30u-arm", &path)
+    };
+    assert_eq!(write("right", &recording).status.code(), Some(0));
+    let arm = &mut recording.cylinders[0];
+    std::mem::swap(&mut arm.cap_pressure, &mut arm.rod_pressure);
+    assert_one_clear_line(&write("swapped", &recording), &["cap_pressure and rod_pressure of arm look swapped"]);
 }
 
 #[test]
