@@ -157,7 +157,8 @@ pub(crate) fn fit_nominal(
     identification: &[&Recording],
     settings: &DiagnosisSettings,
 ) -> Result<Fit, FitError> {
-    let quick = WeakFormSettings { rounds: 2, with_errors: false, ..WeakFormSettings::default() };
+    let quick =
+        WeakFormSettings { rounds: 2, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
     let regressed = weak_form(model, identification, &quick)
         .map(|regression| within_bounds(regression.model))
         .ok()

@@ -77,7 +77,9 @@ impl Race<'_> {
         wanted: &[(&'static dyn Effect, Site)],
         progress: &(dyn Fn(&str, f64) + Sync),
     ) -> Result<Round, FitError> {
-        let start_loss = predict(&self.base.model, self.identification, &self.settings.fit)?.loss_before;
+        // A base that cannot be simulated from its measured starts is judged where its fit has brought it.
+        let start_loss = predict(&self.base.model, self.identification, &self.settings.fit)
+            .map_or_else(|_| self.base.loss(), |promise| promise.loss_before);
         let done = AtomicUsize::new(0);
         // Full fits take about a third of the time.
         let total = wanted.len() as f64 * 1.5;

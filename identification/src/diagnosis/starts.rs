@@ -16,7 +16,8 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     // Thinned to this rate a regression still sees what starts a fit, in half the time.
     let thinned: Vec<Recording> = recordings.iter().map(|recording| thinned_to(recording, START_RATE)).collect();
     let thinned: Vec<&Recording> = thinned.iter().collect();
-    let quick = WeakFormSettings { rounds: 1, with_errors: false, ..WeakFormSettings::default() };
+    let quick =
+        WeakFormSettings { rounds: 1, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
     let regressed = plain
         .iter()
         .filter_map(|start| weak_form(start, &thinned, &quick).ok())

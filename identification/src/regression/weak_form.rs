@@ -30,6 +30,9 @@ pub struct WeakFormSettings {
     pub rounds: usize,
     /// Whether standard errors and condition numbers are wanted; they cost more than the values.
     pub with_errors: bool,
+    /// Whether a parameter that comes out where it cannot be (a friction below zero) is held at the nearest possible
+    /// value, and the others are identified with it there. A start of a search needs no second solution for that.
+    pub hold_at_bounds: bool,
 }
 
 impl Default for WeakFormSettings {
@@ -41,6 +44,7 @@ impl Default for WeakFormSettings {
             velocity_guard: 1e-3,
             rounds: 3,
             with_errors: true,
+            hold_at_bounds: true,
         }
     }
 }
@@ -63,22 +67,54 @@ pub fn weak_form(
     recordings: &[&Recording],
     settings: &WeakFormSettings,
 ) -> Result<Regression, RegressionError> {
-    let unknown = model.unknown_parameters();
+    let mut unknown = model.unknown_parameters();
     let mut model = model.clone();
-    let mut result = None;
-    for round in 0..settings.rounds.max(1) {
+    for round in 0..settings.rounds.max(1) - 1 {
         let rows = rows(&model, recordings, settings, &unknown, round > 0)?;
-        let last = round + 1 == settings.rounds.max(1);
-        let solution = solve(&model, recordings, settings, &unknown, &rows, settings.with_errors && last)?;
-        model = solution.model.clone();
-        result = Some(solution);
+        model = solve(&model, recordings, settings, &unknown, &rows, false)?.model;
     }
-    result.ok_or(RegressionError::TooFewRows {
-        source_name: sources(recordings),
-        rows: 0,
-        parameters: unknown.len(),
-        needed: 1,
-    })
+    let mut held = Vec::new();
+    loop {
+        let rows = rows(&model, recordings, settings, &unknown, settings.rounds > 1)?;
+        let mut solution = solve(&model, recordings, settings, &unknown, &rows, settings.with_errors)?;
+        let outside = if settings.hold_at_bounds { outside(&solution) } else { Vec::new() };
+        if outside.is_empty() || outside.len() == unknown.len() {
+            solution.not_identified.extend(held);
+            return Ok(solution);
+        }
+        model = solution.model;
+        let mut values = model.parameter_values();
+        unknown.retain(|index| !outside.iter().any(|(other, ..)| other == index));
+        for (index, bound, reason) in outside {
+            values[index] = bound;
+            held.push((index, reason));
+        }
+        model.set_parameter_values(&values);
+        for (index, parameter) in model.parameters_mut().enumerate() {
+            if held.iter().any(|(other, _)| *other == index) {
+                parameter.standard_error = None;
+            }
+        }
+    }
+}
+
+/// Identified parameters beyond what they can be, the nearest possible value, and what to say of them.
+fn outside(solution: &Regression) -> Vec<(usize, f64, String)> {
+    solution
+        .model
+        .parameters()
+        .enumerate()
+        .filter(|(index, _)| solution.fitted.contains(index))
+        .filter_map(|(index, (_, parameter))| {
+            let bound = parameter.value.clamp(parameter.card.minimum, parameter.card.maximum);
+            let reason = format!(
+                "the recordings would have it at {:.3e}, beyond what is possible; held at {bound:.3e}. Something that the \
+                 model lacks acts in its place, or the recordings do not show it",
+                parameter.value
+            );
+            (bound != parameter.value).then_some((index, bound, reason))
+        })
+        .collect()
 }
 
 pub(super) fn sources(recordings: &[&Recording]) -> String {
