@@ -49,7 +49,32 @@ impl Chains<'_> {
             }
             _ => chain,
         };
-        Ok((chain, round))
+        let everywhere = self.everywhere(&accepted, &chain, progress)?;
+        Ok((everywhere.unwrap_or(chain), round))
+    }
+
+    /// One effect at several places (late pressures at a cylinder and at the pump) is one cause, but a chain that begins
+    /// with the best single place may begin with something else that reaches all of them. The chain of such an effect,
+    /// where it leaves less than `chain` does.
+    fn everywhere(
+        &self,
+        accepted: &[&Candidate],
+        chain: &[Candidate],
+        progress: &(dyn Fn(&str, f64) + Sync),
+    ) -> Result<Option<Vec<Candidate>>, DiagnosisError> {
+        let at_another_place = |one: &Candidate| {
+            accepted.iter().any(|other| other.name() == one.name() && other.place != one.place)
+                && !chain.iter().any(|link| link.name() == one.name())
+        };
+        let Some(first) = accepted.iter().find(|candidate| at_another_place(candidate)) else { return Ok(None) };
+        let other = self.grow((*first).clone(), progress)?;
+        let (Some(last), Some(reached)) = (chain.last(), other.last()) else { return Ok(None) };
+        let places = other.iter().filter(|link| link.name() == first.name()).count();
+        let kinds = other.len() + 1 - places;
+        let lead = compare_losses(&last.validation, &reached.validation);
+        let settings = self.settings;
+        let better = lead.gain >= settings.tie_gain && lead.significance >= settings.tie_significance;
+        Ok((places > 1 && kinds <= chain.len() && better).then_some(other))
     }
 
     /// Whether a chain of effects explains the recordings: the model is adequate with them, or so much better and good
