@@ -5,10 +5,12 @@ mod common;
 
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::equations::{System, smooth};
+use excavator_model::equations::{Inputs, System, smooth};
 use excavator_model::recording::Recording;
 use excavator_model::scalar::{derivative, variable};
-use excavator_model::simulation::{InputSignals, Integrator, RunError, SimulationError, Tolerances, simulate};
+use excavator_model::simulation::{
+    InputSignals, Integrator, RunError, SimulationError, Tolerances, rest_state, simulate, simulate_from,
+};
 
 /// States at all samples and the number of steps that they took.
 fn run(model: &Model, recording: &Recording, start: &[f64]) -> (Vec<Vec<f64>>, usize) {
@@ -242,4 +244,21 @@ fn nonsense_ends_with_a_reason() {
     let error = simulate(&model, &recording).unwrap_err();
     assert!(matches!(error, RunError::Simulation(SimulationError::StepTooSmall { .. })), "{error:?}");
     assert!(!error.to_string().contains('\n'));
+}
+
+/// A simulation that would take hours ends with a reason too.
+#[test]
+fn a_crawl_ends_with_a_reason() {
+    let model = built_in("zx30u-arm").unwrap();
+    let recording = common::driven(&model, 10.0, 1e-3, |_, t| 5e-5 * (3.0 * t).sin(), |_| 0.0);
+    let signals = InputSignals::from_recording(&model, &recording).unwrap();
+    let system = System::new(&model);
+    let mut inputs = Inputs::zero(1);
+    signals.between(0, 0.0, &mut inputs);
+    let start = rest_state(&system, &[0.0], &inputs);
+    // Far finer than what it is allowed to take steps for.
+    let tolerances = Tolerances { most_steps_per_second: 1.0, ..Tolerances::default().scaled(1e-7) };
+    let error = simulate_from(&model, &recording, &signals, start, tolerances).unwrap_err();
+    assert!(matches!(error, SimulationError::TooSlow { .. }), "{error:?}");
+    assert!(error.to_string().contains("crawls at"), "{error}");
 }

@@ -15,6 +15,8 @@
 //! - **age of the content**: from the publication of the state that an energy message is about, whose stamp it has, to
 //!   its arrival. A causal derivative needs half its window of later states, so this is longer by `half_width`.
 //!
+//! And how many of either were lost, how much processor time the nodes took.
+//!
 //! Publication is the time that the publisher wrote into the message, by the same clock on one machine.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
@@ -147,5 +149,20 @@ fn main() {
     print("processing", processing);
     print("arrival", arrival);
     print("age of the content", age);
+    // Stamps are an even grid: what is not there was lost.
+    let period = 1e9 / rate.parse::<f64>().unwrap();
+    let grid = |stamps: &mut dyn Iterator<Item = i64>| {
+        let (mut first, mut last, mut count) = (i64::MAX, i64::MIN, 0i64);
+        for stamp in stamps {
+            (first, last, count) = (first.min(stamp), last.max(stamp), count + 1);
+        }
+        (((last - first) as f64 / period).round() as i64 + 1 - count, count)
+    };
+    for (name, (lost, count)) in [
+        ("states", grid(&mut states.iter().map(|entry| entry.0))),
+        ("energies", grid(&mut energies.iter().map(|entry| entry.0))),
+    ] {
+        println!("{name}: {lost} lost, {count} arrived");
+    }
     println!("simulator {:.1} %, monitor {:.1} % of one core", 100.0 * used.0 / seconds, 100.0 * used.1 / seconds);
 }

@@ -33,6 +33,20 @@ pub enum SimulationError {
         /// State there.
         state: Vec<f64>,
     },
+    /// The solution can only be carried on in steps so short that it would take hours.
+    #[error(
+        "the simulation of {model} crawls at {time:.3} s in steps of {step:.1e} s; its parameters make it far stiffer than a machine is: {state:?}"
+    )]
+    TooSlow {
+        /// Machine of the model.
+        model: String,
+        /// Simulated time, s.
+        time: f64,
+        /// Step, s.
+        step: f64,
+        /// State there.
+        state: Vec<f64>,
+    },
     /// The state is no longer a number.
     #[error("the simulation of {model} left all bounds at {time:.3} s; check its parameters: {state:?}")]
     NotFinite {
@@ -62,11 +76,25 @@ pub struct Tolerances {
     pub minimum_step: f64,
     /// Largest step, s; also bounds steps over gaps of the clock.
     pub maximum_step: f64,
+    /// Steps per simulated second that are taken for long. 2e4: a machine in a hurry takes 5e3, closed valves and end stops
+    /// included; parameters that no machine has take millions, and a search that meets them must not wait for hours.
+    pub most_steps_per_second: f64,
 }
+
+/// Steps that may be taken at once, whatever the simulated time: shocks need some hundred.
+const STEPS_AT_ONCE: f64 = 5e4;
 
 impl Default for Tolerances {
     fn default() -> Self {
-        Tolerances { relative: 1e-4, joint: 5e-7, rate: 5e-5, pressure: 200.0, minimum_step: 1e-9, maximum_step: 5e-3 }
+        Tolerances {
+            relative: 1e-4,
+            joint: 5e-7,
+            rate: 5e-5,
+            pressure: 200.0,
+            minimum_step: 1e-9,
+            maximum_step: 5e-3,
+            most_steps_per_second: 2e4,
+        }
     }
 }
 
@@ -78,6 +106,8 @@ impl Tolerances {
             joint: self.joint * factor,
             rate: self.rate * factor,
             pressure: self.pressure * factor,
+            // Steps grow with less than the inverse of the tolerance.
+            most_steps_per_second: self.most_steps_per_second / factor,
             ..self
         }
     }
@@ -102,6 +132,8 @@ pub struct Integrator<'m, 's> {
     pub(super) trial: Vec<f64>,
     trial_rates: Vec<f64>,
     step: f64,
+    /// Steps that may be taken before the simulation is given up as too slow.
+    allowance: f64,
     /// Steps taken and refused so far, for benchmarks.
     pub steps: (usize, usize),
 }
@@ -145,6 +177,7 @@ impl<'m, 's> Integrator<'m, 's> {
             trial: vec![0.0; layout.len],
             trial_rates: vec![0.0; layout.len],
             step: settings.maximum_step,
+            allowance: STEPS_AT_ONCE,
             steps: (0, 0),
         }
     }
@@ -161,6 +194,7 @@ impl<'m, 's> Integrator<'m, 's> {
         mut sensitivity: Option<&mut Sensitivity>,
     ) -> Result<(), SimulationError> {
         let interval = signals.time[index + 1] - signals.time[index];
+        self.allowance = (self.allowance + interval * self.settings.most_steps_per_second).min(STEPS_AT_ONCE);
         let mut done = 0.0;
         while done < interval {
             let left = interval - done;
@@ -172,6 +206,11 @@ impl<'m, 's> Integrator<'m, 's> {
             signals.between(index, end, &mut self.later_inputs);
             let error = self.attempt(state, step);
             let time = signals.time[index] + done;
+            self.allowance -= 1.0;
+            if self.allowance < 0.0 {
+                let model = self.system.model().machine.name.clone();
+                return Err(SimulationError::TooSlow { model, time, step, state: state.to_vec() });
+            }
             if !self.judge(error, step) {
                 if self.step < self.settings.minimum_step {
                     return Err(self.give_up(time, state));
