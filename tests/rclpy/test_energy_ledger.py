@@ -7,6 +7,9 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from support.simulator import Simulator
 
 AREA = 8e-5
+# Sensors as good as can be bought, Pa and m: without any noise the ledger is held against nothing but its tolerance.
+PRESSURE_NOISE = 2e3
+DISPLACEMENT_NOISE = 5e-5
 # Seconds of motion that the ledger is judged over.
 WINDOW = 4.0
 LEAK = """
@@ -61,7 +64,8 @@ def monitor(ros, excavator, model):
 
 
 def status_after_swinging(ros, excavator, model):
-    simulator = Simulator(ros, excavator, arguments=["-p", f"model:={model}"])
+    noise = ["-p", f"pressure_noise:={PRESSURE_NOISE}", "-p", f"displacement_noise:={DISPLACEMENT_NOISE}"]
+    simulator = Simulator(ros, excavator, arguments=["-p", f"model:={model}", *noise])
     diagnostics = ros.listen(DiagnosticArray, "/diagnostics")
     try:
         swing(simulator, 2.5 * WINDOW)

@@ -65,7 +65,7 @@ const FEWEST: usize = 12;
 
 /// Where little power flows, the tolerance is that of this share of what flows through the place when most does: slopes of
 /// signals are no sharper for a condition in which nothing happens.
-const QUIET: f64 = 0.25;
+const QUIET: f64 = 0.5;
 
 /// Sums over windows.
 #[derive(Debug, Clone)]
