@@ -5,9 +5,8 @@ use excavator_identification::energy::{CylinderTraces, EnergyAnalysis, EnergySet
 use excavator_identification::report::energy_page;
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::equations::{Inputs, System};
 use excavator_model::recording::Recording;
-use excavator_model::simulation::{InputSignals, Tolerances, rest_state, simulate_from};
+use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -21,12 +20,7 @@ fn measured(model: &Model, frequency: f64) -> Recording {
     recording.pump_flow.fill(3.8e-4);
     let sine = |t: &f64| 1e-4 * (std::f64::consts::TAU * frequency * t).sin();
     recording.cylinders[0].orifice_area = recording.time.iter().map(sine).collect();
-    let signals = InputSignals::from_recording(model, &recording).unwrap();
-    let system = System::new(model);
-    let mut inputs = Inputs::zero(1);
-    signals.between(0, 0.0, &mut inputs);
-    let start = rest_state(&system, &[0.27], &inputs);
-    let mut recording = simulate_from(model, &recording, &signals, start, Tolerances::default()).unwrap();
+    let mut recording = simulate_from_rest(model, &recording, &[0.27], Tolerances::default()).unwrap();
     recording.cylinders[0].velocity.fill(f64::NAN);
     recording.cylinders[0].joint_angle.fill(f64::NAN);
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(7);

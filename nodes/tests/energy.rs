@@ -10,9 +10,8 @@ use std::time::{Duration, Instant};
 use common::{assert_one_clear_line, excavator, json, shared};
 use excavator_bags::{Topics, WriteOptions, write_recording};
 use excavator_model::document::built_in;
-use excavator_model::equations::{Inputs, System};
 use excavator_model::recording::Recording;
-use excavator_model::simulation::{InputSignals, Tolerances, rest_state, simulate_from};
+use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
@@ -92,12 +91,7 @@ fn minute() -> Recording {
     let areas: Vec<f64> = recording.time.iter().map(|t| 6e-5 * (std::f64::consts::PI * t).sin()).collect();
     recording.cylinders[0].orifice_command.clone_from(&areas);
     recording.cylinders[0].orifice_area = areas;
-    let signals = InputSignals::from_recording(&model, &recording).unwrap();
-    let system = System::new(&model);
-    let mut inputs = Inputs::zero(1);
-    signals.between(0, 0.0, &mut inputs);
-    let state = rest_state(&system, &[0.0], &inputs);
-    simulate_from(&model, &recording, &signals, state, Tolerances::default()).unwrap()
+    simulate_from_rest(&model, &recording, &[0.0], Tolerances::default()).unwrap()
 }
 
 /// The minute `times` over, with a pause between that keeps them apart.

@@ -11,9 +11,8 @@ use excavator_identification::validation::compare;
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
-use excavator_model::equations::{Inputs, System};
 use excavator_model::recording::Recording;
-use excavator_model::simulation::{InputSignals, Profile, Segment, Tolerances, rest_state, simulate_from};
+use excavator_model::simulation::{Profile, Segment, Tolerances, simulate_from_rest};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
@@ -79,12 +78,7 @@ fn run(segments: Vec<Segment>, scale: f64) -> Recording {
     let areas: Vec<f64> = recording.time.iter().map(|&t| profile.area(t)).collect();
     recording.cylinders[0].orifice_area.clone_from(&areas);
     recording.cylinders[0].orifice_command = areas;
-    let signals = InputSignals::from_recording(&model, &recording).unwrap();
-    let system = System::new(&model);
-    let mut inputs = Inputs::zero(1);
-    signals.between(0, 0.0, &mut inputs);
-    let start = rest_state(&system, &[0.1], &inputs);
-    simulate_from(&model, &recording, &signals, start, Tolerances::default().scaled(scale)).unwrap()
+    simulate_from_rest(&model, &recording, &[0.1], Tolerances::default().scaled(scale)).unwrap()
 }
 
 /// What the bench's instruments record of a manoeuvre.

@@ -76,6 +76,11 @@ fn triangle(duration: f64, amplitude: f64) -> Segment {
     trapezoid(duration, amplitude, duration / 2.0)
 }
 
+/// A trapezoid one way and the same back, each with a pause at closed behind it.
+fn there_and_back(duration: f64, amplitude: f64, ramp: f64, pause: f64) -> Vec<Segment> {
+    vec![trapezoid(duration, amplitude, ramp), closed(pause), trapezoid(duration, -amplitude, ramp), closed(pause)]
+}
+
 fn hold(duration: f64, area: f64) -> Segment {
     Segment::Hold { duration, area }
 }
@@ -96,12 +101,12 @@ fn of_cylinder(cylinder: usize, full: f64) -> Vec<Manoeuvre> {
     }
     for share in [0.06, 0.12, 0.25] {
         let a = share * full;
-        let small = vec![trapezoid(1.0, a, 0.2), closed(0.4), trapezoid(1.0, -a, 0.2), closed(0.4)];
+        let small = there_and_back(1.0, a, 0.2, 0.4);
         add(format!("small trapezoids of {}", percent(share)), "overlap", 0.0, [small.clone(), small].concat());
     }
     for share in [0.3, 0.7] {
         let a = share * full;
-        let waits = vec![trapezoid(1.0, a, 0.15), closed(1.5), trapezoid(1.0, -a, 0.15), closed(1.5)];
+        let waits = there_and_back(1.0, a, 0.15, 1.5);
         add(format!("waits at closed after {} from either side", percent(share)), "play, leakage", 0.0, waits);
     }
     for share in [0.25, 0.5, 0.9] {
@@ -144,13 +149,13 @@ fn of_cylinder(cylinder: usize, full: f64) -> Vec<Manoeuvre> {
     }
     for share in [0.4, 0.7, 1.0] {
         let a = share * full;
-        let strokes = vec![trapezoid(1.6, a, 0.15), closed(0.5), trapezoid(1.6, -a, 0.15), closed(0.5)];
+        let strokes = there_and_back(1.6, a, 0.15, 0.5);
         add(format!("strokes at {}", percent(share)), "gains, losses with the square of the speed", 0.0, strokes);
     }
     for (place, side) in [(0.8, 1.0), (-0.8, -1.0)] {
         for share in [0.4, 1.0] {
             let a = side * share * full;
-            let push = vec![trapezoid(0.8, a, 0.1), closed(0.4), trapezoid(0.8, -a, 0.1), closed(0.4)];
+            let push = there_and_back(0.8, a, 0.1, 0.4);
             let end = if side > 0.0 { "extended" } else { "retracted" };
             add(format!("pushes at {} near the {end} end", percent(share)), "cushions, relief", place, push);
         }

@@ -138,15 +138,7 @@ impl<'m> Rider<'m> {
             }
             Supply::None => {}
         }
-        for signals in &mut recording.cylinders {
-            let own = profiles.iter().find(|profile| profile.cylinder == signals.name);
-            for (index, &time) in recording.time.iter().enumerate() {
-                let area = own.map_or(0.0, |profile| profile.area(time - from));
-                signals.orifice_area[index] = area;
-                signals.orifice_command[index] = area;
-                signals.rod_force[index] = 0.0;
-            }
-        }
+        Profile::command(profiles, &mut recording);
         recording
     }
 }

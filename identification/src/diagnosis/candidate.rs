@@ -36,6 +36,11 @@ impl Candidate {
     pub fn name(&self) -> &'static str {
         self.physics.card().name
     }
+
+    /// Whether both are the same effect at the same place, whatever their fits.
+    pub fn is_same_addition(&self, other: &Candidate) -> bool {
+        self.name() == other.name() && self.site == other.site
+    }
 }
 
 /// An effect that was not worth a fit to the end.

@@ -90,7 +90,7 @@ impl Chains<'_> {
     }
 
     fn contains(&self, chain: &[Candidate], other: &Candidate) -> bool {
-        chain.iter().any(|link| link.name() == other.name() && link.place == other.place)
+        chain.iter().any(|link| link.is_same_addition(other))
     }
 
     /// The chain that begins with `first`, until nothing more is gained and every link is needed.

@@ -138,8 +138,7 @@ pub fn diagnose(
 
 /// What turned out to be needed comes before what only looked better alone.
 fn put_first(first: &Candidate, candidates: &mut Vec<Candidate>) {
-    let is_first = |candidate: &Candidate| candidate.name() == first.name() && candidate.place == first.place;
-    match candidates.iter().position(is_first) {
+    match candidates.iter().position(|candidate| candidate.is_same_addition(first)) {
         Some(0) => return,
         Some(place) => candidates[..=place].rotate_right(1),
         None => candidates.insert(0, first.clone()),

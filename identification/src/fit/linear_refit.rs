@@ -6,7 +6,7 @@ use excavator_model::recording::Recording;
 use nalgebra::{DMatrix, DVector};
 
 use super::normal_equations::RawSums;
-use super::output_error::{held_at_bounds, parameter_step};
+use super::output_error::{bounded_step, held_at_bounds, parameter_step};
 use super::problem::Problem;
 use super::{FitError, FitSettings, Instrument};
 
@@ -74,14 +74,10 @@ impl LinearRefit {
         for _ in 0..ROUNDS {
             let sums: Vec<_> = raw.iter().map(|segment| segment.weighed(&factors)).collect();
             let held = held_at_bounds(&sums, &values, &fitted, &cards);
-            let mut taken = DVector::zeros(fitted.len());
-            if let Some(step) = parameter_step(&sums, &held, DAMPING) {
-                for (number, &index) in fitted.iter().enumerate() {
-                    let wanted = values[index] + step[number] * scales[number];
-                    let stepped = wanted.clamp(cards[index].minimum, cards[index].maximum);
-                    taken[number] = (stepped - values[index]) / scales[number];
-                }
-            }
+            let taken = parameter_step(&sums, &held, DAMPING).map_or_else(
+                || DVector::zeros(fitted.len()),
+                |step| bounded_step(&values, &step, &fitted, &scales, &cards).1,
+            );
             squares = vec![0.0; noise.len()];
             for (raw, sums) in raw.iter().zip(&sums) {
                 raw.add_predicted(&taken, &sums.state_step(&taken, DAMPING), noise, &mut squares);

@@ -134,14 +134,7 @@ fn run(
         steps += 1;
         let held = held_at_bounds(&current.sums, &current.values, fitted, cards);
         let Some(step) = parameter_step(&current.sums, &held, damping) else { break };
-        let mut trial_values = current.values.clone();
-        let mut taken = DVector::zeros(fitted.len());
-        for (number, &index) in fitted.iter().enumerate() {
-            let card = cards[index];
-            let wanted = current.values[index] + step[number] * scales[number];
-            trial_values[index] = wanted.clamp(card.minimum, card.maximum);
-            taken[number] = (trial_values[index] - current.values[index]) / scales[number];
-        }
+        let (trial_values, taken) = bounded_step(&current.values, &step, fitted, scales, cards);
         let mut trial_segments = segmented.clone();
         let mut sums = current.sums.iter();
         for segment in trial_segments.iter_mut().flat_map(|recording| recording.segments.iter_mut()) {
@@ -246,6 +239,25 @@ pub(super) fn parameter_step(sums: &[SegmentSums], held: &[bool], damping: f64) 
         information[(index, index)] += damping * information[(index, index)] + 1e-12 * largest;
     }
     information.cholesky().map(|factor| factor.solve(&gradient))
+}
+
+/// All values after a step of the fitted ones, which stay within their bounds, and what was taken of it, in scales.
+pub(super) fn bounded_step(
+    values: &[f64],
+    step: &DVector<f64>,
+    fitted: &[usize],
+    scales: &[f64],
+    cards: &[&'static ParameterCard],
+) -> (Vec<f64>, DVector<f64>) {
+    let mut stepped = values.to_vec();
+    let mut taken = DVector::zeros(fitted.len());
+    for (number, &index) in fitted.iter().enumerate() {
+        let card = cards[index];
+        let wanted = values[index] + step[number] * scales[number];
+        stepped[index] = wanted.clamp(card.minimum, card.maximum);
+        taken[number] = (stepped[index] - values[index]) / scales[number];
+    }
+    (stepped, taken)
 }
 
 fn result(model: &Model, problem: Problem<'_, '_>, state: State, steps: usize, converged: bool) -> Fit {

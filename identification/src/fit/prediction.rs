@@ -5,7 +5,7 @@ use excavator_model::equations::System;
 use excavator_model::recording::Recording;
 use nalgebra::DVector;
 
-use super::output_error::{error_sizes, held_at_bounds, loss_per_reading, parameter_step};
+use super::output_error::{bounded_step, error_sizes, held_at_bounds, loss_per_reading, parameter_step};
 use super::problem::Problem;
 use super::{FitError, FitSettings};
 
@@ -33,16 +33,10 @@ pub fn predict(model: &Model, recordings: &[&Recording], settings: &FitSettings)
     let loss_before = loss_per_reading(&weights, &problem.noise);
     let sums = problem.weighed(&raw, &weights);
     let held = held_at_bounds(&sums, &values, &problem.fitted, &problem.cards);
-    let mut stepped = values.clone();
-    let mut taken = DVector::zeros(problem.fitted.len());
-    if let Some(step) = parameter_step(&sums, &held, DAMPING) {
-        for (number, &index) in problem.fitted.iter().enumerate() {
-            let card = problem.cards[index];
-            let wanted = values[index] + step[number] * problem.scales[number];
-            stepped[index] = wanted.clamp(card.minimum, card.maximum);
-            taken[number] = (stepped[index] - values[index]) / problem.scales[number];
-        }
-    }
+    let (stepped, taken) = match parameter_step(&sums, &held, DAMPING) {
+        Some(step) => bounded_step(&values, &step, &problem.fitted, &problem.scales, &problem.cards),
+        None => (values, DVector::zeros(problem.fitted.len())),
+    };
     let mut squares = vec![0.0; problem.noise.len()];
     let mut counts = vec![0usize; problem.noise.len()];
     for (raw, sums) in raw.iter().zip(&sums) {

@@ -7,6 +7,7 @@ use excavator_model::recording::{CylinderSignals, Recording, is_measured, noise_
 use super::GateError;
 use super::clipped::clipped;
 use super::error::{FEWEST_SAMPLES, SHORTEST};
+use super::runs::range;
 use super::stuck::{stuck_position, stuck_pressure};
 use super::swapped::swapped_chambers;
 
@@ -74,7 +75,7 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
                     correlation,
                 });
             }
-            sensors_of_a_cylinder(recording, signals, chambers)?;
+            sensors_of_a_cylinder(recording, signals, opening, chambers)?;
         } else {
             at_most(model, recording, &name("rod_force"), &signals.rod_force, "N", 1e8)?;
             if cylinder.imposed_motion.is_some() {
@@ -104,13 +105,13 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
 fn sensors_of_a_cylinder(
     recording: &Recording,
     signals: &CylinderSignals,
+    opening: &[f64],
     chambers: &Chambers,
 ) -> Result<(), GateError> {
     let name = |signal: &str| format!("{}.{signal}", signals.name);
     let (cap, rod, displacement) = (&signals.cap_pressure[..], &signals.rod_pressure[..], &signals.displacement[..]);
     pressure_sensor(recording, &name("cap_pressure"), cap, &[rod, displacement])?;
     pressure_sensor(recording, &name("rod_pressure"), rod, &[cap, displacement])?;
-    let opening = if is_measured(&signals.orifice_area) { &signals.orifice_area } else { &signals.orifice_command };
     if let Some(stretch) = stuck_position(&recording.time, displacement, opening, &[cap, rod]) {
         return Err(stretch.error(recording, name("displacement"), "m"));
     }
@@ -165,11 +166,6 @@ fn travel_by_opening(time: &[f64], displacement: &[f64], opening: &[f64]) -> f64
     }
     let size = (sums[1] * sums[2]).sqrt();
     if count >= 10 && size > 0.0 { sums[0] / size } else { 0.0 }
-}
-
-fn range(signal: &[f64]) -> (f64, f64) {
-    let finite = signal.iter().filter(|value| value.is_finite());
-    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
 }
 
 /// A robust largest size: single spikes are for the noise model, not for the units.

@@ -3,6 +3,7 @@
 mod check;
 mod clipped;
 mod error;
+mod opening;
 mod runs;
 mod stuck;
 mod swapped;

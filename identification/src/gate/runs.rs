@@ -30,9 +30,14 @@ pub(super) fn runs(signal: &[f64]) -> Vec<Run> {
     runs
 }
 
+/// Smallest and largest value that is measured; infinite, the wrong way round, where there is none.
+pub(super) fn range(signal: &[f64]) -> (f64, f64) {
+    let finite = signal.iter().filter(|value| value.is_finite());
+    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
+}
+
 /// Largest minus smallest value; zero where nothing is measured.
 pub(super) fn spread(signal: &[f64]) -> f64 {
-    let finite = signal.iter().filter(|value| value.is_finite());
-    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)));
+    let (low, high) = range(signal);
     (high - low).max(0.0)
 }

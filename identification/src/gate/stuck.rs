@@ -3,7 +3,8 @@
 use excavator_model::recording::{Recording, is_measured};
 
 use super::GateError;
-use super::runs::{Run, runs, spread};
+use super::opening::{largest, open_one_way};
+use super::runs::{Run, range, runs, spread};
 
 /// Shortest time that is told, s: a message that comes late repeats a value for less.
 const SHORTEST: f64 = 1.0;
@@ -14,9 +15,6 @@ const EVENTFUL: f64 = 0.1;
 /// Pressures below this, Pa, may stand still truly: a chamber that is open to the tank, seen by a sensor that knows no
 /// pressure below zero.
 const NEAR_TANK: f64 = 2e5;
-
-/// Opening, as a share of the largest, that moves a piston.
-const OPEN: f64 = 0.2;
 
 /// Share of a piston's range at each end in which it may stand still truly, at a stop.
 const NEAR_THE_END: f64 = 0.05;
@@ -49,15 +47,11 @@ pub(super) fn stuck_pressure(time: &[f64], signal: &[f64], witnesses: &[&[f64]])
 /// The longest stretch in which a piston seems to stand still away from its ends although its valve is open one way all
 /// the time and both pressures change.
 pub(super) fn stuck_position(time: &[f64], signal: &[f64], opening: &[f64], pressures: &[&[f64]]) -> Option<Stretch> {
-    let (least, most) = signal
-        .iter()
-        .filter(|value| value.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
+    let (least, most) = range(signal);
     let margin = NEAR_THE_END * (most - least);
-    let largest = opening.iter().filter(|area| area.is_finite()).fold(0.0_f64, |most, area| most.max(area.abs()));
+    let largest = largest(opening);
     longest(time, signal, |run| {
-        let open = &opening[run.first..=run.last];
-        let one_way = open.iter().all(|&area| area > OPEN * largest) || open.iter().all(|&area| area < -OPEN * largest);
+        let one_way = open_one_way(&opening[run.first..=run.last], largest);
         let inside = run.value > least + margin && run.value < most - margin;
         inside && largest > 0.0 && one_way && all_move(pressures, run)
     })

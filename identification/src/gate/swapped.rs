@@ -7,11 +7,10 @@
 use excavator_model::machine::Chambers;
 use excavator_model::recording::{CylinderSignals, Recording, is_measured};
 
+use super::opening::{largest, open_one_way};
+
 /// Time over which flows are averaged, s: longer than oil needs to be compressed, shorter than a stroke.
 const WINDOW: f64 = 0.1;
-
-/// Opening, as a share of the largest, from which flow counts: near closed, overlap decides.
-const OPEN: f64 = 0.2;
 
 /// Fewest windows that say something.
 const FEWEST: usize = 20;
@@ -49,7 +48,7 @@ pub(super) fn swapped_chambers(
 
 fn shares(recording: &Recording, signals: &CylinderSignals, opening: &[f64], chambers: &Chambers) -> Option<Shares> {
     let time = &recording.time;
-    let largest = opening.iter().filter(|area| area.is_finite()).fold(0.0_f64, |most, area| most.max(area.abs()));
+    let largest = largest(opening);
     let mut sides = [[Side::default(); 2]; 2];
     let (mut first, mut windows) = (0, 0usize);
     while let Some(&start) = time.get(first) {
@@ -58,9 +57,8 @@ fn shares(recording: &Recording, signals: &CylinderSignals, opening: &[f64], cha
         let range = first..last;
         first = last;
         let open = &opening[range.clone()];
-        let one_way = open.iter().all(|&area| area > OPEN * largest) || open.iter().all(|&area| area < -OPEN * largest);
         let velocity = (signals.displacement[last] - signals.displacement[range.start]) / (end - start);
-        if !one_way || !velocity.is_finite() {
+        if !open_one_way(open, largest) || !velocity.is_finite() {
             continue;
         }
         windows += 1;

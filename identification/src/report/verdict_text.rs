@@ -87,8 +87,7 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
 
 /// The first candidate and those tied with it.
 pub(super) fn tied<'a>(diagnosis: &'a Diagnosis, first: &'a Candidate) -> Vec<&'a Candidate> {
-    let same = |other: &Candidate| other.name() == first.name() && other.site == first.site;
-    let others = diagnosis.candidates.iter().filter(|other| other.tied_with_first && !same(other));
+    let others = diagnosis.candidates.iter().filter(|other| other.tied_with_first && !other.is_same_addition(first));
     std::iter::once(first).chain(others).collect()
 }
 

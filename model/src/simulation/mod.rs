@@ -23,6 +23,6 @@ pub use linearisation::Linearisation;
 pub use observer::Observer;
 pub use profile::{Profile, ProfileError, Segment};
 pub use rest::rest_state;
-pub use run::{RunError, observed, simulate, simulate_from};
+pub use run::{RunError, observed, simulate, simulate_from, simulate_from_rest};
 pub use sensitivity::Sensitivity;
 pub use undistorted::undistorted;

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::recording::Recording;
+
 /// A command profile can not be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ProfileError {
@@ -113,6 +115,21 @@ impl Segment {
 }
 
 impl Profile {
+    /// Commands each cylinder of a recording along its own profile from the first sample on, with the valve exactly where it
+    /// is told to be; those without a profile stay closed. No force acts on any rod.
+    pub fn command(profiles: &[Profile], recording: &mut Recording) {
+        let start = recording.time.first().copied().unwrap_or(0.0);
+        for signals in &mut recording.cylinders {
+            let own = profiles.iter().find(|profile| profile.cylinder == signals.name);
+            for (index, &time) in recording.time.iter().enumerate() {
+                let area = own.map_or(0.0, |profile| profile.area(time - start));
+                signals.orifice_area[index] = area;
+                signals.orifice_command[index] = area;
+                signals.rod_force[index] = 0.0;
+            }
+        }
+    }
+
     /// Whole length in s.
     pub fn duration(&self) -> f64 {
         self.segments.iter().map(Segment::duration).sum()

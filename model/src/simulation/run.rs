@@ -1,9 +1,9 @@
 //! Whole simulations.
 
-use super::{InputSignals, Integrator, Observer, SimulationError, Tolerances, initial_state};
+use super::{InputSignals, Integrator, Observer, SimulationError, Tolerances, initial_state, rest_state};
 use crate::Model;
 use crate::SignalError;
-use crate::equations::{Channel, System};
+use crate::equations::{Channel, Inputs, System};
 use crate::machine::Supply;
 use crate::recording::Recording;
 
@@ -56,6 +56,27 @@ pub fn simulate_from(
     }
     integrator.follow(signals, &mut state, |index, state| observer.record(signals, index, state, &mut simulated))?;
     Ok(simulated)
+}
+
+/// Simulates `model` with the inputs of `recording` from rest at these piston displacements, m from mid-stroke, and with the
+/// pressures that hold it there; see [`rest_state`].
+///
+/// # Errors
+/// [`RunError`].
+pub fn simulate_from_rest(
+    model: &Model,
+    recording: &Recording,
+    displacements: &[f64],
+    tolerances: Tolerances,
+) -> Result<Recording, RunError> {
+    let signals = InputSignals::from_recording(model, recording)?;
+    if signals.is_empty() {
+        return Ok(recording.clone());
+    }
+    let mut inputs = Inputs::zero(model.machine.cylinders.len());
+    signals.between(0, 0.0, &mut inputs);
+    let state = rest_state(&System::new(model), displacements, &inputs);
+    Ok(simulate_from(model, recording, &signals, state, tolerances)?)
 }
 
 /// Writes what instruments report of a state into sample `index` of a recording, as far as the state alone says it: with

@@ -45,15 +45,7 @@ fn with_profile(model: &Model, path: &Path) -> Result<Recording, VerbError> {
         recording.tank_pressure.fill(line.tank_pressure);
         recording.pump_flow.fill(line.flow);
     }
-    for signals in &mut recording.cylinders {
-        let own = file.profiles.iter().find(|profile| profile.cylinder == signals.name);
-        for (index, &t) in recording.time.iter().enumerate() {
-            let area = own.map_or(0.0, |profile| profile.area(t));
-            signals.orifice_area[index] = area;
-            signals.orifice_command[index] = area;
-            signals.rod_force[index] = 0.0;
-        }
-    }
+    Profile::command(&file.profiles, &mut recording);
     let signals = InputSignals::from_recording(model, &recording)?;
     let system = System::new(model);
     let mut inputs = Inputs::zero(names.len());
