@@ -19,12 +19,14 @@ pub struct RegimeJudgement {
     pub size: f64,
     /// Standard deviation of a window's power from sensor noise, W.
     pub noise: f64,
-    /// Standard deviation from the parameters' standard errors, where the model has them, and from the width of the
-    /// parabolas through the measurements, W.
+    /// Standard deviation from the parameters' standard errors, where the model has them, and from the time between two
+    /// samples of a valve's opening, W.
     pub parameters: f64,
+    /// Most that the parabolas through the measurements have cut off, root mean square, W.
+    pub rounding: f64,
     /// Mean power that flows through the place, W.
     pub flow: f64,
-    /// Largest size that noise, parameters and tolerance explain, W; infinite where windows are too few to judge.
+    /// Largest size that noise, parameters, rounding and tolerance explain, W; infinite where windows are too few to judge.
     pub band: f64,
 }
 
@@ -86,6 +88,16 @@ struct Sum {
     peak: f64,
     variance: f64,
     parameter_variance: f64,
+    rounding_squares: f64,
+    flow: f64,
+}
+
+/// What explains a window's power, W or W².
+#[derive(Debug, Clone, Copy, Default)]
+struct Explained {
+    variance: f64,
+    parameter_variance: f64,
+    rounding: f64,
     flow: f64,
 }
 
@@ -126,6 +138,7 @@ impl Judge {
                     (0..first.parameters[place].len()).map(|j| mean(&|noise| noise.parameters[place][j])).collect()
                 })
                 .collect(),
+            rounding: (0..places).map(|place| mean(&|noise| noise.rounding[place])).collect(),
         });
     }
 
@@ -141,9 +154,10 @@ impl Judge {
             let variance = noise.map_or(0.0, |noise| noise.variance[index] * (1.0 + 1.0 / draws));
             let parameters = noise.map_or(&[][..], |noise| &noise.parameters[index]);
             let parameter_variance: f64 = parameters.iter().map(|change| change * change).sum();
-            let flow = window.flows[index];
+            let rounding = noise.map_or(0.0, |noise| noise.rounding[index]);
+            let explained = Explained { variance, parameter_variance, rounding, flow: window.flows[index] };
             // A single window of thousands must be further out than the root mean square of many.
-            let band = 2.0 * band(&self.settings, variance, parameter_variance, flow);
+            let band = 2.0 * band(&self.settings, explained);
             self.outside[index] += usize::from(residual.abs() > band);
             for (regime, sum) in Regime::ALL.iter().zip(&mut self.sums[index]) {
                 let met = match cylinder {
@@ -151,7 +165,7 @@ impl Judge {
                     None => window.situations.iter().any(|situation| situation.is(*regime)),
                 };
                 if met {
-                    sum.add(residual, variance, parameter_variance, flow);
+                    sum.add(residual, explained);
                 }
             }
             judged.residuals.push(residual);
@@ -180,24 +194,26 @@ impl Judge {
     }
 }
 
-/// Size that is explained, W: standard deviations that are each as wide as they may be, and the tolerance.
-fn band(settings: &EnergySettings, variance: f64, parameter_variance: f64, flow: f64) -> f64 {
-    let noise = settings.significance.powi(2) * variance;
-    let parameters = settings.parameter_significance.powi(2) * parameter_variance;
-    (noise + parameters + (settings.tolerance * flow).powi(2)).sqrt()
+/// Size that is explained, W: standard deviations that are each as wide as they may be, the tolerance, and rounding, which
+/// has one sign for as long as a motion repeats and does not average out against the others.
+fn band(settings: &EnergySettings, explained: Explained) -> f64 {
+    let noise = settings.significance.powi(2) * explained.variance;
+    let parameters = settings.parameter_significance.powi(2) * explained.parameter_variance;
+    (noise + parameters + (settings.tolerance * explained.flow).powi(2)).sqrt() + explained.rounding
 }
 
 impl Sum {
-    fn add(&mut self, residual: f64, variance: f64, parameter_variance: f64, flow: f64) {
+    fn add(&mut self, residual: f64, explained: Explained) {
         self.windows += 1;
         self.residual += residual;
         self.squares += residual * residual;
         if residual.abs() > self.peak.abs() {
             self.peak = residual;
         }
-        self.variance += variance;
-        self.parameter_variance += parameter_variance;
-        self.flow += flow;
+        self.variance += explained.variance;
+        self.parameter_variance += explained.parameter_variance;
+        self.rounding_squares += explained.rounding.powi(2);
+        self.flow += explained.flow;
     }
 
     fn mean_flow(&self) -> f64 {
@@ -208,6 +224,7 @@ impl Sum {
     fn judge(&self, regime: Regime, least_flow: f64, settings: &EnergySettings) -> RegimeJudgement {
         let count = self.windows.max(1) as f64;
         let (variance, parameter_variance) = (self.variance / count, self.parameter_variance / count);
+        let rounding = (self.rounding_squares / count).sqrt();
         let flow = self.mean_flow();
         RegimeJudgement {
             regime,
@@ -217,11 +234,12 @@ impl Sum {
             size: (self.squares / count).sqrt(),
             noise: variance.sqrt(),
             parameters: parameter_variance.sqrt(),
+            rounding,
             flow,
             band: if self.windows < FEWEST {
                 f64::INFINITY
             } else {
-                band(settings, variance, parameter_variance, flow.max(least_flow))
+                band(settings, Explained { variance, parameter_variance, rounding, flow: flow.max(least_flow) })
             },
         }
     }
