@@ -20,8 +20,8 @@ pub struct EnergySettings {
     /// Missing power below this share of the power that flows through its place is not told, whatever the noise: clocks
     /// of sensors and slopes of signals are no sharper.
     pub tolerance: f64,
-    /// Repeats with added sensor noise. Where a pressure is near that of the tank few repeats hit the square root's steep part,
-    /// and noise is taken for too small: of windows of 4 s in which nothing was missing 3 repeats called 5 % open, 12 none of 180.
+    /// Repeats with added sensor noise. Where a pressure is near that of the tank few repeats hit the steep part of the
+    /// square root: six called windows of 4 s open twelve times as often as twelve did.
     pub draws: usize,
     /// Time from the start that is simulated, plotted, and searched for a period, s. A simulation that runs free for
     /// longer has drifted away and says nothing of phase.
