@@ -2,18 +2,21 @@
 
 mod candidate;
 mod chain;
+mod contribution;
 mod diagnose;
 mod evidence;
 mod inclusion;
 mod input_floor;
 mod race;
 mod residual_map;
+mod residual_points;
 mod settings;
 mod starts;
 mod worst_stretch;
 
 pub(crate) use candidate::fit_addition;
 pub use candidate::{Candidate, CandidateError, Unpromising, additions};
+pub use contribution::{Contribution, ContributionBin, contribution};
 pub(crate) use diagnose::fit_nominal;
 use diagnose::is_adequate;
 pub use diagnose::{Diagnosis, DiagnosisError, Verdict, diagnose, normalised_error};

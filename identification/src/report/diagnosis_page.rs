@@ -1,6 +1,7 @@
 //! What a model is missing.
 
 use excavator_model::Model;
+use excavator_model::recording::Recording;
 use maud::{Markup, html};
 
 use super::comparison_page::{measures, over_time};
@@ -77,7 +78,8 @@ pub(super) fn diagnosis_sections(diagnosis: &Diagnosis, comparisons: &[Compariso
     let named = named(diagnosis);
     if !named.is_empty() {
         let title = if named.len() == 1 { "The effect" } else { "The effects" };
-        let body = html! { @for candidate in &named { (effect_card(candidate)) } };
+        let recordings: Vec<&Recording> = comparisons.iter().map(|comparison| &comparison.measured).collect();
+        let body = html! { @for candidate in &named { (effect_card(candidate, &recordings)) } };
         sections.push(Section { anchor: "effects", title: title.into(), body });
     }
     if let Some(left) = &diagnosis.unexplained {

@@ -1,14 +1,18 @@
 //! What the catalogue says about an effect.
 
+use excavator_model::recording::Recording;
 use maud::{Markup, html};
 
+use super::effect_plot::effect_plot;
 use super::parameter_table;
 use super::verdict_text::place_of;
-use crate::diagnosis::Candidate;
+use crate::diagnosis::{Candidate, contribution};
 
-/// Card and fitted parameters of a named candidate.
-pub(super) fn effect_card(candidate: &Candidate) -> Markup {
+/// Card, picture on `recordings` and fitted parameters of a named candidate.
+pub(super) fn effect_card(candidate: &Candidate, recordings: &[&Recording]) -> Markup {
     let card = candidate.physics.card();
+    // A picture that cannot be made leaves its place empty; the words beside it stand without.
+    let shown = contribution(candidate, recordings).ok().flatten();
     html! {
         div.card {
             h3 { (capitalised(&place_of(candidate))) " " code.code-name { (card.name) "@" (candidate.place) } }
@@ -20,6 +24,7 @@ pub(super) fn effect_card(candidate: &Candidate) -> Markup {
                 dt { "Energy" } dd { (card.energy) }
                 dt { "Source" } dd { (card.source) }
             }
+            @if let Some(shown) = &shown { (effect_plot(shown)) }
             (parameter_table::of_effect(&candidate.fit.model, candidate.name(), candidate.site))
         }
     }

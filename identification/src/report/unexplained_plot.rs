@@ -3,8 +3,8 @@
 use maud::{Markup, html};
 
 use super::numbers::percent;
+use super::residual_units::{unit_of_residual, unit_of_variable};
 use super::svg::{Frame, picture, range_of};
-use super::units::{self, Unit};
 use super::words;
 use crate::diagnosis::Unexplained;
 
@@ -47,18 +47,4 @@ pub(super) fn unexplained_plot(left: &Unexplained) -> Markup {
             (picture(size, &format!("{y_label} against {x_label}"), &content))
         }
     }
-}
-
-fn unit_of_variable(variable: &str) -> Unit {
-    match variable {
-        "command" => units::SQUARE_MILLIMETRE,
-        "speed" => units::MILLIMETRE_PER_SECOND,
-        "position" => units::MILLIMETRE,
-        "time" => units::SECOND,
-        _ => units::MEGAPASCAL,
-    }
-}
-
-fn unit_of_residual(si: &'static str) -> Unit {
-    if si == "m3/s" { units::LITRE_PER_MINUTE } else { Unit { factor: 1.0, symbol: si } }
 }

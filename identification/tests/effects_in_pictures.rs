@@ -1,0 +1,87 @@
+//! An effect taken out of the model that has it: what the equations lack is the effect, along the variable it depends on.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use excavator_identification::diagnosis::{Candidate, Contribution, Evidence, Inclusion, contribution};
+use excavator_identification::fit::{FitSettings, evaluate};
+use excavator_model::Model;
+use excavator_model::document::built_in;
+use excavator_model::effects::{Site, find};
+use excavator_model::recording::Recording;
+use excavator_model::simulation::{Tolerances, simulate_from_rest};
+
+/// The paper's arm with one more effect.
+fn machine(name: &str, values: &[f64]) -> Model {
+    let mut model = built_in("zx30u-arm").unwrap().with_effect(find(name).unwrap(), Site::Cylinder(0)).unwrap();
+    for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
+        parameter.value = *value;
+    }
+    model
+}
+
+/// It swings at two frequencies for 16 s.
+fn measured(model: &Model) -> Recording {
+    let time: Vec<f64> = (0..8000).map(|index| f64::from(index) * 2e-3).collect();
+    let mut recording = Recording::unmeasured("swing", time, &["arm"]);
+    recording.tank_pressure.fill(3e5);
+    recording.pump_flow.fill(3.8e-4);
+    let area = |t: &f64| 5e-5 * (3.1 * t).sin() + 3e-5 * (7.3 * t).sin();
+    recording.cylinders[0].orifice_area = recording.time.iter().map(area).collect();
+    simulate_from_rest(model, &recording, &[0.1], Tolerances::default().scaled(0.05)).unwrap()
+}
+
+fn shown(name: &'static str, values: &[f64], found: &[f64]) -> Option<Contribution> {
+    let recording = measured(&machine(name, values));
+    let model = machine(name, found);
+    let fit = evaluate(&model, &[&recording], &FitSettings::default()).unwrap();
+    let candidate = Candidate {
+        physics: find(name).unwrap(),
+        site: Site::Cylinder(0),
+        place: "arm".to_string(),
+        validation: fit.clone(),
+        fit,
+        evidence: Evidence { gain: 1.0, significance: 10.0 },
+        inclusion: Inclusion::default(),
+        identification_gain: 1.0,
+        accepted: true,
+        tied_with_first: false,
+    };
+    contribution(&candidate, &[&recording]).unwrap()
+}
+
+/// Largest distance of the data from the effect, as a part of the effect's size.
+fn distance(shown: &Contribution) -> f64 {
+    let size = shown.bins.iter().map(|bin| bin.effect.abs()).fold(0.0, f64::max);
+    shown.bins.iter().map(|bin| (bin.lacking - bin.effect).abs()).fold(0.0, f64::max) / size
+}
+
+#[test]
+fn friction_shows_against_speed_in_the_force_balance() {
+    let stribeck = [800.0, 0.02];
+    let shown = shown("stribeck_friction", &stribeck, &stribeck).unwrap();
+    assert_eq!((shown.equation.as_str(), shown.variable, shown.unit), ("arm.motion", "speed", "N m"));
+    assert!(distance(&shown) < 0.1, "{}: {shown:#?}", distance(&shown));
+    // The upturn near zero: against the motion, gone at speed.
+    assert!(shown.bins.iter().all(|bin| bin.effect * bin.at > 0.0));
+    let largest = shown.bins.iter().max_by(|a, b| a.effect.abs().total_cmp(&b.effect.abs())).unwrap();
+    let fastest = shown.bins.iter().max_by(|a, b| a.at.abs().total_cmp(&b.at.abs())).unwrap();
+    assert!(largest.at.abs() < stribeck[1] && fastest.effect.abs() < 0.05 * largest.effect.abs(), "{shown:#?}");
+}
+
+#[test]
+fn a_dead_zone_shows_against_the_opening_in_an_oil_balance() {
+    let zone = [8e-6, 8e-6];
+    let shown = shown("valve_dead_zone", &zone, &zone).unwrap();
+    assert!(shown.equation.ends_with("continuity") && shown.variable == "command", "{shown:?}");
+    assert!(distance(&shown) < 0.1, "{}: {shown:#?}", distance(&shown));
+}
+
+#[test]
+fn data_that_ask_for_more_leave_the_line() {
+    let shown = shown("stribeck_friction", &[800.0, 0.02], &[400.0, 0.02]).unwrap();
+    assert!(distance(&shown) > 0.5, "{}: {shown:#?}", distance(&shown));
+}
+
+#[test]
+fn an_effect_that_does_nothing_has_no_picture() {
+    assert_eq!(shown("stribeck_friction", &[0.0, 0.02], &[0.0, 0.02]), None);
+}
