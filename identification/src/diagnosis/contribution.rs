@@ -10,7 +10,7 @@ use excavator_model::Model;
 use excavator_model::recording::Recording;
 
 use super::Candidate;
-use super::residual_points::{Point, VARIABLES, bins, points, share_explained, unit_of};
+use super::residual_points::{Point, VARIABLES, Variable, bins, points, share_explained, unit_of};
 use crate::regression::{EquationKind, RegressionError};
 
 /// An effect in the equation and along the variable in which it shows most clearly.
@@ -82,7 +82,7 @@ fn clearest_equation(pairs: &[(Point, f64)]) -> Option<EquationKind> {
 
 fn along_its_variable(kind: EquationKind, pairs: &[(Point, f64)], model: &Model) -> Option<Contribution> {
     let own: Vec<&(Point, f64)> = pairs.iter().filter(|(point, _)| point.kind == kind).collect();
-    let along = |of: fn(&Point) -> f64, value: &dyn Fn(&(Point, f64)) -> f64| {
+    let along = |of: Variable, value: &dyn Fn(&(Point, f64)) -> f64| {
         bins(own.iter().map(|pair| (of(&pair.0), value(pair))).collect())
     };
     let (share, variable, effect, of) = VARIABLES

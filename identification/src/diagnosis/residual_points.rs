@@ -25,8 +25,11 @@ pub(super) struct Point {
     pub time: f64,
 }
 
+/// Something that a residual may depend on.
+pub(super) type Variable = fn(&Point) -> f64;
+
 /// What a residual is looked at against.
-pub(super) const VARIABLES: [(&str, fn(&Point) -> f64); 7] = [
+pub(super) const VARIABLES: [(&str, Variable); 7] = [
     ("command", |p| p.opening),
     ("speed", |p| p.velocity),
     ("position", |p| p.displacement),
