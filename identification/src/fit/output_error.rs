@@ -49,6 +49,8 @@ pub struct Fit {
     pub fitted: Vec<usize>,
     /// Covariance of the fitted parameters, in their units.
     pub covariance: DMatrix<f64>,
+    /// By how much correlated errors have grown the variance of each fitted parameter over that of white errors.
+    pub inflation: Vec<f64>,
     /// What was compared.
     pub instruments: Vec<Instrument>,
     /// Root mean square error of each instrument, in its unit.
@@ -69,15 +71,14 @@ impl Fit {
         loss_per_reading(&self.errors, &noise)
     }
 
-    /// Names of the fitted parameters whose 95 % intervals include zero: not even their sign is known.
-    pub fn undetermined(&self) -> Vec<String> {
-        let names = self.model.parameter_names();
+    /// Indices of the fitted parameters whose 95 % intervals include zero: not even their sign is known.
+    pub fn undetermined(&self) -> Vec<usize> {
         let parameters: Vec<_> = self.model.parameters().map(|(_, parameter)| parameter).collect();
         let unknown = |&&index: &&usize| {
             let parameter = parameters[index];
             parameter.standard_error.is_none_or(|error| error.is_nan() || 1.96 * error >= parameter.value.abs())
         };
-        self.fitted.iter().filter(unknown).map(|&index| names[index].clone()).collect()
+        self.fitted.iter().filter(unknown).copied().collect()
     }
 }
 
@@ -284,7 +285,7 @@ pub(super) fn bounded_step(
 
 fn result(model: &Model, problem: Problem<'_, '_>, state: State, steps: usize, converged: bool) -> Fit {
     let Problem { fitted, scales, instruments, .. } = problem;
-    let covariance = clustered_covariance(&state.sums, &scales);
+    let (covariance, inflation) = clustered_covariance(&state.sums, &scales);
     let mut model = model.clone();
     model.set_parameter_values(&state.values);
     for (index, parameter) in model.parameters_mut().enumerate() {
@@ -303,12 +304,13 @@ fn result(model: &Model, problem: Problem<'_, '_>, state: State, steps: usize, c
         })
         .collect();
     let block_errors = state.sums.iter().flat_map(|segment| segment.block_errors.iter().cloned()).collect();
-    Fit { model, fitted, covariance, instruments, errors, block_errors, steps, converged }
+    Fit { model, fitted, covariance, inflation, instruments, errors, block_errors, steps, converged }
 }
 
 /// Covariance that holds for coloured errors: blocks of half a second are taken as independent, errors inside one may be
-/// correlated in any way (cluster-robust "sandwich", Liang and Zeger 1986), with the factor n/(n - p) on the blocks.
-fn clustered_covariance(sums: &[SegmentSums], scales: &[f64]) -> DMatrix<f64> {
+/// correlated in any way (cluster-robust "sandwich", Liang and Zeger 1986), with the factor n/(n - p) on the blocks. And the
+/// ratio of its diagonal to that of white errors.
+fn clustered_covariance(sums: &[SegmentSums], scales: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
     let fitted = scales.len();
     let mut information = DMatrix::<f64>::zeros(fitted, fitted);
     let mut meat = DMatrix::<f64>::zeros(fitted, fitted);
@@ -321,7 +323,7 @@ fn clustered_covariance(sums: &[SegmentSums], scales: &[f64]) -> DMatrix<f64> {
         }
     }
     let Some(factor) = information.clone().cholesky() else {
-        return DMatrix::from_element(fitted, fitted, f64::INFINITY);
+        return (DMatrix::from_element(fitted, fitted, f64::INFINITY), vec![f64::NAN; fitted]);
     };
     let inverse = factor.inverse();
     let parameters = fitted as f64;
@@ -331,10 +333,11 @@ fn clustered_covariance(sums: &[SegmentSums], scales: &[f64]) -> DMatrix<f64> {
     for index in 0..fitted {
         covariance[(index, index)] = covariance[(index, index)].max(inverse[(index, index)]);
     }
+    let inflation = (0..fitted).map(|index| covariance[(index, index)] / inverse[(index, index)]).collect();
     for row in 0..fitted {
         for column in 0..fitted {
             covariance[(row, column)] *= scales[row] * scales[column];
         }
     }
-    covariance
+    (covariance, inflation)
 }

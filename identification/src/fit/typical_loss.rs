@@ -43,6 +43,7 @@ mod tests {
             model: excavator_model::document::built_in("emps").unwrap_or_else(|_| unreachable!()) as Model,
             fitted: Vec::new(),
             covariance: DMatrix::zeros(0, 0),
+            inflation: Vec::new(),
             instruments: vec![Instrument {
                 name: "load.displacement".into(),
                 unit: "m",

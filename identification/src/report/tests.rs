@@ -63,6 +63,7 @@ fn fit_of(model: &Model, error: f64) -> Fit {
         model,
         fitted: Vec::new(),
         covariance: DMatrix::zeros(0, 0),
+        inflation: Vec::new(),
         instruments: vec![Instrument {
             name: "arm.displacement".into(),
             unit: "m",

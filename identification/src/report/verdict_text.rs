@@ -25,8 +25,13 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
         "{verdict} Beware: the 95 % intervals of {} of {fitted} parameters include zero ({}), so these recordings say \
          little about the model.",
         undetermined.len(),
-        undetermined.join(", ")
+        names_of(&diagnosis.nominal.model, &undetermined).join(", ")
     )
+}
+
+fn names_of(model: &Model, parameters: &[usize]) -> Vec<String> {
+    let names = model.parameter_names();
+    parameters.iter().filter_map(|&index| names.get(index).cloned()).collect()
 }
 
 fn missing(machine: &str, diagnosis: &Diagnosis) -> String {

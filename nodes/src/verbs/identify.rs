@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use excavator_identification::fit::{FitSettings, fit};
+use excavator_identification::fit::{FitSettings, ProfileInterval, fit, profile};
 use excavator_identification::regression::{
     ConditionNumber, EquationGauge, WeakFormSettings, least_squares, weak_form,
 };
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
 use excavator_model::{HistoryEntry, Model};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::print;
 use crate::cli::{IdentifyArguments, Method};
@@ -24,6 +24,8 @@ struct Identified {
     rows: usize,
     equations: Vec<EquationGauge>,
     not_identified: Vec<(usize, String)>,
+    /// Of parameters whose standard errors say little.
+    profiles: Vec<ProfileInterval>,
 }
 
 pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
@@ -54,7 +56,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
                 "rows": gauge.rows,
             })
         });
-        let value = identification_json(
+        let mut value = identification_json(
             &result.model,
             &result.fitted,
             &result.conditions,
@@ -62,6 +64,9 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
             equations.collect(),
             &result.not_identified,
         );
+        if !result.profiles.is_empty() {
+            value["profiles"] = profiles_json(&result);
+        }
         write_json(path, &value)?;
     }
     Ok(())
@@ -90,6 +95,7 @@ fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<
             rows: regression.rows,
             equations: regression.equations,
             not_identified: regression.not_identified,
+            profiles: Vec::new(),
         },
         None => Identified {
             model: model.clone(),
@@ -98,16 +104,59 @@ fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<
             rows: 0,
             equations: Vec::new(),
             not_identified: Vec::new(),
+            profiles: Vec::new(),
         },
     };
     if method == Method::OutputError {
         let settings = FitSettings { sample_rate: f64::INFINITY, ..FitSettings::default() };
         let fitted = fit(&result.model, recordings, &settings)?;
+        result.profiles = fitted
+            .undetermined()
+            .into_iter()
+            .map(|index| profile(&fitted, recordings, &FitSettings::default(), index))
+            .collect::<Result<_, _>>()?;
         result.model = fitted.model;
         result.fitted = fitted.fitted;
         result.not_identified.clear();
     }
     Ok(result)
+}
+
+fn profiles_json(result: &Identified) -> Value {
+    let names = result.model.parameter_names();
+    let one = |profile: &ProfileInterval| {
+        json!({
+            "name": names[profile.index],
+            "lower": profile.lower,
+            "upper": profile.upper,
+            "identifiable": profile.is_identifiable(),
+            "moves_with": profile.companion.map(|(other, correlation)| json!({"name": names[other], "correlation": correlation})),
+        })
+    };
+    Value::Array(result.profiles.iter().map(one).collect())
+}
+
+/// What the recordings say of a parameter that they hardly show.
+fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
+    let names = model.parameter_names();
+    let unit = model.parameters().nth(profile.index).map_or("", |(_, parameter)| parameter.card.unit);
+    let name = &names[profile.index];
+    let mut text = match (profile.lower, profile.upper) {
+        (None, None) => format!("{name} is not identifiable from these recordings: every possible value fits as well"),
+        (Some(lower), None) => {
+            format!("{name} is at least {} {unit} (95 %); every larger value fits as well", number(lower))
+        }
+        (None, Some(upper)) => {
+            format!("{name} is at most {} {unit} (95 %); every smaller value fits as well", number(upper))
+        }
+        (Some(lower), Some(upper)) => {
+            format!("{name} is between {} and {} {unit} (95 %, profile likelihood)", number(lower), number(upper))
+        }
+    };
+    if let Some((other, correlation)) = profile.companion {
+        text += &format!("; when it is moved, {} takes its place (correlation {correlation:.2})", names[other]);
+    }
+    text
 }
 
 fn show(result: &Identified) {
@@ -127,6 +176,9 @@ fn show(result: &Identified) {
             number(gauge.chi_squared_per_row),
             gauge.rows
         ));
+    }
+    for profile in &result.profiles {
+        print(&profile_sentence(profile, &result.model));
     }
     let names = result.model.parameter_names();
     for (index, reason) in &result.not_identified {

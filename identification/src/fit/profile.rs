@@ -1,0 +1,122 @@
+//! Profile likelihood: what recordings say of a parameter that a standard error says little of.
+//!
+//! The parameter is moved away from its best value step by step, all others are fitted again, and the interval ends where the
+//! outputs are met significantly worse (Raue et al. 2009). Unlike a standard error that holds at bounds, where a coefficient
+//! cannot be negative, and far from the best value; and where no end is found the parameter is not identifiable.
+
+use excavator_model::recording::Recording;
+
+use super::output_error::fit;
+use super::{Fit, FitError, FitSettings};
+
+/// What recordings say of one parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProfileInterval {
+    /// Index of the parameter in the model's order.
+    pub index: usize,
+    /// Lower end of the 95 % interval; `None` where every value down to the least possible fits as well.
+    pub lower: Option<f64>,
+    /// Upper end; `None` where every value up to the largest possible fits as well.
+    pub upper: Option<f64>,
+    /// The parameter that takes its place most when it is moved: index in the model's order, and correlation.
+    pub companion: Option<(usize, f64)>,
+}
+
+impl ProfileInterval {
+    /// Whether the recordings bound it on either side.
+    pub fn is_identifiable(&self) -> bool {
+        self.lower.is_some() || self.upper.is_some()
+    }
+}
+
+/// 95 % quantile of chi-square with one degree of freedom.
+const THRESHOLD: f64 = 3.841;
+/// Steps of each fit: it begins at the solution for a value nearby.
+const STEPS: usize = 5;
+/// Doublings of the distance before a side is called open.
+const DOUBLINGS: usize = 12;
+/// Correlation from which another parameter is named as the one that takes its place.
+const TOGETHER: f64 = 0.7;
+
+/// Profiles parameter `index` (in the model's order), one of those that `best` has fitted to `recordings`.
+///
+/// # Errors
+/// [`FitError`] when the recordings cannot be fitted at all.
+pub fn profile(
+    best: &Fit,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+    index: usize,
+) -> Result<ProfileInterval, FitError> {
+    // Fitted once more with the settings of the profile, so that both ends of a difference are of one kind.
+    let best = fit(&best.model, recordings, &FitSettings { maximum_steps: STEPS, ..*settings })?;
+    let settings = FitSettings { maximum_steps: STEPS, least_improvement: 1e-6, ..*settings };
+    let side = |direction: f64| end_of(&best, recordings, &settings, index, direction);
+    Ok(ProfileInterval { index, lower: side(-1.0), upper: side(1.0), companion: companion(&best, index) })
+}
+
+/// Where the outputs are met significantly worse, going one way.
+fn end_of(best: &Fit, recordings: &[&Recording], settings: &FitSettings, index: usize, direction: f64) -> Option<f64> {
+    let parameters: Vec<_> = best.model.parameters().map(|(_, parameter)| parameter).collect();
+    let parameter = parameters.get(index)?;
+    let (start, card) = (parameter.value, parameter.card);
+    let own = best.fitted.iter().position(|&fitted| fitted == index)?;
+    let inflation = best.inflation.get(own).copied().filter(|factor| factor.is_finite()).unwrap_or(1.0).max(1.0);
+    let error = parameter.standard_error.filter(|error| error.is_finite() && *error > 0.0);
+    let mut distance = error.unwrap_or(0.1 * card.typical.abs());
+    let mut model = best.model.clone();
+    model.parameters_mut().nth(index)?.known = true;
+    // Root of the deviance: in proportion to the distance where the model is linear.
+    let mut before = (start, 0.0);
+    for _ in 0..DOUBLINGS {
+        let value = (start + direction * distance).clamp(card.minimum, card.maximum);
+        if value == before.0 {
+            return None;
+        }
+        model.parameters_mut().nth(index)?.value = value;
+        // A value that the machine cannot be simulated with is not one it can have.
+        let Ok(fitted) = fit(&model, recordings, settings) else { return Some(before.0) };
+        let root = (deviance(best, &fitted) / (inflation * THRESHOLD)).max(0.0).sqrt();
+        if root >= 1.0 {
+            let share = (1.0 - before.1) / (root - before.1);
+            return Some(before.0 + share * (value - before.0));
+        }
+        model = fitted.model;
+        model.parameters_mut().nth(index)?.known = true;
+        before = (value, root.max(before.1));
+        distance *= 2.0;
+    }
+    None
+}
+
+/// By how much worse the second fit meets the recordings, in units of the first one's errors, squared.
+fn deviance(best: &Fit, other: &Fit) -> f64 {
+    let totals = |fit: &Fit, instrument: usize| {
+        fit.block_errors
+            .iter()
+            .filter_map(|block| block.get(instrument))
+            .fold((0.0, 0usize), |(squares, count), (own, readings)| (squares + own, count + readings))
+    };
+    best.instruments
+        .iter()
+        .enumerate()
+        .map(|(number, instrument)| {
+            let ((best, count), (other, _)) = (totals(best, number), totals(other, number));
+            let variance = (best / count.max(1) as f64).max(instrument.noise.powi(2));
+            (other - best) / variance
+        })
+        .sum()
+}
+
+fn companion(fit: &Fit, index: usize) -> Option<(usize, f64)> {
+    let own = fit.fitted.iter().position(|&fitted| fitted == index)?;
+    let correlation = |other: usize| {
+        let covariance = &fit.covariance;
+        covariance[(own, other)] / (covariance[(own, own)] * covariance[(other, other)]).sqrt()
+    };
+    (0..fit.fitted.len())
+        .filter(|&other| other != own)
+        .map(|other| (fit.fitted[other], correlation(other)))
+        .filter(|(_, correlation)| correlation.is_finite() && correlation.abs() >= TOGETHER)
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+}
