@@ -185,7 +185,7 @@ pub fn unexplained(model: &Model, recordings: &[&Recording]) -> Result<Option<Un
         variable,
         share_of_residual,
         curve,
-        unit: match (worst, model.machine.mechanism) {
+        unit: match (worst, &model.machine.mechanism) {
             (EquationKind::Motion(_), Mechanism::LinearLoad) => "N",
             (EquationKind::Motion(_), _) => "N m",
             _ => "m3/s",
