@@ -3,7 +3,7 @@
 //! Newton-Euler from each link back to the base. With `phi_i = q_1 + ... + q_i` and lengths l_i known, the base parameters of
 //! n links are, link by link, two: a moment of inertia `A_i = I_i + m_i lg_i^2 + l_i^2 (m_{i+1} + ... + m_n)` about its joint
 //! and a first moment `h_i = m_i lg_i + l_i (m_{i+1} + ... + m_n)`, all later links taken as masses at its end. What two links
-//! share is `h_j l_i cos(phi_j - phi_i)`; no other parameter enters the motion. [A] Eq. 1 is the case n = 2 with `J1 = A_1 + A_2`,
+//! share is `h_j l_i cos(phi_j - phi_i)`; no other parameter enters the motion. \[A\] Eq. 1 is the case n = 2 with `J1 = A_1 + A_2`,
 //! `J2 = A_2`, `R12 = l_1 h_2`, `W1 = h_1`, `W2 = h_2`.
 
 use super::{Rows, Situation};
