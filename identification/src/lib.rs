@@ -4,6 +4,7 @@
 //! Data flows one way: recording -> regression -> model -> simulation -> comparison -> diagnosis -> refinement ->
 //! report. This crate reads no files and knows no ROS.
 
+pub mod characterisation;
 pub mod design;
 pub mod diagnosis;
 pub mod energy;

@@ -232,8 +232,8 @@ fn jacobians_are_central_differences() {
                     let sizes = sides[0].abs() + sides[1].abs();
                     if (sides[0] - sides[1]).abs() > 1e-2 * sizes + 4.0 * rounding {
                         // A corner between the two points: the slope is that of one of its sides, and the corner is
-                        // nowhere more than a corner.
-                        let error = sides.iter().map(|side| (side - slopes[row]).abs()).fold(f64::INFINITY, f64::min);
+                        // nowhere more than a corner. Or a bend that is narrow for the step: the slope is the mean.
+                        let error = sides.iter().map(|side| (side - slopes[row]).abs()).fold(error, f64::min);
                         assert!(
                             error <= 1e-2 * sizes + 4.0 * rounding,
                             "{} {what} row {row}: {} by duals at a corner between {sides:?}",

@@ -162,6 +162,63 @@ fn play_follows_within_its_accuracy() {
     assert!(worst > 0.5e-3 * fastest, "the bound is not met by chance");
 }
 
+/// A compensated section holds its flow whatever the load, as long as the pump is the margin above it; below it is an
+/// orifice, and the flow never falls as the pressure drop grows. Edges to tank are no other for it.
+#[test]
+fn a_compensated_valve_holds_flow_until_the_margin_is_gone() {
+    let margin = 8e5;
+    let nominal = built_in("zx30u-arm").unwrap();
+    let mut model = nominal.with_effect(find("pressure_compensation").unwrap(), Site::Cylinder(0)).unwrap();
+    model.effects.last_mut().unwrap().parameters[0].value = margin;
+    let system = System::new(&model);
+    let gain = |name: &str| nominal.value_of(name).unwrap();
+    let (cap_gain, rod_gain) = (gain("arm.flow_gain_cap"), gain("arm.flow_gain_rod"));
+    let mut state = common::at_rest(&system);
+    let (pump, cap, rod) = (
+        system.layout().pump.unwrap(),
+        system.layout().cap_pressure(0).unwrap(),
+        system.layout().rod_pressure(0).unwrap(),
+    );
+    let valve = model.effects.iter().position(|effect| effect.name() == "orifice_flow").unwrap();
+    let only_valve = |model: &Model| {
+        let mut model = model.clone();
+        let keep = [model.effects[valve].name(), "pressure_compensation", "inertia", "oil_compressibility"];
+        model.effects.retain(|effect| keep.contains(&effect.name()));
+        model
+    };
+    let (compensated, plain) = (only_valve(&model), only_valve(&nominal));
+    for (area, gain, load, other) in [(4e-5, cap_gain, cap, rod), (-4e-5, rod_gain, rod, cap)] {
+        let mut inputs = Inputs::zero(1);
+        inputs.orifice_area[0] = area;
+        (state[pump], state[other]) = (1.5e7, 2e6);
+        let mut flow = |drop: f64| {
+            state[load] = state[pump] - drop;
+            let into = |model: &Model| {
+                let rows = rows(model, &state, &inputs);
+                if area > 0.0 { (rows.cap_flow[0], rows.rod_flow[0]) } else { (rows.rod_flow[0], rows.cap_flow[0]) }
+            };
+            let (own, orifice) = (into(&compensated), into(&plain));
+            assert_eq!(own.1, orifice.1, "the edge to tank");
+            (own.0, orifice.0)
+        };
+        let held = gain * area.abs() * margin.sqrt();
+        for drop in [2.0 * margin, 4.0 * margin, 1.3e7] {
+            let (own, _) = flow(drop);
+            assert!((own / held - 1.0).abs() < 5e-4, "{own} at {drop} Pa, {held} held");
+        }
+        for drop in [0.0, 1e3, 1e5, 0.5 * margin, -1e5, -2e6] {
+            let (own, orifice) = flow(drop);
+            assert!((own - orifice).abs() <= 5e-4 * orifice.abs(), "{own} at {drop} Pa, orifice {orifice}");
+        }
+        let flows: Vec<f64> = (0..4000).map(|step| flow(f64::from(step) * 1e3).0).collect();
+        assert!(flows.windows(2).all(|pair| pair[1] >= pair[0]), "flow falls as the drop grows");
+        // Slopes change by no more than an orifice's own slope within a tenth of the margin: no corner.
+        let slopes: Vec<f64> = flows.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let corner = slopes[300..].windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        assert!(corner < 0.02 * slopes[300], "{corner} of {}", slopes[300]);
+    }
+}
+
 /// A check valve that is tight lets nothing back; one that is not there lets all back.
 #[test]
 fn a_tight_check_valve_lets_nothing_back() {

@@ -9,7 +9,7 @@ use crate::ros::{Remap, RosError};
 /// Which physics is your hydraulic arm's model missing?
 ///
 /// Compare a model with recordings, see where it fails, learn which physical effect is missing, add it, and watch the
-/// error fall. Models are built-in names (zx30u-arm, zx30u, emps) or TOML files; bags are rosbag2 folders with MCAP
+/// error fall. Models are built-in names (zx30u-arm, zx30u, zx30u-bucket, servo-bench, emps) or TOML files; bags are rosbag2 folders with MCAP
 /// or SQLite3 storage, or bare .mcap or .db3 files. With a map, any topic or column can be a signal.
 #[derive(Debug, Parser)]
 #[command(name = "excavator", version)]
@@ -28,6 +28,9 @@ pub enum Verb {
     Identify(IdentifyArguments),
     /// Simulate with a recording's input and compare every output with the measurement.
     Compare(CompareArguments),
+    /// Read valve and friction off recordings without a simulation: directional gains, dead zone and hysteresis, leakage of
+    /// the closed valve, friction against speed.
+    Characterise(CharacteriseArguments),
     /// Where the energy went, and whether the model's ledger closes: H, dH/dt, losses by effect, pump line.
     Energy(EnergyArguments),
     /// Find out which physical effect the model is missing.
@@ -292,6 +295,23 @@ pub struct CompareArguments {
     #[command(flatten)]
     pub mapping: Mapping,
     /// Write a page with plots of every signal, residuals, and error against command, speed, pressure and position.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct CharacteriseArguments {
+    /// Recordings, taken together; `BAG@20..40` is the part of one from 20 s to 40 s.
+    #[arg(required = true, num_args = 1.., value_name = "BAG")]
+    pub bags: Vec<PathBuf>,
+    /// Model: built-in name or TOML file. Areas, volumes, bulk modulus and load are taken from it.
+    #[arg(long)]
+    pub model: String,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    /// Write a page with gains, normalised flow, transients and friction, with their bands.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     #[command(flatten)]

@@ -1,6 +1,6 @@
 //! Effects that a model may be missing, and their fits.
 
-use excavator_model::effects::{self, Effect, Family, Site};
+use excavator_model::effects::{self, Effect, Site};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelError};
 
@@ -62,7 +62,7 @@ pub fn additions(model: &Model) -> Vec<(&'static dyn Effect, Site)> {
     effects::CATALOGUE
         .iter()
         .copied()
-        .filter(|effect| effect.card().family != Family::Base)
+        .filter(|effect| effect.card().family.is_candidate())
         .flat_map(|effect| model.free_sites(effect).into_iter().map(move |site| (effect, site)))
         .collect()
 }
@@ -131,5 +131,21 @@ pub(super) fn best_start(
         (Some(best), _) => Ok(best),
         (None, Some(error)) => Err(error.into()),
         (None, None) => Err(FitError::TooShort.into()),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use excavator_model::document::built_in;
+
+    #[test]
+    fn how_a_machine_is_built_is_no_candidate() {
+        let model = built_in("zx30u-arm").unwrap();
+        let names: Vec<&str> = additions(&model).iter().map(|(effect, _)| effect.card().name).collect();
+        assert!(names.contains(&"valve_dead_zone"), "{names:?}");
+        assert!(!names.contains(&"pressure_compensation"), "{names:?}");
+        assert_eq!(model.parse_addition("pressure_compensation@arm").unwrap().len(), 1);
     }
 }

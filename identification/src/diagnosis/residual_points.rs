@@ -41,7 +41,7 @@ pub(super) const VARIABLES: [(&str, Variable); 7] = [
 
 /// Unit of an equation's residual: N m, N for a load without joint, or m³/s.
 pub(super) fn unit_of(kind: EquationKind, model: &Model) -> &'static str {
-    match (kind, model.machine.mechanism) {
+    match (kind, &model.machine.mechanism) {
         (EquationKind::Motion(_), Mechanism::LinearLoad) => "N",
         (EquationKind::Motion(_), _) => "N m",
         _ => "m3/s",

@@ -27,6 +27,8 @@ mod totals;
 mod traces;
 mod windows;
 
+pub(crate) use smoothing::Parabola;
+
 pub use analyser::{Analyser, analyse};
 pub use analysis::{Cycle, EnergyAnalysis, PhaseDelays, PumpLine, Section, WindowPoint};
 pub use books::{Books, CylinderBooks, EffectBooks};

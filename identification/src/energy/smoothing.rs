@@ -2,7 +2,7 @@
 
 /// Weights that give value and slope, at one time, of the least-squares parabola through the samples around it.
 #[derive(Debug, Default)]
-pub(super) struct Parabola {
+pub(crate) struct Parabola {
     first: usize,
     value: Vec<f64>,
     slope: Vec<f64>,

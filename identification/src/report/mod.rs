@@ -5,6 +5,8 @@
 //! uPlot, which is part of the page; all others are inline pictures. All text from models and recordings is escaped.
 
 mod assets;
+mod characterisation_page;
+mod characterisation_plots;
 mod comparison_page;
 mod diagnosis_page;
 mod effect_cards;
@@ -35,6 +37,7 @@ mod words;
 mod tests;
 
 pub use assets::plotting;
+pub use characterisation_page::characterisation_page;
 pub use comparison_page::comparison_page;
 pub use diagnosis_page::diagnosis_page;
 pub use energy_page::energy_page;

@@ -24,6 +24,7 @@ pub(super) struct MachineText {
 enum MechanismText {
     SingleLink { base_angle: Quantity },
     TwoLink,
+    PlanarChain { link_lengths: Vec<Quantity> },
     LinearLoad,
 }
 
@@ -80,6 +81,12 @@ impl MachineText {
                 Mechanism::SingleLink { base_angle: base_angle.checked(name, "base_angle", "rad", BeFinite)? }
             }
             MechanismText::TwoLink => Mechanism::TwoLink,
+            MechanismText::PlanarChain { link_lengths } => Mechanism::PlanarChain {
+                link_lengths: link_lengths
+                    .iter()
+                    .map(|length| length.checked(name, "link_lengths", "m", BePositive))
+                    .collect::<Result<_, _>>()?,
+            },
             MechanismText::LinearLoad => Mechanism::LinearLoad,
         };
         let supply = match &self.supply {
@@ -137,11 +144,14 @@ impl MachineText {
             name: machine.name.clone(),
             description: machine.description.clone(),
             gravity: Quantity::new(machine.gravity, "m/s2"),
-            mechanism: match machine.mechanism {
+            mechanism: match &machine.mechanism {
                 Mechanism::SingleLink { base_angle } => {
-                    MechanismText::SingleLink { base_angle: Quantity::new(base_angle, "rad") }
+                    MechanismText::SingleLink { base_angle: Quantity::new(*base_angle, "rad") }
                 }
                 Mechanism::TwoLink => MechanismText::TwoLink,
+                Mechanism::PlanarChain { link_lengths } => MechanismText::PlanarChain {
+                    link_lengths: link_lengths.iter().map(|&length| Quantity::new(length, "m")).collect(),
+                },
                 Mechanism::LinearLoad => MechanismText::LinearLoad,
             },
             supply: match machine.supply {

@@ -73,4 +73,4 @@ pub enum DocumentError {
     },
 }
 
-const BUILT_IN_NAMES: &str = "zx30u-arm, zx30u, servo-bench, emps";
+const BUILT_IN_NAMES: &str = "zx30u-arm, zx30u, zx30u-bucket, servo-bench, emps";

@@ -27,10 +27,19 @@ pub enum Site {
 pub enum Family {
     /// Part of the nominal model of \[A\] or of the frame every simulation needs.
     Base,
+    /// How a machine is built, which its data sheet says: added by hand, never a candidate.
+    Construction,
     /// A loss that the nominal model of \[A\] has, and a candidate where another model leaves it out.
     Loss,
     /// A candidate for what a nominal model may be missing.
     Candidate,
+}
+
+impl Family {
+    /// Whether a diagnosis tries the effect.
+    pub fn is_candidate(self) -> bool {
+        matches!(self, Family::Loss | Family::Candidate)
+    }
 }
 
 /// How a parameter enters the rows.

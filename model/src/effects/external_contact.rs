@@ -87,7 +87,7 @@ impl Physics for ExternalContact {
     fn parameters(&self, machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         match machine.mechanism {
             Mechanism::LinearLoad => LOAD,
-            Mechanism::SingleLink { .. } | Mechanism::TwoLink => LINK,
+            Mechanism::SingleLink { .. } | Mechanism::TwoLink | Mechanism::PlanarChain { .. } => LINK,
         }
     }
 

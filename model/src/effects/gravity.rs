@@ -2,6 +2,7 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
+use crate::equations::planar_chain::{absolute_angle, add_weight};
 use crate::machine::Machine;
 use crate::machine::Mechanism;
 
@@ -14,7 +15,7 @@ static CARD: Card = Card {
     family: Family::Base,
     summary: "Weight of the link that the cylinder carries.",
     equation: "torque -W1 g sin q1 on the first joint, -W2 g sin(q1 + q2) on both; one link: -W2 g sin(q1const \
-        + q2); linear load: -Fg",
+        + q2); link i of a chain: -Wi g sin(q1 + ... + qi) on joints 1 to i; linear load: -Fg",
     source: "[A] Eq. 1, 4; the unit of W is kg m (Table 1), not m/s2 as in the text.",
     shows: "Static pressure difference that changes with posture.",
     experiment: "Slow moves over the whole stroke with holds.",
@@ -51,7 +52,7 @@ impl Physics for Gravity {
     }
 
     fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
-        match (machine.mechanism, site) {
+        match (&machine.mechanism, site) {
             (Mechanism::LinearLoad, _) => LOAD,
             _ => LINK,
         }
@@ -61,11 +62,12 @@ impl Physics for Gravity {
     fn potential<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>) -> Option<T> {
         let Site::Cylinder(cylinder) = site else { return None };
         let joint = now.pistons[cylinder].joint;
-        let angle = match (now.machine.mechanism, cylinder) {
+        let angle = match (&now.machine.mechanism, cylinder) {
             (Mechanism::LinearLoad, _) => return Some(parameters[0] * joint),
-            (Mechanism::SingleLink { base_angle }, _) => joint + base_angle,
+            (Mechanism::SingleLink { base_angle }, _) => joint + *base_angle,
             (Mechanism::TwoLink, 0) => joint,
             (Mechanism::TwoLink, _) => now.pistons[0].joint + joint,
+            (Mechanism::PlanarChain { .. }, _) => absolute_angle(cylinder, now),
         };
         Some(-parameters[0] * now.machine.gravity * angle.cos())
     }
@@ -73,9 +75,9 @@ impl Physics for Gravity {
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
-        match (now.machine.mechanism, cylinder) {
+        match (&now.machine.mechanism, cylinder) {
             (Mechanism::SingleLink { base_angle }, _) => {
-                rows.torque[0] -= parameters[0] * now.machine.gravity * (piston.joint + base_angle).sin();
+                rows.torque[0] -= parameters[0] * now.machine.gravity * (piston.joint + *base_angle).sin();
             }
             (Mechanism::TwoLink, 0) => rows.torque[0] -= parameters[0] * now.machine.gravity * piston.joint.sin(),
             (Mechanism::TwoLink, _) => {
@@ -84,6 +86,7 @@ impl Physics for Gravity {
                 rows.torque[0] -= moment;
                 rows.torque[1] -= moment;
             }
+            (Mechanism::PlanarChain { .. }, _) => add_weight(cylinder, parameters[0], now, rows),
             (Mechanism::LinearLoad, _) => rows.torque[cylinder] -= parameters[0],
         }
     }

@@ -2,6 +2,7 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
+use crate::equations::planar_chain::{add_composite_inertia, add_first_moment};
 use crate::machine::Machine;
 use crate::machine::Mechanism;
 
@@ -14,7 +15,7 @@ static CARD: Card = Card {
     family: Family::Base,
     summary: "Inertia of the link that the cylinder moves.",
     equation: "mass matrix J(q) = [[J1 + 2 R12 cos q2, J2 + R12 cos q2], [., J2]] with the Coriolis torque \
-        c(q, qd); one link: J; linear load: M",
+        c(q, qd); one link: J; chain: J_k = A_k + ... + A_n where joint k begins, h_j l_i cos(phi_j - phi_i) between links i < j; linear load: M",
     source: "[A] Eq. 1, [B] Eq. 5. Eq. 1 of [A] multiplies C(q, qd) by qd; as printed C already is the \
         torque.",
     shows: "Pressure difference needed to accelerate: force error in phase with acceleration.",
@@ -59,6 +60,38 @@ static FIRST_OF_TWO: &[ParameterCard] = &[
     },
 ];
 
+/// What joint `k` of a chain of n links turns, J_k = A_k + ... + A_n: the links' own inertias with all later masses at their ends.
+const CHAIN_INERTIA: ParameterCard = ParameterCard {
+    name: "inertia",
+    symbol: "J",
+    unit: "kg m2",
+    meaning: "moments of inertia A of this link and all later ones, each about its own joint with later masses at its end",
+    kind: Kind::Linear,
+    minimum: 1e-3,
+    maximum: 1e7,
+    typical: 500.0,
+    start: Start::At(&[500.0]),
+};
+
+static FIRST_OF_CHAIN: &[ParameterCard] = &[CHAIN_INERTIA];
+
+/// `coupling_moment` is the same number as `gravity_moment` where links are rigid. It is a parameter of its own, as \[A\] keeps
+/// R12 apart from W2: that both come out alike is a check of an identification.
+static LATER_OF_CHAIN: &[ParameterCard] = &[
+    CHAIN_INERTIA,
+    ParameterCard {
+        name: "coupling_moment",
+        symbol: "h",
+        unit: "kg m",
+        meaning: "first moment of the link about its joint, with later masses at its end: couples it to the links before",
+        kind: Kind::Linear,
+        minimum: -1e6,
+        maximum: 1e6,
+        typical: 100.0,
+        start: Start::At(&[100.0]),
+    },
+];
+
 static LOAD: &[ParameterCard] = &[ParameterCard {
     name: "mass",
     symbol: "M",
@@ -77,16 +110,18 @@ impl Physics for Inertia {
     }
 
     fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
-        match (machine.mechanism, site) {
+        match (&machine.mechanism, site) {
             (Mechanism::LinearLoad, _) => LOAD,
             (Mechanism::TwoLink, Site::Cylinder(0)) => FIRST_OF_TWO,
+            (Mechanism::PlanarChain { .. }, Site::Cylinder(link)) if link > 0 => LATER_OF_CHAIN,
+            (Mechanism::PlanarChain { .. }, _) => FIRST_OF_CHAIN,
             _ => SINGLE,
         }
     }
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(joint) = site else { return };
-        match (now.machine.mechanism, joint) {
+        match (&now.machine.mechanism, joint) {
             (Mechanism::TwoLink, 0) => {
                 let (first, second) = (&now.pistons[0], &now.pistons[1]);
                 let [inertia, coupling] = [parameters[0], parameters[1]];
@@ -102,7 +137,13 @@ impl Physics for Inertia {
                     rows.add_mass(row, column, parameters[0]);
                 }
             }
-            _ => rows.add_mass(joint, joint, parameters[0]),
+            (Mechanism::PlanarChain { link_lengths }, _) => {
+                add_composite_inertia(joint, parameters[0], rows);
+                if let Some(&moment) = parameters.get(1) {
+                    add_first_moment(joint, moment, link_lengths, now, rows);
+                }
+            }
+            (Mechanism::SingleLink { .. } | Mechanism::LinearLoad, _) => rows.add_mass(joint, joint, parameters[0]),
         }
     }
 }

@@ -32,6 +32,7 @@ mod open_centre_bypass;
 mod opening_scale;
 mod orifice_flow;
 mod payload;
+mod pressure_compensation;
 mod pressure_dependent_friction;
 mod pressure_sensor_offset;
 mod pump_leakage;
@@ -66,6 +67,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &external_leakage::ExternalLeakage,
     &end_stop::EndStop,
     &cavitation::Cavitation,
+    &pressure_compensation::PressureCompensation,
     &valve_dead_zone::ValveDeadZone,
     &valve_directional_gain::ValveDirectionalGain,
     &valve_gain_curve::ValveGainCurve,

@@ -2,6 +2,7 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
+use crate::equations::planar_chain::{absolute_angle, add_first_moment, add_inertia, add_weight};
 use crate::machine::{Machine, Mechanism};
 
 /// A mass that the link carries.
@@ -15,7 +16,7 @@ static CARD: Card = Card {
     acts_on: ActsOn::Cylinder,
     family: Family::Candidate,
     summary: "Added mass at the tip: inertia and weight grow together, by mass times distance squared and mass times distance.",
-    equation: "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; linear load: M += m, Fg += m g i",
+    equation: "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; link of a chain: the same with the known lengths; linear load: M += m, Fg += m g i",
     source: "practice; point mass in [A] Eq. 1",
     shows: "Static pressure difference and force at reversals both larger than the unloaded machine's, in a fixed ratio. To be told from inertia and gravity only where these are known.",
     experiment: "The same manoeuvre with the bucket empty and full.",
@@ -85,7 +86,7 @@ impl Physics for Payload {
     }
 
     fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
-        match (machine.mechanism, site) {
+        match (&machine.mechanism, site) {
             (Mechanism::LinearLoad, _) => LOAD,
             (Mechanism::TwoLink, Site::Cylinder(1)) => SECOND_OF_TWO,
             _ => LINK,
@@ -97,13 +98,18 @@ impl Physics for Payload {
         let Site::Cylinder(cylinder) = site else { return None };
         let weight = parameters[0] * now.machine.gravity;
         let joint = now.pistons[cylinder].joint;
-        Some(match (now.machine.mechanism, cylinder) {
+        Some(match (&now.machine.mechanism, cylinder) {
             (Mechanism::LinearLoad, _) => weight * parameters[1] * joint,
-            (Mechanism::SingleLink { base_angle }, _) => -weight * parameters[1] * (joint + base_angle).cos(),
+            (Mechanism::SingleLink { base_angle }, _) => -weight * parameters[1] * (joint + *base_angle).cos(),
             (Mechanism::TwoLink, 0) => -weight * parameters[1] * joint.cos(),
             (Mechanism::TwoLink, _) => {
                 let first = now.pistons[0].joint;
                 -weight * (parameters[2] * first.cos() + parameters[1] * (first + joint).cos())
+            }
+            (Mechanism::PlanarChain { link_lengths }, _) => {
+                let carried = (0..cylinder).map(|link| absolute_angle(link, now).cos() * link_lengths[link]);
+                let own = parameters[1] * absolute_angle(cylinder, now).cos();
+                -weight * carried.fold(own, |sum, drop| sum + drop)
             }
         })
     }
@@ -112,18 +118,31 @@ impl Physics for Payload {
         let Site::Cylinder(cylinder) = site else { return };
         let (mass, weight) = (parameters[0], parameters[0] * now.machine.gravity);
         let joint = now.pistons[cylinder].joint;
-        match (now.machine.mechanism, cylinder) {
+        match (&now.machine.mechanism, cylinder) {
             (Mechanism::LinearLoad, _) => {
                 rows.add_mass(cylinder, cylinder, mass);
                 rows.torque[cylinder] -= weight * parameters[1];
             }
             (Mechanism::TwoLink, 1) => second_of_two(mass, weight, parameters[1], parameters[2], now, rows),
+            (Mechanism::PlanarChain { link_lengths }, _) => {
+                on_a_chain(cylinder, mass, parameters[1], link_lengths, now, rows);
+            }
             (mechanism, _) => {
-                let base_angle = if let Mechanism::SingleLink { base_angle } = mechanism { base_angle } else { 0.0 };
+                let base_angle = if let Mechanism::SingleLink { base_angle } = mechanism { *base_angle } else { 0.0 };
                 rows.add_mass(cylinder, cylinder, mass * parameters[1] * parameters[1]);
                 rows.torque[cylinder] -= weight * parameters[1] * (joint + base_angle).sin();
             }
         }
+    }
+}
+
+/// A mass on link `link` of a chain, at `distance` from its joint; each link before has it at its end.
+fn on_a_chain<T: Scalar>(link: usize, mass: T, distance: T, lengths: &[f64], now: &Situation<T>, rows: &mut Rows<T>) {
+    for carrier in 0..=link {
+        let reach = if carrier == link { distance } else { T::from(lengths[carrier]) };
+        add_inertia(carrier, mass * reach * reach, rows);
+        add_first_moment(carrier, mass * reach, lengths, now, rows);
+        add_weight(carrier, mass * reach, now, rows);
     }
 }
 

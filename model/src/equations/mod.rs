@@ -4,6 +4,7 @@ mod channel;
 mod inputs;
 mod instruments;
 mod layout;
+pub mod planar_chain;
 mod rows;
 mod situation;
 pub mod smooth;

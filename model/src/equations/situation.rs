@@ -1,6 +1,6 @@
 //! Everything an effect may look at.
 
-use super::smooth::orifice_root;
+use super::smooth::{at_most, orifice_root};
 use crate::machine::{Chambers, Machine};
 use crate::scalar::Scalar;
 
@@ -33,15 +33,18 @@ pub struct Piston<T> {
     pub bypass_closing: T,
     /// Share of a flow back from the chamber to the pump that passes the valve section: 1 without a check valve.
     pub backflow: T,
+    /// Pressure drop that a compensator leaves to the edges fed by the pump, Pa; `None` without one.
+    pub compensator_margin: Option<T>,
     /// Force that drives a cylinder without chambers, N: measured on the rod, and with the pressures' where the motion is
     /// imposed.
     pub rod_force: T,
 }
 
 impl<T: Scalar> Piston<T> {
-    /// `phi` of the pressure drop (Pa) from pump to chamber over a metering edge, as far as flow may run back through it.
+    /// `phi` of the pressure drop (Pa) from pump to chamber over a metering edge, as far as a compensator leaves it and flow
+    /// may run back.
     pub fn drawn_root(&self, pressure_drop: T) -> T {
-        let root = orifice_root(pressure_drop);
+        let root = orifice_root(self.compensator_margin.map_or(pressure_drop, |margin| at_most(pressure_drop, margin)));
         if pressure_drop.value() < 0.0 { root * self.backflow } else { root }
     }
 }
@@ -81,6 +84,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             opening: zero,
             bypass_closing: zero,
             backflow: T::from(1.0),
+            compensator_margin: None,
             rod_force: zero,
         };
         Situation {

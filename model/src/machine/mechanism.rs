@@ -2,7 +2,7 @@
 
 /// The kinematic chain that the cylinders drive. Parameters to be identified (inertias, gravity moments) are not here
 /// but in the effects `inertia` and `gravity`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Mechanism {
     /// One link turning about a joint whose base is held at a fixed angle; the link hangs straight down at
     /// `base_angle + q = 0` (\[A\] Eq. 4 with q1 = q1const).
@@ -12,6 +12,11 @@ pub enum Mechanism {
     },
     /// Two links in a vertical plane, \[A\] Eq. 1.
     TwoLink,
+    /// Any number of links in a vertical plane, each turning about a joint of the one before it.
+    PlanarChain {
+        /// Distance from each joint to the next, m: one less than there are joints.
+        link_lengths: Vec<f64>,
+    },
     /// A mass moving along the cylinder's own axis, \[B\] Eq. 5.
     LinearLoad,
 }
@@ -22,6 +27,7 @@ impl Mechanism {
         match self {
             Mechanism::SingleLink { .. } | Mechanism::LinearLoad => 1,
             Mechanism::TwoLink => 2,
+            Mechanism::PlanarChain { link_lengths } => link_lengths.len() + 1,
         }
     }
 }

@@ -41,6 +41,7 @@ fn place(acts_on: ActsOn) -> &'static str {
 fn list(all: &[&'static dyn Effect]) {
     for (family, title) in [
         (Family::Base, "In the nominal model"),
+        (Family::Construction, "How a machine is built: added by hand, never a candidate"),
         (Family::Loss, "Losses of the nominal model, candidates where a model leaves them out"),
         (Family::Candidate, "Candidates beyond it"),
     ] {
@@ -106,6 +107,6 @@ fn card_json(effect: &dyn Effect) -> Result<Value, VerbError> {
     Ok(json!({
         "name": card.name, "acts_on": place(card.acts_on), "summary": card.summary, "equation": card.equation,
         "source": card.source, "shows": card.shows, "experiment": card.experiment, "energy": card.energy,
-        "candidate": card.family != Family::Base, "parameters": parameters,
+        "candidate": card.family.is_candidate(), "parameters": parameters,
     }))
 }

@@ -1,5 +1,6 @@
 //! One file per verb.
 
+mod characterise;
 mod compare;
 mod design;
 mod diagnose;
@@ -23,6 +24,7 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Identify(arguments) => identify::run(&arguments),
         Verb::Compare(arguments) => compare::run(&arguments),
+        Verb::Characterise(arguments) => characterise::run(&arguments),
         Verb::Energy(arguments) => energy::run(&arguments),
         Verb::Diagnose(arguments) => diagnose::run(&arguments),
         Verb::Design(arguments) => design::run(&arguments),

@@ -1,0 +1,96 @@
+//! The procedures of \[B\] Section IV on recordings: what a valve and its cylinder are, read off without a simulation.
+//!
+//! | procedure | from | \[B\] |
+//! |---|---|---|
+//! | [`valve_leakage`] | pressures while the valve is closed | Eq. 12-15 |
+//! | [`dead_zones`] | flow over root of the pressure drop while the opening runs up and down | IV-B |
+//! | [`directional_gains`] | steady stretches at many openings | Eq. 7-11 |
+//! | [`friction`] | steady stretches at many speeds | Eq. 16 |
+//!
+//! Each takes what the one before it found: leakage is taken off flows, and gains count from the edge of the dead zone. A
+//! procedure that a recording does not suit says which signal or which manoeuvre is missing, with numbers
+//! ([`Refusal`]).
+
+mod chamber_row;
+mod closed_valve;
+mod dead_zone;
+mod directional_gain;
+mod edge;
+mod estimate;
+mod friction;
+mod load;
+mod polynomial;
+mod refusal;
+mod stretches;
+mod sweeps;
+mod track;
+
+pub use closed_valve::{ChamberLeakage, ClosedValve, Hold, valve_leakage};
+pub use dead_zone::{DeadZone, EdgeCurve, dead_zones};
+pub use directional_gain::{DirectionalGain, GainPoint, directional_gains};
+pub use edge::{Direction, Edge, Side};
+pub use estimate::Estimate;
+pub use friction::{ForcePoint, FrictionCurve, FrictionTerm, friction};
+pub use polynomial::Polynomial;
+pub use refusal::Refusal;
+pub use track::Track;
+
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+
+/// What the procedures found of one cylinder.
+#[derive(Debug, Clone)]
+pub struct Characterisation {
+    /// Name of the cylinder.
+    pub cylinder: String,
+    /// Largest orifice area umax of its valve section, m²; openings are plotted as shares of it. One without chambers.
+    pub maximum_orifice_area: f64,
+    /// Leakage of the closed valve.
+    pub leakage: Result<ClosedValve, Refusal>,
+    /// Dead zone and hysteresis of each metering edge, in the order of [`Edge::ALL`].
+    pub dead_zones: Vec<(Edge, Result<DeadZone, Refusal>)>,
+    /// Gain of each metering edge, in the order of [`Edge::ALL`].
+    pub gains: Vec<(Edge, Result<DirectionalGain, Refusal>)>,
+    /// Friction against speed.
+    pub friction: Result<FrictionCurve, Refusal>,
+}
+
+/// All procedures on every cylinder of `model`.
+pub fn characterise(model: &Model, recordings: &[&Recording]) -> Vec<Characterisation> {
+    (0..model.machine.cylinders.len()).map(|cylinder| characterise_cylinder(model, cylinder, recordings)).collect()
+}
+
+fn characterise_cylinder(model: &Model, cylinder: usize, recordings: &[&Recording]) -> Characterisation {
+    let constants = &model.machine.cylinders[cylinder];
+    let found = Characterisation {
+        cylinder: constants.name.clone(),
+        maximum_orifice_area: constants.chambers.map_or(1.0, |chambers| chambers.maximum_orifice_area),
+        leakage: Err(Refusal::NoValve { cylinder: constants.name.clone() }),
+        dead_zones: Vec::new(),
+        gains: Vec::new(),
+        friction: Err(Refusal::NoValve { cylinder: constants.name.clone() }),
+    };
+    let tracks: Result<Vec<Track>, Refusal> =
+        recordings.iter().map(|recording| Track::of(model, cylinder, recording)).collect();
+    let mut tracks = match tracks {
+        Ok(tracks) => tracks,
+        Err(refusal) => {
+            let every = |_: &Edge| refusal.clone();
+            return Characterisation {
+                leakage: Err(refusal.clone()),
+                dead_zones: Edge::ALL.iter().map(|edge| (*edge, Err(every(edge)))).collect(),
+                gains: Edge::ALL.iter().map(|edge| (*edge, Err(every(edge)))).collect(),
+                friction: Err(refusal.clone()),
+                ..found
+            };
+        }
+    };
+    let leakage = valve_leakage(&tracks);
+    if let Ok(leakage) = &leakage {
+        tracks.iter_mut().for_each(|track| track.take_off(leakage));
+    }
+    let dead_zones = dead_zones(&tracks);
+    let gains = directional_gains(&tracks, &dead_zones);
+    let friction = friction(model, cylinder, recordings, &tracks);
+    Characterisation { leakage, dead_zones, gains, friction, ..found }
+}

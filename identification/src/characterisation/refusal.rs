@@ -1,0 +1,141 @@
+//! Why a procedure has no result: which signal or which manoeuvre is missing, with numbers.
+
+/// A recording does not suit a procedure.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// The cylinder has no oil, or no valve between its oil and the pump.
+    #[error("{cylinder} has no valve section in this model, so there is nothing of it to measure")]
+    NoValve {
+        /// The cylinder.
+        cylinder: String,
+    },
+    /// A signal is missing.
+    #[error("{source_name} does not measure {signal}, which {needed_for}")]
+    MissingSignal {
+        /// The recording.
+        source_name: String,
+        /// Contract name of the signal.
+        signal: String,
+        /// What it is needed for.
+        needed_for: &'static str,
+    },
+    /// The clock or the cylinders of the recording are not what they must be.
+    #[error(transparent)]
+    Recording(#[from] excavator_model::recording::RecordingError),
+    /// The model says nothing of the oil's stiffness.
+    #[error(
+        "the model gives {cylinder} no bulk modulus; pressure transients have no scale without (add oil_compressibility)"
+    )]
+    NoBulkModulus {
+        /// The cylinder.
+        cylinder: String,
+    },
+    /// The valve is hardly ever closed for long enough.
+    #[error(
+        "{found} holds with closed valve (opening within {limit:.1e} m2) of at least {least:.2} s, the longest {longest:.2} s; {needed} are needed. Close the valve for {suggested:.0} s and longer, after moves in both directions"
+    )]
+    TooFewHolds {
+        /// Holds that are long enough.
+        found: usize,
+        /// Holds that are needed.
+        needed: usize,
+        /// Longest time with closed valve, s.
+        longest: f64,
+        /// Least time, s.
+        least: f64,
+        /// Opening that counts as closed, m².
+        limit: f64,
+        /// A good time, s.
+        suggested: f64,
+    },
+    /// Pressures of the closed valve do not say anything.
+    #[error(
+        "in {holds} holds with closed valve (the longest {longest:.2} s) the {side} pressure changes by {change:.0} Pa at most: coefficients come out no better than {relative_error:.0} % of their value. Hold longer, and begin with the chamber near pump pressure and near tank pressure"
+    )]
+    TransientsTooSmall {
+        /// Which chamber.
+        side: &'static str,
+        /// Number of holds.
+        holds: usize,
+        /// The longest, s.
+        longest: f64,
+        /// Largest change within a hold, Pa.
+        change: f64,
+        /// Standard error over value of the better coefficient, %.
+        relative_error: f64,
+    },
+    /// The opening does not run slowly through the edge.
+    #[error(
+        "{found_opening} opening and {found_closing} closing runs of the valve from below {low:.0} % to above {high:.0} % of its largest opening, within {slowest:.0} s and not faster than in {fastest:.2} s; {needed} of each are needed. Run sines of 0.3 Hz or slow trapezoids to this side"
+    )]
+    TooFewSweeps {
+        /// Runs in which the valve opened.
+        found_opening: usize,
+        /// Runs in which the valve closed.
+        found_closing: usize,
+        /// Runs of each kind that are needed.
+        needed: usize,
+        /// Where a run must begin, % of the largest opening.
+        low: f64,
+        /// Where it must end, %.
+        high: f64,
+        /// Longest time of a run, s.
+        slowest: f64,
+        /// Shortest time of a run, s.
+        fastest: f64,
+    },
+    /// Not enough steady stretches at this edge.
+    #[error(
+        "{found} steady stretches at {openings} different openings; {needed} at {needed_openings} are needed, each {least:.2} s at constant opening and speed after {settling:.2} s of settling ({longest:.2} s is the longest time at constant opening to this side). Run trapezoids of many amplitudes to this side"
+    )]
+    TooFewSteadyStretches {
+        /// Stretches found.
+        found: usize,
+        /// Different openings among them.
+        openings: usize,
+        /// Stretches needed.
+        needed: usize,
+        /// Different openings needed.
+        needed_openings: usize,
+        /// Longest time at constant opening, s.
+        longest: f64,
+        /// Least length of a stretch, s.
+        least: f64,
+        /// Time that is left to settle, s.
+        settling: f64,
+    },
+    /// Not enough speeds.
+    #[error(
+        "{found} steady stretches, {extending} extending and {retracting} retracting, at {speeds} different speeds of one direction at most, the fastest {ratio:.1} times the slowest; {needed} stretches, {needed_speeds} speeds and {needed_ratio:.0} times are needed{both}. Each takes {least:.2} s at constant speed after {settling:.2} s of settling"
+    )]
+    TooFewSpeeds {
+        /// Stretches found.
+        found: usize,
+        /// How many extend.
+        extending: usize,
+        /// How many retract.
+        retracting: usize,
+        /// Different speeds in the direction that has more of them.
+        speeds: usize,
+        /// Fastest over slowest in the direction where it is larger.
+        ratio: f64,
+        /// Stretches needed.
+        needed: usize,
+        /// Different speeds needed.
+        needed_speeds: usize,
+        /// Fastest over slowest needed.
+        needed_ratio: f64,
+        /// Words for both directions, where they are needed.
+        both: &'static str,
+        /// Least length of a stretch, s.
+        least: f64,
+        /// Time that is left to settle, s.
+        settling: f64,
+    },
+    /// Columns of the friction fit that these speeds do not tell apart.
+    #[error("{found} steady stretches do not tell friction's terms apart; run more speeds in both directions")]
+    SpeedsTooAlike {
+        /// Stretches found.
+        found: usize,
+    },
+}

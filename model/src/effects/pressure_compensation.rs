@@ -1,0 +1,51 @@
+//! Pressure compensator in front of the metering edges.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Machine;
+
+/// Pressure compensator in front of the metering edges.
+///
+/// Whether a section has one is on its data sheet, and its margin is the setting of a spring. It is no candidate of a diagnosis: a
+/// margin among the pressure drops of a recording is a knee that takes up what a bent gain, a relief valve or a leaking pump
+/// leave, and one above them changes nothing. Add it by hand, as `pressure_compensation@arm`, and compare.
+pub struct PressureCompensation;
+
+static CARD: Card = Card {
+    name: "pressure_compensation",
+    acts_on: ActsOn::Valve,
+    family: Family::Construction,
+    summary: "A compensator between pump and metering edge holds flow, not opening: the edge sees no more than the compensator's margin of pressure drop.",
+    equation: "flow from the pump Cf u phi(x), x = d / (1 + (d/pm)^8)^(1/8) for a drop d > 0: the orifice law well below pm, Cf u sqrt(pm) well above; edges to tank keep the orifice law",
+    source: "hydraulics practice (pressure-compensated mobile valves); textbook (e.g. Merritt; Murrenhoff)",
+    shows: "Speed follows the opening whatever the load, until pump pressure is within the margin of the load's; then it falls as with any orifice.",
+    experiment: "The same opening against different loads, and once with the pump near its lowest pressure.",
+    energy: "Throttles what the edge would not: its loss is part of the metering loss.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "compensator_margin",
+    symbol: "pm",
+    unit: "Pa",
+    meaning: "pressure drop that the compensator leaves to the metering edge",
+    kind: Kind::Shape,
+    minimum: 1e5,
+    maximum: 5e6,
+    typical: 1e6,
+    start: Start::At(&[7e5, 2e6]),
+}];
+
+impl Physics for PressureCompensation {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        now.pistons[cylinder].compensator_margin = Some(parameters[0]);
+    }
+}

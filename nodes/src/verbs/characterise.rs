@@ -1,0 +1,35 @@
+//! `excavator characterise`
+
+use std::path::Path;
+
+use excavator_identification::characterisation::characterise;
+use excavator_identification::report::characterisation_page;
+use excavator_model::recording::Recording;
+
+use super::print;
+use crate::cli::CharacteriseArguments;
+use crate::error::VerbError;
+use crate::output::{characterisation_json, characterisation_table, refusals, write_json};
+use crate::sources;
+
+pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
+    let model = sources::model(&arguments.model)?;
+    let recordings = sources::recordings(&arguments.bags, &arguments.mapping, &model)?;
+    let recordings: Vec<&Recording> = recordings.iter().collect();
+    let found = characterise(&model, &recordings);
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        for one in &found {
+            print(&format!("{} of {}", one.cylinder, model.machine.name));
+            print(&characterisation_table(one).to_string());
+            refusals(one).iter().for_each(|line| print(line));
+        }
+    }
+    if let Some(path) = &arguments.report {
+        let sources: Vec<String> = recordings.iter().map(|recording| recording.source.clone()).collect();
+        sources::write_text(path, &characterisation_page(&model, &sources, &found))?;
+    }
+    if let Some(path) = &arguments.json.json {
+        write_json(path, &characterisation_json(&found))?;
+    }
+    Ok(())
+}
