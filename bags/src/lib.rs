@@ -26,8 +26,6 @@ pub mod cdr;
 mod container;
 pub mod dynamic;
 mod error;
-#[doc(hidden)]
-pub mod fuzzing;
 mod info;
 mod location;
 pub mod map;

@@ -180,6 +180,9 @@ fn matlab_variables_are_columns() {
     for name in ["text", "complex", "lies"] {
         assert!(table.notes.iter().any(|note| note.starts_with(name)), "{:?}", table.notes);
     }
+    let nameless = mat5(&[matrix("", 2, 6, 0, &doubles(&[1.0, 2.0, 3.0, 4.0]))]);
+    let nameless = Table::from_mat(&nameless).unwrap();
+    assert_eq!(columns(&nameless)[1], column("column_1[2]", "", &[3.0, 4.0]));
     let cut = file.write("cut.mat", &bytes[..300]);
     let cut = Table::read(&cut, &TableFormat::default()).unwrap();
     assert!(cut.notes.iter().any(|note| note.contains("cut off")), "{:?}", cut.notes);

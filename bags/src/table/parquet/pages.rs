@@ -93,7 +93,6 @@ impl Compact<'_> {
     }
 
     /// Number and type of the next field, `Some(None)` at the end of the struct; `id` is the number of the one before.
-    #[allow(clippy::option_option)]
     fn field(&mut self, id: &mut i64) -> Option<Option<(i64, u8)>> {
         let byte = self.byte()?;
         if byte & 0x0f == 0 {
