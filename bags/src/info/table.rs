@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::signals::SignalInfo;
 use crate::BagError;
-use crate::map::guess;
+use crate::map::clock_of_table;
 use crate::table::{Table, TableFormat, Values};
 
 /// One column.
@@ -41,7 +41,7 @@ impl TableInfo {
     /// Those of [`Table::read`].
     pub fn read(path: &Path) -> Result<TableInfo, BagError> {
         let table = Table::read(path, &TableFormat::default())?;
-        let (clock, reason) = guess(path, "arm")?.clock;
+        let (clock, reason) = clock_of_table(&table);
         let clock = match clock.column {
             Some(column) => {
                 format!("{column}{}: {reason}", clock.unit.map_or(String::new(), |unit| format!(" in {unit}")))
