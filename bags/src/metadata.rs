@@ -59,11 +59,18 @@ impl Metadata {
 /// What is known about a bag when it is closed.
 #[derive(Debug, Clone)]
 pub(crate) struct Contents<'c> {
-    pub file_name: &'c str,
+    pub files: &'c [FileContents],
     pub topics: &'c [TopicContents],
+    pub custom_data: &'c BTreeMap<String, String>,
+}
+
+/// One file of [`Contents`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct FileContents {
+    pub name: String,
     /// Log times of the earliest and the latest message, ns; `None` without messages.
     pub span: Option<(u64, u64)>,
-    pub custom_data: &'c BTreeMap<String, String>,
+    pub message_count: u64,
 }
 
 /// One topic of [`Contents`].
@@ -78,9 +85,9 @@ pub(crate) struct TopicContents {
 impl Contents<'_> {
     /// The text of `metadata.yaml`, field by field in the order of rosbag2.
     pub fn to_yaml(&self) -> Result<String, serde_yaml_ng::Error> {
-        let (start, end) = self.span.unwrap_or((0, 0));
-        let starting_time = StartingTime { nanoseconds_since_epoch: start };
-        let duration = Duration { nanoseconds: end - start };
+        let spans = || self.files.iter().filter_map(|file| file.span);
+        let whole = spans().map(|span| span.0).min().zip(spans().map(|span| span.1).max());
+        let (starting_time, duration) = start_and_duration(whole);
         let message_count = self.topics.iter().map(|topic| topic.message_count).sum();
         serde_yaml_ng::to_string(&Written {
             rosbag2_bagfile_information: WrittenMetadata {
@@ -92,8 +99,8 @@ impl Contents<'_> {
                 topics_with_message_count: self.topics.iter().map(WrittenTopic::from).collect(),
                 compression_format: "",
                 compression_mode: "",
-                relative_file_paths: vec![self.file_name],
-                files: vec![WrittenFile { path: self.file_name, starting_time, duration, message_count }],
+                relative_file_paths: self.files.iter().map(|file| file.name.as_str()).collect(),
+                files: self.files.iter().map(WrittenFile::from).collect(),
                 custom_data: (!self.custom_data.is_empty()).then_some(self.custom_data),
                 ros_distro: "jazzy",
             },
@@ -138,6 +145,18 @@ struct WrittenFile<'w> {
     starting_time: StartingTime,
     duration: Duration,
     message_count: u64,
+}
+
+impl<'w> From<&'w FileContents> for WrittenFile<'w> {
+    fn from(file: &'w FileContents) -> Self {
+        let (starting_time, duration) = start_and_duration(file.span);
+        WrittenFile { path: &file.name, starting_time, duration, message_count: file.message_count }
+    }
+}
+
+fn start_and_duration(span: Option<(u64, u64)>) -> (StartingTime, Duration) {
+    let (start, end) = span.unwrap_or((0, 0));
+    (StartingTime { nanoseconds_since_epoch: start }, Duration { nanoseconds: end - start })
 }
 
 #[derive(Serialize)]

@@ -95,6 +95,22 @@ fn python_reads_what_we_write() {
 }
 
 #[test]
+fn python_reads_a_bag_that_we_split() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let bag = folder.path().join("bag");
+    let original = recording(400);
+    let tenth = (original.duration() * 1e8) as u64;
+    let options = WriteOptions { most_file_nanoseconds: Some(tenth), ..WriteOptions::default() };
+    write_recording(&bag, &original, &Topics::default(), &options).unwrap();
+    let files = std::fs::read_dir(&bag).unwrap().count() - 1;
+    assert!(files >= 10, "{files} files");
+    let output = run(&python, "read_bag.py", &[&bag, &bag.join("bag_0.mcap")]);
+    let seen: Value = serde_json::from_slice(&output).unwrap();
+    assert_seen(&seen["rosbags"], &original, "rosbags");
+}
+
+#[test]
 fn we_read_what_python_writes() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();

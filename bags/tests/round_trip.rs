@@ -25,6 +25,31 @@ fn every_compression_gives_the_recording_back() {
 }
 
 #[test]
+fn a_split_bag_is_one_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let original = recording(3000);
+    let span = (original.duration() * 1e9) as u64;
+    let small = WriteOptions { chunk_size: 16 * 1024, ..WriteOptions::default() };
+    let by_size = WriteOptions { most_file_bytes: Some(40_000), ..small.clone() };
+    let by_length = WriteOptions { most_file_nanoseconds: Some(span / 11), ..small };
+    for (name, options, least) in [("by_size", by_size, 3), ("by_length", by_length, 11)] {
+        let bag = folder.path().join(name);
+        write_recording(&bag, &original, &Topics::default(), &options).unwrap();
+        let files: Vec<_> =
+            (0..).map(|k| bag.join(format!("{name}_{k}.mcap"))).take_while(|path| path.exists()).collect();
+        assert!(files.len() >= least && files.len() <= least + 20, "{name}: {} files", files.len());
+        if let Some(most) = options.most_file_bytes {
+            // The index and one more chunk come after the file has been found large enough.
+            assert!(files.iter().all(|file| file.metadata().unwrap().len() < most + 30_000));
+        }
+        assert_equal(&read_recording(&bag, &Topics::default()).unwrap().0, &original);
+        // A recorder that was killed leaves no metadata.
+        std::fs::remove_file(bag.join("metadata.yaml")).unwrap();
+        assert_equal(&read_recording(&bag, &Topics::default()).unwrap().0, &original);
+    }
+}
+
+#[test]
 fn other_topic_names_are_written_and_read() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("bag");

@@ -111,6 +111,12 @@ pub struct RecordArguments {
     /// Stop after this time, s.
     #[arg(short, long, value_name = "SECONDS", value_parser = positive)]
     pub duration: Option<f64>,
+    /// Go on in another file of the bag when one has this size, bytes.
+    #[arg(short = 'b', long, value_name = "BYTES", value_parser = clap::value_parser!(u64).range(1..))]
+    pub max_bag_size: Option<u64>,
+    /// Go on in another file of the bag when one has this length, s.
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    pub max_bag_duration: Option<f64>,
     /// Compression of the bag.
     #[arg(long, value_enum, default_value_t = BagCompression::Zstd)]
     pub compression: BagCompression,

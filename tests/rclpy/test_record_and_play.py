@@ -56,7 +56,7 @@ def recorded(ros, excavator, tmp_path_factory):
     simulator = Simulator(
         ros, excavator, rate=RATE, arguments=["-p", "pressure_noise:=2000.0", "-p", "dropout_probability:=0.02"]
     )
-    recorder = ros.start(excavator, "record", "-o", bag, *TOPICS)
+    recorder = ros.start(excavator, "record", "-o", bag, "--max-bag-duration", "0.5", *TOPICS)
     for topic in TOPICS:
         readers = 1 if topic != "/arm/state" else 2  # we listen too
         ros.spin_until(
@@ -84,6 +84,14 @@ def test_the_bag_has_what_was_asked_for(recorded):
         assert reader.duration > 1.5e9
         assert all(connection.msgcount > 0 for connection in reader.connections)
     assert (bag / "metadata.yaml").is_file()
+
+
+def test_the_bag_goes_on_in_another_file_when_one_is_long_enough(recorded):
+    bag, _ = recorded
+    files = sorted(path.name for path in bag.glob("*.mcap"))
+    assert files == [f"{bag.name}_{number}.mcap" for number in range(len(files))]
+    with rosbags_rosbag2.Reader(bag) as reader:
+        assert len(files) == pytest.approx(reader.duration * 1e-9 / 0.5, abs=1)
 
 
 def test_no_state_is_lost_and_none_is_changed(recorded):

@@ -1,15 +1,13 @@
 //! Messages as bytes into a rosbag2 folder.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use excavator_msgs::{Message, definitions};
-use mcap::records::MessageHeader;
 
 use super::options::WriteOptions;
-use crate::metadata::{Contents, FILE_NAME, TopicContents};
+use super::part::Part;
+use crate::metadata::{Contents, FILE_NAME, FileContents, TopicContents};
 use crate::{BagError, Qos};
 
 /// A topic to be added to a bag.
@@ -41,24 +39,25 @@ impl TopicToWrite {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TopicId(usize);
 
-/// Writes CDR messages of any type to a new rosbag2 folder: `NAME/NAME_0.mcap`, and `NAME/metadata.yaml` at the end.
+/// Writes CDR messages of any type to a new rosbag2 folder: `NAME/NAME_0.mcap`, further files where [`WriteOptions`] limits
+/// their size or length, and `NAME/metadata.yaml` at the end.
 ///
 /// A chunk goes to the file only when it is whole, so a recorder that is killed loses what came after the last chunk
 /// or [`BagWriter::flush`], and nothing before it. Dropping the writer closes the bag as [`BagWriter::finish`] does,
 /// but cannot report errors.
 pub struct BagWriter {
     folder: PathBuf,
-    file_name: String,
-    /// `None` once the bag is closed.
-    mcap: Option<mcap::Writer<BufWriter<File>>>,
+    name: String,
+    options: WriteOptions,
+    /// The file that is being written; `None` once the bag is closed.
+    part: Option<Part>,
+    finished: Vec<FileContents>,
     topics: Vec<WrittenTopic>,
-    span: Option<(u64, u64)>,
     custom_data: BTreeMap<String, String>,
 }
 
 struct WrittenTopic {
     topic: TopicToWrite,
-    channel: u16,
     messages: u64,
 }
 
@@ -69,7 +68,7 @@ impl BagWriter {
     /// [`BagError::AlreadyExists`], [`BagError::NoName`], [`BagError::Io`], [`BagError::Write`].
     pub fn create(folder: &Path, options: &WriteOptions) -> Result<Self, BagError> {
         let name = folder.file_name().ok_or_else(|| BagError::NoName { path: folder.to_path_buf() })?;
-        let file_name = format!("{}_0.mcap", name.to_string_lossy());
+        let name = name.to_string_lossy().into_owned();
         if let Some(parent) = folder.parent() {
             std::fs::create_dir_all(parent).map_err(BagError::io("create", parent))?;
         }
@@ -78,25 +77,14 @@ impl BagWriter {
             std::io::ErrorKind::AlreadyExists => BagError::AlreadyExists { path: folder.to_path_buf() },
             _ => BagError::io("create", folder)(error),
         })?;
-        let path = folder.join(&file_name);
-        let file = File::create_new(&path).map_err(BagError::io("create", &path))?;
-        let mcap = mcap::WriteOptions::new()
-            .profile("ros2")
-            .library(concat!("excavator ", env!("CARGO_PKG_VERSION")))
-            .compression(options.compression.to_mcap())
-            // Threads for compression cost more than they bring at the rates of a machine.
-            .compression_threads(0)
-            .chunk_size(Some(options.chunk_size))
-            // No seeking: whole chunks only reach the file, never one with sizes still to be filled in.
-            .disable_seeking(true)
-            .create(BufWriter::new(file))
-            .map_err(|source| BagError::Write { path, source })?;
+        let part = Part::create(folder, file_name(&name, 0), options)?;
         Ok(BagWriter {
             folder: folder.to_path_buf(),
-            file_name,
-            mcap: Some(mcap),
+            name,
+            options: options.clone(),
+            part: Some(part),
+            finished: Vec::new(),
             topics: Vec::new(),
-            span: None,
             custom_data: options.custom_data.clone(),
         })
     }
@@ -122,12 +110,8 @@ impl BagWriter {
                 wanted: topic.type_name.clone(),
             });
         }
-        let metadata = BTreeMap::from([("offered_qos_profiles".to_string(), Qos::list_to_yaml(&topic.qos))]);
-        let channel = self.with_mcap(|mcap| {
-            let schema = mcap.add_schema(&topic.type_name, "ros2msg", topic.schema.as_bytes())?;
-            mcap.add_channel(schema, &topic.name, "cdr", &metadata)
-        })?;
-        self.topics.push(WrittenTopic { topic: topic.clone(), channel, messages: 0 });
+        self.part()?.add_topic(topic)?;
+        self.topics.push(WrittenTopic { topic: topic.clone(), messages: 0 });
         Ok(TopicId(self.topics.len() - 1))
     }
 
@@ -136,16 +120,16 @@ impl BagWriter {
     /// # Errors
     /// [`BagError::Write`] when the file cannot be written, or the id is of another writer.
     pub fn write(&mut self, topic: TopicId, log_time: u64, publish_time: u64, data: &[u8]) -> Result<(), BagError> {
-        let Some(written) = self.topics.get_mut(topic.0) else {
-            return Err(self.write_error(mcap::McapError::UnknownChannel(0, 0)));
-        };
+        if self.part.as_ref().is_some_and(|part| part.is_full(log_time, &self.options)) {
+            self.begin_next_file()?;
+        }
         // The recorder's own count per topic: gaps in it are gaps in the file.
-        let sequence = u32::try_from(written.messages & u64::from(u32::MAX)).unwrap_or_default();
-        let header = MessageHeader { channel_id: written.channel, sequence, log_time, publish_time };
-        written.messages += 1;
-        self.with_mcap(|mcap| mcap.write_to_known_channel(&header, data))?;
-        let (start, end) = self.span.unwrap_or((log_time, log_time));
-        self.span = Some((start.min(log_time), end.max(log_time)));
+        let messages = self.topics.get(topic.0).map_or(0, |written| written.messages);
+        let sequence = u32::try_from(messages & u64::from(u32::MAX)).unwrap_or_default();
+        self.part()?.write(topic.0, sequence, log_time, publish_time, data)?;
+        if let Some(written) = self.topics.get_mut(topic.0) {
+            written.messages += 1;
+        }
         Ok(())
     }
 
@@ -159,7 +143,7 @@ impl BagWriter {
     /// # Errors
     /// [`BagError::Write`].
     pub fn flush(&mut self) -> Result<(), BagError> {
-        self.with_mcap(mcap::Writer::flush)
+        self.part()?.flush()
     }
 
     /// Writes the index and `metadata.yaml`.
@@ -170,20 +154,21 @@ impl BagWriter {
         self.close()
     }
 
+    /// Ends the file and goes on in another one that knows all topics, as readers of one file of a bag expect.
+    fn begin_next_file(&mut self) -> Result<(), BagError> {
+        let Some(part) = self.part.take() else { return Ok(()) };
+        self.finished.push(part.finish()?);
+        let mut part = Part::create(&self.folder, file_name(&self.name, self.finished.len()), &self.options)?;
+        for written in &self.topics {
+            part.add_topic(&written.topic)?;
+        }
+        self.part = Some(part);
+        Ok(())
+    }
+
     fn close(&mut self) -> Result<(), BagError> {
-        if self.mcap.is_none() {
-            return Ok(());
-        }
-        self.with_mcap(mcap::Writer::finish)?;
-        if let Some(mcap) = self.mcap.take() {
-            // The library leaves the end of the file in our buffer; on a full disk it is here that writing fails.
-            let path = self.folder.join(&self.file_name);
-            mcap.into_inner()
-                .into_inner()
-                .map_err(std::io::IntoInnerError::into_error)
-                .and_then(|file| file.sync_all())
-                .map_err(BagError::io("write", &path))?;
-        }
+        let Some(part) = self.part.take() else { return Ok(()) };
+        self.finished.push(part.finish()?);
         let topics: Vec<TopicContents> = self
             .topics
             .iter()
@@ -194,8 +179,7 @@ impl BagWriter {
                 message_count: written.messages,
             })
             .collect();
-        let contents =
-            Contents { file_name: &self.file_name, topics: &topics, span: self.span, custom_data: &self.custom_data };
+        let contents = Contents { files: &self.finished, topics: &topics, custom_data: &self.custom_data };
         let path = self.folder.join(FILE_NAME);
         let text = contents.to_yaml().map_err(|error| BagError::Io {
             action: "write",
@@ -205,21 +189,16 @@ impl BagWriter {
         std::fs::write(&path, text).map_err(BagError::io("write", &path))
     }
 
-    /// Does something with the library's writer, which is there as long as the bag is not closed.
-    fn with_mcap<T>(
-        &mut self,
-        action: impl FnOnce(&mut mcap::Writer<BufWriter<File>>) -> mcap::McapResult<T>,
-    ) -> Result<T, BagError> {
-        let result = match &mut self.mcap {
-            Some(mcap) => action(mcap),
-            None => Err(mcap::McapError::AttemptedWriteAfterFailure),
-        };
-        result.map_err(|source| self.write_error(source))
+    /// The file that is being written, which is there as long as the bag is not closed and nothing failed.
+    fn part(&mut self) -> Result<&mut Part, BagError> {
+        let path = self.folder.clone();
+        self.part.as_mut().ok_or(BagError::Write { path, source: mcap::McapError::AttemptedWriteAfterFailure })
     }
+}
 
-    fn write_error(&self, source: mcap::McapError) -> BagError {
-        BagError::Write { path: self.folder.join(&self.file_name), source }
-    }
+/// `NAME_0.mcap`, as rosbag2 names the files of a bag.
+fn file_name(bag: &str, number: usize) -> String {
+    format!("{bag}_{number}.mcap")
 }
 
 impl Drop for BagWriter {

@@ -2,6 +2,7 @@
 
 mod bag_writer;
 mod options;
+mod part;
 mod write_recording;
 
 pub use bag_writer::{BagWriter, TopicId, TopicToWrite};

@@ -32,13 +32,23 @@ pub struct WriteOptions {
     pub compression: Compression,
     /// Size at which a chunk is closed, bytes before compression. What is in an open chunk is lost with the power.
     pub chunk_size: u64,
+    /// Size of a file after which the bag goes on in another one, bytes; `None`: one file however large.
+    pub most_file_bytes: Option<u64>,
+    /// Time between a file's first message and the one that goes into another file, ns; `None`: one file however long.
+    pub most_file_nanoseconds: Option<u64>,
     /// Pairs for `custom_data` in `metadata.yaml`, which `ros2 bag info` shows.
     pub custom_data: BTreeMap<String, String>,
 }
 
 impl Default for WriteOptions {
-    /// Zstd, chunks of 768 KiB as rosbag2 writes them, no custom data.
+    /// Zstd, chunks of 768 KiB as rosbag2 writes them, one file, no custom data.
     fn default() -> Self {
-        WriteOptions { compression: Compression::default(), chunk_size: 768 * 1024, custom_data: BTreeMap::new() }
+        WriteOptions {
+            compression: Compression::default(),
+            chunk_size: 768 * 1024,
+            most_file_bytes: None,
+            most_file_nanoseconds: None,
+            custom_data: BTreeMap::new(),
+        }
     }
 }

@@ -4,8 +4,8 @@ use excavator_model::effects::{self, Effect, Family, Site};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelError};
 
-use super::Evidence;
 use super::starts::starts;
+use super::{Evidence, Inclusion};
 use crate::fit::{Fit, FitError, FitSettings, fit, predict};
 
 /// A candidate that was tried.
@@ -23,6 +23,8 @@ pub struct Candidate {
     pub validation: Fit,
     /// What it gains over the model without it, on the validation recordings.
     pub evidence: Evidence,
+    /// How often it would have gained as much, or most, on stretches drawn from the validation recordings.
+    pub inclusion: Inclusion,
     /// What it gains on the identification recordings, where its parameters were fitted.
     pub identification_gain: f64,
     /// Whether the gain is large and certain enough, in both recordings.

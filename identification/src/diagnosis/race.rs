@@ -12,8 +12,9 @@ use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
 use super::candidate::{CandidateError, best_start};
+use super::inclusion::inclusion;
 use super::starts::acts_in_a_window;
-use super::{Candidate, DiagnosisSettings, Unpromising, compare_losses, is_adequate};
+use super::{Candidate, DiagnosisSettings, Inclusion, Unpromising, compare_losses, is_adequate};
 use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, predict};
 
 /// What became of all candidates.
@@ -128,6 +129,10 @@ impl Race<'_> {
         round.unpromising.sort_by(|a, b| b.promised_gain.total_cmp(&a.promised_gain));
         round.fitted.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
         mark_ties(&mut round.fitted, self.settings);
+        let shares = inclusion(self.base_validation, &round.fitted, self.least_gain);
+        for (candidate, share) in round.fitted.iter_mut().zip(shares) {
+            candidate.inclusion = share;
+        }
         Ok(round)
     }
 
@@ -199,6 +204,7 @@ impl Race<'_> {
             fit,
             validation,
             evidence,
+            inclusion: Inclusion::default(),
             identification_gain,
             accepted,
             tied_with_first: false,

@@ -19,8 +19,10 @@ pub(super) struct WindowNoise {
     /// Variance that noise adds, W².
     pub variance: Vec<f64>,
     /// Changes of the residual by what is the same in all windows, W: by one standard error of each parameter that has
-    /// one, and by wider parabolas.
+    /// one, and by valves that open half a sample later.
     pub parameters: Vec<Vec<f64>>,
+    /// Most that the parabolas have cut off, W.
+    pub rounding: Vec<f64>,
 }
 
 /// A block with its noise.
@@ -32,8 +34,9 @@ pub(super) struct NoiseStudy {
     pub windows: Vec<WindowNoise>,
 }
 
-/// Windows over which a variance is averaged, to each side: a handful of repeats alone would leave it a third uncertain.
-const POOLED: usize = 4;
+/// Windows over which a variance is averaged, to each side: repeats alone would leave it a fifth uncertain, and windows
+/// further away belong to another part of a stroke.
+const POOLED: usize = 2;
 
 /// Factor of the half widths by which the rounding of parabolas is found out.
 const WIDER: f64 = 1.4;
@@ -53,11 +56,12 @@ pub(super) fn study_noise(
     let parameters = model.parameter_values();
     let base = windows(model, books, places, block.own, settings);
     let mut random = ChaCha8Rng::seed_from_u64(settings.seed.wrapping_add(block.first_sample as u64));
-    let draws = (0..settings.draws)
-        .map(|_| {
-            let noisy = Block { recording: with_more_noise(&block.recording, &mut random), ..block.clone() };
-            measured_books(system, &parameters, &noisy, settings)
-        })
+    let noisy: Vec<Block> = (0..settings.draws)
+        .map(|_| Block { recording: with_more_noise(&block.recording, &mut random), ..block.clone() })
+        .collect();
+    let draws = noisy
+        .iter()
+        .map(|block| measured_books(system, &parameters, block, settings))
         .collect::<Result<Vec<Books>, SignalError>>()?;
     let residuals_of = |books: &Books| -> Vec<Vec<f64>> {
         windows(model, books, places, block.own, settings).into_iter().map(|window| window.residuals).collect()
@@ -70,15 +74,29 @@ pub(super) fn study_noise(
         values[index] += error;
         moved.push(residuals_of(&measured_books(system, &values, block, settings)?));
     }
-    // What wider parabolas change is of the size of what the parabolas have rounded off.
+    // A valve's step makes a kink in a pressure, and what a parabola cuts off a kink grows in proportion to its width: the
+    // whole of it is what wider ones change, divided by how much wider they are.
     let wider = EnergySettings {
         half_width: WIDER * settings.half_width,
         motion_half_width: WIDER * settings.motion_half_width,
         ..*settings
     };
-    moved.push(residuals_of(&measured_books(system, &parameters, block, &wider)?));
+    let widened = |block: &Block| measured_books(system, &parameters, block, &wider).map(|books| residuals_of(&books));
+    let wide = widened(block)?;
+    let noisy_wide = noisy[..noisy.len().div_ceil(4)].iter().map(widened).collect::<Result<Vec<_>, SignalError>>()?;
+    let later = Block { recording: with_later_openings(&block.recording), ..block.clone() };
+    moved.push(residuals_of(&measured_books(system, &parameters, &later, settings)?));
     let difference = |draw: &[Vec<f64>], window: usize, place: usize| {
         Some(draw.get(window)?.get(place)? - base.get(window)?.residuals.get(place)?)
+    };
+    // What wider parabolas change, squared, less what they change of noise, which the repeats' scatter has already.
+    let rounded_off = |window: usize, place: usize| {
+        let change = difference(&wide, window, place).unwrap_or(0.0);
+        let of_noise = drawn
+            .iter()
+            .zip(&noisy_wide)
+            .filter_map(|(draw, wide)| Some(wide.get(window)?.get(place)? - draw.get(window)?.get(place)? - change));
+        change * change - of_noise.map(|change| change * change).sum::<f64>() / noisy_wide.len().max(1) as f64
     };
     let of_window = |window: usize| -> Vec<(f64, f64)> {
         (0..places.len())
@@ -101,9 +119,26 @@ pub(super) fn study_noise(
             parameters: (0..places.len())
                 .map(|place| moved.iter().map(|draw| difference(draw, index, place).unwrap_or(0.0)).collect())
                 .collect(),
+            rounding: (0..places.len())
+                .map(|place| near.clone().map(|k| rounded_off(k, place)).sum::<f64>() / near.len() as f64)
+                .map(|squared| squared.max(0.0).sqrt() / (WIDER - 1.0))
+                .collect(),
         }
     });
     Ok(NoiseStudy { windows: pooled.collect(), draws })
+}
+
+/// The recording with valves that open half a sample later. A valve that is set in steps holds its opening from one sample
+/// on, or up to it: nobody can tell from the samples, and the line between them is half a sample off either way.
+fn with_later_openings(recording: &Recording) -> Recording {
+    let mut later = recording.clone();
+    for cylinder in &mut later.cylinders {
+        let before = cylinder.orifice_area.clone();
+        for (opening, pair) in cylinder.orifice_area.iter_mut().zip(before.windows(2)) {
+            *opening = 0.5 * (pair[0] + pair[1]);
+        }
+    }
+    later
 }
 
 /// The recording with white noise of each sensor's own level added. Commands have none.

@@ -10,12 +10,14 @@ mod reading_rows;
 mod segments;
 mod settings;
 mod typical_loss;
+mod watch;
 
 pub use instruments::{Instrument, instruments, standard_deviation};
 #[cfg(test)]
 pub(crate) use linear_refit::Remainder;
 pub(crate) use linear_refit::{LinearRefit, scales};
-pub use output_error::{Fit, FitError, evaluate, fit};
+pub use output_error::{Fit, FitError, evaluate, fit, fit_watched};
 pub use prediction::{Prediction, predict};
 pub use segments::{Segment, SegmentedRecording};
 pub use settings::FitSettings;
+pub use watch::Watch;

@@ -4,6 +4,8 @@
 //! the normal equations before they are added up: a general solver would factor one dense Jacobian with a column for
 //! each initial state of each segment.
 
+use std::ops::ControlFlow;
+
 use excavator_model::effects::ParameterCard;
 use excavator_model::equations::System;
 use excavator_model::recording::Recording;
@@ -13,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::normal_equations::{RawSums, SegmentSums};
 use super::problem::Problem;
-use super::{FitSettings, Instrument};
+use super::{FitSettings, Instrument, Watch};
 
 /// Why a fit could not be done.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -33,6 +35,9 @@ pub enum FitError {
     /// No stretch of a recording is long enough.
     #[error("the recordings have no stretch of at least 20 samples without a gap")]
     TooShort,
+    /// Whoever watched it wanted no more of it.
+    #[error("stopped on request")]
+    Stopped,
 }
 
 /// Result of a fit.
@@ -84,8 +89,21 @@ impl Fit {
 /// # Errors
 /// [`FitError`].
 pub fn fit(model: &Model, recordings: &[&Recording], settings: &FitSettings) -> Result<Fit, FitError> {
+    fit_watched(model, recordings, settings, &|_| ControlFlow::Continue(()))
+}
+
+/// [`fit`] that tells `watch` before each step and ends when that says so.
+///
+/// # Errors
+/// [`FitError`], among them [`FitError::Stopped`].
+pub fn fit_watched(
+    model: &Model,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+    watch: Watch<'_>,
+) -> Result<Fit, FitError> {
     let fitted = model.unknown_parameters();
-    run(model, recordings, settings, fitted, settings.maximum_steps)
+    run(model, recordings, settings, fitted, settings.maximum_steps, watch)
 }
 
 /// Errors of `model` on `recordings` with its parameters as they are; only initial states are fitted.
@@ -93,7 +111,7 @@ pub fn fit(model: &Model, recordings: &[&Recording], settings: &FitSettings) -> 
 /// # Errors
 /// [`FitError`].
 pub fn evaluate(model: &Model, recordings: &[&Recording], settings: &FitSettings) -> Result<Fit, FitError> {
-    run(model, recordings, settings, Vec::new(), 4)
+    run(model, recordings, settings, Vec::new(), 4, &|_| ControlFlow::Continue(()))
 }
 
 struct State {
@@ -108,6 +126,7 @@ fn run(
     settings: &FitSettings,
     fitted: Vec<usize>,
     maximum_steps: usize,
+    watch: Watch<'_>,
 ) -> Result<Fit, FitError> {
     let system = System::new(model);
     let problem = Problem::new(model, &system, recordings, settings, fitted)?;
@@ -131,6 +150,9 @@ fn run(
     let mut steps = 0;
     let mut converged = false;
     while steps < maximum_steps {
+        if watch(steps as f64 / maximum_steps as f64).is_break() {
+            return Err(FitError::Stopped);
+        }
         steps += 1;
         let held = held_at_bounds(&current.sums, &current.values, fitted, cards);
         let Some(step) = parameter_step(&current.sums, &held, damping) else { break };

@@ -23,5 +23,5 @@ pub use error::RegressionError;
 pub use least_squares::least_squares;
 pub use observation::{Observation, observe, observe_guided};
 pub use solution::{ConditionNumber, EquationGauge, Regression};
-pub use weak_form::{WeakFormSettings, weak_form};
+pub use weak_form::{WeakFormSettings, weak_form, weak_form_watched};
 pub use weak_residuals::{WeakResidual, weak_residuals};

@@ -5,12 +5,15 @@
 //! and a Gauss-Newton step for shape parameters. Instruments are the same regressors on the simulated state, whose errors
 //! have nothing to do with sensor noise, so that noise in regressors does not bias the result (`docs/methods.md`).
 
+use std::ops::ControlFlow;
+
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
 use super::weak_rows::rows;
 use super::weak_solution::solve;
 use super::{Regression, RegressionError};
+use crate::fit::{FitError, Watch};
 
 /// Settings of the weak form.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,14 +70,34 @@ pub fn weak_form(
     recordings: &[&Recording],
     settings: &WeakFormSettings,
 ) -> Result<Regression, RegressionError> {
+    weak_form_watched(model, recordings, settings, &|_| ControlFlow::Continue(()))
+}
+
+/// [`weak_form`] that tells `watch` before each round and ends when that says so.
+///
+/// # Errors
+/// [`RegressionError`]; [`FitError::Stopped`] in it when it was ended.
+pub fn weak_form_watched(
+    model: &Model,
+    recordings: &[&Recording],
+    settings: &WeakFormSettings,
+    watch: Watch<'_>,
+) -> Result<Regression, RegressionError> {
     let mut unknown = model.unknown_parameters();
     let mut model = model.clone();
-    for round in 0..settings.rounds.max(1) - 1 {
+    let rounds = settings.rounds.max(1);
+    let round_begins = |round: usize| match watch(round as f64 / rounds as f64) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(FitError::Stopped),
+    };
+    for round in 0..rounds - 1 {
+        round_begins(round)?;
         let rows = rows(&model, recordings, settings, &unknown, round > 0)?;
         model = solve(&model, recordings, settings, &unknown, &rows, false)?.model;
     }
     let mut held = Vec::new();
     loop {
+        round_begins(rounds - 1)?;
         let rows = rows(&model, recordings, settings, &unknown, settings.rounds > 1)?;
         let mut solution = solve(&model, recordings, settings, &unknown, &rows, settings.with_errors)?;
         let outside = if settings.hold_at_bounds { outside(&solution) } else { Vec::new() };

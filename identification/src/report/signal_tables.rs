@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::numbers::{NOTHING, decimal, significant};
 use super::{units, words};
 use crate::refinement::Refinement;
-use crate::validation::Comparison;
+use crate::validation::{Comparison, Correlation};
 
 /// Mean, largest size of the error (measured - model) of a signal, SI.
 fn error_sizes(comparison: &Comparison, name: &str) -> Option<(f64, f64)> {
@@ -28,10 +28,11 @@ pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
         div.wide { table.data {
             thead { tr {
                 th { "Signal" } th.n { "NMSE" } th.n { "FIT" } th.n { "Phase delay" } th.n { "RMS error" } th.n { "Largest error" }
+                th.n { "Error like its past" } th.n { "Error like the input" }
             } }
             tbody {
                 @for comparison in comparisons {
-                    @if comparisons.len() > 1 { tr.group { td colspan="6" { (comparison.measured.source) } } }
+                    @if comparisons.len() > 1 { tr.group { td colspan="8" { (comparison.measured.source) } } }
                     @for signal in &comparison.signals {
                         @let unit = units::of_signal(&signal.name);
                         @let sizes = error_sizes(comparison, &signal.name);
@@ -42,17 +43,32 @@ pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
                             td.n { (signal.phase_delay_degrees.map_or(NOTHING.to_string(), |d| format!("{}°", decimal(d)))) }
                             td.n { (sizes.map_or(NOTHING.to_string(), |s| format!("{} {}", significant(s.0 * unit.factor, 3), unit.symbol))) }
                             td.n { (sizes.map_or(NOTHING.to_string(), |s| format!("{} {}", significant(s.1 * unit.factor, 3), unit.symbol))) }
+                            td.n { (correlation(signal.autocorrelation)) }
+                            td.n { (correlation(signal.input_correlation)) }
                         }
                     }
-                    tr.sum { td { "Mean" } td.n { (significant(comparison.mean_error(), 3)) } td {} td {} td {} td {} }
+                    tr.sum { td { "Mean" } td.n { (significant(comparison.mean_error(), 3)) } td {} td {} td {} td {} td {} td {} }
                 }
             }
         } }
         p.note {
             "NMSE: squared error over the signal's own variance; 0 is perfect, 1 is no better than its mean. "
             "FIT = 100 (1 − √NMSE) %. Phase delay: by how much the model lags behind the measurement at the frequency of "
-            "the excitation" (frequencies(comparisons)) "; negative where it leads."
+            "the excitation" (frequencies(comparisons)) "; negative where it leads. "
+            "Error like its past, like the input: where the correlation over lags of up to 2 s is largest, if chance does "
+            "not explain it. The error of a model that lacks nothing is noise and has neither."
         }
+    }
+}
+
+/// A correlation with its lag, "no" where chance explains it.
+fn correlation(found: Option<Correlation>) -> String {
+    match found {
+        None => NOTHING.to_string(),
+        Some(found) if found.is_significant() => {
+            format!("{} after {} s", significant(found.value, 2), significant(found.lag, 2))
+        }
+        Some(_) => "no".to_string(),
     }
 }
 

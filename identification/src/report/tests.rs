@@ -9,7 +9,7 @@ use excavator_model::recording::Recording;
 use nalgebra::DMatrix;
 
 use super::{comparison_page, diagnosis_page, refinement_page, verdict_sentence};
-use crate::diagnosis::{Candidate, Diagnosis, Evidence, Share, Unexplained, Verdict};
+use crate::diagnosis::{Candidate, Diagnosis, Evidence, Inclusion, Share, Unexplained, Verdict};
 use excavator_model::equations::Channel;
 
 use crate::energy::{MissingPower, Regime};
@@ -43,6 +43,8 @@ fn comparison(error: f64) -> Comparison {
     measured.cylinders[0].cap_pressure[100..200].fill(f64::NAN);
     let signals = SIGNALS
         .map(|name| SignalComparison {
+            autocorrelation: None,
+            input_correlation: None,
             name: name.to_string(),
             normalised_error: error * error,
             fit: 100.0 * (1.0 - error),
@@ -86,6 +88,7 @@ fn candidate(name: &str, gain: f64, accepted: bool, tied: bool) -> Candidate {
         fit: fit_of(&extended, 1e-3),
         validation: fit_of(&extended, 1e-3),
         evidence: Evidence { gain, significance: 9.0 },
+        inclusion: Inclusion { gains: 1.0, is_first: 0.97 },
         identification_gain: gain,
         accepted,
         tied_with_first: tied,

@@ -4,7 +4,10 @@ use excavator_model::Model;
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::simulation::{InputSignals, RunError, simulate};
 
-use super::{dominant_frequency, fit_percent, normalised_mean_squared_error, phase_delay_degrees};
+use super::{
+    Correlation, autocorrelation, dominant_frequency, fit_percent, input_correlation, normalised_mean_squared_error,
+    phase_delay_degrees,
+};
 use crate::regression::observe;
 
 /// A measurement and its simulation.
@@ -31,6 +34,11 @@ pub struct SignalComparison {
     pub fit: f64,
     /// Lag of the model behind the measurement at the excitation frequency, degrees.
     pub phase_delay_degrees: Option<f64>,
+    /// What the error has of its own past; none of it where only noise is left.
+    pub autocorrelation: Option<Correlation>,
+    /// What the error has of the machine's input: the valve opening of its cylinder (for the pump pressure the sum of all),
+    /// the velocity of an imposed motion, or the force on the load.
+    pub input_correlation: Option<Correlation>,
 }
 
 impl Comparison {
@@ -68,32 +76,37 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
     } else {
         dominant_frequency(&recording.time, &measured.cylinders[0].rod_force)
     };
+    // Each output with the number of the cylinder whose input drives it; the pump line has none of its own.
     let mut names = Vec::new();
-    for cylinder in &model.machine.cylinders {
+    for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
         if cylinder.imposed_motion.is_some() {
-            names.push(format!("{}.rod_force", cylinder.name));
+            names.push((format!("{}.rod_force", cylinder.name), Some(number)));
             continue;
         }
         for signal in ["displacement", "velocity", "cap_pressure", "rod_pressure"] {
             if cylinder.chambers.is_some() || !signal.ends_with("pressure") {
-                names.push(format!("{}.{signal}", cylinder.name));
+                names.push((format!("{}.{signal}", cylinder.name), Some(number)));
             }
         }
     }
     if matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) {
-        names.push("pump_pressure".to_string());
+        names.push(("pump_pressure".to_string(), None));
     }
     let signals = names
         .into_iter()
-        .filter_map(|name| {
+        .filter_map(|(name, cylinder)| {
             let (y, yhat) = (measured.signal(&name)?, simulated.signal(&name)?);
             if !is_measured(y) {
                 return None;
             }
+            let error: Vec<f64> = y.iter().zip(yhat).map(|(measured, simulated)| measured - simulated).collect();
+            let input = driving_input(model, &inputs, &measured, cylinder);
             let normalised_error = normalised_mean_squared_error(y, yhat);
             Some(SignalComparison {
                 phase_delay_degrees: excitation_frequency
                     .and_then(|frequency| phase_delay_degrees(&recording.time, y, yhat, frequency)),
+                autocorrelation: autocorrelation(&recording.time, &error),
+                input_correlation: input_correlation(&recording.time, &error, &input),
                 fit: fit_percent(normalised_error),
                 normalised_error,
                 name,
@@ -101,4 +114,20 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
         })
         .collect();
     Ok(Comparison { measured, simulated, signals, excitation_frequency })
+}
+
+/// What drives a cylinder, or all of them.
+fn driving_input(model: &Model, inputs: &InputSignals, measured: &Recording, cylinder: Option<usize>) -> Vec<f64> {
+    match cylinder {
+        Some(number) if model.machine.cylinders[number].chambers.is_some() => inputs.orifice_area(number).to_vec(),
+        Some(number) => {
+            let Ok(signals) = measured.cylinder(&model.machine.cylinders[number].name) else { return Vec::new() };
+            if model.machine.has_imposed_motion() { signals.velocity.clone() } else { signals.rod_force.clone() }
+        }
+        None => {
+            let cylinders = model.machine.cylinders.len();
+            let total = |sample: usize| (0..cylinders).map(|number| inputs.orifice_area(number)[sample].abs()).sum();
+            (0..inputs.len()).map(total).collect()
+        }
+    }
 }

@@ -3,7 +3,9 @@
 mod compare;
 mod measures;
 mod phase;
+mod residual_test;
 
 pub use compare::{Comparison, SignalComparison, compare, measured_velocity};
 pub use measures::{fit_percent, normalised_mean_squared_error};
 pub use phase::{dominant_frequency, phase_delay_degrees};
+pub use residual_test::{Correlation, autocorrelation, input_correlation};

@@ -10,9 +10,6 @@ use excavator_msgs::ArmState;
 
 use crate::ros::{Diagnostics, Health};
 
-/// Repeats with added noise. Half of what a recording gets: the band is judged anew with every window.
-const DRAWS: usize = 3;
-
 /// States that no window has: the longest one at 2 kHz. A clock that goes to and fro would fill memory without end.
 const MOST_STATES: usize = 1_200_000;
 
@@ -78,8 +75,7 @@ pub(super) fn judge_windows(
 ) {
     for window in windows {
         let (recording, _) = window.into_recording("/arm/state", &mut ReadReport::default());
-        let settings = EnergySettings { draws: DRAWS, ..EnergySettings::default() };
-        let analysis = analyse(model, &recording, settings);
+        let analysis = analyse(model, &recording, EnergySettings::default());
         let tally = tally.lock().map_or_else(
             |_| Tally::default(),
             |mut tally| {

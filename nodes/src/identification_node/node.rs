@@ -63,12 +63,12 @@ impl Worker {
     fn work_on(&self, job: &Job) {
         self.diagnostics.tell("work", Health::Ok, "identifying", &[]);
         self.logger.info(format!("identifying {} from {} bags", short(&job.goal.model), job.goal.bags.len()));
-        let mut tell = |stage: &str, progress: f64| {
+        let tell = |stage: &str, progress: f64| {
             let feedback = Feedback { stage: stage.to_string(), progress };
             // Nobody hears it when the node is about to end.
             let _ = self.told.send(News::Progress { id: job.id, feedback });
         };
-        let outcome = match identify(&job.goal, &job.cancelled, &mut tell) {
+        let outcome = match identify(&job.goal, &job.cancelled, &tell) {
             Ok(outcome) => outcome,
             Err(Ended::Cancelled) => {
                 self.logger.info("cancelled");

@@ -1,10 +1,11 @@
 //! The work itself, without ROS.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use excavator_identification::fit::{FitSettings, fit};
-use excavator_identification::regression::{WeakFormSettings, weak_form};
+use excavator_identification::fit::{FitError, FitSettings, fit_watched};
+use excavator_identification::regression::{RegressionError, WeakFormSettings, weak_form_watched};
 use excavator_identification::validation::compare;
 use excavator_model::document::{parse, to_text};
 use excavator_model::recording::Recording;
@@ -26,13 +27,19 @@ pub(super) enum Ended {
 
 impl<E: Into<VerbError>> From<E> for Ended {
     fn from(error: E) -> Self {
-        Ended::Failed(error.into())
+        match error.into() {
+            VerbError::Fit(FitError::Stopped) | VerbError::Regression(RegressionError::Fit(FitError::Stopped)) => {
+                Ended::Cancelled
+            }
+            error => Ended::Failed(error),
+        }
     }
 }
 
-/// Does what the goal asks for; `tell` hears of stage and progress, `cancelled` is looked at between the stages.
-pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &mut dyn FnMut(&str, f64)) -> Result<Outcome, Ended> {
-    let mut stage = |name: &str, progress: f64| {
+/// Does what the goal asks for; `tell` hears of stage and progress, `cancelled` is looked at between the stages and
+/// between the rounds of the long ones.
+pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &dyn Fn(&str, f64)) -> Result<Outcome, Ended> {
+    let stage = |name: &str, progress: f64| {
         if cancelled.load(Ordering::Relaxed) {
             return Err(Ended::Cancelled);
         }
@@ -56,12 +63,19 @@ pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &mut dyn FnMut
         recordings.push(sources::recording(&PathBuf::from(bag), &Mapping { map: None }, &wanted)?);
     }
     let recordings: Vec<&Recording> = recordings.iter().collect();
-    stage("identifying", 0.3)?;
-    let mut identified = weak_form(&wanted, &recordings, &WeakFormSettings::default())?.model;
+    let part = |name: &'static str, from: f64, to: f64| {
+        move |done: f64| match stage(name, from + (to - from) * done) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    };
+    let settings = WeakFormSettings::default();
+    let identifying = part("identifying", 0.3, 0.5);
+    let mut identified = weak_form_watched(&wanted, &recordings, &settings, &identifying)?.model;
     if !goal.effects.is_empty() {
         // Effects that were added start far from their values, and some enter nonlinearly: outputs are fitted too.
-        stage("fitting outputs", 0.5)?;
-        identified = fit(&identified, &recordings, &FitSettings::default())?.model;
+        let fitting = part("fitting outputs", 0.5, 0.7);
+        identified = fit_watched(&identified, &recordings, &FitSettings::default(), &fitting)?.model;
     }
     let (mut signals, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
     for (index, recording) in recordings.iter().enumerate() {
@@ -106,4 +120,46 @@ fn model(text: &str) -> Result<Model, VerbError> {
         return Ok(parse("the model of the goal", text)?);
     }
     sources::model(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::{Cell, RefCell};
+
+    use super::*;
+
+    fn goal() -> Goal {
+        Goal {
+            model: "zx30u-arm".to_string(),
+            bags: vec![concat!(env!("CARGO_MANIFEST_DIR"), "/../bags/samples/arm-swing").to_string()],
+            effects: vec!["entrained_air".to_string()],
+        }
+    }
+
+    #[test]
+    fn stages_are_told_in_order_and_the_long_ones_step_by_step() {
+        let told: RefCell<Vec<(String, f64)>> = RefCell::default();
+        let tell = |stage: &str, done: f64| told.borrow_mut().push((stage.to_string(), done));
+        let outcome = identify(&goal(), &AtomicBool::new(false), &tell);
+        assert!(outcome.is_ok(), "{outcome:?}");
+        let told = told.into_inner();
+        assert!(told.windows(2).all(|pair| pair[0].1 <= pair[1].1), "{told:?}");
+        assert!(told.iter().filter(|(stage, _)| stage == "fitting outputs").count() > 2, "{told:?}");
+    }
+
+    #[test]
+    fn cancelled_work_ends_within_the_stage() {
+        for (stage, rounds) in [("identifying", 2), ("fitting outputs", 2)] {
+            let cancelled = AtomicBool::new(false);
+            let seen = Cell::new(0);
+            let tell = |name: &str, _: f64| {
+                assert!(!cancelled.load(Ordering::Relaxed), "{name} goes on after {stage} was cancelled");
+                seen.set(seen.get() + usize::from(name == stage));
+                cancelled.store(seen.get() == rounds, Ordering::Relaxed);
+            };
+            let ended = identify(&goal(), &cancelled, &tell);
+            assert!(matches!(ended, Err(Ended::Cancelled)), "{stage}: {ended:?}");
+            assert_eq!(seen.get(), rounds);
+        }
+    }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use excavator_identification::diagnosis::{Candidate, Diagnosis, normalised_error};
 use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
-use excavator_identification::validation::Comparison;
+use excavator_identification::validation::{Comparison, Correlation};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 use serde_json::{Map, Value, json};
@@ -79,9 +79,25 @@ fn signals(comparisons: &[Comparison]) -> Value {
         let fit = own().map(|s| s.fit).sum::<f64>() / count;
         let delays: Vec<f64> = own().filter_map(|s| s.phase_delay_degrees).collect();
         let delay = delays.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).map_or(Value::Null, finite);
-        (signal.name.clone(), json!({"nmse": finite(nmse), "fit": finite(fit), "phase_delay_deg": delay}))
+        // Of several recordings the one that is furthest beyond its bound.
+        let worst = |found: Vec<Correlation>| {
+            let beyond = |one: &Correlation| one.value.abs() / one.bound;
+            found.into_iter().max_by(|a, b| beyond(a).total_cmp(&beyond(b))).map_or(Value::Null, correlation)
+        };
+        let value = json!({
+            "nmse": finite(nmse),
+            "fit": finite(fit),
+            "phase_delay_deg": delay,
+            "autocorrelation": worst(own().filter_map(|s| s.autocorrelation).collect()),
+            "input_correlation": worst(own().filter_map(|s| s.input_correlation).collect()),
+        });
+        (signal.name.clone(), value)
     });
     Value::Object(entries.collect())
+}
+
+fn correlation(found: Correlation) -> Value {
+    json!({"value": finite(found.value), "lag_s": finite(found.lag), "bound": finite(found.bound)})
 }
 
 /// Result of `compare`.
@@ -103,6 +119,7 @@ fn candidate_json(candidate: &Candidate, before: f64, validation: &[&Recording])
         "validation_error_after": finite(normalised_error(&candidate.validation, validation)),
         "evidence": finite(candidate.evidence.gain),
         "significance": finite(candidate.evidence.significance),
+        "bootstrap": {"gains": finite(candidate.inclusion.gains), "is_first": finite(candidate.inclusion.is_first)},
         "tied_with_first": candidate.tied_with_first,
         "parameters": parameters(&candidate.fit.model, &own),
         "refitted": parameters(&candidate.fit.model, &candidate.fit.model.unknown_parameters()),

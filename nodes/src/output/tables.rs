@@ -5,7 +5,7 @@ use comfy_table::{Attribute, Cell, CellAlignment, Table};
 use excavator_identification::diagnosis::{Candidate, normalised_error};
 use excavator_identification::fit::Fit;
 use excavator_identification::refinement::Refinement;
-use excavator_identification::validation::Comparison;
+use excavator_identification::validation::{Comparison, Correlation};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
@@ -56,21 +56,33 @@ pub fn parameter_table(model: &Model, fitted: &[usize]) -> Table {
 
 /// Errors of every signal.
 pub fn comparison_table(comparison: &Comparison) -> Table {
-    let mut table = table(&["signal", "NMSE", "FIT %", "phase delay °"]);
+    let mut table = table(&["signal", "NMSE", "FIT %", "phase delay °", "error like its past", "error like the input"]);
     for signal in &comparison.signals {
         table.add_row([
             Cell::new(&signal.name),
             right(number(signal.normalised_error)),
             right(format!("{:.1}", signal.fit)),
             right(signal.phase_delay_degrees.map_or("-".into(), |degrees| format!("{degrees:.1}"))),
+            right(correlation(signal.autocorrelation)),
+            right(correlation(signal.input_correlation)),
         ]);
     }
     table
 }
 
+/// A correlation with its lag, "no" where chance explains it, "-" where nothing can be said.
+fn correlation(found: Option<Correlation>) -> String {
+    match found {
+        None => "-".to_string(),
+        Some(found) if found.is_significant() => format!("{:.2} after {:.2} s", found.value, found.lag),
+        Some(_) => "no".to_string(),
+    }
+}
+
 /// Candidates with what they gain on the validation recordings.
 pub fn candidate_table(candidates: &[&Candidate], before: &Fit, validation: &[&Recording]) -> Table {
-    let mut table = table(&["effect", "at", "error before", "error after", "gain", "significance", "verdict"]);
+    let mut table =
+        table(&["effect", "at", "error before", "error after", "gain", "significance", "first in", "verdict"]);
     for candidate in candidates {
         let verdict = match (candidate.accepted, candidate.tied_with_first) {
             (true, true) => "tied",
@@ -84,6 +96,7 @@ pub fn candidate_table(candidates: &[&Candidate], before: &Fit, validation: &[&R
             right(number(normalised_error(&candidate.validation, validation))),
             right(format!("{:.2}", candidate.evidence.gain)),
             right(format!("{:.1}", candidate.evidence.significance)),
+            right(format!("{:.0} %", 100.0 * candidate.inclusion.is_first)),
             Cell::new(verdict),
         ]);
     }

@@ -36,7 +36,12 @@ pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbEr
     let pattern = if arguments.all { None } else { arguments.regex.as_deref() };
     let selection = Selection::new(names, pattern, arguments.exclude.as_deref(), arguments.include_hidden_topics)?;
     let folder = arguments.output.clone().unwrap_or_else(default_folder);
-    let options = WriteOptions { compression: arguments.compression.into(), ..WriteOptions::default() };
+    let options = WriteOptions {
+        compression: arguments.compression.into(),
+        most_file_bytes: arguments.max_bag_size,
+        most_file_nanoseconds: arguments.max_bag_duration.map(|seconds| (seconds * 1e9) as u64),
+        ..WriteOptions::default()
+    };
     let bag = BagWriter::create(&folder, &options)?;
     supervisor.logger.info(format!("recording to {}", folder.display()));
     let dropped = Arc::new(AtomicU64::new(0));
