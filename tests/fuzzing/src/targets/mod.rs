@@ -35,7 +35,7 @@ pub const TARGETS: [Target; 11] = [
     Target { name: "matlab", run: table::matlab, seeds: table::matlab_seeds, cases: 1_000, memory: (40_000, MB) },
     Target { name: "parquet", run: table::parquet, seeds: table::parquet_seeds, cases: 800, memory: (8_000, 160 * MB) },
     Target { name: "mcap", run: bag::run, seeds: bag::mcap_seeds, cases: 60, memory: (200, 64 * MB) },
-    Target { name: "sqlite", run: bag::run, seeds: bag::sqlite_seeds, cases: 30, memory: (200, 64 * MB) },
+    Target { name: "sqlite", run: bag::run, seeds: bag::sqlite_seeds, cases: 15, memory: (200, 64 * MB) },
     Target { name: "packed", run: bag::run, seeds: bag::packed_seeds, cases: 30, memory: (200, 64 * MB) },
     Target { name: "can-database", run: can::database, seeds: can::database_seeds, cases: 600, memory: (400, MB) },
     Target { name: "can-log", run: can::log, seeds: can::log_seeds, cases: 1_000, memory: (100, MB) },
