@@ -26,8 +26,6 @@ pub mod cdr;
 mod container;
 pub mod dynamic;
 mod error;
-#[doc(hidden)]
-pub mod fuzzing;
 mod info;
 mod location;
 pub mod map;
@@ -42,7 +40,9 @@ mod writing;
 
 pub use container::{Damage, DamageKind};
 pub use error::BagError;
-pub use info::{BagInfo, EquationInfo, SignalInfo, SignalsInfo, StampTiming, Timing, TopicInfo, info};
+pub use info::{
+    BagInfo, ColumnInfo, EquationInfo, SignalInfo, SignalsInfo, StampTiming, TableInfo, Timing, TopicInfo, info,
+};
 pub use qos::{Durability, History, Qos, Reliability};
 pub use raw_messages::{RawMessage, RawMessages, Topic};
 pub use reading::{Gap, ReadReport, StateTable, read_recording, read_recording_in_blocks};

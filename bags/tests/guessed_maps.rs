@@ -163,3 +163,69 @@ fn a_robot_on_wheels_has_no_hydraulics() {
     let hydraulic = pairs(&guessed).into_iter().filter(|(signal, _, _)| !signal.ends_with("displacement")).count();
     assert_eq!(hydraulic, 0, "{}", guessed.to_text().unwrap());
 }
+
+/// A table of other people with these headings; every column swings about its mean as fast as the others.
+fn swings(columns: &[(&str, f64, f64)]) -> (tempfile::TempDir, std::path::PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drive.csv");
+    let mut text = columns.iter().map(|(heading, ..)| *heading).collect::<Vec<_>>().join(",") + "\n";
+    for i in 0..500 {
+        let t = f64::from(i) * 1e-2;
+        let cell = |(heading, mean, swing): &(&str, f64, f64)| match *heading {
+            "ts_ms" => (1.78e12 + 1e3 * t).to_string(),
+            // The pump's speed drives the piston: it goes with the derivative of the position.
+            heading if heading.contains("speed") => (mean + swing * (3.0 * t).cos()).to_string(),
+            _ => (mean + swing * (3.0 * t).sin()).to_string(),
+        };
+        text += &(columns.iter().map(cell).collect::<Vec<_>>().join(",") + "\n");
+    }
+    std::fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn the_speed_of_a_pump_is_no_velocity_of_a_piston() {
+    let pressures = [("p_cap_bar", 100.0, 20.0), ("p_rod_bar", 40.0, 10.0)];
+    for (heading, unit) in [("pump_speed_rpm", "rpm"), ("pump speed [1/min]", "1/min")] {
+        let columns =
+            [&[("ts_ms", 0.0, 0.0), ("cyl_pos_mm", 250.0, 40.0), (heading, 0.0, 500.0)], &pressures[..]].concat();
+        let (_folder, path) = swings(&columns);
+        let guessed = guess(&path, "load").unwrap();
+        let name = heading.trim_end_matches(" [1/min]");
+        assert_guessed(&guessed, &[("load.displacement", "cyl_pos_mm", "mm"), ("pump_flow", name, unit)]);
+        let flow = guessed.signals.iter().find(|s| s.source.signal.to_string() == "pump_flow").unwrap();
+        assert!(flow.unit_reason.contains("placeholder"), "{}", flow.unit_reason);
+        // The guess can be used as it is, and with the true scale: 10 cm3 per turn.
+        let text = guessed.to_text().unwrap().replace(&format!("1 m3/s/{unit}"), &format!("0.01 l/min/{unit}"));
+        let (recording, _) = read_mapped(&path, &text.parse().unwrap()).unwrap();
+        assert!((recording.pump_flow[0] - 500.0 * 1e-5 / 60.0).abs() < 1e-12, "{}", recording.pump_flow[0]);
+    }
+    // Without any unit neither.
+    let (_folder, path) = swings(&[("t", 0.0, 1.0), ("x", 0.0, 0.2), ("engine speed", 0.0, 150.0)]);
+    let guessed = guess(&path, "load").unwrap();
+    assert!(guessed.left.contains(&"engine speed".to_string()), "{}", guessed.to_text().unwrap());
+}
+
+#[test]
+fn a_crane_with_one_named_cylinder_and_a_joystick() {
+    let columns = [
+        ("ts_ms", 0.0, 0.0),
+        ("joystick_pct", 0.0, 60.0),
+        ("stick_cyl_ext_mm", 250.0, 40.0),
+        ("P_bottom_bar", 100.0, 20.0),
+        ("P_rod_bar", 40.0, 10.0),
+    ];
+    let (_folder, path) = swings(&columns);
+    // Everything is of the cylinder that one heading names, by the name that it has here.
+    let guessed = guess(&path, "load").unwrap();
+    let expected = [
+        ("arm.displacement", "stick_cyl_ext_mm", "mm"),
+        ("arm.cap_pressure", "P_bottom_bar", "bar"),
+        ("arm.rod_pressure", "P_rod_bar", "bar"),
+        ("arm.orifice_command", "joystick_pct", "pct"),
+    ];
+    assert_guessed(&guessed, &expected);
+    assert_eq!(guessed.signals.len(), 4);
+    let text = guessed.to_text().unwrap();
+    assert!(text.contains("put mid-stroke as offset"), "{text}");
+}

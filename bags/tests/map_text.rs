@@ -80,6 +80,9 @@ fn factors_are_those_of_the_textbooks() {
         ("K", 273.15, 0.0),
         ("degF", 212.0, 100.0),
         ("kN", 1.5, 1500.0),
+        ("rpm", 60.0, 2.0 * std::f64::consts::PI),
+        ("1/min", 60.0, 2.0 * std::f64::consts::PI),
+        ("pct", 50.0, 0.5),
         ("mPas", 1.0, f64::NAN),
         ("mPa", 1.0, f64::NAN),
     ] {

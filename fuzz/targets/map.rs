@@ -1,7 +1,4 @@
-//! Text as a topic map.
+//! The target of this name in `tests/fuzzing`.
 #![no_main]
 
-use excavator_bags::fuzzing;
-use libfuzzer_sys::fuzz_target;
-
-fuzz_target!(|bytes: &[u8]| fuzzing::map(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| excavator_fuzzing::run("map", bytes));

@@ -1,7 +1,4 @@
-//! Bytes as messages of the common types.
+//! The target of this name in `tests/fuzzing`.
 #![no_main]
 
-use excavator_bags::fuzzing;
-use libfuzzer_sys::fuzz_target;
-
-fuzz_target!(|bytes: &[u8]| fuzzing::message(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| excavator_fuzzing::run("message", bytes));

@@ -43,7 +43,7 @@ pub enum Verb {
     Effects(EffectsArguments),
     /// What is in a bag: topics, clocks, signals, and what is missing for identification.
     Info(InfoArguments),
-    /// Make a bag of a table (CSV, MATLAB) or of other people's topics, through a map; or guess the map.
+    /// Make a bag of a table (CSV, MATLAB, Parquet) or of other people's topics, through a map; or guess the map.
     Import(ImportArguments),
     /// Record topics into a bag.
     Record(RecordArguments),
@@ -437,7 +437,7 @@ pub struct InfoArguments {
 
 #[derive(Debug, Args)]
 pub struct ImportArguments {
-    /// Table (.csv, .tsv, .txt, .mat) or bag.
+    /// Table (.csv, .tsv, .txt, .dat, .mat, .parquet) or bag.
     pub data: PathBuf,
     #[command(flatten)]
     pub mapping: Mapping,

@@ -19,6 +19,9 @@ mod sources;
 mod up;
 mod verbs;
 
+#[doc(hidden)]
+pub use arm_bridge::can::fuzzing;
+
 use std::process::ExitCode;
 
 use clap::Parser;

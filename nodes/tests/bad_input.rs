@@ -142,6 +142,17 @@ fn wrong_units() {
         recording.cylinders[0].displacement.iter_mut().for_each(|s| *s *= 1e3);
     });
     assert_one_clear_line(&compare(folder.path(), "zx30u-arm", &path), &["arm.displacement", "is it in m?"]);
+    // A sensor that counts from the retracted end of the 600 mm stroke; a map without its offset.
+    let path = bag(folder.path(), "extension", |recording| {
+        recording.cylinders[0].displacement.iter_mut().for_each(|s| *s = 8.0 * *s + 0.3);
+    });
+    let parts = ["from -0.100 m to 0.700 m", "only from -0.300 m to 0.300 m", "mid-stroke", "\"-300 mm\""];
+    assert_one_clear_line(&compare(folder.path(), "zx30u-arm", &path), &parts);
+    // One that is a little off is for the diagnosis.
+    let path = bag(folder.path(), "offset", |recording| {
+        recording.cylinders[0].displacement.iter_mut().for_each(|s| *s += 0.28);
+    });
+    assert!(compare(folder.path(), "zx30u-arm", &path).status.success());
     let path = bag(folder.path(), "bar", |recording| {
         recording.cylinders[0].cap_pressure.iter_mut().for_each(|p| *p *= 1e-5);
     });

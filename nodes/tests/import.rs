@@ -82,6 +82,24 @@ fn info_says_what_is_there_and_what_is_missing() {
 }
 
 #[test]
+fn info_of_a_table_without_map_shows_its_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = "when,lever [%],x [mm],note\n2026-05-04T09:30:00Z,-20,150,a\n2026-05-04T09:30:01Z,40,,b\n";
+    std::fs::write(folder.path().join("drive.csv"), table).unwrap();
+    let shown = printed(folder.path(), &["info", "drive.csv", "--json", "info.json"]);
+    for part in
+        ["2 rows, 4 columns", "2026-05-04T09:30:01Z", "-20.00", "50.0 %", "100.0 %", "clock: when", "import --guess"]
+    {
+        assert!(shown.contains(part), "\"{part}\" is missing in:\n{shown}");
+    }
+    let written: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.path().join("info.json")).unwrap()).unwrap();
+    assert_eq!((&written["columns"][2]["name"], &written["columns"][2]["unit"]), (&"x".into(), &"mm".into()));
+    std::fs::write(folder.path().join("empty.csv"), "").unwrap();
+    assert_one_clear_line(&excavator(folder.path(), &["info", "empty.csv"]), &["empty.csv", "no rows"]);
+}
+
+#[test]
 fn a_wrong_map_is_told_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let data = sample("arm-swing.csv");

@@ -1,6 +1,7 @@
 //! What is in a bag, per topic, and what it is good for.
 
 mod signals;
+mod table;
 mod timing;
 
 use std::collections::BTreeMap;
@@ -12,6 +13,7 @@ use crate::location::BagFiles;
 use crate::{BagError, RawMessages};
 
 pub use signals::{EquationInfo, SignalInfo, SignalsInfo};
+pub use table::{ColumnInfo, TableInfo};
 use timing::Times;
 pub use timing::{StampTiming, Timing};
 

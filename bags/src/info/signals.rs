@@ -23,6 +23,8 @@ pub struct EquationInfo {
     pub equation: String,
     /// The signals that must be measured before the equation can be identified; empty when it can.
     pub missing: Vec<String>,
+    /// The signals that are not measured and must be constants of the machine then.
+    pub constant: Vec<String>,
 }
 
 /// What can be identified from a recording.
@@ -53,19 +55,22 @@ impl SignalsInfo {
         }
         SignalsInfo {
             samples: recording.len(),
-            measured: measured.map(|(name, values)| signal(name, values)).collect(),
+            measured: measured.map(|(name, values)| SignalInfo::of(name, values)).collect(),
             equations,
         }
     }
 }
 
-fn signal(name: String, values: &[f64]) -> SignalInfo {
-    let finite = || values.iter().copied().filter(|value| value.is_finite());
-    SignalInfo {
-        name,
-        missing: 1.0 - finite().count() as f64 / values.len() as f64,
-        least: finite().fold(f64::INFINITY, f64::min),
-        most: finite().fold(f64::NEG_INFINITY, f64::max),
+impl SignalInfo {
+    /// Looks at all values of a signal.
+    pub(super) fn of(name: String, values: &[f64]) -> SignalInfo {
+        let finite = || values.iter().copied().filter(|value| value.is_finite());
+        SignalInfo {
+            name,
+            missing: 1.0 - finite().count() as f64 / values.len().max(1) as f64,
+            least: finite().fold(f64::INFINITY, f64::min),
+            most: finite().fold(f64::NEG_INFINITY, f64::max),
+        }
     }
 }
 
@@ -106,7 +111,7 @@ fn motion(cylinder: &CylinderSignals) -> EquationInfo {
             missing.push(format!("{0}.rod_force, or {0}.cap_pressure and {0}.rod_pressure", cylinder.name));
         }
     }
-    EquationInfo { equation: format!("{} motion", cylinder.name), missing }
+    EquationInfo { equation: format!("{} motion", cylinder.name), missing, constant: Vec::new() }
 }
 
 /// Continuity of both chambers.
@@ -115,25 +120,20 @@ fn chambers(cylinder: &CylinderSignals, recording: &Recording) -> EquationInfo {
     position(cylinder, &mut missing);
     pressures(cylinder, &mut missing);
     opening(cylinder, &mut missing);
-    for (name, values) in [("pump_pressure", &recording.pump_pressure), ("tank_pressure", &recording.tank_pressure)] {
-        if !is_measured(values) {
-            missing.push(name.to_string());
-        }
-    }
-    EquationInfo { equation: format!("{} chambers", cylinder.name), missing }
+    let ends = [("pump_pressure", &recording.pump_pressure), ("tank_pressure", &recording.tank_pressure)];
+    EquationInfo { equation: format!("{} chambers", cylinder.name), missing, constant: unmeasured(&ends) }
 }
 
 /// Continuity of the line between pump and valves.
 fn pump_line(recording: &Recording) -> EquationInfo {
-    let shared = [
-        ("pump_pressure", &recording.pump_pressure),
-        ("tank_pressure", &recording.tank_pressure),
-        ("pump_flow", &recording.pump_flow),
-    ];
-    let mut missing: Vec<String> =
-        shared.into_iter().filter(|(_, values)| !is_measured(values)).map(|(name, _)| name.to_string()).collect();
+    let mut missing = unmeasured(&[("pump_pressure", &recording.pump_pressure)]);
+    let constant = unmeasured(&[("tank_pressure", &recording.tank_pressure), ("pump_flow", &recording.pump_flow)]);
     for cylinder in recording.cylinders.iter().filter(|cylinder| has_oil(cylinder)) {
         opening(cylinder, &mut missing);
     }
-    EquationInfo { equation: "pump line".to_string(), missing }
+    EquationInfo { equation: "pump line".to_string(), missing, constant }
+}
+
+fn unmeasured(signals: &[(&str, &Vec<f64>)]) -> Vec<String> {
+    signals.iter().filter(|(_, values)| !is_measured(values)).map(|(name, _)| name.to_string()).collect()
 }

@@ -44,6 +44,7 @@ mod unit;
 pub use conversion::Conversion;
 pub use document::{ClockSource, ColumnName, Resampling, SignalSource, Stamp, TopicMap};
 pub use error::MapError;
+pub(crate) use guess::clock_of_table;
 pub use guess::{Guess, GuessedSignal, guess};
 pub use quantity::Quantity;
 pub use read_mapped::{read_mapped, read_recording_or_mapped};

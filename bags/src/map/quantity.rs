@@ -35,13 +35,13 @@ impl Quantity {
             Quantity::Number(number) => finite(*number, signal, "scale"),
             Quantity::Text(text) => {
                 let (number, units) = split(text).ok_or_else(bad)?;
-                // The last slash is that of the ratio: units like l/min have their own.
-                let (over, under) = units.rsplit_once('/').ok_or_else(bad)?;
-                let (over, under) = Unit::named(over).zip(Unit::named(under)).ok_or_else(bad)?;
-                if over.dimension != to || under.dimension != from {
-                    return Err(bad());
-                }
-                Ok(number * over.factor() / under.factor())
+                // Units have slashes of their own: l/min per rpm, mm/s per V, l/min per rad/s.
+                let ratio = units.match_indices('/').find_map(|(at, slash)| {
+                    let over = Unit::named(&units[..at]).filter(|unit| unit.dimension == to)?;
+                    let under = Unit::named(&units[at + slash.len()..]).filter(|unit| unit.dimension == from)?;
+                    Some(over.factor() / under.factor())
+                });
+                Ok(number * ratio.ok_or_else(bad)?)
             }
         }
     }

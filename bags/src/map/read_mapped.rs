@@ -11,7 +11,8 @@ use crate::reading::{ReadReport, read_recording};
 use crate::table::Table;
 use crate::{BagError, Topics};
 
-/// Reads the signals of a map from the data at `path`: a bag in any storage, or a table (`.csv`, `.tsv`, `.txt`, `.mat`).
+/// Reads the signals of a map from the data at `path`: a bag in any storage, or a table (see
+/// [`Table::is_table`]).
 ///
 /// The clock is that of the map; every signal is brought onto it as the map says. Signals that the map does not have, or
 /// that are missing at a time, are `NaN`. What was dropped, sorted, damaged or missing is in the report.

@@ -9,6 +9,7 @@ pub enum Dimension {
     Length,
     Angle,
     Velocity,
+    RotationalSpeed,
     Pressure,
     Force,
     Flow,
@@ -27,6 +28,7 @@ impl Dimension {
             Dimension::Length => "m",
             Dimension::Angle => "rad",
             Dimension::Velocity => "m/s",
+            Dimension::RotationalSpeed => "rad/s",
             Dimension::Pressure => "Pa",
             Dimension::Force => "N",
             Dimension::Flow => "m3/s",
@@ -46,6 +48,7 @@ impl fmt::Display for Dimension {
             Dimension::Length => "length",
             Dimension::Angle => "angle",
             Dimension::Velocity => "velocity",
+            Dimension::RotationalSpeed => "rotational speed",
             Dimension::Pressure => "pressure",
             Dimension::Force => "force",
             Dimension::Flow => "volume flow",
@@ -81,9 +84,10 @@ const POUND_FORCE: f64 = 4.448_221_615_260_5;
 const GALLON: f64 = 3.785_411_784e-3;
 
 /// Every unit, SI first within its dimension.
-const UNITS: [Unit; 58] = {
+const UNITS: [Unit; 64] = {
     use Dimension::{
-        Angle, Area, Current, Flow, Force, Length, Number, Pressure, Temperature, Time, Velocity, Voltage,
+        Angle, Area, Current, Flow, Force, Length, Number, Pressure, RotationalSpeed, Temperature, Time, Velocity,
+        Voltage,
     };
     use std::f64::consts::PI;
     [
@@ -100,6 +104,10 @@ const UNITS: [Unit; 58] = {
         unit("cm/s", Velocity, 1.0, 100.0),
         unit("mm/s", Velocity, 1.0, 1e3),
         unit("in/s", Velocity, INCH, 1.0),
+        unit("rad/s", RotationalSpeed, 1.0, 1.0),
+        unit("deg/s", RotationalSpeed, PI, 180.0),
+        unit("rpm", RotationalSpeed, 2.0 * PI, 60.0),
+        unit("1/min", RotationalSpeed, 2.0 * PI, 60.0),
         unit("Pa", Pressure, 1.0, 1.0),
         unit("hPa", Pressure, 100.0, 1.0),
         unit("kPa", Pressure, 1e3, 1.0),
@@ -142,6 +150,8 @@ const UNITS: [Unit; 58] = {
         unit("1", Number, 1.0, 1.0),
         unit("-", Number, 1.0, 1.0),
         unit("%", Number, 1.0, 100.0),
+        unit("pct", Number, 1.0, 100.0),
+        unit("percent", Number, 1.0, 100.0),
         unit("counts", Number, 1.0, 1.0),
         unit("digits", Number, 1.0, 1.0),
         unit("LSB", Number, 1.0, 1.0),

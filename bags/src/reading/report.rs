@@ -104,10 +104,7 @@ impl ReadReport {
             .extend(self.first_undecodable.iter().map(|first| format!("the first that could not be decoded: {first}")));
         if let Some(longest) = self.gaps.iter().max_by(|a, b| a.length.total_cmp(&b.length)) {
             let Gap { after, length } = longest;
-            lines.push(format!(
-                "{} gaps in the state messages, the longest {length:.4} s at {after:.3} s",
-                self.gaps.len()
-            ));
+            lines.push(format!("{} gaps between samples, the longest {length:.4} s at {after:.3} s", self.gaps.len()));
         }
         if !self.commands_without_cylinder.is_empty() {
             let names = self.commands_without_cylinder.join(", ");

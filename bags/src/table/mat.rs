@@ -27,6 +27,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Table, String> {
         mat4::parse(bytes, &mut table.notes)?
     };
     for Variable { name, rows, values } in variables {
+        let name = if name.is_empty() { format!("column_{}", table.columns.len() + 1) } else { name };
         let columns = values.len().checked_div(rows).unwrap_or(0);
         // A row is a column that lies down.
         if rows == 1 || columns == 1 {

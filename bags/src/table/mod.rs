@@ -1,4 +1,4 @@
-//! Tables: columns of numbers from text files and MATLAB files.
+//! Tables: columns of numbers from text files, MATLAB files and Parquet files.
 
 mod dates;
 mod format;
@@ -6,6 +6,7 @@ mod heading;
 mod mat;
 mod mat4;
 mod mat5;
+mod parquet;
 mod text;
 
 use std::path::Path;
@@ -18,9 +19,9 @@ pub use format::TableFormat;
 /// The values of one column.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// Numbers as written, `NaN` for empty cells.
+    /// Numbers as written, `NaN` for empty cells and nulls.
     Numbers(Vec<f64>),
-    /// Dates, ns since the epoch; `None` for empty cells.
+    /// Dates, ns since the epoch; `None` for empty cells and nulls.
     Stamps(Vec<Option<i64>>),
 }
 
@@ -60,12 +61,11 @@ pub struct Table {
 }
 
 impl Table {
-    /// Whether the file is a table, by its extension: `.csv`, `.tsv`, `.txt`, `.dat`, `.mat`, or `.parquet`, which is
-    /// only read to say that it cannot be.
+    /// Whether the file is a table, by its extension: `.csv`, `.tsv`, `.txt`, `.dat`, `.mat`, `.parquet` or `.pq`.
     pub fn is_table(path: &Path) -> bool {
+        let ends = ["csv", "tsv", "txt", "dat", "mat", "parquet", "pq"];
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        path.is_file()
-            && extension.is_some_and(|end| ["csv", "tsv", "txt", "dat", "mat", "parquet"].contains(&end.as_str()))
+        path.is_file() && extension.is_some_and(|end| ends.contains(&end.as_str()))
     }
 
     /// Reads a table.
@@ -74,12 +74,12 @@ impl Table {
     /// [`BagError::Io`], [`BagError::BadTable`].
     pub fn read(path: &Path, format: &TableFormat) -> Result<Table, BagError> {
         let has_extension = |wanted| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
-        if has_extension("parquet") {
-            let reason = "Parquet is not read here; export the table as CSV".to_string();
-            return Err(BagError::BadTable { path: path.to_path_buf(), reason });
-        }
         let bytes = std::fs::read(path).map_err(BagError::io("read", path))?;
-        let table = if has_extension("mat") { Table::from_mat(&bytes) } else { Table::from_text(&bytes, format) };
+        let table = match () {
+            () if has_extension("mat") => Table::from_mat(&bytes),
+            () if has_extension("parquet") || has_extension("pq") => Table::from_parquet(bytes),
+            () => Table::from_text(&bytes, format),
+        };
         table.map_err(|reason| BagError::BadTable { path: path.to_path_buf(), reason })
     }
 
@@ -97,5 +97,13 @@ impl Table {
     /// What is wrong, in one line.
     pub fn from_mat(bytes: &[u8]) -> Result<Table, String> {
         mat::parse(bytes)
+    }
+
+    /// The table in a Parquet file.
+    ///
+    /// # Errors
+    /// What is wrong, in one line.
+    pub fn from_parquet(bytes: Vec<u8>) -> Result<Table, String> {
+        parquet::parse(bytes.into())
     }
 }

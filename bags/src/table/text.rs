@@ -7,6 +7,11 @@ use crate::map::Unit;
 /// Lines from which dialect and headings are told.
 const LINES_LOOKED_AT: usize = 20;
 
+/// Cells that a table may have whatever its length, and beyond that for each of its bytes. A table of equal rows has one
+/// cell in a byte at most.
+const FEWEST_CELLS: usize = 1000;
+const CELLS_PER_BYTE: usize = 4;
+
 /// The table in the text. `Err` says in one line what is wrong.
 pub(super) fn parse(bytes: &[u8], format: &TableFormat) -> Result<Table, String> {
     let text = String::from_utf8_lossy(bytes);
@@ -37,7 +42,9 @@ pub(super) fn parse(bytes: &[u8], format: &TableFormat) -> Result<Table, String>
         // A measurement that is missing in the first row makes no heading of it.
         rows.first().is_some_and(|row| row.iter().any(|cell| is_word(cell, decimal)))
     });
-    let width = rows.iter().take(LINES_LOOKED_AT).map(csv::StringRecord::len).max().unwrap_or(0);
+    let longest = rows.iter().take(LINES_LOOKED_AT).map(csv::StringRecord::len).max().unwrap_or(0);
+    // One broken line of many cells would make as many columns of as many rows as the table has.
+    let width = longest.min((FEWEST_CELLS + CELLS_PER_BYTE * text.len()) / rows.len().max(1));
     let (mut names, mut units) = (Vec::new(), Vec::new());
     for column in 0..width {
         let given = format.columns.get(column).map(String::as_str);
@@ -57,6 +64,9 @@ pub(super) fn parse(bytes: &[u8], format: &TableFormat) -> Result<Table, String>
     let body = rows.get(first..).unwrap_or_default();
     if body.is_empty() {
         return Err("the table has headings but no rows".to_string());
+    }
+    if width < longest {
+        table.notes.push(format!("a row has {longest} cells; only the first {width} columns were taken"));
     }
     let ragged = body.iter().filter(|row| row.len() != width).count();
     if ragged > 0 {

@@ -56,8 +56,8 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
                 noise,
             });
         }
-        // Twice half the stroke: an offset of the sensor is allowed, another unit is not.
-        at_most(model, recording, &name("displacement"), &signals.displacement, "m", cylinder.stroke)?;
+        at_most(model, recording, &name("displacement"), &signals.displacement, "m", 2.0 * cylinder.stroke)?;
+        within_stroke(model, recording, &name("displacement"), &signals.displacement, cylinder.stroke)?;
         if let Some(chambers) = &cylinder.chambers {
             let limit = 3.0 * chambers.maximum_orifice_area;
             at_most(model, recording, &name("orifice_area"), &signals.orifice_area, "m2", limit)?;
@@ -192,6 +192,33 @@ fn at_most(
             limit,
             machine: model.machine.name.clone(),
         }),
+        _ => Ok(()),
+    }
+}
+
+/// Part of the stroke that a piston may seem to be beyond its ends: an offset of the sensor, and what stops give.
+const BEYOND_THE_END: f64 = 0.1;
+
+/// Another zero than mid-stroke makes chambers of impossible volumes, and a simulation that cannot go on.
+fn within_stroke(
+    model: &Model,
+    recording: &Recording,
+    name: &str,
+    signal: &[f64],
+    stroke: f64,
+) -> Result<(), GateError> {
+    match usual_size(signal) {
+        Some(size) if size > (0.5 + BEYOND_THE_END) * stroke => {
+            let (from, to) = range(signal);
+            Err(GateError::BeyondStroke {
+                source_name: recording.source.clone(),
+                signal: name.to_string(),
+                from,
+                to,
+                half: 0.5 * stroke,
+                machine: model.machine.name.clone(),
+            })
+        }
         _ => Ok(()),
     }
 }

@@ -69,6 +69,25 @@ pub enum GateError {
         /// The machine.
         machine: String,
     },
+    /// A piston beyond the ends of its cylinder.
+    #[error(
+        "{source_name}: {signal} goes from {from:.3} m to {to:.3} m, but the piston of {machine} only from {:.3} m to {half:.3} m; it counts from mid-stroke, so give the map an offset, like \"{:.0} mm\" if the sensor counts from the retracted end",
+        -half, -1e3 * half
+    )]
+    BeyondStroke {
+        /// The recording.
+        source_name: String,
+        /// Contract name of the signal.
+        signal: String,
+        /// Smallest value, m.
+        from: f64,
+        /// Largest value, m.
+        to: f64,
+        /// Half of the stroke, m.
+        half: f64,
+        /// The machine.
+        machine: String,
+    },
     /// A signal far too small to be in SI units.
     #[error(
         "{source_name}: {signal} never exceeds {value:.3e} {unit}, far below anything hydraulic; is it in {unit}, not in bar or MPa?"

@@ -43,7 +43,7 @@
 //! Signals are `CYLINDER.` with `joint_angle`, `displacement`, `velocity`, `cap_pressure`, `rod_pressure`,
 //! `orifice_area` or `rod_force`, and `pump_pressure`, `tank_pressure`, `pump_flow`, `oil_temperature`.
 
-mod can;
+pub mod can;
 mod can_source;
 mod datagram;
 mod description;

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{Attribute, Cell, CellAlignment, Table};
-use excavator_bags::map::read_recording_or_mapped;
+use excavator_bags::map::{TopicMap, read_recording_or_mapped};
 use excavator_bags::table::Table as DataTable;
-use excavator_bags::{BagError, BagInfo, SignalsInfo, Timing, info};
+use excavator_bags::{BagError, BagInfo, ColumnInfo, SignalsInfo, TableInfo, Timing, info};
 use serde_json::{Value, json};
 
 use super::print;
@@ -19,6 +19,9 @@ const NOTABLE_DELAY: f64 = 0.1;
 
 pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     let path = &arguments.bag;
+    if DataTable::is_table(path) && arguments.mapping.map.is_none() && TopicMap::beside(path).is_none() {
+        return table_without_map(arguments);
+    }
     let bag = if DataTable::is_table(path) { None } else { Some(info(path)?) };
     let signals = read_recording_or_mapped(path, arguments.mapping.map.as_deref());
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
@@ -44,6 +47,46 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
         Err(error) if bag.is_none() || arguments.mapping.map.is_some() => Err(error.into()),
         _ => Ok(()),
     }
+}
+
+/// The columns of a table: which signals they are, nobody has said.
+fn table_without_map(arguments: &InfoArguments) -> Result<(), VerbError> {
+    let info = TableInfo::read(&arguments.bag)?;
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        let most = info.columns.iter().map(|column| column.rows).max().unwrap_or_default();
+        print(&format!("{}: {most} rows, {} columns", arguments.bag.display(), info.columns.len()));
+        let mut rows = table(&["column", "from", "to", "unit", "not measured"]);
+        for column in &info.columns {
+            rows.add_row([
+                Cell::new(&column.values.name),
+                right(bound(column, column.values.least)),
+                right(bound(column, column.values.most)),
+                Cell::new(column.unit.as_deref().unwrap_or_default()),
+                right(share(column.values.missing)),
+            ]);
+        }
+        print(&rows.to_string());
+        print(&format!("clock: {}", info.clock));
+        info.notes.iter().for_each(|note| print(&format!("note: {note}")));
+        print("signals: none, for want of a map; `excavator import --guess` proposes one");
+    }
+    match &arguments.json.json {
+        Some(file) => write_json(file, &serde_json::to_value(&info)?),
+        None => Ok(()),
+    }
+}
+
+/// One end of a column's range.
+fn bound(column: &ColumnInfo, value: f64) -> String {
+    match jiff::Timestamp::from_microsecond((1e6 * value) as i64) {
+        _ if !value.is_finite() => "-".to_string(),
+        Ok(stamp) if column.dates => stamp.to_string(),
+        _ => number(value),
+    }
+}
+
+fn share(missing: f64) -> String {
+    if missing == 0.0 { String::new() } else { format!("{:.1} %", 100.0 * missing) }
 }
 
 /// What to do about a bag of other people.
@@ -156,20 +199,21 @@ fn show_signals(signals: &SignalsInfo, duration: f64) {
     let mut rows = table(&["signal", "from", "to", "unit", "not measured"]);
     for signal in &signals.measured {
         let (factor, unit) = display_unit(&signal.name);
-        let missing = if signal.missing == 0.0 { String::new() } else { format!("{:.1} %", 100.0 * signal.missing) };
         rows.add_row([
             Cell::new(&signal.name),
             right(number(factor * signal.least)),
             right(number(factor * signal.most)),
             Cell::new(unit),
-            right(missing),
+            right(share(signal.missing)),
         ]);
     }
     print(&rows.to_string());
     for equation in &signals.equations {
-        match equation.missing.as_slice() {
-            [] => print(&format!("{}: can be identified", equation.equation)),
-            missing => print(&format!("{}: needs {}", equation.equation, missing.join(", "))),
+        let name = &equation.equation;
+        match (equation.missing.as_slice(), equation.constant.join(", ")) {
+            ([], constant) if constant.is_empty() => print(&format!("{name}: can be identified")),
+            ([], constant) => print(&format!("{name}: can be identified on a machine with constant {constant}")),
+            (missing, _) => print(&format!("{name}: needs {}", missing.join(", "))),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Which candidate is which signal.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
 use super::super::signal::{SignalKind, SignalName};
 use super::super::unit::{Dimension, Unit};
@@ -28,7 +28,10 @@ pub(super) fn choose(candidates: Vec<Candidate>, cylinder: &str) -> (Vec<Guessed
     let mut pairs = pairs(&candidates, &shapes);
     pairs.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.candidate.cmp(&b.candidate)));
     let (mut used, mut taken, mut signals) = (HashSet::new(), HashSet::new(), Vec::new());
-    for pair in pairs {
+    let named: BTreeSet<&str> = candidates.iter().filter_map(|candidate| names::cylinder(&candidate.words)).collect();
+    // Where names speak of one cylinder only, everything is of that one.
+    let cylinder = if named.len() == 1 { named.first().copied().unwrap_or(cylinder) } else { cylinder };
+    for mut pair in pairs {
         let candidate = &candidates[pair.candidate];
         let own = names::cylinder(&candidate.words).unwrap_or(cylinder);
         let name = SignalName { cylinder: pair.kind.is_of_cylinder().then(|| own.to_string()), kind: pair.kind };
@@ -43,6 +46,9 @@ pub(super) fn choose(candidates: Vec<Candidate>, cylinder: &str) -> (Vec<Guessed
             // A map needs a scale here; only the maker of the sensor knows it.
             let text = format!("1 {}/{}", pair.kind.dimension().si_unit(), unit.name);
             source.scale = Some(super::super::Quantity::Text(text));
+        }
+        if pair.kind == SignalKind::Displacement && shapes[pair.candidate].is_some_and(|shape| shape.least >= 0.0) {
+            pair.reason += "; never below 0: if it counts from one end, put mid-stroke as offset (\"-300 mm\")";
         }
         signals.push(GuessedSignal { source, reason: pair.reason, unit_reason });
     }
@@ -75,6 +81,10 @@ fn by_name_and_unit(kind: SignalKind, candidate: &Candidate) -> Option<(f64, Str
     let wanted = kind.dimension();
     let named = names::score(kind, &candidate.words);
     match candidate.dimension {
+        // Its flow, but for the displacement per turn.
+        Some(Dimension::RotationalSpeed) if kind == SignalKind::PumpFlow && names::is_of_pump(&candidate.words) => {
+            Some((LEAST_SCORE, "speed of the pump".to_string()))
+        }
         Some(found) if found == wanted => {
             let what = candidate.unit.as_ref().map_or(wanted.to_string(), |(unit, _)| format!("unit {}", unit.name));
             // A joint's speed in a JointState, a force in a Wrench: the type has said it all.
@@ -171,6 +181,12 @@ fn unit(candidate: &Candidate, shape: Option<Shape>, dimension: Dimension) -> (O
     if let Some((unit, who)) = &candidate.unit {
         let why = match unit.dimension == dimension {
             true => who.clone(),
+            false if unit.dimension == Dimension::RotationalSpeed => {
+                format!("{who}; the scale is a placeholder: put the pump's, like \"0.028 l/min/rpm\"")
+            }
+            false if dimension == Dimension::Area => {
+                format!("{who}; the scale is a placeholder: put the valve's opening per {}", unit.name)
+            }
             false => format!("{who}; the scale is a placeholder: put the sensor's"),
         };
         return (Some(*unit), why);

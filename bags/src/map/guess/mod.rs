@@ -64,3 +64,8 @@ pub fn guess(path: &Path, cylinder: &str) -> Result<Guess, BagError> {
     let (signals, left) = choose::choose(candidates, cylinder);
     Ok(Guess { data: path.display().to_string(), clock, signals, left })
 }
+
+/// The clock of a table and why.
+pub(crate) fn clock_of_table(table: &Table) -> (ClockSource, String) {
+    from_table::candidates(table).1
+}

@@ -3,8 +3,18 @@
 use super::super::signal::SignalKind;
 use super::super::unit::Dimension;
 
-/// Cylinders that names speak of.
-const CYLINDERS: [&str; 7] = ["boom", "arm", "stick", "bucket", "swing", "load", "dipper"];
+/// Cylinders that names speak of, in words and in ours.
+const CYLINDERS: [(&str, &str); 7] = [
+    ("boom", "boom"),
+    ("arm", "arm"),
+    ("stick", "arm"),
+    ("dipper", "arm"),
+    ("bucket", "bucket"),
+    ("swing", "swing"),
+    ("load", "load"),
+];
+/// What turns, and is no cylinder.
+const ROTATING: [&str; 6] = ["pump", "pumpe", "engine", "rpm", "drehzahl", "diesel"];
 
 /// Words for what is measured.
 const QUANTITIES: [(Dimension, &[&str]); 7] = [
@@ -26,8 +36,24 @@ const PLACES: [(SignalKind, &[&str]); 4] = [
     (SignalKind::PumpPressure, &["pump", "supply", "system", "ps", "pp", "s", "feed"]),
     (SignalKind::TankPressure, &["tank", "return", "reservoir", "pt", "t"]),
 ];
-const COMMANDS: [&str; 11] =
-    ["command", "cmd", "ref", "reference", "setpoint", "desired", "valve", "ventil", "u", "input", "r"];
+const COMMANDS: [&str; 16] = [
+    "command",
+    "cmd",
+    "ref",
+    "reference",
+    "setpoint",
+    "desired",
+    "valve",
+    "ventil",
+    "u",
+    "input",
+    "r",
+    "joystick",
+    "lever",
+    "joy",
+    "soll",
+    "pwm",
+];
 const OPENINGS: [&str; 4] = ["spool", "opening", "orifice", "area"];
 
 /// How well a name suits a signal, 0 to 1, and the word that says so.
@@ -47,13 +73,20 @@ pub(super) fn score(kind: SignalKind, words: &[String]) -> Option<(f64, String)>
                 None => Some((0.35 * what, word)),
             }
         }
+        // The speed of a pump is none of its cylinder's, however well the two go together.
+        _ if kind.is_of_cylinder() && find(words, &ROTATING).is_some() => None,
         _ => find(words, quantity(kind.dimension())),
     }
 }
 
+/// Whether a name speaks of a pump.
+pub(super) fn is_of_pump(words: &[String]) -> bool {
+    find(words, &["pump", "pumpe"]).is_some()
+}
+
 /// The cylinder that a name speaks of.
 pub(super) fn cylinder(words: &[String]) -> Option<&'static str> {
-    CYLINDERS.into_iter().find(|name| words.iter().any(|word| word == name))
+    CYLINDERS.into_iter().find(|(word, _)| words.iter().any(|found| found == word)).map(|(_, name)| name)
 }
 
 fn quantity(dimension: Dimension) -> &'static [&'static str] {

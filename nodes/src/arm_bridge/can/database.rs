@@ -222,7 +222,6 @@ fn names<T>(all: &[T], name: impl Fn(&T) -> &String) -> String {
     if words.is_empty() { "none".to_string() } else { words.join(", ") }
 }
 
-#[cfg(test)]
 impl Database {
     /// Names of messages and their signals.
     pub(super) fn all_signals(&self) -> Vec<(String, String)> {

@@ -4,9 +4,8 @@ mod bits;
 mod database;
 mod device;
 mod frame;
+pub mod fuzzing;
 mod log;
-#[cfg(test)]
-mod seeded_fuzzing;
 
 pub(super) use database::{Database, Place};
 pub(super) use device::Device;

@@ -1,0 +1,128 @@
+//! Parquet files as tables: every column of numbers, switches, dates or times is a column.
+
+mod guard;
+mod kind;
+mod pages;
+mod values;
+
+use bytes::Bytes;
+use parquet::errors::ParquetError;
+use parquet::file::metadata::ParquetMetaData;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+
+use super::{Column, Table, heading};
+use kind::Kind;
+use values::Cells;
+
+/// Values that a file may have whatever its size, and beyond that for each of its bytes. A measured column takes bytes for
+/// every value; a file that promises more is broken or a trap.
+const VALUES: u64 = 1_000_000;
+const VALUES_PER_BYTE: u64 = 128;
+
+/// The table in a file. `Err` says in one line what is wrong.
+pub(super) fn parse(bytes: Bytes) -> Result<Table, String> {
+    if !bytes.starts_with(b"PAR1") {
+        return Err("it is no Parquet file: it does not begin with PAR1".to_string());
+    }
+    if !bytes.ends_with(b"PAR1") {
+        return Err("the end is missing: a Parquet file can only be read whole".to_string());
+    }
+    // The library answers most broken files with an error and some with a panic.
+    guard::without_panic(|| read(bytes)).unwrap_or_else(|panic| Err(format!("the Parquet file is broken: {panic}")))
+}
+
+/// A column of the file that is one of the table.
+struct Wanted {
+    index: usize,
+    name: String,
+    unit: Option<String>,
+    kind: Kind,
+    /// Definition level of values.
+    level: i16,
+}
+
+fn read(bytes: Bytes) -> Result<Table, String> {
+    let size = bytes.len() as u64;
+    let reader = SerializedFileReader::new(bytes.clone()).map_err(|error| broken(&error))?;
+    let metadata = reader.metadata();
+    let mut table = Table::default();
+    let wanted = wanted(metadata, &mut table.notes);
+    if wanted.is_empty() {
+        return Err("it has no column of numbers".to_string());
+    }
+    let rows = rows(metadata)?;
+    let values = rows.saturating_mul(wanted.len() as u64);
+    if values > VALUES.saturating_add(size.saturating_mul(VALUES_PER_BYTE)) {
+        return Err(format!("the Parquet file is broken: it promises {values} values in {size} bytes"));
+    }
+    if rows == 0 {
+        return Err("the table has no rows".to_string());
+    }
+    let mut unpacked = 0;
+    for group in metadata.row_groups() {
+        if group.num_columns() != metadata.file_metadata().schema_descr().num_columns() {
+            return Err(format!("the Parquet file is broken: a row group has {} columns", group.num_columns()));
+        }
+        for column in &wanted {
+            unpacked = pages::check(&bytes, group.column(column.index), unpacked)
+                .map_err(|reason| format!("column {}: {reason}", column.name))?;
+        }
+    }
+    for column in wanted {
+        let mut cells = Cells::new(column.kind, column.level);
+        for group in 0..metadata.num_row_groups() {
+            let reader = reader.get_row_group(group).map_err(|error| broken(&error))?;
+            let rows = reader.metadata().num_rows();
+            let column_reader = reader.get_column_reader(column.index).map_err(|error| broken(&error))?;
+            let read = cells.extend(column_reader, rows as usize).map_err(|error| broken(&error))?;
+            if read != rows as usize {
+                return Err(format!(
+                    "the Parquet file is broken: row group {} has {read} of {rows} rows in column {}",
+                    group + 1,
+                    column.name
+                ));
+            }
+        }
+        if cells.out_of_range > 0 {
+            let (name, count) = (&column.name, cells.out_of_range);
+            table
+                .notes
+                .push(format!("column {name}: {count} times are outside 1677 to 2262 and were taken as not measured"));
+        }
+        let unit = column.unit.or_else(|| column.kind.unit().map(str::to_string));
+        table.columns.push(Column { name: column.name, unit, values: cells.values });
+    }
+    Ok(table)
+}
+
+/// The columns that can be read; the others are noted.
+fn wanted(metadata: &ParquetMetaData, notes: &mut Vec<String>) -> Vec<Wanted> {
+    let mut wanted = Vec::new();
+    for (index, column) in metadata.file_metadata().schema_descr().columns().iter().enumerate() {
+        let (name, unit) = heading::split(&column.path().string());
+        let name = if name.is_empty() { format!("column_{}", index + 1) } else { name };
+        match Kind::of(column) {
+            Ok(kind) => wanted.push(Wanted { index, name, unit, kind, level: column.max_def_level() }),
+            Err(what) => notes.push(format!("column {name} holds {what} and was left out")),
+        }
+    }
+    wanted
+}
+
+/// Rows of all groups.
+fn rows(metadata: &ParquetMetaData) -> Result<u64, String> {
+    metadata.row_groups().iter().try_fold(0_u64, |sum, group| {
+        let rows = group.num_rows();
+        let sum = u64::try_from(rows).ok().and_then(|rows| sum.checked_add(rows));
+        sum.ok_or_else(|| format!("the Parquet file is broken: a row group has {rows} rows"))
+    })
+}
+
+fn broken(error: &ParquetError) -> String {
+    let text = error.to_string();
+    let first = text.lines().next().unwrap_or_default();
+    match first.contains("Disabled feature at compile time") {
+        true => format!("its compression is not read here ({first}); write it with snappy, zstd, gzip or lz4"),
+        false => format!("the Parquet file is broken: {first}"),
+    }
+}

@@ -1,0 +1,165 @@
+//! What the pages of a column say that they unpack to, before anything is unpacked.
+//!
+//! The library reserves as much memory as a page's header asks for. Headers are read here first, as far as that
+//! number, in the compact protocol of Apache Thrift.
+
+use parquet::file::metadata::ColumnChunkMetaData;
+
+/// Bytes that a file may unpack to whatever its size, and beyond that for each of its bytes.
+const UNPACKED: u64 = 64 << 20;
+const UNPACKED_PER_BYTE: u64 = 1100;
+/// Structs within structs that a header may have.
+const DEPTH_LIMIT: usize = 8;
+
+/// Bytes that the file's pages unpack to, those of this column added to those `before`.
+pub(super) fn check(file: &[u8], column: &ColumnChunkMetaData, before: u64) -> Result<u64, String> {
+    let (start, length) =
+        (column.dictionary_page_offset().unwrap_or(column.data_page_offset()), column.compressed_size());
+    let mut rest = usize::try_from(start)
+        .ok()
+        .and_then(|start| file.get(start..))
+        .and_then(|rest| rest.get(..usize::try_from(length).ok()?))
+        .ok_or_else(|| format!("{length} bytes from byte {start} are not in the file; it is cut or broken"))?;
+    let most = UNPACKED + UNPACKED_PER_BYTE * file.len() as u64;
+    let mut unpacked = before;
+    while !rest.is_empty() {
+        let at = file.len() - rest.len();
+        let (header, after) = Header::read(rest).ok_or("a page without a readable header; the file is broken")?;
+        unpacked = unpacked.saturating_add(header.unpacked);
+        if unpacked > most {
+            return Err(format!(
+                "a page promises {} bytes, {unpacked} with those before it, in a file of {}; it is broken",
+                header.unpacked,
+                file.len()
+            ));
+        }
+        rest = after.get(header.packed..).ok_or_else(|| format!("the page at byte {at} is cut off"))?;
+    }
+    Ok(unpacked)
+}
+
+/// The sizes in the header of a page.
+struct Header {
+    unpacked: u64,
+    packed: usize,
+}
+
+impl Header {
+    /// The header at the start of the bytes and what follows it.
+    fn read(bytes: &[u8]) -> Option<(Header, &[u8])> {
+        let mut reader = Compact { rest: bytes };
+        let (mut unpacked, mut packed, mut id) = (None, None, 0);
+        while let Some((field, kind)) = reader.field(&mut id)? {
+            match (field, kind) {
+                (2, I32) => unpacked = u64::try_from(reader.whole()?).ok(),
+                (3, I32) => packed = usize::try_from(reader.whole()?).ok(),
+                _ => reader.skip(kind, DEPTH_LIMIT)?,
+            }
+        }
+        Some((Header { unpacked: unpacked?, packed: packed? }, reader.rest))
+    }
+}
+
+const I32: u8 = 5;
+
+/// The compact protocol, as far as it takes to skip things.
+struct Compact<'b> {
+    rest: &'b [u8],
+}
+
+impl Compact<'_> {
+    fn byte(&mut self) -> Option<u8> {
+        let (&byte, rest) = self.rest.split_first()?;
+        self.rest = rest;
+        Some(byte)
+    }
+
+    fn variable(&mut self) -> Option<u64> {
+        let mut number = 0;
+        for shift in (0..64).step_by(7) {
+            let byte = self.byte()?;
+            number |= u64::from(byte & 0x7f) << shift;
+            if byte < 0x80 {
+                return Some(number);
+            }
+        }
+        None
+    }
+
+    /// A whole number with sign, which stands in the lowest bit.
+    fn whole(&mut self) -> Option<i64> {
+        let number = self.variable()?;
+        Some((number >> 1) as i64 ^ -((number & 1) as i64))
+    }
+
+    /// Number and type of the next field, `Some(None)` at the end of the struct; `id` is the number of the one before.
+    fn field(&mut self, id: &mut i64) -> Option<Option<(i64, u8)>> {
+        let byte = self.byte()?;
+        if byte & 0x0f == 0 {
+            return Some(None);
+        }
+        *id = match byte >> 4 {
+            0 => self.whole()?,
+            step => id.checked_add(i64::from(step))?,
+        };
+        Some(Some((*id, byte & 0x0f)))
+    }
+
+    fn bytes(&mut self, count: u64) -> Option<()> {
+        self.rest = self.rest.get(usize::try_from(count).ok()?..)?;
+        Some(())
+    }
+
+    fn skip(&mut self, kind: u8, depth: usize) -> Option<()> {
+        let depth = depth.checked_sub(1)?;
+        match kind {
+            // A boolean field is its type.
+            1 | 2 => Some(()),
+            3 => self.bytes(1),
+            4..=6 => self.variable().map(|_| ()),
+            7 => self.bytes(8),
+            8 => {
+                let length = self.variable()?;
+                self.bytes(length)
+            }
+            9 | 10 => {
+                let byte = self.byte()?;
+                let count = if byte >> 4 == 15 { self.variable()? } else { u64::from(byte >> 4) };
+                let element = byte & 0x0f;
+                // In a list a boolean takes a byte.
+                (0..count).try_for_each(|_| if element <= 2 { self.bytes(1) } else { self.skip(element, depth) })
+            }
+            12 => {
+                let mut id = 0;
+                while let Some((_, kind)) = self.field(&mut id)? {
+                    self.skip(kind, depth)?;
+                }
+                Some(())
+            }
+            // No header has maps.
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::Header;
+
+    #[test]
+    fn sizes_are_read_past_everything_else() {
+        // Type 0, 300 unpacked, 20 packed, a struct with an integer, a text, a list of two booleans, a switch, a number.
+        let fields = [0x15, 0x00, 0x15, 0xd8, 0x04, 0x15, 0x28, 0x2c, 0x15, 0x02, 0x18, 0x02, b'h', b'i'];
+        let more = [0x19, 0x21, 0x01, 0x00, 0x11, 0x17, 0, 0, 0, 0, 0, 0, 0, 0, 0x00, 0x00, b'x'];
+        let bytes = [&fields[..], &more[..]].concat();
+        let (header, rest) = Header::read(&bytes).unwrap();
+        assert_eq!((header.unpacked, header.packed, rest), (300, 20, &b"x"[..]));
+        for cut in 0..bytes.len() - 1 {
+            assert!(Header::read(&bytes[..cut]).is_none(), "cut to {cut} bytes");
+        }
+        // A size below zero, and structs without end.
+        assert!(Header::read(&[0x25, 0x01, 0x15, 0x28, 0x00]).is_none());
+        assert!(Header::read(&[0x1c; 1000]).is_none());
+    }
+}
