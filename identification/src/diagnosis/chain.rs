@@ -31,12 +31,15 @@ pub(super) struct Chains<'a> {
 }
 
 impl Chains<'_> {
-    /// The best chain, and all candidates of its first step.
+    /// The best chain that begins with a candidate of `round`, the additions to the nominal model; and these.
     ///
     /// # Errors
     /// [`DiagnosisError`] when a model cannot be evaluated.
-    pub fn best(&self, progress: &(dyn Fn(&str, f64) + Sync)) -> Result<(Vec<Candidate>, Round), DiagnosisError> {
-        let round = self.round(&[], progress)?;
+    pub fn best(
+        &self,
+        round: Round,
+        progress: &(dyn Fn(&str, f64) + Sync),
+    ) -> Result<(Vec<Candidate>, Round), DiagnosisError> {
         let accepted: Vec<&Candidate> = round.fitted.iter().filter(|candidate| candidate.accepted).collect();
         let Some((&first, others)) = accepted.split_first() else { return Ok((Vec::new(), round)) };
         let chain = self.grow(first.clone(), progress)?;
@@ -160,7 +163,10 @@ impl Chains<'_> {
     }
 
     /// All additions to a chain.
-    fn round(&self, chain: &[Candidate], progress: &(dyn Fn(&str, f64) + Sync)) -> Result<Round, DiagnosisError> {
+    ///
+    /// # Errors
+    /// [`DiagnosisError`] when the model without additions cannot be evaluated.
+    pub fn round(&self, chain: &[Candidate], progress: &(dyn Fn(&str, f64) + Sync)) -> Result<Round, DiagnosisError> {
         let race = self.race(chain);
         let start = 0.15 + 0.8 * chain.len() as f64 / (self.settings.most_effects + 1) as f64;
         let span = 0.8 / (self.settings.most_effects + 1) as f64;

@@ -57,6 +57,9 @@ pub struct Diagnosis {
     pub map: Vec<Share>,
     /// What is left when nothing explains it.
     pub unexplained: Option<Unexplained>,
+    /// Whether inputs known at samples only leave as much open as the given model is off, and that is too much to call the
+    /// model adequate: the recordings are too coarse to tell.
+    pub too_coarse: bool,
 }
 
 /// Why there is no verdict.
@@ -89,20 +92,40 @@ pub fn diagnose(
         return Err(DiagnosisError::NoValidation);
     }
     progress("regression for start values", 0.0);
-    let nominal = fit_nominal(model, identification, settings)?;
-    let nominal_validation = evaluate(&nominal.model, validation, &settings.fit)?;
-    progress("where the model fails", 0.1);
+    let mut nominal = fit_nominal(model, identification, settings)?;
+    let mut attempts = 0;
+    let (nominal_validation, sampling_explains, excused, first_round) = loop {
+        let nominal_validation = evaluate(&nominal.model, validation, &settings.fit)?;
+        let alone = is_adequate(&nominal_validation, validation, settings);
+        // For a model as it is given only; a name for what is missing asks for more.
+        let sampling_explains = !alone && sampling_explains(&nominal_validation, validation, settings);
+        let excused = sampling_explains && normalised_error(&nominal_validation, validation) <= settings.excused_error;
+        let chains = Chains {
+            nominal: &nominal,
+            nominal_validation: &nominal_validation,
+            nominal_is_adequate: alone || excused,
+            identification,
+            validation,
+            settings,
+        };
+        let round = chains.round(&[], progress)?;
+        match better_nominal(&nominal, &round, identification, settings) {
+            Some(better) if attempts < MOST_NOMINALS => nominal = better,
+            _ => break (nominal_validation, sampling_explains, excused, round),
+        }
+        attempts += 1;
+    };
+    progress("where the model fails", 0.3);
     let map = residual_map(&nominal.model, validation)?;
-
     let chains = Chains {
         nominal: &nominal,
         nominal_validation: &nominal_validation,
-        nominal_is_adequate: is_adequate_as_given(&nominal_validation, validation, settings),
+        nominal_is_adequate: excused || is_adequate(&nominal_validation, validation, settings),
         identification,
         validation,
         settings,
     };
-    let (chain, first_round) = chains.best(progress)?;
+    let (chain, first_round) = chains.best(first_round, progress)?;
     let explained = chains.explains(&chain);
     let Round { fitted, unpromising, failed } = first_round;
     let (mut candidates, rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);
@@ -133,7 +156,44 @@ pub fn diagnose(
         chain,
         map,
         unexplained,
+        too_coarse: sampling_explains && !excused,
     })
+}
+
+/// Times that a better nominal fit begins the diagnosis anew.
+const MOST_NOMINALS: usize = 2;
+
+/// Fall of the loss that makes another nominal fit a better one.
+const BETTER: f64 = 0.1;
+
+/// Candidates of a round that are looked at for a better nominal fit.
+const LOOKED_AT: usize = 3;
+
+/// A fit of the nominal model that a candidate has led to. Where the nominal fit ended in the wrong valley, whatever is
+/// tried next gains by leaving it, an effect of size zero too: what is left of such a candidate without its effect is the
+/// better nominal model, and no evidence for the effect.
+fn better_nominal(
+    nominal: &Fit,
+    round: &Round,
+    identification: &[&Recording],
+    settings: &DiagnosisSettings,
+) -> Option<Fit> {
+    let least = nominal.loss() - BETTER;
+    round
+        .fitted
+        .iter()
+        .filter(|candidate| candidate.fit.loss() < least)
+        .take(LOOKED_AT)
+        .filter_map(|candidate| {
+            let mut without = candidate.fit.model.clone();
+            without.effects.pop();
+            // Of a real effect nothing good is left without it.
+            let start = evaluate(&without, identification, &settings.fit).ok()?;
+            (start.loss() < least).then_some(())?;
+            fit(&without, identification, &settings.fit).ok()
+        })
+        .filter(|better| better.loss() < least)
+        .min_by(|a, b| a.loss().total_cmp(&b.loss()))
 }
 
 /// What turned out to be needed comes before what only looked better alone.
@@ -163,8 +223,9 @@ pub(crate) fn fit_nominal(
         .ok()
         .and_then(|start| fit(&start, identification, &settings.fit).ok());
     match regressed {
-        Some(fitted) if fitted.loss() <= LOST => Ok(fitted),
-        // The regression cannot say anything, or an instrument that is far off has led it astray: from the given values.
+        Some(fitted) if fitted.loss() <= settings.adequate_loss => Ok(fitted),
+        // Something may be missing, the regression may say nothing, or an instrument that is far off may have led it astray:
+        // from the given values too.
         regressed => match (regressed, fit(model, identification, &settings.fit)) {
             (Some(first), Ok(second)) if first.loss() <= second.loss() => Ok(first),
             (Some(first), Err(_)) => Ok(first),
@@ -173,20 +234,18 @@ pub(crate) fn fit_nominal(
     }
 }
 
-/// Loss above which a fit may have ended in the wrong valley: thirty times the sensors' noise.
-const LOST: f64 = 7.0;
-
 /// Whether what is left is noise but for a few moments, or too small to act on.
 pub(super) fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
-    fit.typical_loss() <= settings.adequate_loss || normalised_error(fit, recordings) <= settings.adequate_error
+    let error = normalised_error(fit, recordings);
+    // An error as large as that is no noise of sensors: their level was taken from recordings too coarse to show it.
+    let too_large = error > settings.excused_error;
+    (fit.typical_loss() <= settings.adequate_loss && !too_large) || error <= settings.adequate_error
 }
 
-/// The same, or what is left is no larger than inputs known at samples only leave open. For a model as it is given; a
-/// name for what is missing asks for more.
-fn is_adequate_as_given(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
-    is_adequate(fit, recordings, settings)
-        || with_input_floor(fit, recordings, &settings.fit)
-            .is_some_and(|raised| raised.typical_loss() <= settings.adequate_loss)
+/// Whether what is left is no larger than inputs known at samples only leave open.
+fn sampling_explains(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
+    with_input_floor(fit, recordings, &settings.fit)
+        .is_some_and(|raised| raised.typical_loss() <= settings.adequate_loss)
 }
 
 /// Mean over instruments of squared error over the signal's own variance; `NaN` when no signal varies.

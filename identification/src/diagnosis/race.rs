@@ -52,6 +52,9 @@ const NEXT_TO_BASE: f64 = 0.5;
 /// A share of the loss that does not end the search for something better.
 const LITTLE: f64 = 0.25;
 
+/// The share that right effects take away, and more.
+const MOST: f64 = 0.8;
+
 /// What candidates are measured against and on.
 pub(super) struct Race<'a> {
     /// The model without them, fitted to the identification recordings.
@@ -114,11 +117,14 @@ impl Race<'_> {
         let finalists = runners.iter().enumerate().filter(|&entry| finalist(entry)).count();
         let mut others = runners.split_off(finalists);
         self.to_the_end(runners, &mut round, &advance);
-        if self.is_at_a_loss(&round) {
-            // An effect with a threshold may need a dozen steps until it gains at all: before it is said that nothing
-            // explains the error, all that were still on their way get theirs.
-            let (arrived, on_their_way) = others.into_iter().partition(|runner| runner.fit.converged);
+        let more = self.further_finalists(&round);
+        if more > 0 {
+            // An effect with a threshold may need a dozen steps until it gains what it can: before another name takes its
+            // place, or nothing is said to explain the error, those that were still on their way get theirs.
+            let (arrived, mut on_their_way): (Vec<Runner>, Vec<Runner>) =
+                others.into_iter().partition(|runner| runner.fit.converged);
             others = arrived;
+            others.extend(on_their_way.split_off(more.min(on_their_way.len())));
             self.to_the_end(on_their_way, &mut round, &advance);
         }
         round.unpromising.extend(others.into_iter().map(|runner| Unpromising {
@@ -136,12 +142,16 @@ impl Race<'_> {
         Ok(round)
     }
 
-    /// Whether something is missing and no candidate so far takes much of it away.
-    fn is_at_a_loss(&self, round: &Round) -> bool {
+    /// How many more candidates deserve a full fit, where something is missing.
+    fn further_finalists(&self, round: &Round) -> usize {
         let best = round.fitted.iter().filter(|candidate| candidate.accepted).map(|candidate| candidate.evidence.gain);
-        let best = best.fold(0.0, f64::max);
-        !is_adequate(self.base_validation, self.validation, self.settings)
-            && best < LITTLE * self.base_validation.loss()
+        let share = best.fold(0.0, f64::max) / self.base_validation.loss();
+        match share {
+            _ if is_adequate(self.base_validation, self.validation, self.settings) => 0,
+            share if share < LITTLE => usize::MAX,
+            share if share < MOST => self.settings.further_finalists,
+            _ => 0,
+        }
     }
 
     /// Full fits of candidates that ran the race, into `round`.

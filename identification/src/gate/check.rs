@@ -8,7 +8,7 @@ use super::GateError;
 use super::clipped::clipped;
 use super::error::{FEWEST_SAMPLES, SHORTEST};
 use super::runs::range;
-use super::stuck::{stuck_position, stuck_pressure};
+use super::stuck::{never_changes, stuck_position, stuck_pressure};
 use super::swapped::swapped_chambers;
 
 /// A signal must move over this many times its noise to say something of dynamics.
@@ -78,6 +78,9 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
             sensors_of_a_cylinder(recording, signals, opening, chambers)?;
         } else {
             at_most(model, recording, &name("rod_force"), &signals.rod_force, "N", 1e8)?;
+            if let Some(stretch) = never_changes(&recording.time, &signals.rod_force, &signals.displacement) {
+                return Err(stretch.error(recording, name("rod_force"), "N"));
+            }
             if cylinder.imposed_motion.is_some() {
                 pressure(model, recording, &name("cap_pressure"), &signals.cap_pressure)?;
                 pressure(model, recording, &name("rod_pressure"), &signals.rod_pressure)?;

@@ -57,6 +57,16 @@ pub(super) fn stuck_position(time: &[f64], signal: &[f64], opening: &[f64], pres
     })
 }
 
+/// The whole recording, where a force keeps one value while the piston moves.
+pub(super) fn never_changes(time: &[f64], force: &[f64], displacement: &[f64]) -> Option<Stretch> {
+    let (Some(&begin), Some(&end), Some(&value)) = (time.first(), time.last(), force.iter().find(|f| f.is_finite()))
+    else {
+        return None;
+    };
+    let moves = is_measured(displacement) && spread(displacement) > 0.0;
+    (moves && end - begin >= SHORTEST && spread(force) == 0.0).then_some(Stretch { begin, end, value })
+}
+
 fn longest(time: &[f64], signal: &[f64], is_stuck: impl Fn(&Run) -> bool) -> Option<Stretch> {
     runs(signal)
         .into_iter()
@@ -78,10 +88,20 @@ fn all_move(witnesses: &[&[f64]], run: &Run) -> bool {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use super::{stuck_position, stuck_pressure};
+    use super::{never_changes, stuck_position, stuck_pressure};
 
     fn wave(scale: f64, time: &[f64]) -> Vec<f64> {
         time.iter().map(|t| scale * (2.0 + (2.0 * t).sin())).collect()
+    }
+
+    #[test]
+    fn a_force_that_never_changes_is_found() {
+        let time: Vec<f64> = (0..1000).map(|index| index as f64 * 0.01).collect();
+        let piston = wave(0.1, &time);
+        assert!(never_changes(&time, &vec![0.0; 1000], &piston).is_some());
+        assert!(never_changes(&time, &wave(100.0, &time), &piston).is_none());
+        assert!(never_changes(&time, &vec![0.0; 1000], &vec![0.2; 1000]).is_none());
+        assert!(never_changes(&time, &vec![f64::NAN; 1000], &piston).is_none());
     }
 
     #[test]

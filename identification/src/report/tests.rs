@@ -113,6 +113,7 @@ fn diagnosis(verdict: Verdict, candidates: Vec<Candidate>) -> Diagnosis {
         unpromising: Vec::new(),
         failed: Vec::new(),
         map: vec![share("arm.cap_continuity", 0.7), share("arm.motion", 0.3)],
+        too_coarse: false,
         unexplained: (verdict == Verdict::Unexplained).then(|| Unexplained {
             equation: "arm.motion".into(),
             variable: "position",

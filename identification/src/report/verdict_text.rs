@@ -17,6 +17,14 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
         Verdict::MissingEffect => missing(machine, diagnosis),
         Verdict::Unexplained => unexplained(machine, diagnosis),
     };
+    let verdict = if diagnosis.too_coarse && diagnosis.verdict != Verdict::Adequate {
+        format!(
+            "{verdict} Beware: where inputs were between samples leaves as much open; record command and opening faster \
+             before acting on this."
+        )
+    } else {
+        verdict
+    };
     let (undetermined, fitted) = (diagnosis.nominal.undetermined(), diagnosis.nominal.fitted.len());
     if 2 * undetermined.len() <= fitted {
         return verdict;

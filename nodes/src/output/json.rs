@@ -168,6 +168,7 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
             "unit": rest.unit,
             "curve": rest.curve,
         })),
+        "too_coarse": diagnosis.too_coarse,
         "loss": {"nominal": finite(diagnosis.nominal_validation.loss())},
         "refitted": parameters(&diagnosis.nominal.model, &diagnosis.nominal.model.unknown_parameters()),
         "instruments": instruments,
