@@ -1,0 +1,62 @@
+//! The command line.
+
+mod live;
+mod numbers;
+mod offline;
+
+use clap::{Parser, Subcommand};
+
+pub use live::*;
+pub use offline::*;
+
+/// Which physics is your hydraulic arm's model missing?
+///
+/// Compare a model with recordings, see where it fails, learn which physical effect is missing, add it, and watch the
+/// error fall. Models are built-in names (zx30u-arm, zx30u, zx30u-bucket, servo-bench, emps) or TOML files; bags are rosbag2 folders with MCAP
+/// or SQLite3 storage, or bare .mcap or .db3 files. With a map, any topic or column can be a signal.
+#[derive(Debug, Parser)]
+#[command(name = "excavator", version)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// The whole story on a made-up machine with a hidden effect; ends with a report to open.
+    Demo(DemoArguments),
+    /// Simulate a model with the input of a recording or with a command profile, into a bag.
+    Simulate(SimulateArguments),
+    /// Identify the unknown parameters of a model from recordings.
+    Identify(IdentifyArguments),
+    /// Simulate with a recording's input and compare every output with the measurement.
+    Compare(CompareArguments),
+    /// Read valve and friction off recordings without a simulation: directional gains, dead zone and hysteresis, leakage of
+    /// the closed valve, friction against speed.
+    Characterise(CharacteriseArguments),
+    /// Where the energy went, and whether the model's ledger closes: H, dH/dt, losses by effect, pump line.
+    Energy(EnergyArguments),
+    /// Find out which physical effect the model is missing.
+    Diagnose(DiagnoseArguments),
+    /// Propose a manoeuvre that separates tied effects, or shows a parameter, within the machine's limits.
+    Design(DesignArguments),
+    /// Add effects, refit, and measure the error again.
+    Refine(RefineArguments),
+    /// The catalogue of physical effects, or one of them in full.
+    Effects(EffectsArguments),
+    /// What is in a bag: topics, clocks, signals, and what is missing for identification.
+    Info(InfoArguments),
+    /// Make a bag of a table (CSV, MATLAB, Parquet) or of other people's topics, through a map; or guess the map.
+    Import(ImportArguments),
+    /// Record topics into a bag.
+    Record(RecordArguments),
+    /// Play a bag.
+    Play(PlayArguments),
+    /// Simulator, energy monitor and recorder in one command.
+    Up(UpArguments),
+    /// A page with state, energies, ledger and alarms of the live topics as moving plots.
+    Dashboard(DashboardArguments),
+    /// A live ROS 2 node.
+    #[command(subcommand)]
+    Node(NodeVerb),
+}

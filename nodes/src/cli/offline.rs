@@ -1,0 +1,245 @@
+//! Arguments of the verbs that work on files.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::numbers::{positive, profile_duration, stroke_margin};
+
+#[derive(Debug, Args)]
+pub struct Json {
+    /// Write the result as JSON to this file ("-": standard output, instead of the table).
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Mapping {
+    /// Topic map (TOML): which field of which topic, or which column of a table, is which signal. Without, the map.toml
+    /// in the bag's folder or FILE.map.toml beside the file is used, if there is one.
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct DemoArguments {
+    /// Draws the machine, its hidden effect and its noise.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for recordings, models and the report.
+    #[arg(short, long, value_name = "FOLDER", default_value = "excavator-demo")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct SimulateArguments {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    /// A bag whose inputs are used, or a profile (.toml) of sines, sweeps, trapezoids and holds.
+    #[arg(long, value_name = "BAG|PROFILE")]
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    /// Bag to write.
+    #[arg(short, long, value_name = "BAG")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Weak form of the equations with instruments from the simulated model: not biased by sensor noise.
+    WeakForm,
+    /// Ordinary least squares on smoothed differences, the recipe of Arai et al. 2021; biased by noise.
+    LeastSquares,
+    /// Weak form, then simulated outputs fitted to the measured ones.
+    OutputError,
+}
+
+#[derive(Debug, Args)]
+pub struct IdentifyArguments {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    /// Recordings; `BAG@20..40` is the part of one from 20 s to 40 s.
+    #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
+    pub bag: Vec<PathBuf>,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    /// Model file to write.
+    #[arg(short, long, value_name = "MODEL")]
+    pub output: Option<PathBuf>,
+    /// How.
+    #[arg(long, value_enum, default_value_t = Method::WeakForm)]
+    pub method: Method,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    /// Recording; `BAG@20..40` is the part of one from 20 s to 40 s.
+    #[arg(long, value_name = "BAG")]
+    pub bag: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    /// Write a page with plots of every signal, residuals, and error against command, speed, pressure and position.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct CharacteriseArguments {
+    /// Recordings, taken together; `BAG@20..40` is the part of one from 20 s to 40 s.
+    #[arg(required = true, num_args = 1.., value_name = "BAG")]
+    pub bags: Vec<PathBuf>,
+    /// Model: built-in name or TOML file. Areas, volumes, bulk modulus and load are taken from it.
+    #[arg(long)]
+    pub model: String,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    /// Write a page with gains, normalised flow, transients and friction, with their bands.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct EnergyArguments {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    /// Recording, of any length.
+    #[arg(long, value_name = "BAG")]
+    pub bag: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    /// Write a page with the flow of energy, rates of the stored energy, losses by effect, and the ledger.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct Recordings {
+    /// Recordings that parameters are fitted to; `BAG@20..40` is the part of one from 20 s to 40 s.
+    #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
+    pub identification: Vec<PathBuf>,
+    /// Recordings that evidence is taken from; never fitted.
+    #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
+    pub validation: Vec<PathBuf>,
+    #[command(flatten)]
+    pub mapping: Mapping,
+}
+
+#[derive(Debug, Args)]
+pub struct DiagnoseArguments {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    #[command(flatten)]
+    pub recordings: Recordings,
+    /// Write a page with the evidence.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+#[command(group(clap::ArgGroup::new("what").required(true).args(["add", "auto"])))]
+pub struct RefineArguments {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    #[command(flatten)]
+    pub recordings: Recordings,
+    /// Effects to add, one after the other: EFFECT, EFFECT@CYLINDER or EFFECT@pump.
+    #[arg(long, num_args = 1.., value_name = "EFFECT[@PLACE]")]
+    pub add: Vec<String>,
+    /// Add what the diagnosis finds, until nothing more is gained.
+    #[arg(long)]
+    pub auto: bool,
+    /// Model file to write.
+    #[arg(short, long, value_name = "MODEL")]
+    pub output: PathBuf,
+    /// Write a page with the story.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+#[command(group(clap::ArgGroup::new("what").required(true).multiple(true).args(["between", "parameter", "diagnosis"])))]
+pub struct DesignArguments {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    /// Effects to be told apart, with commas: EFFECT, EFFECT@CYLINDER, EFFECT@pump, or none for the model as it is. With
+    /// --parameter: effects that the model is to have besides.
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "EFFECT[@PLACE],...")]
+    pub between: Vec<String>,
+    /// Parameter to be determined (arm.inertia), instead of effects to be told apart.
+    #[arg(long, value_name = "NAME")]
+    pub parameter: Option<String>,
+    /// What `diagnose --json` wrote: tied effects, fitted values and the sensors' noise are taken from there.
+    #[arg(long, value_name = "FILE.json")]
+    pub diagnosis: Option<PathBuf>,
+    /// Profile to write.
+    #[arg(short, long, value_name = "PROFILE.toml")]
+    pub output: PathBuf,
+    /// Longest profile, s: 15 to 600.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = profile_duration)]
+    pub duration: f64,
+    /// Share of the stroke that is kept free at each end.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.08, value_parser = stroke_margin)]
+    pub stroke_margin: f64,
+    /// Highest pressure anywhere, Pa.
+    #[arg(long, value_name = "PA", default_value_t = 2e7, value_parser = positive)]
+    pub highest_pressure: f64,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct EffectsArguments {
+    /// Effect to describe in full.
+    pub name: Option<String>,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct InfoArguments {
+    /// Bag, or a table with a map.
+    pub bag: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+#[derive(Debug, Args)]
+pub struct ImportArguments {
+    /// Table (.csv, .tsv, .txt, .dat, .mat, .parquet) or bag.
+    pub data: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
+    /// Print a map guessed from names, types, units and the shapes of the signals, with a reason for each line. Check it!
+    #[arg(long, conflicts_with = "map")]
+    pub guess: bool,
+    /// Cylinder that guessed signals belong to where their names do not say.
+    #[arg(long, value_name = "NAME", default_value = "arm", requires = "guess")]
+    pub cylinder: String,
+    /// Bag to write; with --guess, the file for the map.
+    #[arg(short, long, value_name = "BAG|MAP", required_unless_present = "guess")]
+    pub output: Option<PathBuf>,
+}
