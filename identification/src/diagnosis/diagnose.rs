@@ -234,11 +234,19 @@ pub(crate) fn fit_nominal(
     }
 }
 
+/// Noise, as a part of its spread, up to which a signal is clear: noise alone is no large error of it.
+const CLEAR: f64 = 0.15;
+
+/// Sample interval, s, from which on sensors look noisier than they are.
+const COARSE: f64 = 0.03;
+
 /// Whether what is left is noise but for a few moments, or too small to act on.
 pub(super) fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
     let error = normalised_error(fit, recordings);
-    // An error as large as that is no noise of sensors: their level was taken from recordings too coarse to show it.
-    let too_large = error > settings.excused_error;
+    // At such rates second differences, which the sensors' noise is taken from, have motion in them.
+    let coarse = recordings.iter().any(|recording| recording.sample_interval() > COARSE);
+    let too_large =
+        mean_error(fit, recordings, CLEAR) > settings.largest_error || coarse && error > settings.excused_error;
     (fit.typical_loss() <= settings.adequate_loss && !too_large) || error <= settings.adequate_error
 }
 
@@ -250,6 +258,11 @@ fn sampling_explains(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisS
 
 /// Mean over instruments of squared error over the signal's own variance; `NaN` when no signal varies.
 pub fn normalised_error(fit: &Fit, recordings: &[&Recording]) -> f64 {
+    mean_error(fit, recordings, f64::INFINITY)
+}
+
+/// The same over the instruments whose noise is at most this part of their signal's spread.
+fn mean_error(fit: &Fit, recordings: &[&Recording], most_noise: f64) -> f64 {
     let errors: Vec<f64> = fit
         .instruments
         .iter()
@@ -257,7 +270,7 @@ pub fn normalised_error(fit: &Fit, recordings: &[&Recording]) -> f64 {
         .filter_map(|(instrument, error)| {
             let signals = recordings.iter().filter_map(|recording| recording.signal(&instrument.name));
             let spread = signals.map(crate::fit::standard_deviation).fold(0.0, f64::max);
-            (spread > 0.0).then(|| (error / spread).powi(2))
+            (spread > 0.0 && instrument.noise <= most_noise * spread).then(|| (error / spread).powi(2))
         })
         .collect();
     errors.iter().sum::<f64>() / errors.len() as f64

@@ -86,20 +86,28 @@ pub fn weak_form_watched(
     let mut unknown = model.unknown_parameters();
     let mut model = model.clone();
     let rounds = settings.rounds.max(1);
-    let round_begins = |round: usize| match watch(round as f64 / rounds as f64) {
-        ControlFlow::Continue(()) => Ok(()),
-        ControlFlow::Break(()) => Err(FitError::Stopped),
-    };
-    for round in 0..rounds - 1 {
-        round_begins(round)?;
-        let rows = rows(&model, recordings, settings, &unknown, round > 0)?;
-        model = solve(&model, recordings, settings, &unknown, &rows, false)?.model;
-    }
-    let mut held = Vec::new();
+    let mut held: Vec<(usize, String)> = Vec::new();
+    let mut round = 0;
     loop {
-        round_begins(rounds - 1)?;
-        let rows = rows(&model, recordings, settings, &unknown, settings.rounds > 1)?;
-        let mut solution = solve(&model, recordings, settings, &unknown, &rows, settings.with_errors)?;
+        if watch(round as f64 / rounds as f64).is_break() {
+            return Err(FitError::Stopped.into());
+        }
+        let last = round + 1 >= rounds;
+        let rows = rows(&model, recordings, settings, &unknown, round > 0)?;
+        let mut solution = match solve(&model, recordings, settings, &unknown, &rows, last && settings.with_errors) {
+            Ok(solution) => solution,
+            Err(RegressionError::NotIdentifiable { names, .. }) if settings.hold_at_bounds && names.len() > 1 => {
+                let (index, reason) = one_of(&model, &names, &mut unknown)?;
+                held.push((index, reason));
+                continue;
+            }
+            Err(error) => return Err(error),
+        };
+        if !last {
+            model = solution.model;
+            round += 1;
+            continue;
+        }
         let outside = if settings.hold_at_bounds { outside(&solution) } else { Vec::new() };
         if outside.is_empty() || outside.len() == unknown.len() {
             solution.not_identified.extend(held);
@@ -119,6 +127,25 @@ pub fn weak_form_watched(
             }
         }
     }
+}
+
+/// Takes one of the parameters that show together only out of `unknown`: the last in the model, which was added to the
+/// others. Gives its index and what to say of it.
+fn one_of(model: &Model, names: &[String], unknown: &mut Vec<usize>) -> Result<(usize, String), RegressionError> {
+    let all = model.parameter_names();
+    let held = unknown.iter().copied().filter(|&index| names.contains(&all[index])).max();
+    let Some(held) = held else {
+        return Err(RegressionError::NotIdentifiable { source_name: String::new(), names: names.to_vec() });
+    };
+    unknown.retain(|&index| index != held);
+    let others: Vec<&str> = names.iter().filter(|name| **name != all[held]).map(String::as_str).collect();
+    let value = model.parameter_values()[held];
+    let reason = format!(
+        "the equations have it together with {} only, never alone; held at {value:.3e}, and what the others come to holds for \
+         that value",
+        others.join(", ")
+    );
+    Ok((held, reason))
 }
 
 /// Identified parameters beyond what they can be, the nearest possible value, and what to say of them.

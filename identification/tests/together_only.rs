@@ -1,0 +1,37 @@
+//! Parameters that the equations have together only.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use excavator_identification::regression::{RegressionError, WeakFormSettings, weak_form};
+use excavator_model::document::built_in;
+use excavator_model::effects::{Site, find};
+use excavator_model::recording::Recording;
+use excavator_model::simulation::{Tolerances, simulate_from_rest};
+
+#[test]
+fn a_payload_is_held_and_the_rest_is_identified() {
+    let plain = built_in("zx30u-arm").unwrap();
+    let time: Vec<f64> = (0..8000).map(|index| f64::from(index) * 2e-3).collect();
+    let mut recording = Recording::unmeasured("swing", time, &["arm"]);
+    recording.tank_pressure.fill(3e5);
+    recording.pump_flow.fill(3.8e-4);
+    let area = |t: &f64| 5e-5 * (3.1 * t).sin() + 3e-5 * (7.3 * t).sin();
+    recording.cylinders[0].orifice_area = recording.time.iter().map(area).collect();
+    let recording = simulate_from_rest(&plain, &recording, &[0.1], Tolerances::default().scaled(0.05)).unwrap();
+    let mut model = plain.with_effect(find("payload").unwrap(), Site::Cylinder(0)).unwrap();
+    model.effects.last_mut().unwrap().parameters[0].value = 0.0;
+
+    let found = weak_form(&model, &[&recording], &WeakFormSettings::default()).unwrap();
+    let names = model.parameter_names();
+    let held: Vec<(&str, &str)> =
+        found.not_identified.iter().map(|(index, reason)| (names[*index].as_str(), reason.as_str())).collect();
+    assert!(held.iter().any(|(name, why)| *name == "arm.payload_mass" && why.contains("together with")), "{held:?}");
+    assert!(held.iter().all(|(name, _)| name.contains("payload")), "{held:?}");
+    for ((name, value), truth) in names.iter().zip(found.model.parameter_values()).zip(plain.parameter_values()) {
+        assert!((value / truth - 1.0).abs() < 0.02, "{name}: {value} for {truth}");
+    }
+
+    // A search that wants no parameter held is told which cannot be told apart.
+    let strict = WeakFormSettings { hold_at_bounds: false, ..WeakFormSettings::default() };
+    let refused = weak_form(&model, &[&recording], &strict);
+    assert!(matches!(&refused, Err(RegressionError::NotIdentifiable { names, .. }) if names.len() > 1), "{refused:?}");
+}
