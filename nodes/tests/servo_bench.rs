@@ -9,7 +9,7 @@ use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
 use excavator_identification::validation::compare;
 use excavator_model::Model;
-use excavator_model::document::built_in;
+use excavator_model::document::{built_in, parse};
 use excavator_model::effects::{Site, find};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Profile, Segment, Tolerances, simulate_from_rest};
@@ -41,6 +41,17 @@ fn plant() -> Model {
         }
     }
     model
+}
+
+#[test]
+fn the_refined_model_file_is_the_preliminary_one_and_five_effects() {
+    let text =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../config/servo-bench-refined.toml")).unwrap();
+    let (refined, plant) = (parse("servo-bench-refined.toml", &text).unwrap(), plant());
+    assert_eq!(refined.machine.cylinders, plant.machine.cylinders);
+    assert_eq!(refined.parameter_names(), plant.parameter_names());
+    assert_eq!(refined.parameter_values(), plant.parameter_values());
+    assert_eq!(refined.effects.len(), built_in("servo-bench").unwrap().effects.len() + HIDDEN.len());
 }
 
 fn pause(duration: f64) -> Segment {
