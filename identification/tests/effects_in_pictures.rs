@@ -1,13 +1,14 @@
 //! An effect taken out of the model that has it: what the equations lack is the effect, along the variable it depends on.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+mod common;
+
+use common::swing;
 use excavator_identification::diagnosis::{Candidate, Contribution, Evidence, Inclusion, contribution};
 use excavator_identification::fit::{FitSettings, evaluate};
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
-use excavator_model::recording::Recording;
-use excavator_model::simulation::{Tolerances, simulate_from_rest};
 
 /// The paper's arm with one more effect.
 fn machine(name: &str, values: &[f64]) -> Model {
@@ -18,19 +19,8 @@ fn machine(name: &str, values: &[f64]) -> Model {
     model
 }
 
-/// It swings at two frequencies for 16 s.
-fn measured(model: &Model) -> Recording {
-    let time: Vec<f64> = (0..8000).map(|index| f64::from(index) * 2e-3).collect();
-    let mut recording = Recording::unmeasured("swing", time, &["arm"]);
-    recording.tank_pressure.fill(3e5);
-    recording.pump_flow.fill(3.8e-4);
-    let area = |t: &f64| 5e-5 * (3.1 * t).sin() + 3e-5 * (7.3 * t).sin();
-    recording.cylinders[0].orifice_area = recording.time.iter().map(area).collect();
-    simulate_from_rest(model, &recording, &[0.1], Tolerances::default().scaled(0.05)).unwrap()
-}
-
 fn shown(name: &'static str, values: &[f64], found: &[f64]) -> Option<Contribution> {
-    let recording = measured(&machine(name, values));
+    let recording = swing(&machine(name, values));
     let model = machine(name, found);
     let fit = evaluate(&model, &[&recording], &FitSettings::default()).unwrap();
     let candidate = Candidate {

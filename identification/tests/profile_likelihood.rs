@@ -1,6 +1,9 @@
 //! Intervals of parameters that recordings hardly show.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+mod common;
+
+use common::add_noise;
 use excavator_identification::fit::{Fit, FitSettings, ProfileInterval, fit, profile};
 use excavator_model::Model;
 use excavator_model::document::built_in;
@@ -9,7 +12,6 @@ use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 
 /// The paper's arm under a command for 8 s at 250 Hz, its sensors with noise.
 fn measured(command: impl Fn(f64) -> f64, seed: u64) -> Recording {
@@ -24,12 +26,7 @@ fn measured(command: impl Fn(f64) -> f64, seed: u64) -> Recording {
     arm.velocity.fill(f64::NAN);
     arm.joint_angle.fill(f64::NAN);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut add = |signal: &mut Vec<f64>, level: f64| {
-        for value in signal {
-            let normal: f64 = StandardNormal.sample(&mut random);
-            *value += level * normal;
-        }
-    };
+    let mut add = |signal: &mut Vec<f64>, level: f64| add_noise(&mut random, signal, level);
     add(&mut arm.displacement, 5e-5);
     add(&mut arm.cap_pressure, 2e4);
     add(&mut arm.rod_pressure, 2e4);

@@ -2,6 +2,9 @@
 //! paper's model.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+mod common;
+
+use common::add_noise;
 use excavator_identification::fit::{FitSettings, fit};
 use excavator_identification::regression::{WeakFormSettings, least_squares, weak_form};
 use excavator_identification::validation::{Comparison, compare};
@@ -12,7 +15,6 @@ use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 
 /// Published FIT on the 1.0 Hz recording, %: \[A\] Table 4.
 const PUBLISHED_FIT: [(&str, f64); 5] = [
@@ -64,12 +66,7 @@ fn measured(frequency: f64, seed: u64) -> Recording {
     arm.velocity.fill(f64::NAN);
     arm.joint_angle.fill(f64::NAN);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut add = |signal: &mut Vec<f64>, level: f64| {
-        for value in signal {
-            let normal: f64 = StandardNormal.sample(&mut random);
-            *value += level * normal;
-        }
-    };
+    let mut add = |signal: &mut Vec<f64>, level: f64| add_noise(&mut random, signal, level);
     add(&mut arm.displacement, 5e-5);
     add(&mut arm.cap_pressure, 2e4);
     add(&mut arm.rod_pressure, 2e4);

@@ -1,22 +1,17 @@
 //! Parameters that the equations have together only.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+mod common;
+
+use common::swing;
 use excavator_identification::regression::{RegressionError, WeakFormSettings, weak_form};
 use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
-use excavator_model::recording::Recording;
-use excavator_model::simulation::{Tolerances, simulate_from_rest};
 
 #[test]
 fn a_payload_is_held_and_the_rest_is_identified() {
     let plain = built_in("zx30u-arm").unwrap();
-    let time: Vec<f64> = (0..8000).map(|index| f64::from(index) * 2e-3).collect();
-    let mut recording = Recording::unmeasured("swing", time, &["arm"]);
-    recording.tank_pressure.fill(3e5);
-    recording.pump_flow.fill(3.8e-4);
-    let area = |t: &f64| 5e-5 * (3.1 * t).sin() + 3e-5 * (7.3 * t).sin();
-    recording.cylinders[0].orifice_area = recording.time.iter().map(area).collect();
-    let recording = simulate_from_rest(&plain, &recording, &[0.1], Tolerances::default().scaled(0.05)).unwrap();
+    let recording = swing(&plain);
     let mut model = plain.with_effect(find("payload").unwrap(), Site::Cylinder(0)).unwrap();
     model.effects.last_mut().unwrap().parameters[0].value = 0.0;
 

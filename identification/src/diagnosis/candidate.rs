@@ -39,6 +39,14 @@ impl Candidate {
         self.physics.card().name
     }
 
+    /// The fitted model without the candidate's own effect, nothing fitted again.
+    pub fn without_effect(&self) -> Model {
+        let mut model = self.fit.model.clone();
+        // A candidate is added after everything that the model had.
+        model.effects.pop();
+        model
+    }
+
     /// Whether both are the same effect at the same place, whatever their fits.
     pub fn is_same_addition(&self, other: &Candidate) -> bool {
         self.name() == other.name() && self.site == other.site

@@ -49,14 +49,7 @@ const LEAST_SHARE: f64 = 0.2;
 /// # Errors
 /// [`RegressionError`] when the recordings lack inputs.
 pub fn contribution(candidate: &Candidate, recordings: &[&Recording]) -> Result<Option<Contribution>, RegressionError> {
-    let with = &candidate.fit.model;
-    let mut without = with.clone();
-    let own = without
-        .effects
-        .iter()
-        .rposition(|effect| effect.physics.card().name == candidate.name() && effect.site == candidate.site);
-    let Some(own) = own else { return Ok(None) };
-    without.effects.remove(own);
+    let (with, without) = (&candidate.fit.model, candidate.without_effect());
     let with: BTreeMap<_, f64> =
         points(with, recordings)?.into_iter().map(|point| ((point.kind, point.place), point.residual)).collect();
     let pairs: Vec<(Point, f64)> = points(&without, recordings)?

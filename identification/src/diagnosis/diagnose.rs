@@ -94,16 +94,17 @@ pub fn diagnose(
     progress("regression for start values", 0.0);
     let mut nominal = fit_nominal(model, identification, settings)?;
     let mut attempts = 0;
-    let (nominal_validation, sampling_explains, excused, first_round) = loop {
+    let (nominal_validation, nominal_is_adequate, too_coarse, first_round) = loop {
         let nominal_validation = evaluate(&nominal.model, validation, &settings.fit)?;
         let alone = is_adequate(&nominal_validation, validation, settings);
         // For a model as it is given only; a name for what is missing asks for more.
         let sampling_explains = !alone && sampling_explains(&nominal_validation, validation, settings);
         let excused = sampling_explains && normalised_error(&nominal_validation, validation) <= settings.excused_error;
+        let nominal_is_adequate = alone || excused;
         let chains = Chains {
             nominal: &nominal,
             nominal_validation: &nominal_validation,
-            nominal_is_adequate: alone || excused,
+            nominal_is_adequate,
             identification,
             validation,
             settings,
@@ -111,7 +112,7 @@ pub fn diagnose(
         let round = chains.round(&[], progress)?;
         match better_nominal(&nominal, &round, identification, settings) {
             Some(better) if attempts < MOST_NOMINALS => nominal = better,
-            _ => break (nominal_validation, sampling_explains, excused, round),
+            _ => break (nominal_validation, nominal_is_adequate, sampling_explains && !excused, round),
         }
         attempts += 1;
     };
@@ -120,7 +121,7 @@ pub fn diagnose(
     let chains = Chains {
         nominal: &nominal,
         nominal_validation: &nominal_validation,
-        nominal_is_adequate: excused || is_adequate(&nominal_validation, validation, settings),
+        nominal_is_adequate,
         identification,
         validation,
         settings,
@@ -156,7 +157,7 @@ pub fn diagnose(
         chain,
         map,
         unexplained,
-        too_coarse: sampling_explains && !excused,
+        too_coarse,
     })
 }
 
@@ -185,8 +186,7 @@ fn better_nominal(
         .filter(|candidate| candidate.fit.loss() < least)
         .take(LOOKED_AT)
         .filter_map(|candidate| {
-            let mut without = candidate.fit.model.clone();
-            without.effects.pop();
+            let without = candidate.without_effect();
             // Of a real effect nothing good is left without it.
             let start = evaluate(&without, identification, &settings.fit).ok()?;
             (start.loss() < least).then_some(())?;

@@ -42,8 +42,8 @@ pub(super) fn inclusion(base_validation: &Fit, candidates: &[Candidate], least_g
                 first..first + TOGETHER
             })
             .collect();
-        let base = loss_of_blocks(base_validation, &drawn);
-        let gains: Vec<f64> = candidates.iter().map(|one| base - loss_of_blocks(&one.validation, &drawn)).collect();
+        let base = base_validation.loss_on(&drawn);
+        let gains: Vec<f64> = candidates.iter().map(|one| base - one.validation.loss_on(&drawn)).collect();
         let best = gains.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         for (share, gain) in shares.iter_mut().zip(gains) {
             share.gains += f64::from(u8::from(gain >= least_gain)) / DRAWS as f64;
@@ -51,19 +51,4 @@ pub(super) fn inclusion(base_validation: &Fit, candidates: &[Candidate], least_g
         }
     }
     shares
-}
-
-/// [`Fit::loss`] on some of the blocks.
-fn loss_of_blocks(fit: &Fit, blocks: &[usize]) -> f64 {
-    let instruments = fit.instruments.len();
-    let mut total = 0.0;
-    for (number, instrument) in fit.instruments.iter().enumerate() {
-        let (squares, count) = blocks
-            .iter()
-            .filter_map(|&block| fit.block_errors[block].get(number))
-            .fold((0.0, 0usize), |(squares, count), (own, readings)| (squares + own, count + readings));
-        let error = (squares / count.max(1) as f64).sqrt();
-        total += 2.0 * (error / instrument.noise).max(1e-3).ln();
-    }
-    total / instruments.max(1) as f64
 }

@@ -71,6 +71,23 @@ impl Fit {
         loss_per_reading(&self.errors, &noise)
     }
 
+    /// Sum of squared errors of an instrument over some of the blocks, and number of readings in it.
+    pub(crate) fn squares_of(&self, instrument: usize, blocks: impl Iterator<Item = usize>) -> (f64, usize) {
+        blocks
+            .filter_map(|block| self.block_errors.get(block)?.get(instrument))
+            .fold((0.0, 0), |(squares, count), (own, readings)| (squares + own, count + readings))
+    }
+
+    /// [`Fit::loss`] on some of the blocks.
+    pub(crate) fn loss_on(&self, blocks: &[usize]) -> f64 {
+        let noise: Vec<f64> = self.instruments.iter().map(|instrument| instrument.noise).collect();
+        let error = |instrument| {
+            let (squares, count) = self.squares_of(instrument, blocks.iter().copied());
+            (squares / count.max(1) as f64).sqrt()
+        };
+        loss_per_reading(&(0..noise.len()).map(error).collect::<Vec<f64>>(), &noise)
+    }
+
     /// Indices of the fitted parameters whose 95 % intervals include zero: not even their sign is known.
     pub fn undetermined(&self) -> Vec<usize> {
         let parameters: Vec<_> = self.model.parameters().map(|(_, parameter)| parameter).collect();

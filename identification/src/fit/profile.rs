@@ -91,12 +91,7 @@ fn end_of(best: &Fit, recordings: &[&Recording], settings: &FitSettings, index: 
 
 /// By how much worse the second fit meets the recordings, in units of the first one's errors, squared.
 fn deviance(best: &Fit, other: &Fit) -> f64 {
-    let totals = |fit: &Fit, instrument: usize| {
-        fit.block_errors
-            .iter()
-            .filter_map(|block| block.get(instrument))
-            .fold((0.0, 0usize), |(squares, count), (own, readings)| (squares + own, count + readings))
-    };
+    let totals = |fit: &Fit, instrument: usize| fit.squares_of(instrument, 0..fit.block_errors.len());
     best.instruments
         .iter()
         .enumerate()

@@ -96,9 +96,11 @@ pub fn weak_form_watched(
         let rows = rows(&model, recordings, settings, &unknown, round > 0)?;
         let mut solution = match solve(&model, recordings, settings, &unknown, &rows, last && settings.with_errors) {
             Ok(solution) => solution,
-            Err(RegressionError::NotIdentifiable { names, .. }) if settings.hold_at_bounds && names.len() > 1 => {
-                let (index, reason) = one_of(&model, &names, &mut unknown)?;
-                held.push((index, reason));
+            Err(RegressionError::NotIdentifiable { source_name, names }) => {
+                let Some(one) = one_of(&model, &names, &mut unknown).filter(|_| settings.hold_at_bounds) else {
+                    return Err(RegressionError::NotIdentifiable { source_name, names });
+                };
+                held.push(one);
                 continue;
             }
             Err(error) => return Err(error),
@@ -130,13 +132,10 @@ pub fn weak_form_watched(
 }
 
 /// Takes one of the parameters that show together only out of `unknown`: the last in the model, which was added to the
-/// others. Gives its index and what to say of it.
-fn one_of(model: &Model, names: &[String], unknown: &mut Vec<usize>) -> Result<(usize, String), RegressionError> {
+/// others. Gives its index and what to say of it; `None` where there are no others.
+fn one_of(model: &Model, names: &[String], unknown: &mut Vec<usize>) -> Option<(usize, String)> {
     let all = model.parameter_names();
-    let held = unknown.iter().copied().filter(|&index| names.contains(&all[index])).max();
-    let Some(held) = held else {
-        return Err(RegressionError::NotIdentifiable { source_name: String::new(), names: names.to_vec() });
-    };
+    let held = unknown.iter().copied().filter(|&index| names.len() > 1 && names.contains(&all[index])).max()?;
     unknown.retain(|&index| index != held);
     let others: Vec<&str> = names.iter().filter(|name| **name != all[held]).map(String::as_str).collect();
     let value = model.parameter_values()[held];
@@ -145,7 +144,7 @@ fn one_of(model: &Model, names: &[String], unknown: &mut Vec<usize>) -> Result<(
          that value",
         others.join(", ")
     );
-    Ok((held, reason))
+    Some((held, reason))
 }
 
 /// Identified parameters beyond what they can be, the nearest possible value, and what to say of them.
