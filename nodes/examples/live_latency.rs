@@ -6,6 +6,7 @@
 //!
 //! - **the machine: plain datagram**: a thread sends one per ms to another over the loopback before any node runs: what
 //!   this machine gives to two threads that do nothing else, to hold the other figures against;
+//! - **the machine: relayed**: the same through a chain of as many threads as a state and its energy message pass;
 //! - **lateness of publication**: publication less stamp, less the smallest of these; the stamps are an even grid;
 //! - **interval of publication**: time between two publications of a state;
 //! - **state on the wire**: from the publication of a state to its arrival here;
@@ -33,6 +34,10 @@ use excavator_msgs::{ArmState, EnergyState};
 const SETTLING: f64 = 3.0;
 /// Half width of the monitor's window, its default, ns.
 const HALF_WIDTH: i64 = 10_000_000;
+
+/// Threads that a state and its energy message pass after the simulator's loop: the middleware's of the simulator; of the
+/// monitor the middleware's, the link's, the monitor's own and the middleware's again; the middleware's and the link's here.
+const RELAYS: usize = 7;
 
 /// A process that is ended when dropped.
 struct Node(Child);
@@ -93,12 +98,50 @@ fn plain_datagrams(count: usize) -> Vec<f64> {
     times
 }
 
+/// Times of datagrams through a chain of threads, from the first to the last, ms.
+///
+/// A state passes as many threads on its way to the energy message and back here: the simulator's loop, and in each
+/// process the middleware's thread for reading and writing and the one that is called.
+fn relayed_datagrams(count: usize, threads: usize) -> Vec<f64> {
+    let sockets: Vec<UdpSocket> = (0..threads).map(|_| UdpSocket::bind("127.0.0.1:0").unwrap()).collect();
+    let addresses: Vec<_> = sockets.iter().map(|socket| socket.local_addr().unwrap()).collect();
+    for socket in &sockets {
+        socket.set_read_timeout(Some(Duration::from_secs(1))).unwrap();
+    }
+    let mut times = Vec::new();
+    std::thread::scope(|scope| {
+        for (place, socket) in sockets[..threads - 1].iter().enumerate() {
+            let next = addresses[place + 1];
+            scope.spawn(move || {
+                let mut bytes = [0; 8];
+                while socket.recv(&mut bytes).is_ok() {
+                    socket.send_to(&bytes, next).unwrap();
+                }
+            });
+        }
+        let first = addresses[0];
+        scope.spawn(move || {
+            let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+            for _ in 0..count {
+                std::thread::sleep(Duration::from_millis(1));
+                socket.send_to(&now().to_le_bytes(), first).unwrap();
+            }
+        });
+        let mut bytes = [0; 8];
+        while times.len() < count && sockets[threads - 1].recv(&mut bytes).is_ok() {
+            times.push((now() - i64::from_le_bytes(bytes)) as f64 * 1e-6);
+        }
+    });
+    times
+}
+
 fn main() {
     let words: Vec<String> = std::env::args().collect();
     let Some(program) = words.get(1) else { panic!("usage: live_latency EXCAVATOR [SECONDS] [RATE]") };
     let seconds: f64 = words.get(2).map_or(10.0, |word| word.parse().unwrap());
     let rate = words.get(3).map_or("1000", |word| word.as_str());
     let datagrams = plain_datagrams(3000);
+    let relayed = relayed_datagrams(3000, RELAYS);
     let supervisor = Supervisor::start("latency_meter", &RosArguments::default(), Vec::new()).unwrap();
     let states: Arc<Mutex<Vec<Times>>> = Arc::default();
     let energies: Arc<Mutex<Vec<Times>>> = Arc::default();
@@ -129,6 +172,7 @@ fn main() {
     let least = lateness.iter().copied().fold(f64::INFINITY, f64::min);
     println!("{:<28}{:>9}{:>9}{:>9}{:>9}   ms", "", "p50", "p99", "p99.9", "max");
     print("the machine: plain datagram", datagrams);
+    print("the machine: relayed", relayed);
     print("lateness of publication", lateness.iter().map(|late| late - least).collect());
     print("interval of publication", states.windows(2).map(|pair| milliseconds(pair[0].1, pair[1].1)).collect());
     print(
