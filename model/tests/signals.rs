@@ -7,7 +7,7 @@ use common::Random;
 use excavator_model::document::built_in;
 use excavator_model::equations::Inputs;
 use excavator_model::recording::{
-    Recording, RecordingError, denoised, is_measured, linear, noise_level, zero_order_hold,
+    Recording, RecordingError, denoised, denoised_towards_zero, is_measured, linear, noise_level, zero_order_hold,
 };
 use excavator_model::simulation::{InputSignals, Profile, ProfileError, Segment, initial_state, simulate};
 
@@ -133,6 +133,24 @@ fn noise_is_measured_and_removed_from_a_held_signal() {
     let deviation = |signal: &[f64]| (signal.iter().map(|v| (v - 5.0).powi(2)).sum::<f64>() / 4000.0).sqrt();
     println!("noise on a held signal shrinks to {:.2}", deviation(&rest) / deviation(&noisy));
     assert!(deviation(&rest) < 0.4 * deviation(&noisy), "{}", deviation(&rest) / deviation(&noisy));
+}
+
+/// What a servo model leaves of a spool's signal is zero but for a wave that is well beyond the noise.
+#[test]
+fn what_may_be_noise_becomes_zero() {
+    let mut random = Random(23);
+    let noise = 2e-7;
+    let wave = |index: usize| 5.0 * noise * (std::f64::consts::PI * (index as f64 - 2000.0) / 200.0).sin();
+    let noisy: Vec<f64> = (0..4000)
+        .map(|index| noise * random.normal() + if (2000..2200).contains(&index) { wave(index) } else { 0.0 })
+        .collect();
+    let rest = denoised_towards_zero(&noisy);
+    let quiet: Vec<f64> = rest[..1900].iter().chain(&rest[2300..]).map(|value| value.abs()).collect();
+    let zero = quiet.iter().filter(|&&value| value == 0.0).count() as f64 / quiet.len() as f64;
+    let largest = quiet.iter().copied().fold(0.0, f64::max);
+    println!("{:.1} % of pure noise is zero, the largest {:.2} of it", 100.0 * zero, largest / noise);
+    assert!(zero > 0.98 && largest < noise, "{zero} {largest}");
+    assert!((2080..2120).all(|index| (rest[index] - wave(index)).abs() < 1.5 * noise));
 }
 
 /// A step of twenty times the noise and the corner of a ramp stay where they were.

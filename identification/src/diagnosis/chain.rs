@@ -106,7 +106,7 @@ impl Chains<'_> {
             let next = if adequate || chain.len() > self.settings.most_effects {
                 None
             } else {
-                self.round(&chain, progress)?.fitted.into_iter().find(|candidate| candidate.accepted)
+                self.round(&chain, progress).fitted.into_iter().find(|candidate| candidate.accepted)
             };
             let complete = next.is_none();
             chain.extend(next);
@@ -151,8 +151,7 @@ impl Chains<'_> {
                 rebuilt.push(link.clone());
             } else if number > superfluous {
                 let race = self.race(&rebuilt);
-                match race.run(&[(link.physics, link.site)], &|what, _| progress(what, 0.9))?.fitted.into_iter().next()
-                {
+                match race.run(&[(link.physics, link.site)], &|what, _| progress(what, 0.9)).fitted.into_iter().next() {
                     Some(link) => rebuilt.push(link),
                     // Without the other it cannot even be begun with: then that was needed after all.
                     None => return Ok(None),
@@ -163,14 +162,11 @@ impl Chains<'_> {
     }
 
     /// All additions to a chain.
-    ///
-    /// # Errors
-    /// [`DiagnosisError`] when the model without additions cannot be evaluated.
-    pub fn round(&self, chain: &[Candidate], progress: &(dyn Fn(&str, f64) + Sync)) -> Result<Round, DiagnosisError> {
+    pub fn round(&self, chain: &[Candidate], progress: &(dyn Fn(&str, f64) + Sync)) -> Round {
         let race = self.race(chain);
         let start = 0.15 + 0.8 * chain.len() as f64 / (self.settings.most_effects + 1) as f64;
         let span = 0.8 / (self.settings.most_effects + 1) as f64;
-        Ok(race.run(&additions(&race.base.model), &|what, fraction| progress(what, start + span * fraction))?)
+        race.run(&additions(&race.base.model), &|what, fraction| progress(what, start + span * fraction))
     }
 
     /// What competes for the next link.

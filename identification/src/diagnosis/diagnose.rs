@@ -8,7 +8,7 @@ use super::chain::Chains;
 use super::input_floor::with_input_floor;
 use super::race::Round;
 use super::starts::within_bounds;
-use super::{Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, residual_map, unexplained};
+use super::{Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, compare_losses, residual_map, unexplained};
 use crate::fit::{Fit, FitError, evaluate, fit};
 use crate::regression::{RegressionError, WeakFormSettings, weak_form};
 
@@ -109,7 +109,7 @@ pub fn diagnose(
             validation,
             settings,
         };
-        let round = chains.round(&[], progress)?;
+        let round = chains.round(&[], progress);
         match better_nominal(&nominal, &round, identification, settings) {
             Some(better) if attempts < MOST_NOMINALS => nominal = better,
             _ => break (nominal_validation, nominal_is_adequate, sampling_explains && !excused, round),
@@ -132,6 +132,9 @@ pub fn diagnose(
     let (mut candidates, rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);
     if let Some(first) = chain.first() {
         put_first(first, &mut candidates);
+    }
+    if explained && let Some(last) = chain.last() {
+        mark_doubtful_leads(&mut candidates, &chain, settings.doubtful_lead * last.validation.loss());
     }
     let verdict = match (chain.is_empty(), explained) {
         (true, true) => Verdict::Adequate,
@@ -205,6 +208,17 @@ fn put_first(first: &Candidate, candidates: &mut Vec<Candidate>) {
     }
     // Ties were with another.
     candidates.iter_mut().for_each(|candidate| candidate.tied_with_first = false);
+}
+
+/// Ties of the first with candidates, other than the further links of its chain, that are behind it by less than `lead`.
+fn mark_doubtful_leads(candidates: &mut [Candidate], chain: &[Candidate], lead: f64) {
+    let Some((first, others)) = candidates.split_first_mut() else { return };
+    for other in others.iter_mut().filter(|other| !chain.iter().any(|link| link.is_same_addition(other))) {
+        if compare_losses(&other.validation, &first.validation).gain < lead {
+            other.tied_with_first = true;
+            first.tied_with_first = true;
+        }
+    }
 }
 
 /// Fits a model's unknown parameters, starting from a regression where one is possible.

@@ -5,6 +5,7 @@ mod chain;
 mod contribution;
 mod diagnose;
 mod evidence;
+mod hard_stretches;
 mod inclusion;
 mod input_floor;
 mod race;
@@ -12,6 +13,7 @@ mod residual_map;
 mod residual_points;
 mod settings;
 mod starts;
+mod track;
 mod worst_stretch;
 
 pub(crate) use candidate::fit_addition;

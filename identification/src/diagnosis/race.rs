@@ -13,9 +13,10 @@ use rayon::prelude::*;
 
 use super::candidate::{CandidateError, best_start};
 use super::inclusion::inclusion;
-use super::starts::acts_in_a_window;
+use super::starts::{acts_in_a_window, has_a_window};
+use super::track::{Track, short_fit};
 use super::{Candidate, DiagnosisSettings, Inclusion, Unpromising, compare_losses, is_adequate};
-use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, predict};
+use crate::fit::{Fit, FitError, FitSettings, evaluate, fit};
 
 /// What became of all candidates.
 #[derive(Default)]
@@ -74,27 +75,29 @@ pub(super) struct Race<'a> {
 impl Race<'_> {
     /// Tries all additions, best on validation first.
     ///
-    /// # Errors
-    /// [`FitError`] when the model without additions cannot be evaluated on thinned data.
-    pub fn run(
-        &self,
-        wanted: &[(&'static dyn Effect, Site)],
-        progress: &(dyn Fn(&str, f64) + Sync),
-    ) -> Result<Round, FitError> {
-        // A base that cannot be simulated from its measured starts is judged where its fit has brought it.
-        let start_loss = predict(&self.base.model, self.identification, &self.settings.fit)
-            .map_or_else(|_| self.base.loss(), |promise| promise.loss_before);
+    pub fn run(&self, wanted: &[(&'static dyn Effect, Site)], progress: &(dyn Fn(&str, f64) + Sync)) -> Round {
+        let hard = Track::hard(self);
+        let machine = &self.base.model.machine;
+        let needs_all = |&(physics, site): &(&'static dyn Effect, Site)| has_a_window(physics, machine, site);
+        // A window of time is one of a whole recording.
+        let whole = (hard.is_none() || wanted.iter().any(needs_all)).then(|| Track::whole(self));
         let done = AtomicUsize::new(0);
         // Full fits take about a third of the time.
         let total = wanted.len() as f64 * 1.5;
         let advance = |name: &str| progress(name, (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / total);
 
+        // The longest first, or one core ends with it alone.
+        let mut wanted = wanted.to_vec();
+        wanted.sort_by_key(|addition| !needs_all(addition));
         let outcomes: Vec<(String, Outcome)> = wanted
-            .par_iter()
-            .map(|&(physics, site)| {
+            .into_par_iter()
+            .map(|(physics, site)| {
                 let place = excavator_model::site_name(&self.base.model.machine, site).to_string();
                 let name = format!("{}@{place}", physics.card().name);
-                let outcome = self.heat(physics, site, place, start_loss).unwrap_or_else(Outcome::Failed);
+                let track = hard.as_ref().filter(|_| !needs_all(&(physics, site))).or(whole.as_ref());
+                let outcome = track.map_or(Outcome::Failed(FitError::TooShort.into()), |track| {
+                    self.heat(physics, site, place, track).unwrap_or_else(Outcome::Failed)
+                });
                 advance(&name);
                 (name, outcome)
             })
@@ -139,7 +142,7 @@ impl Race<'_> {
         for (candidate, share) in round.fitted.iter_mut().zip(shares) {
             candidate.inclusion = share;
         }
-        Ok(round)
+        round
     }
 
     /// How many more candidates deserve a full fit, where something is missing.
@@ -173,23 +176,23 @@ impl Race<'_> {
         }
     }
 
-    /// A few steps from the start that promises most. `start_loss`: of the base, its segments started as measured.
+    /// A few steps from the start that promises most.
     fn heat(
         &self,
         physics: &'static dyn Effect,
         site: Site,
         place: String,
-        start_loss: f64,
+        track: &Track,
     ) -> Result<Outcome, CandidateError> {
-        let start = best_start(&self.base.model, physics, site, self.identification, &self.settings.fit)?;
-        let promised_gain = self.base.loss() - start.promised_loss;
+        let recordings: Vec<&Recording> = track.recordings.iter().collect();
+        let start = best_start(&track.base.model, physics, site, &recordings, &self.settings.fit)?;
+        let promised_gain = track.base.loss() - start.promised_loss;
         // Only from a start next to the base can the promise of one step be trusted.
-        if (start.loss - start_loss).abs() < NEXT_TO_BASE && promised_gain < self.least_gain / 4.0 {
+        if (start.loss - track.start_loss).abs() < NEXT_TO_BASE && promised_gain < self.least_gain / 4.0 {
             return Ok(Outcome::Unpromising(Unpromising { physics, place, promised_gain }));
         }
-        let short = FitSettings { maximum_steps: self.settings.race_steps, ..self.settings.fit };
-        let fit = fit(&start.model, self.identification, &short)?;
-        let gain = compare_losses(self.base, &fit).gain;
+        let fit = short_fit(&start.model, &track.recordings, self)?;
+        let gain = compare_losses(&track.base, &fit).gain;
         Ok(Outcome::Ran(Box::new(Runner { physics, site, place, fit, gain })))
     }
 

@@ -12,7 +12,7 @@ pub struct DiagnosisSettings {
     /// by less than a fifth cannot be told from the small errors that every model has.
     pub least_gain: f64,
     /// The same where the model is adequate already: an effect that acts in a few moments only can still halve its squared
-    /// error. Less than that, effects gain by taking up imperfections that are none of theirs.
+    /// error. Less than a third, effects gain by taking up imperfections that are none of theirs.
     pub least_gain_when_adequate: f64,
     /// Least number of standard errors by which that gain must differ from zero; 3.5 keeps the chance of one false name
     /// among 26 candidates near 1 %.
@@ -21,6 +21,9 @@ pub struct DiagnosisSettings {
     pub tie_gain: f64,
     /// Candidates whose loss differs from the best one's by fewer standard errors are tied with it.
     pub tie_significance: f64,
+    /// Candidates whose loss is within this share of what the best explanation leaves are tied with it: an error of unknown
+    /// origin that is larger than a lead may as well have made it.
+    pub doubtful_lead: f64,
     /// A model whose typical loss ([`crate::fit::Fit::typical_loss`]) is below this is adequate. 0.6 is 1.35 times the
     /// sensors' noise; the right model of a machine with the small imperfections that every machine has comes to 0.1 to
     /// 0.3 in the blind benchmark.
@@ -46,6 +49,9 @@ pub struct DiagnosisSettings {
     pub most_effects: usize,
     /// Steps of a fit in the race.
     pub race_steps: usize,
+    /// Share of the recordings that the race is run on, the stretches in which the model without additions fails most.
+    /// Half of them costs half the time and names the same finalists.
+    pub race_share: f64,
     /// So many candidates, the best of the race, are fitted to the end.
     pub finalists: usize,
     /// So many more, the next best that have not converged in the race, where the best of them leaves much of the loss.
@@ -59,10 +65,11 @@ impl Default for DiagnosisSettings {
         DiagnosisSettings {
             fit: FitSettings::default(),
             least_gain: 0.22,
-            least_gain_when_adequate: 0.7,
+            least_gain_when_adequate: 0.4,
             least_significance: 3.5,
             tie_gain: 0.1,
             tie_significance: 2.0,
+            doubtful_lead: 0.7,
             adequate_loss: 0.6,
             adequate_error: 1.5e-4,
             largest_error: 0.03,
@@ -71,6 +78,7 @@ impl Default for DiagnosisSettings {
             explained_loss: 2.0,
             most_effects: 5,
             race_steps: 3,
+            race_share: 0.5,
             finalists: 4,
             further_finalists: 6,
             finalist_margin: 0.5,

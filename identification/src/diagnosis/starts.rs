@@ -2,7 +2,8 @@
 
 use excavator_model::Model;
 use excavator_model::ModelEffect;
-use excavator_model::effects::{Kind, Start};
+use excavator_model::effects::{Effect, Kind, Site, Start};
+use excavator_model::machine::Machine;
 use excavator_model::recording::Recording;
 
 use super::worst_stretch::worst_stretches;
@@ -13,7 +14,7 @@ use crate::regression::{WeakFormSettings, weak_form};
 /// Regressed starts come first.
 pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let plain = plain_starts(model, recordings);
-    // Thinned to this rate a regression still sees what starts a fit, in half the time.
+    // Thinned to this rate a regression still sees what starts a fit, in a third of the time.
     let thinned: Vec<Recording> = recordings.iter().map(|recording| thinned_to(recording, START_RATE)).collect();
     let thinned: Vec<&Recording> = thinned.iter().collect();
     let quick =
@@ -25,8 +26,8 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     regressed.chain(plain.iter().cloned()).collect()
 }
 
-/// Samples per second of the regressions that give starts.
-const START_RATE: f64 = 250.0;
+/// Samples per second of the regressions that give starts: those of the fits that follow.
+const START_RATE: f64 = 170.0;
 
 fn thinned_to(recording: &Recording, rate: f64) -> Recording {
     let stride = (1.0 / (recording.sample_interval() * rate)).round();
@@ -44,6 +45,11 @@ pub(super) fn within_bounds(mut model: Model) -> Model {
 /// Whether an effect acts in a window of time, which belongs to one recording and says nothing about another.
 pub(super) fn acts_in_a_window(effect: &ModelEffect) -> bool {
     effect.parameters.iter().any(|parameter| parameter.card.start == Start::WorstStretchBegin)
+}
+
+/// The same of a candidate that is not in a model yet. Where it acts does not matter.
+pub(super) fn has_a_window(physics: &dyn Effect, machine: &Machine, site: Site) -> bool {
+    physics.parameters(machine, site).iter().any(|card| card.start == Start::WorstStretchBegin)
 }
 
 /// Windows of time that are tried as starts.

@@ -47,7 +47,7 @@ pub(super) struct RawSums {
 
 /// Length of the blocks whose gradients are taken as independent in standard errors, s: longer than any correlation of
 /// an arm's errors but drift, and short enough to give many blocks.
-const BLOCK_DURATION: f64 = 0.5;
+pub(super) const BLOCK_DURATION: f64 = 0.5;
 
 /// Readings this soon after the start of a segment are not compared, s: a late instrument would report what happened
 /// before it, which the simulation does not know. Left out for every model, so that all are judged on the same readings.

@@ -57,6 +57,8 @@ pub struct Fit {
     pub errors: Vec<f64>,
     /// Sum of squared errors and number of readings per block of half a second and instrument.
     pub block_errors: Vec<Vec<(f64, usize)>>,
+    /// Recording that each block belongs to, and where it begins, s after the recording's first sample.
+    pub block_places: Vec<(usize, f64)>,
     /// Gauss-Newton steps taken.
     pub steps: usize,
     /// Whether the last step was too small to matter.
@@ -301,6 +303,7 @@ pub(super) fn bounded_step(
 }
 
 fn result(model: &Model, problem: Problem<'_, '_>, state: State, steps: usize, converged: bool) -> Fit {
+    let block_places = problem.block_places(&state.sums);
     let Problem { fitted, scales, instruments, .. } = problem;
     let (covariance, inflation) = clustered_covariance(&state.sums, &scales);
     let mut model = model.clone();
@@ -321,7 +324,7 @@ fn result(model: &Model, problem: Problem<'_, '_>, state: State, steps: usize, c
         })
         .collect();
     let block_errors = state.sums.iter().flat_map(|segment| segment.block_errors.iter().cloned()).collect();
-    Fit { model, fitted, covariance, inflation, instruments, errors, block_errors, steps, converged }
+    Fit { model, fitted, covariance, inflation, instruments, errors, block_errors, block_places, steps, converged }
 }
 
 /// Covariance that holds for coloured errors: blocks of half a second are taken as independent, errors inside one may be

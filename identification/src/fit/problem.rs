@@ -7,7 +7,7 @@ use excavator_model::recording::Recording;
 use excavator_model::simulation::Tolerances;
 use rayon::prelude::*;
 
-use super::normal_equations::{InitialStatePrior, RawSums, SegmentSums, Shared};
+use super::normal_equations::{BLOCK_DURATION, InitialStatePrior, RawSums, SegmentSums, Shared};
 use super::{FitError, FitSettings, Instrument, SegmentedRecording, instruments, scales};
 
 /// A model, recordings, and which parameters are free.
@@ -85,6 +85,18 @@ impl<'s, 'm> Problem<'s, 'm> {
         jobs.par_iter()
             .map(|&(r, s)| Ok(shared.sums(&segmented[r], &segmented[r].segments[s], &self.anchors[r][s])?))
             .collect()
+    }
+
+    /// Recording and begin (s after its first sample) of each block of `sums`, which are of all segments in order.
+    pub fn block_places(&self, sums: &[SegmentSums]) -> Vec<(usize, f64)> {
+        let segments = self.segmented.iter().enumerate().flat_map(|(number, recording)| {
+            let time = &recording.recording.time;
+            recording.segments.iter().map(move |segment| (number, time[segment.first] - time[0]))
+        });
+        let blocks = segments.zip(sums).flat_map(|((recording, begin), sums)| {
+            (0..sums.block_errors.len()).map(move |block| (recording, begin + block as f64 * BLOCK_DURATION))
+        });
+        blocks.collect()
     }
 
     /// Sums with each instrument's errors divided by its weight, initial states eliminated.

@@ -52,6 +52,7 @@ mod tests {
             }],
             errors: vec![2.0],
             block_errors: squares.iter().map(|&squares| vec![(squares, 10)]).collect(),
+            block_places: Vec::new(),
             steps: 0,
             converged: true,
         }

@@ -72,6 +72,7 @@ fn fit_of(model: &Model, error: f64) -> Fit {
         }],
         errors: vec![error],
         block_errors: Vec::new(),
+        block_places: Vec::new(),
         steps: 3,
         converged: true,
     }

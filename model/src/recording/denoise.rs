@@ -32,25 +32,42 @@ pub fn noise_level(signal: &[f64]) -> f64 {
 /// A measured spool opening needs this before it drives a model: flow goes one way for u > 0 and another for u < 0, so
 /// noise about a closed valve does not average out but acts as a leak from pump to tank through both chambers.
 pub fn denoised(signal: &[f64]) -> Vec<f64> {
+    with_standard_errors(signal).into_iter().map(|(value, _)| value).collect()
+}
+
+/// [`denoised`] of a signal that is nothing but noise where nothing contradicts it: each value shrunk towards zero by what
+/// its standard error leaves in doubt, with the weights of the non-negative garrote (Breiman 1995), which leave values
+/// far beyond their errors as they are and come to zero without a jump.
+pub fn denoised_towards_zero(signal: &[f64]) -> Vec<f64> {
+    let kept = |value: f64, doubt: f64| if value.abs() > doubt { value * (1.0 - (doubt / value).powi(2)) } else { 0.0 };
+    with_standard_errors(signal).into_iter().map(|(value, error)| kept(value, DOUBT * error)).collect()
+}
+
+/// Standard errors within which a value is taken for zero. A recording of a minute holds hundreds of independent
+/// windows; less than one of them is further off by chance.
+const DOUBT: f64 = 3.0;
+
+/// Denoised values, each with its standard error.
+fn with_standard_errors(signal: &[f64]) -> Vec<(f64, f64)> {
     let noise = noise_level(signal);
     if noise == 0.0 {
-        return signal.to_vec();
+        return signal.iter().map(|&value| (value, 0.0)).collect();
     }
     let windows: Vec<Window> = HALF_WIDTHS.iter().map(|&half_width| Window::parabola(half_width)).collect();
     (0..signal.len())
         .map(|index| {
             let room = index.min(signal.len() - 1 - index);
             let (mut low, mut high) = (signal[index] - CONFIDENCE * noise, signal[index] + CONFIDENCE * noise);
-            let mut estimate = signal[index];
+            let mut estimate = (signal[index], noise);
             for window in windows.iter().take_while(|window| window.half_width() <= room) {
                 let value = window.at(signal, index);
-                let margin = CONFIDENCE * noise * window.standard_error;
-                low = low.max(value - margin);
-                high = high.min(value + margin);
+                let error = noise * window.standard_error;
+                low = low.max(value - CONFIDENCE * error);
+                high = high.min(value + CONFIDENCE * error);
                 if low > high {
                     break;
                 }
-                estimate = value;
+                estimate = (value, error);
             }
             estimate
         })

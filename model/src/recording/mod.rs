@@ -6,7 +6,7 @@ mod error;
 mod interpolation;
 
 pub use cylinder_signals::CylinderSignals;
-pub use denoise::{denoised, noise_level};
+pub use denoise::{denoised, denoised_towards_zero, noise_level};
 pub use error::RecordingError;
 pub use interpolation::{cubic, linear, zero_order_hold};
 

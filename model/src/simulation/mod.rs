@@ -13,6 +13,7 @@ mod rest;
 mod run;
 mod sensitivity;
 mod spool_estimate;
+mod spool_memory;
 mod trajectory;
 mod undistorted;
 

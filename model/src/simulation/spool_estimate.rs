@@ -1,14 +1,20 @@
 //! The best estimate of where a spool really was.
 
-use crate::recording::{denoised, noise_level};
+use super::spool_memory::remembered;
+use crate::recording::{denoised, denoised_towards_zero, noise_level};
 
 /// Spool position (m²) from its sensor and, where there is one, from the command that moved it.
 ///
 /// A spool follows its command through a servo; a lag of first order with a delay, gain and offset, fitted to the
-/// recording, explains most of the motion without any noise. What it leaves is denoised and added back, so that nothing
-/// the sensor saw beyond its noise is lost: with a perfect servo the result is nearly noiseless, with none it is the
-/// denoised measurement.
+/// recording, explains most of the motion without any noise. What it leaves is denoised and added back where it is beyond
+/// doubt, so that nothing the sensor saw beyond its noise is lost: with a perfect servo the result is noiseless, with none
+/// it is the denoised measurement. Doubtful values would do harm: a valve with play of a few noise levels ends where its
+/// spool came last, and every little wave of the estimate about a resting spool would take it along.
 pub(super) fn spool_estimate(time: &[f64], measured: &[f64], command: &[f64]) -> Vec<f64> {
+    remembered(time, measured, command, || estimate(time, measured, command))
+}
+
+fn estimate(time: &[f64], measured: &[f64], command: &[f64]) -> Vec<f64> {
     if time.len() < 3 || noise_level(measured) == 0.0 || !command.iter().all(|area| area.is_finite()) {
         return denoised(measured);
     }
@@ -18,7 +24,7 @@ pub(super) fn spool_estimate(time: &[f64], measured: &[f64], command: &[f64]) ->
     if noise_level(&rest) > 1.2 * noise_level(measured) {
         return denoised(measured);
     }
-    denoised(&rest).iter().zip(&follower).map(|(rest, follower)| rest + follower).collect()
+    denoised_towards_zero(&rest).iter().zip(&follower).map(|(rest, follower)| rest + follower).collect()
 }
 
 /// Time constants that are tried, s: from faster than any sampling to a slow pilot stage.

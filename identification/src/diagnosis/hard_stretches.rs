@@ -1,0 +1,65 @@
+//! The stretches of recordings in which a model fails most.
+
+use excavator_model::recording::Recording;
+
+use crate::fit::Fit;
+
+/// Parts of `recordings`, of `duration` s or several of these in a row, in which `fit`, a fit to them, fails most: about
+/// `share` of their time. `None` where they are too short to choose from.
+///
+/// An effect that acts in a few moments only is in these, or it explains nothing.
+pub(super) fn hard_stretches(
+    fit: &Fit,
+    recordings: &[&Recording],
+    duration: f64,
+    share: f64,
+) -> Option<Vec<Recording>> {
+    let mut pieces: Vec<Piece> = Vec::new();
+    for (number, recording) in recordings.iter().enumerate() {
+        let count = (recording.duration() / duration).round().max(1.0);
+        let length = recording.duration() / count;
+        pieces.extend((0..count as usize).map(|piece| Piece {
+            recording: number,
+            begin: piece as f64 * length,
+            end: (piece + 1) as f64 * length,
+            failure: 0.0,
+        }));
+    }
+    let wanted = (pieces.len() as f64 * share).ceil() as usize;
+    if wanted < FEWEST {
+        return None;
+    }
+    for ((number, time), errors) in fit.block_places.iter().zip(&fit.block_errors) {
+        let squares = errors.iter().zip(fit.errors.iter().zip(&fit.instruments));
+        let failure: f64 = squares.map(|((squares, _), (error, own))| squares / error.max(own.noise).powi(2)).sum();
+        let holds = |piece: &&mut Piece| piece.recording == *number && (piece.begin..piece.end).contains(time);
+        if let Some(piece) = pieces.iter_mut().find(holds) {
+            piece.failure += failure;
+        }
+    }
+    let mut order: Vec<usize> = (0..pieces.len()).collect();
+    order.sort_by(|&a, &b| pieces[b].failure.total_cmp(&pieces[a].failure));
+    let mut chosen: Vec<usize> = order.into_iter().take(wanted).collect();
+    chosen.sort_unstable();
+    let mut stretches: Vec<Piece> = Vec::new();
+    for piece in chosen.into_iter().map(|number| pieces[number]) {
+        match stretches.last_mut() {
+            Some(last) if last.recording == piece.recording && last.end == piece.begin => last.end = piece.end,
+            _ => stretches.push(piece),
+        }
+    }
+    Some(stretches.iter().map(|piece| recordings[piece.recording].part(piece.begin, piece.end)).collect())
+}
+
+/// With fewer pieces than this there are hardly more readings than a race needs.
+const FEWEST: usize = 4;
+
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    recording: usize,
+    /// s after the recording's first sample.
+    begin: f64,
+    end: f64,
+    /// Sum of squared errors in units of each instrument's error.
+    failure: f64,
+}
