@@ -24,6 +24,11 @@ pub fn compare_losses(first: &Fit, second: &Fit) -> Evidence {
     Evidence { gain, significance: significance(&differences) }
 }
 
+/// Significance of two gains on different recordings together (Stouffer et al. 1949).
+pub(super) fn joint_significance(one: Evidence, other: Evidence) -> f64 {
+    (one.significance + other.significance) / std::f64::consts::SQRT_2
+}
+
 /// Logarithmic likelihood of a block's errors under normal errors of the size that the model has overall.
 fn block_likelihood(fit: &Fit, block: &[(f64, usize)]) -> f64 {
     block

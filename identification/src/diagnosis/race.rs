@@ -12,6 +12,7 @@ use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
 use super::candidate::{CandidateError, best_start};
+use super::evidence::joint_significance;
 use super::inclusion::inclusion;
 use super::starts::{acts_in_a_window, has_a_window};
 use super::track::{Track, short_fit};
@@ -206,10 +207,11 @@ impl Race<'_> {
             _ => evaluate(&fit.model, self.validation, settings)?,
         };
         let evidence = compare_losses(self.base_validation, &validation);
-        let identification_gain = compare_losses(self.base, &fit).gain;
+        let fitted = compare_losses(self.base, &fit);
         let accepted = evidence.gain >= self.least_gain
+            && fitted.gain >= self.least_gain / 2.0
             && evidence.significance >= self.settings.least_significance
-            && identification_gain >= self.least_gain / 2.0;
+            && joint_significance(evidence, fitted) >= self.settings.least_joint_significance;
         Ok(Candidate {
             physics,
             site,
@@ -218,7 +220,7 @@ impl Race<'_> {
             validation,
             evidence,
             inclusion: Inclusion::default(),
-            identification_gain,
+            identification_gain: fitted.gain,
             accepted,
             tied_with_first: false,
         })
@@ -236,8 +238,9 @@ fn in_its_own_window(model: &Model, recordings: &[&Recording], settings: &FitSet
 }
 
 fn mark_ties(candidates: &mut [Candidate], settings: &DiagnosisSettings) {
-    let Some((first, others)) = candidates.split_first_mut() else { return };
-    for other in others.iter_mut().filter(|candidate| candidate.accepted) {
+    let mut accepted = candidates.iter_mut().filter(|candidate| candidate.accepted);
+    let Some(first) = accepted.next() else { return };
+    for other in accepted {
         let lead = compare_losses(&other.validation, &first.validation);
         other.tied_with_first = lead.gain < settings.tie_gain || lead.significance < settings.tie_significance;
         first.tied_with_first |= other.tied_with_first;

@@ -14,9 +14,12 @@ pub struct DiagnosisSettings {
     /// The same where the model is adequate already: an effect that acts in a few moments only can still halve its squared
     /// error. Less than a third, effects gain by taking up imperfections that are none of theirs.
     pub least_gain_when_adequate: f64,
-    /// Least number of standard errors by which that gain must differ from zero; 3.5 keeps the chance of one false name
-    /// among 26 candidates near 1 %.
+    /// Least number of standard errors by which that gain must differ from zero; 3 keeps the chance of one false name
+    /// among 26 candidates near 3 %, were it not for the least gain.
     pub least_significance: f64,
+    /// The same with the gain on the identification recordings, both together. An effect that acts in a few moments of a
+    /// short validation recording can differ by so many standard errors only as it has moments; more recordings have more.
+    pub least_joint_significance: f64,
     /// Candidates whose loss is within this of the best one's are tied with it.
     pub tie_gain: f64,
     /// Candidates whose loss differs from the best one's by fewer standard errors are tied with it.
@@ -66,7 +69,8 @@ impl Default for DiagnosisSettings {
             fit: FitSettings::default(),
             least_gain: 0.22,
             least_gain_when_adequate: 0.4,
-            least_significance: 3.5,
+            least_significance: 3.0,
+            least_joint_significance: 4.5,
             tie_gain: 0.1,
             tie_significance: 2.0,
             doubtful_lead: 0.7,

@@ -14,7 +14,7 @@ use crate::regression::{WeakFormSettings, weak_form};
 /// Regressed starts come first.
 pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let plain = plain_starts(model, recordings);
-    // Thinned to this rate a regression still sees what starts a fit, in a third of the time.
+    // Thinned to this rate a regression still sees what starts a fit, in half the time.
     let thinned: Vec<Recording> = recordings.iter().map(|recording| thinned_to(recording, START_RATE)).collect();
     let thinned: Vec<&Recording> = thinned.iter().collect();
     let quick =
@@ -26,8 +26,8 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     regressed.chain(plain.iter().cloned()).collect()
 }
 
-/// Samples per second of the regressions that give starts: those of the fits that follow.
-const START_RATE: f64 = 170.0;
+/// Samples per second of the regressions that give starts. At 170 Hz the start of a contact that lasts seconds is lost.
+const START_RATE: f64 = 250.0;
 
 fn thinned_to(recording: &Recording, rate: f64) -> Recording {
     let stride = (1.0 / (recording.sample_interval() * rate)).round();

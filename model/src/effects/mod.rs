@@ -27,6 +27,7 @@ mod hose_loss;
 mod inertia;
 mod internal_leakage;
 mod load_check_valve;
+mod make_up_valve;
 mod oil_compressibility;
 mod open_centre_bypass;
 mod opening_scale;
@@ -75,6 +76,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &valve_leakage::ValveLeakage,
     &valve_lag::ValveLag,
     &load_check_valve::LoadCheckValve,
+    &make_up_valve::MakeUpValve,
     &hose_loss::HoseLoss,
     &entrained_air::EntrainedAir,
     &stribeck_friction::StribeckFriction,

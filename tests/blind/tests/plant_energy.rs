@@ -91,7 +91,7 @@ fn energy_is_kept_with_effects_on_flow_and_friction() {
         "pump_leakage",
         "bypass_overlap",
         "external_contact",
-        "cavitation",
+        "make_up_valve",
         "friction_bump",
         "stroke_leakage",
         "spool_flow_force",

@@ -272,7 +272,7 @@ pub static CATALOGUE: &[Kind] = &[
         |effects| vec![("contact_force", effects.load.contact_force)],
     ),
     new(
-        "cavitation",
+        "make_up_valve",
         3.0,
         |effects, _, factor| effects.oil.make_up_pressure = Some(-9e4 + 2e5 * factor),
         |effects| effects.oil.make_up_pressure.map_or_else(Vec::new, |pressure| vec![("make_up_pressure", pressure)]),

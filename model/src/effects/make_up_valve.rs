@@ -1,0 +1,63 @@
+//! Valves that let oil from the tank line into a chamber that is drawn empty.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Machine;
+
+/// Make-up valves: a check valve from the tank line to each chamber.
+pub struct MakeUpValve;
+
+static CARD: Card = Card {
+    name: "make_up_valve",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Candidate,
+    summary: "A check valve lets oil from the tank line into a chamber that is drawn below its pressure: the load runs ahead without the chamber boiling.",
+    equation: "Q+ = k max(0, pt - pm - p+), likewise on the rod side",
+    source: "textbook (e.g. Merritt, Hydraulic Control Systems): anti-cavitation check valves",
+    shows: "A chamber pressure that rests at a floor near the tank's while the piston runs ahead of the oil.",
+    experiment: "Lower a load fast, or brake it hard against a closing valve.",
+    energy: "Supplies oil at the chamber's pressure; what it lost on the way from tank pressure is outside the cylinders.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "make_up_cracking",
+        symbol: "pm",
+        unit: "Pa",
+        meaning: "how far below tank pressure a chamber must be drawn for its valve to open",
+        kind: Kind::Shape,
+        minimum: 0.0,
+        maximum: 2e6,
+        typical: 2e4,
+        start: Start::At(&[2e4, 1e5]),
+    },
+    ParameterCard {
+        name: "make_up_valve_gain",
+        symbol: "k",
+        unit: "m3/(s Pa)",
+        meaning: "flow per pressure beyond cracking",
+        kind: Kind::Linear,
+        minimum: 0.0,
+        maximum: 1e-6,
+        typical: 3e-9,
+        start: Start::At(&[3e-10]),
+    },
+];
+
+impl Physics for MakeUpValve {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        let opens = now.tank_pressure - parameters[0];
+        rows.cap_flow[cylinder] += (opens - piston.cap_pressure).positive_part() * parameters[1];
+        rows.rod_flow[cylinder] += (opens - piston.rod_pressure).positive_part() * parameters[1];
+    }
+}
