@@ -21,9 +21,25 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
         WeakFormSettings { rounds: 1, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
     let regressed = plain
         .iter()
-        .filter_map(|start| weak_form(start, &thinned, &quick).ok())
-        .map(|regression| within_bounds(regression.model));
+        .filter_map(|start| weak_form(&with_held_times(start), &thinned, &quick).ok())
+        .map(|regression| with_free_times(within_bounds(regression.model)));
     regressed.chain(plain.iter().cloned()).collect()
+}
+
+/// The model with the times of its last effect held. A regression sees an edge in a few windows only, and its one step from
+/// there can be years long.
+fn with_held_times(model: &Model) -> Model {
+    with_times(model.clone(), true)
+}
+
+fn with_free_times(model: Model) -> Model {
+    with_times(model, false)
+}
+
+fn with_times(mut model: Model, known: bool) -> Model {
+    let last = model.effects.last_mut().into_iter().flat_map(|effect| &mut effect.parameters);
+    last.filter(|parameter| parameter.card.start.is_a_time()).for_each(|parameter| parameter.known = known);
+    model
 }
 
 /// Samples per second of the regressions that give starts. At 170 Hz the start of a contact that lasts seconds is lost.
@@ -44,12 +60,12 @@ pub(super) fn within_bounds(mut model: Model) -> Model {
 
 /// Whether an effect acts in a window of time, which belongs to one recording and says nothing about another.
 pub(super) fn acts_in_a_window(effect: &ModelEffect) -> bool {
-    effect.parameters.iter().any(|parameter| parameter.card.start == Start::WorstStretchBegin)
+    effect.parameters.iter().any(|parameter| parameter.card.start.is_a_time())
 }
 
 /// The same of a candidate that is not in a model yet. Where it acts does not matter.
 pub(super) fn has_a_window(physics: &dyn Effect, machine: &Machine, site: Site) -> bool {
-    physics.parameters(machine, site).iter().any(|card| card.start == Start::WorstStretchBegin)
+    physics.parameters(machine, site).iter().any(|card| card.start.is_a_time())
 }
 
 /// Windows of time that are tried as starts.

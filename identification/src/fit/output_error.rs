@@ -283,6 +283,10 @@ pub(super) fn parameter_step(sums: &[SegmentSums], held: &[bool], damping: f64) 
     information.cholesky().map(|factor| factor.solve(&gradient))
 }
 
+/// Most that a step moves the edges of a window of time, s. An edge is seen only where it is: what lies beyond comes to
+/// light step by step, and a long one ends outside the recording, from where nothing leads back.
+const LONGEST_SHIFT: f64 = 1.0;
+
 /// All values after a step of the fitted ones, which stay within their bounds, and what was taken of it, in scales.
 pub(super) fn bounded_step(
     values: &[f64],
@@ -295,7 +299,8 @@ pub(super) fn bounded_step(
     let mut taken = DVector::zeros(fitted.len());
     for (number, &index) in fitted.iter().enumerate() {
         let card = cards[index];
-        let wanted = values[index] + step[number] * scales[number];
+        let most = if card.start.is_a_time() { LONGEST_SHIFT } else { f64::INFINITY };
+        let wanted = values[index] + (step[number] * scales[number]).clamp(-most, most);
         stepped[index] = wanted.clamp(card.minimum, card.maximum);
         taken[number] = (stepped[index] - values[index]) / scales[number];
     }

@@ -66,6 +66,13 @@ pub enum Start {
     WorstStretchDuration,
 }
 
+impl Start {
+    /// Whether the parameter says when something happens in a recording, s.
+    pub fn is_a_time(self) -> bool {
+        matches!(self, Start::WorstStretchBegin | Start::WorstStretchDuration)
+    }
+}
+
 /// One parameter of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParameterCard {
