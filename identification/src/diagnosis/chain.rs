@@ -101,9 +101,9 @@ impl Chains<'_> {
         let mut chain = vec![first];
         // Each detour costs a link that is taken out again.
         for _ in 0..2 * self.settings.most_effects {
-            let adequate =
-                chain.last().is_some_and(|last| is_adequate(&last.validation, self.validation, self.settings));
-            let next = if adequate || chain.len() > self.settings.most_effects {
+            let next = if chain.last().is_some_and(|last| self.leaves_little(last))
+                || chain.len() > self.settings.most_effects
+            {
                 None
             } else {
                 self.round(&chain, progress).fitted.into_iter().find(|candidate| candidate.accepted)
@@ -119,6 +119,13 @@ impl Chains<'_> {
         // One more than the most was for a detour; there was none.
         chain.truncate(self.settings.most_effects);
         Ok(chain)
+    }
+
+    /// Whether nothing that could be named is left: the model is adequate, and its whole loss less than another effect would
+    /// have to take away.
+    fn leaves_little(&self, last: &Candidate) -> bool {
+        is_adequate(&last.validation, self.validation, self.settings)
+            && last.validation.loss() < self.settings.least_gain_when_adequate
     }
 
     /// The chain without the link whose removal costs least, if that is less than would have let it in.
