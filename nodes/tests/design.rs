@@ -140,8 +140,8 @@ rate = 1000.0
 cylinder = "arm"
 segments = [
     { kind = "hold", duration = 0.5, area = 0.0 },
-    { kind = "sine", duration = 6.0, amplitude = 6e-5, frequency = 0.5 },
-    { kind = "sine", duration = 6.25, amplitude = 4e-5, frequency = 0.8 },
+    { kind = "sine", duration = 6.0, amplitude = 6e-5, frequency = 0.25 },
+    { kind = "sine", duration = 6.6667, amplitude = 4e-5, frequency = 0.3 },
 ]
 "#;
 

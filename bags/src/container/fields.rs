@@ -33,10 +33,15 @@ impl<'b> Fields<'b> {
         self.array().map(u64::from_le_bytes)
     }
 
+    /// Bytes with their number in front.
+    pub fn counted(&mut self) -> Option<&'b [u8]> {
+        let length = usize::try_from(self.u32()?).ok()?;
+        self.bytes(length)
+    }
+
     /// Text with its length in front.
     pub fn text(&mut self) -> Option<&'b str> {
-        let length = usize::try_from(self.u32()?).ok()?;
-        std::str::from_utf8(self.bytes(length)?).ok()
+        std::str::from_utf8(self.counted()?).ok()
     }
 }
 

@@ -9,6 +9,7 @@ mod damage;
 mod fields;
 mod framing;
 mod mcap_file;
+mod record;
 mod registry;
 mod summary;
 

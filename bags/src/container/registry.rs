@@ -6,6 +6,7 @@ use std::sync::Arc;
 use mcap::McapError;
 use mcap::records::{Record, op};
 
+use super::record::parsed;
 use crate::raw_messages::Topic;
 
 /// Schemas and topics by their numbers in the file.
@@ -39,7 +40,7 @@ impl Registry {
         if opcode != op::SCHEMA && opcode != op::CHANNEL {
             return Ok(());
         }
-        match mcap::parse_record(opcode, content)? {
+        match parsed(opcode, content)? {
             Record::Schema { header, data } => {
                 let schema = Schema {
                     name: header.name,

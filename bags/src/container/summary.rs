@@ -4,6 +4,7 @@ use mcap::records::{Record, op};
 
 use super::fields::Fields;
 use super::framing::{HEADER_LENGTH, RecordFile, next_in_memory};
+use super::record::parsed;
 use super::registry::Registry;
 use crate::BagError;
 
@@ -69,7 +70,7 @@ fn read_section(section: &[u8], registry: &mut Registry) -> Vec<u64> {
     while let Ok(Some((opcode, range))) = next_in_memory(section, &mut position) {
         let content = &section[range];
         if opcode == op::CHUNK_INDEX {
-            if let Ok(Record::ChunkIndex(index)) = mcap::parse_record(opcode, content) {
+            if let Ok(Record::ChunkIndex(index)) = parsed(opcode, content) {
                 chunk_offsets.push(index.chunk_start_offset);
             }
         } else if registry.define(opcode, content).is_err() {

@@ -63,3 +63,55 @@ struct Piece {
     /// Sum of squared errors in units of each instrument's error.
     failure: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use excavator_model::equations::Channel;
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::fit::Instrument;
+
+    /// A fit whose squared error is 1 in each block of half a second, and 100 in the blocks that begin in `bad`.
+    fn fit(seconds: usize, bad: &[std::ops::Range<f64>]) -> Fit {
+        let places: Vec<(usize, f64)> = (0..2 * seconds).map(|block| (0, block as f64 * 0.5)).collect();
+        let error = |time: &f64| if bad.iter().any(|bad| bad.contains(time)) { 100.0 } else { 1.0 };
+        Fit {
+            model: excavator_model::document::built_in("emps").unwrap_or_else(|_| unreachable!()),
+            fitted: Vec::new(),
+            covariance: DMatrix::zeros(0, 0),
+            inflation: Vec::new(),
+            instruments: vec![Instrument {
+                name: "load.displacement".into(),
+                unit: "m",
+                channel: Channel::Displacement(0),
+                noise: 1.0,
+            }],
+            errors: vec![1.0],
+            block_errors: places.iter().map(|(_, time)| vec![(error(time), 5)]).collect(),
+            block_places: places,
+            steps: 0,
+            converged: true,
+        }
+    }
+
+    fn recording(seconds: usize) -> Recording {
+        Recording::unmeasured("bag", (0..10 * seconds + 1).map(|index| index as f64 * 0.1).collect(), &["load"])
+    }
+
+    #[test]
+    fn stretches_in_a_row_are_one_part_and_good_ones_are_left_out() {
+        let recording = recording(40);
+        let bad = [4.0..8.0, 8.0..12.0, 20.0..22.0, 36.0..38.0];
+        let parts = hard_stretches(&fit(40, &bad), &[&recording], 4.0, 0.4).unwrap_or_default();
+        let spans: Vec<(i64, f64)> =
+            parts.iter().map(|part| (part.start_nanoseconds / 1_000_000_000, part.duration().round())).collect();
+        assert_eq!(spans, [(4, 8.0), (20, 4.0), (36, 4.0)]);
+    }
+
+    #[test]
+    fn short_recordings_are_used_whole() {
+        let recording = recording(20);
+        assert!(hard_stretches(&fit(20, &[]), &[&recording], 4.0, 0.5).is_none());
+    }
+}

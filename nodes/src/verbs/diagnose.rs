@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
+use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, Unpromising, diagnose};
 use excavator_identification::energy::{EnergySettings, MissingPower, analyse, missing_power};
 use excavator_identification::report::{diagnosis_page, verdict_sentence};
 use excavator_identification::validation::{Comparison, compare};
@@ -70,7 +70,18 @@ pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
     let all: Vec<_> = diagnosis.candidates.iter().chain(&diagnosis.rejected).collect();
     print(&candidate_table(&all, &diagnosis.nominal_validation, validation).to_string());
     if !diagnosis.unpromising.is_empty() {
-        let names: Vec<&str> = diagnosis.unpromising.iter().map(|effect| effect.physics.card().name).collect();
+        let same = |effect: &Unpromising| {
+            diagnosis.unpromising.iter().filter(|other| other.physics.card().name == effect.physics.card().name).count()
+        };
+        // The place only where it tells two apart.
+        let names: Vec<String> = diagnosis
+            .unpromising
+            .iter()
+            .map(|effect| match same(effect) {
+                1 => effect.physics.card().name.to_string(),
+                _ => format!("{}@{}", effect.physics.card().name, effect.place),
+            })
+            .collect();
         print(&format!("Left behind after a few steps: {}.", names.join(", ")));
     }
     for (name, error) in &diagnosis.failed {
