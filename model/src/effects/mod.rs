@@ -143,8 +143,14 @@ pub(crate) fn needs_pressures_only(effect: &dyn Effect) -> bool {
 }
 
 /// Effects that act on cylinders, but only on their oil.
-const OIL_EFFECTS: &[&str] =
-    &["internal_leakage", "external_leakage", "entrained_air", "cavitation", "pressure_dependent_friction"];
+const OIL_EFFECTS: &[&str] = &[
+    "internal_leakage",
+    "external_leakage",
+    "entrained_air",
+    "cavitation",
+    "make_up_valve",
+    "pressure_dependent_friction",
+];
 
 /// Effects that act on cylinders and pump line alike, and on cylinders without oil too.
 const WITHOUT_OIL: &[&str] = &["sensor_delay"];
