@@ -7,6 +7,7 @@
 //! that a lost peer is back, a second one without any endpoint, the scout, looks out for it.
 
 use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
 
 use nix::ifaddrs::getifaddrs;
 use nix::net::if_::InterfaceFlags;
@@ -14,6 +15,12 @@ use rustdds::{DomainParticipant, DomainParticipantStatusEvent, LostReason, RTPSE
 
 use super::Environment;
 use super::link::participant;
+
+/// Threads that the middleware starts for a participant: one for the wire, one for discovery.
+const STARTED: usize = 2;
+
+/// Time after which these have started, s: a hundred times what it takes.
+const SETTLED: Duration = Duration::from_secs(1);
 
 /// Identity of a participant.
 type Prefix = [u8; 12];
@@ -56,6 +63,7 @@ pub(super) struct Observations {
 pub(super) struct Watch {
     environment: Environment,
     participant: DomainParticipant,
+    since: Instant,
     threads: BTreeSet<u32>,
     present: BTreeSet<Prefix>,
     lost: BTreeSet<Prefix>,
@@ -69,6 +77,7 @@ impl Watch {
         Watch {
             environment,
             participant,
+            since: Instant::now(),
             threads: middleware_threads(),
             present: BTreeSet::new(),
             lost: BTreeSet::new(),
@@ -89,10 +98,8 @@ impl Watch {
 
     /// Looks.
     pub fn look(&mut self) -> Observations {
-        let mut seen = Observations::default();
-        let alive = middleware_threads().intersection(&self.threads).count();
-        if alive < self.threads.len() {
-            seen.fault = Some(Fault::ThreadsDied { alive, started: self.threads.len() });
+        let mut seen = Observations { fault: self.dead_threads(), notes: Vec::new() };
+        if seen.fault.is_some() {
             return seen;
         }
         let mut newly_lost = false;
@@ -146,6 +153,19 @@ impl Watch {
         seen
     }
 
+    /// Threads may end, by a signal that interrupts them, before they were ever counted; and they take a name, which they
+    /// are known by, a moment after their start.
+    fn dead_threads(&mut self) -> Option<Fault> {
+        let now = middleware_threads();
+        let settled = self.since.elapsed() > SETTLED;
+        if self.threads.len() < STARTED && !settled {
+            self.threads.extend(&now);
+        }
+        let alive = now.intersection(&self.threads).count();
+        let started = if settled && threads_are_told() { self.threads.len().max(STARTED) } else { self.threads.len() };
+        (alive < started).then_some(Fault::ThreadsDied { alive, started })
+    }
+
     fn send_scout(&mut self, newly_lost: bool, seen: &mut Observations) {
         if self.lost.is_empty() {
             self.scout = None;
@@ -178,9 +198,16 @@ fn prefix_of(bytes: &[u8]) -> Prefix {
     prefix
 }
 
+/// Where the system tells about the threads of this process.
+const THREADS: &str = "/proc/self/task";
+
+fn threads_are_told() -> bool {
+    std::path::Path::new(THREADS).is_dir()
+}
+
 /// Threads of this process that the middleware has started; empty where the system does not tell.
 fn middleware_threads() -> BTreeSet<u32> {
-    let Ok(entries) = std::fs::read_dir("/proc/self/task") else { return BTreeSet::new() };
+    let Ok(entries) = std::fs::read_dir(THREADS) else { return BTreeSet::new() };
     entries
         .flatten()
         .filter(|entry| {
