@@ -18,5 +18,4 @@ pub mod recording;
 pub mod scalar;
 pub mod simulation;
 
-pub use model::site_name;
-pub use model::{HistoryEntry, Model, ModelEffect, ModelError, Parameter, SignalError};
+pub use model::{HistoryEntry, Model, ModelEffect, ModelError, Parameter, SignalError, addition_name, site_name};

@@ -163,6 +163,11 @@ pub fn site_name(machine: &Machine, site: Site) -> &str {
     }
 }
 
+/// Name of an effect at a place, as results and commands write it: `pump_leakage@pump`.
+pub fn addition_name(physics: &dyn Effect, place: &str) -> String {
+    format!("{}@{place}", physics.card().name)
+}
+
 fn why_not(physics: &dyn Effect, machine: &Machine, site: Site) -> Option<&'static str> {
     let pump_line = matches!(machine.supply, Supply::PumpLine(_));
     match (physics.card().acts_on, site) {

@@ -77,27 +77,6 @@ fn print(name: &str, mut values: Vec<f64>) {
     println!("{name:<28}{median:>9.3}{p99:>9.3}{p999:>9.3}{most:>9.3}   ({} samples)", values.len());
 }
 
-/// Times of datagrams from one thread to another, ms.
-fn plain_datagrams(count: usize) -> Vec<f64> {
-    let receiver = UdpSocket::bind("127.0.0.1:0").unwrap();
-    receiver.set_read_timeout(Some(Duration::from_secs(1))).unwrap();
-    let address = receiver.local_addr().unwrap();
-    let sender = std::thread::spawn(move || {
-        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
-        for _ in 0..count {
-            std::thread::sleep(Duration::from_millis(1));
-            socket.send_to(&now().to_le_bytes(), address).unwrap();
-        }
-    });
-    let mut bytes = [0; 8];
-    let mut times = Vec::new();
-    while times.len() < count && receiver.recv(&mut bytes).is_ok() {
-        times.push((now() - i64::from_le_bytes(bytes)) as f64 * 1e-6);
-    }
-    sender.join().unwrap();
-    times
-}
-
 /// Times of datagrams through a chain of threads, from the first to the last, ms.
 ///
 /// A state passes as many threads on its way to the energy message and back here: the simulator's loop, and in each
@@ -140,7 +119,7 @@ fn main() {
     let Some(program) = words.get(1) else { panic!("usage: live_latency EXCAVATOR [SECONDS] [RATE]") };
     let seconds: f64 = words.get(2).map_or(10.0, |word| word.parse().unwrap());
     let rate = words.get(3).map_or("1000", |word| word.as_str());
-    let datagrams = plain_datagrams(3000);
+    let datagrams = relayed_datagrams(3000, 1);
     let relayed = relayed_datagrams(3000, RELAYS);
     let supervisor = Supervisor::start("latency_meter", &RosArguments::default(), Vec::new()).unwrap();
     let states: Arc<Mutex<Vec<Times>>> = Arc::default();

@@ -1,7 +1,7 @@
 //! Models that are to be told apart.
 
 use excavator_model::effects::{Effect, Site};
-use excavator_model::{Model, site_name};
+use excavator_model::{Model, addition_name, site_name};
 
 use super::DesignError;
 
@@ -54,7 +54,7 @@ impl Rival {
                 parameter.value = parameter.card.typical.clamp(parameter.card.minimum, parameter.card.maximum);
             }
         }
-        let name = format!("{}@{}", physics.card().name, site_name(&model.machine, site));
+        let name = addition_name(physics, site_name(&model.machine, site));
         Ok(Rival { name, addition: Some((physics, site)), model: extended })
     }
 

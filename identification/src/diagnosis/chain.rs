@@ -140,7 +140,11 @@ impl Chains<'_> {
         let mut least: Option<(f64, usize)> = None;
         for link in 0..earlier.len() {
             let mut shorter = last.fit.model.clone();
-            if shorter.effects.len() <= given + link || acts_in_a_window(&shorter.effects.remove(given + link)) {
+            if shorter.effects.len() <= given + link {
+                continue;
+            }
+            let removed = shorter.effects.remove(given + link);
+            if acts_in_a_window(removed.physics, &shorter.machine, removed.site) {
                 continue;
             }
             let Ok(shorter) = fit(&shorter, self.identification, &settings.fit) else { continue };

@@ -66,33 +66,16 @@ struct Piece {
 
 #[cfg(test)]
 mod tests {
-    use excavator_model::equations::Channel;
-    use nalgebra::DMatrix;
-
     use super::*;
-    use crate::fit::Instrument;
+    use crate::fit::made_up::made_up_fit;
 
     /// A fit whose squared error is 1 in each block of half a second, and 100 in the blocks that begin in `bad`.
     fn fit(seconds: usize, bad: &[std::ops::Range<f64>]) -> Fit {
         let places: Vec<(usize, f64)> = (0..2 * seconds).map(|block| (0, block as f64 * 0.5)).collect();
         let error = |time: &f64| if bad.iter().any(|bad| bad.contains(time)) { 100.0 } else { 1.0 };
-        Fit {
-            model: excavator_model::document::built_in("emps").unwrap_or_else(|_| unreachable!()),
-            fitted: Vec::new(),
-            covariance: DMatrix::zeros(0, 0),
-            inflation: Vec::new(),
-            instruments: vec![Instrument {
-                name: "load.displacement".into(),
-                unit: "m",
-                channel: Channel::Displacement(0),
-                noise: 1.0,
-            }],
-            errors: vec![1.0],
-            block_errors: places.iter().map(|(_, time)| vec![(error(time), 5)]).collect(),
-            block_places: places,
-            steps: 0,
-            converged: true,
-        }
+        let model = excavator_model::document::built_in("emps").unwrap_or_else(|_| unreachable!());
+        let block_errors = places.iter().map(|(_, time)| vec![(error(time), 5)]).collect();
+        Fit { block_errors, block_places: places, ..made_up_fit(model, 1.0, 1.0) }
     }
 
     fn recording(seconds: usize) -> Recording {

@@ -6,18 +6,18 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use excavator_model::Model;
 use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
+use excavator_model::{Model, addition_name, site_name};
 use rayon::prelude::*;
 
 use super::candidate::{CandidateError, best_start};
 use super::evidence::joint_significance;
 use super::inclusion::inclusion;
-use super::starts::{acts_in_a_window, has_a_window};
+use super::starts::acts_in_a_window;
 use super::track::{Track, short_fit};
 use super::{Candidate, DiagnosisSettings, Inclusion, Unpromising, compare_losses, is_adequate};
-use crate::fit::{Fit, FitError, FitSettings, evaluate, fit};
+use crate::fit::{Fit, FitSettings, evaluate, fit};
 
 /// What became of all candidates.
 #[derive(Default)]
@@ -75,13 +75,12 @@ pub(super) struct Race<'a> {
 
 impl Race<'_> {
     /// Tries all additions, best on validation first.
-    ///
     pub fn run(&self, wanted: &[(&'static dyn Effect, Site)], progress: &(dyn Fn(&str, f64) + Sync)) -> Round {
         let hard = Track::hard(self);
         let machine = &self.base.model.machine;
-        let needs_all = |&(physics, site): &(&'static dyn Effect, Site)| has_a_window(physics, machine, site);
+        let needs_all = |&(physics, site): &(&'static dyn Effect, Site)| acts_in_a_window(physics, machine, site);
         // A window of time is one of a whole recording.
-        let whole = (hard.is_none() || wanted.iter().any(needs_all)).then(|| Track::whole(self));
+        let whole = Track::whole(self);
         let done = AtomicUsize::new(0);
         // Full fits take about a third of the time.
         let total = wanted.len() as f64 * 1.5;
@@ -93,12 +92,10 @@ impl Race<'_> {
         let outcomes: Vec<(String, Outcome)> = wanted
             .into_par_iter()
             .map(|(physics, site)| {
-                let place = excavator_model::site_name(&self.base.model.machine, site).to_string();
-                let name = format!("{}@{place}", physics.card().name);
-                let track = hard.as_ref().filter(|_| !needs_all(&(physics, site))).or(whole.as_ref());
-                let outcome = track.map_or(Outcome::Failed(FitError::TooShort.into()), |track| {
-                    self.heat(physics, site, place, track).unwrap_or_else(Outcome::Failed)
-                });
+                let place = site_name(machine, site).to_string();
+                let name = addition_name(physics, &place);
+                let track = hard.as_ref().filter(|_| !needs_all(&(physics, site))).unwrap_or(&whole);
+                let outcome = self.heat(physics, site, place, track).unwrap_or_else(Outcome::Failed);
                 advance(&name);
                 (name, outcome)
             })
@@ -163,7 +160,7 @@ impl Race<'_> {
         let full: Vec<(String, Result<Candidate, CandidateError>)> = runners
             .into_par_iter()
             .map(|runner| {
-                let name = format!("{}@{}", runner.physics.card().name, runner.place);
+                let name = addition_name(runner.physics, &runner.place);
                 let candidate = self.judged(runner);
                 advance(&name);
                 (name, candidate)
@@ -203,7 +200,9 @@ impl Race<'_> {
         let Runner { physics, site, place, fit: start, .. } = runner;
         let fit = fit(&start.model, self.identification, settings)?;
         let validation = match fit.model.effects.last() {
-            Some(effect) if acts_in_a_window(effect) => in_its_own_window(&fit.model, self.validation, settings)?,
+            Some(effect) if acts_in_a_window(effect.physics, &fit.model.machine, effect.site) => {
+                in_its_own_window(&fit.model, self.validation, settings)?
+            }
             _ => evaluate(&fit.model, self.validation, settings)?,
         };
         let evidence = compare_losses(self.base_validation, &validation);

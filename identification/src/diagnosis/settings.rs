@@ -28,8 +28,8 @@ pub struct DiagnosisSettings {
     /// origin that is larger than a lead may as well have made it.
     pub doubtful_lead: f64,
     /// A model whose typical loss ([`crate::fit::Fit::typical_loss`]) is below this is adequate. 0.6 is 1.35 times the
-    /// sensors' noise; the right model of a machine with the small imperfections that every machine has comes to 0.1 to
-    /// 0.3 in the blind benchmark.
+    /// sensors' noise; the right model of a machine with the small imperfections that every machine has comes to
+    /// -0.1 to 0.1 in the blind benchmark.
     pub adequate_loss: f64,
     /// Or its normalised mean squared error, mean over signals, is below this: a hundredth of each signal's own size,
     /// which nobody would act on however quiet the sensors are.
@@ -53,7 +53,8 @@ pub struct DiagnosisSettings {
     /// Steps of a fit in the race.
     pub race_steps: usize,
     /// Share of the recordings that the race is run on, the stretches in which the model without additions fails most.
-    /// Half of them costs half the time and names the same finalists.
+    /// Half of them costs half the time and leads to the same verdicts on
+    /// the practice recordings.
     pub race_share: f64,
     /// So many candidates, the best of the race, are fitted to the end.
     pub finalists: usize,

@@ -1,7 +1,6 @@
 //! Where the fit of a candidate effect starts.
 
 use excavator_model::Model;
-use excavator_model::ModelEffect;
 use excavator_model::effects::{Effect, Kind, Site, Start};
 use excavator_model::machine::Machine;
 use excavator_model::recording::Recording;
@@ -21,24 +20,16 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
         WeakFormSettings { rounds: 1, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
     let regressed = plain
         .iter()
-        .filter_map(|start| weak_form(&with_held_times(start), &thinned, &quick).ok())
-        .map(|regression| with_free_times(within_bounds(regression.model)));
+        .filter_map(|start| weak_form(&with_times(start.clone(), true), &thinned, &quick).ok())
+        .map(|regression| with_times(within_bounds(regression.model), false));
     regressed.chain(plain.iter().cloned()).collect()
 }
 
-/// The model with the times of its last effect held. A regression sees an edge in a few windows only, and its one step from
-/// there can be years long.
-fn with_held_times(model: &Model) -> Model {
-    with_times(model.clone(), true)
-}
-
-fn with_free_times(model: Model) -> Model {
-    with_times(model, false)
-}
-
-fn with_times(mut model: Model, known: bool) -> Model {
+/// The model with the times of its last effect `held` or free. A regression sees an edge in a few windows only, and its one
+/// step from there can be years long.
+fn with_times(mut model: Model, held: bool) -> Model {
     let last = model.effects.last_mut().into_iter().flat_map(|effect| &mut effect.parameters);
-    last.filter(|parameter| parameter.card.start.is_a_time()).for_each(|parameter| parameter.known = known);
+    last.filter(|parameter| parameter.card.start.is_a_time()).for_each(|parameter| parameter.known = held);
     model
 }
 
@@ -59,12 +50,7 @@ pub(super) fn within_bounds(mut model: Model) -> Model {
 }
 
 /// Whether an effect acts in a window of time, which belongs to one recording and says nothing about another.
-pub(super) fn acts_in_a_window(effect: &ModelEffect) -> bool {
-    effect.parameters.iter().any(|parameter| parameter.card.start.is_a_time())
-}
-
-/// The same of a candidate that is not in a model yet. Where it acts does not matter.
-pub(super) fn has_a_window(physics: &dyn Effect, machine: &Machine, site: Site) -> bool {
+pub(super) fn acts_in_a_window(physics: &dyn Effect, machine: &Machine, site: Site) -> bool {
     physics.parameters(machine, site).iter().any(|card| card.start.is_a_time())
 }
 
@@ -94,7 +80,11 @@ fn windows(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
 
 fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let Some(last) = model.effects.last() else { return vec![model.clone()] };
-    let mut starts = if acts_in_a_window(last) { windows(model, recordings) } else { vec![model.clone()] };
+    let mut starts = if acts_in_a_window(last.physics, &model.machine, last.site) {
+        windows(model, recordings)
+    } else {
+        vec![model.clone()]
+    };
     for (number, parameter) in last.parameters.iter().enumerate() {
         let values: Vec<f64> = match parameter.card.start {
             // Set by the windows.

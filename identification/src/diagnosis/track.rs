@@ -1,5 +1,6 @@
 //! What candidates race on.
 
+use excavator_model::Model;
 use excavator_model::recording::Recording;
 
 use super::hard_stretches::hard_stretches;
@@ -47,11 +48,7 @@ impl Track {
 ///
 /// # Errors
 /// [`FitError`].
-pub(super) fn short_fit(
-    model: &excavator_model::Model,
-    recordings: &[Recording],
-    race: &Race<'_>,
-) -> Result<Fit, FitError> {
+pub(super) fn short_fit(model: &Model, recordings: &[Recording], race: &Race<'_>) -> Result<Fit, FitError> {
     let settings = FitSettings { maximum_steps: race.settings.race_steps, ..race.settings.fit };
     fit(model, &recordings.iter().collect::<Vec<_>>(), &settings)
 }

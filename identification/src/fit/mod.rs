@@ -2,6 +2,8 @@
 
 mod instruments;
 mod linear_refit;
+#[cfg(test)]
+pub(crate) mod made_up;
 mod normal_equations;
 mod output_error;
 mod prediction;

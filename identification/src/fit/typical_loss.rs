@@ -31,31 +31,13 @@ impl Fit {
 
 #[cfg(test)]
 mod tests {
-    use excavator_model::Model;
-    use excavator_model::equations::Channel;
-    use nalgebra::DMatrix;
-
     use super::*;
-    use crate::fit::Instrument;
+    use crate::fit::made_up::made_up_fit;
 
     fn fit(squares: &[f64]) -> Fit {
-        Fit {
-            model: excavator_model::document::built_in("emps").unwrap_or_else(|_| unreachable!()) as Model,
-            fitted: Vec::new(),
-            covariance: DMatrix::zeros(0, 0),
-            inflation: Vec::new(),
-            instruments: vec![Instrument {
-                name: "load.displacement".into(),
-                unit: "m",
-                channel: Channel::Displacement(0),
-                noise: 2.0,
-            }],
-            errors: vec![2.0],
-            block_errors: squares.iter().map(|&squares| vec![(squares, 10)]).collect(),
-            block_places: Vec::new(),
-            steps: 0,
-            converged: true,
-        }
+        let model = excavator_model::document::built_in("emps").unwrap_or_else(|_| unreachable!());
+        let block_errors = squares.iter().map(|&squares| vec![(squares, 10)]).collect();
+        Fit { block_errors, ..made_up_fit(model, 2.0, 2.0) }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::RunError;
-use excavator_model::{HistoryEntry, Model, ModelError, site_name};
+use excavator_model::{HistoryEntry, Model, ModelError, addition_name, site_name};
 
 use crate::diagnosis::{
     CandidateError, Diagnosis, DiagnosisError, DiagnosisSettings, Verdict, diagnose, fit_addition, fit_nominal,
@@ -120,7 +120,7 @@ pub fn refine(
             let diagnosis = diagnose(model, identification, validation, settings, progress)?;
             fits.push((None, diagnosis.nominal.clone()));
             for candidate in &diagnosis.chain {
-                fits.push((Some(format!("{}@{}", candidate.name(), candidate.place)), candidate.fit.clone()));
+                fits.push((Some(addition_name(candidate.physics, &candidate.place)), candidate.fit.clone()));
             }
             Some(diagnosis)
         }
@@ -129,7 +129,7 @@ pub fn refine(
             let mut current = fit_nominal(model, identification, settings)?;
             fits.push((None, current.clone()));
             for (number, &(physics, site)) in named.iter().enumerate() {
-                let name = format!("{}@{}", physics.card().name, site_name(&model.machine, site));
+                let name = addition_name(physics, site_name(&model.machine, site));
                 progress(&name, (number + 1) as f64 / (named.len() + 1) as f64);
                 current = fit_addition(&current.model, physics, site, identification, &settings.fit)
                     .map_err(RefineError::from)?;

@@ -6,14 +6,13 @@ use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{self, Site};
 use excavator_model::recording::Recording;
-use nalgebra::DMatrix;
 
 use super::{comparison_page, diagnosis_page, refinement_page, verdict_sentence};
 use crate::diagnosis::{Candidate, Diagnosis, Evidence, Inclusion, Share, Unexplained, Verdict};
-use excavator_model::equations::Channel;
 
 use crate::energy::{MissingPower, Regime};
-use crate::fit::{Fit, Instrument};
+use crate::fit::Fit;
+use crate::fit::made_up::made_up_fit;
 use crate::refinement::{Refinement, Step};
 use crate::validation::{Comparison, SignalComparison};
 
@@ -59,23 +58,7 @@ fn fit_of(model: &Model, error: f64) -> Fit {
     for parameter in model.parameters_mut() {
         parameter.standard_error = Some(parameter.value.abs() * 0.02);
     }
-    Fit {
-        model,
-        fitted: Vec::new(),
-        covariance: DMatrix::zeros(0, 0),
-        inflation: Vec::new(),
-        instruments: vec![Instrument {
-            name: "arm.displacement".into(),
-            unit: "m",
-            channel: Channel::Displacement(0),
-            noise: 1e-4,
-        }],
-        errors: vec![error],
-        block_errors: Vec::new(),
-        block_places: Vec::new(),
-        steps: 3,
-        converged: true,
-    }
+    made_up_fit(model, 1e-4, error)
 }
 
 fn candidate(name: &str, gain: f64, accepted: bool, tied: bool) -> Candidate {

@@ -54,9 +54,14 @@ impl Physics for Cavitation {
     }
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
-        let Site::Cylinder(cylinder) = site else { return };
-        let piston = &now.pistons[cylinder];
-        rows.cap_flow[cylinder] += (parameters[0] - piston.cap_pressure).positive_part() * parameters[1];
-        rows.rod_flow[cylinder] += (parameters[0] - piston.rod_pressure).positive_part() * parameters[1];
+        fill_below(parameters[0], parameters[1], site, now, rows);
     }
+}
+
+/// Flow into each chamber whose pressure is below `limit` (Pa), `gain` (m3/(s Pa)) times what it lacks.
+pub(super) fn fill_below<T: Scalar>(limit: T, gain: T, site: Site, now: &Situation<T>, rows: &mut Rows<T>) {
+    let Site::Cylinder(cylinder) = site else { return };
+    let piston = &now.pistons[cylinder];
+    rows.cap_flow[cylinder] += (limit - piston.cap_pressure).positive_part() * gain;
+    rows.rod_flow[cylinder] += (limit - piston.rod_pressure).positive_part() * gain;
 }

@@ -1,5 +1,6 @@
 //! Valves that let oil from the tank line into a chamber that is drawn empty.
 
+use super::cavitation::fill_below;
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
@@ -54,10 +55,6 @@ impl Physics for MakeUpValve {
     }
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
-        let Site::Cylinder(cylinder) = site else { return };
-        let piston = &now.pistons[cylinder];
-        let opens = now.tank_pressure - parameters[0];
-        rows.cap_flow[cylinder] += (opens - piston.cap_pressure).positive_part() * parameters[1];
-        rows.rod_flow[cylinder] += (opens - piston.rod_pressure).positive_part() * parameters[1];
+        fill_below(now.tank_pressure - parameters[0], parameters[1], site, now, rows);
     }
 }

@@ -78,7 +78,7 @@ impl Watch {
             environment,
             participant,
             since: Instant::now(),
-            threads: middleware_threads(),
+            threads: middleware_threads().unwrap_or_default(),
             present: BTreeSet::new(),
             lost: BTreeSet::new(),
             scout: None,
@@ -156,13 +156,13 @@ impl Watch {
     /// Threads may end, by a signal that interrupts them, before they were ever counted; and they take a name, which they
     /// are known by, a moment after their start.
     fn dead_threads(&mut self) -> Option<Fault> {
-        let now = middleware_threads();
+        let now = middleware_threads()?;
         let settled = self.since.elapsed() > SETTLED;
         if self.threads.len() < STARTED && !settled {
             self.threads.extend(&now);
         }
         let alive = now.intersection(&self.threads).count();
-        let started = if settled && threads_are_told() { self.threads.len().max(STARTED) } else { self.threads.len() };
+        let started = if settled { self.threads.len().max(STARTED) } else { self.threads.len() };
         (alive < started).then_some(Fault::ThreadsDied { alive, started })
     }
 
@@ -198,23 +198,16 @@ fn prefix_of(bytes: &[u8]) -> Prefix {
     prefix
 }
 
-/// Where the system tells about the threads of this process.
-const THREADS: &str = "/proc/self/task";
-
-fn threads_are_told() -> bool {
-    std::path::Path::new(THREADS).is_dir()
-}
-
-/// Threads of this process that the middleware has started; empty where the system does not tell.
-fn middleware_threads() -> BTreeSet<u32> {
-    let Ok(entries) = std::fs::read_dir(THREADS) else { return BTreeSet::new() };
-    entries
+/// Threads of this process that the middleware has started; `None` where the system does not tell.
+fn middleware_threads() -> Option<BTreeSet<u32>> {
+    let entries = std::fs::read_dir("/proc/self/task").ok()?;
+    let started = entries
         .flatten()
         .filter(|entry| {
             std::fs::read_to_string(entry.path().join("comm")).is_ok_and(|name| name.starts_with("RustDDS"))
         })
-        .filter_map(|entry| entry.file_name().to_str()?.parse().ok())
-        .collect()
+        .filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    Some(started.collect())
 }
 
 /// Names and addresses of the networks that are up.

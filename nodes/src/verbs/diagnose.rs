@@ -6,8 +6,8 @@ use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, Unpromis
 use excavator_identification::energy::{EnergySettings, MissingPower, analyse, missing_power};
 use excavator_identification::report::{diagnosis_page, verdict_sentence};
 use excavator_identification::validation::{Comparison, compare};
-use excavator_model::Model;
 use excavator_model::recording::Recording;
+use excavator_model::{Model, addition_name};
 
 use super::print;
 use crate::cli::DiagnoseArguments;
@@ -79,7 +79,7 @@ pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
             .iter()
             .map(|effect| match same(effect) {
                 1 => effect.physics.card().name.to_string(),
-                _ => format!("{}@{}", effect.physics.card().name, effect.place),
+                _ => addition_name(effect.physics, &effect.place),
             })
             .collect();
         print(&format!("Left behind after a few steps: {}.", names.join(", ")));

@@ -1,0 +1,28 @@
+//! Fits for tests, with errors that were chosen instead of found.
+
+use excavator_model::Model;
+use excavator_model::equations::Channel;
+use nalgebra::DMatrix;
+
+use super::{Fit, Instrument};
+
+/// A fit of `model` to one displacement whose sensor has this noise (m); its root mean square error is `error` (m).
+pub(crate) fn made_up_fit(model: Model, noise: f64, error: f64) -> Fit {
+    Fit {
+        model,
+        fitted: Vec::new(),
+        covariance: DMatrix::zeros(0, 0),
+        inflation: Vec::new(),
+        instruments: vec![Instrument {
+            name: "load.displacement".into(),
+            unit: "m",
+            channel: Channel::Displacement(0),
+            noise,
+        }],
+        errors: vec![error],
+        block_errors: Vec::new(),
+        block_places: Vec::new(),
+        steps: 0,
+        converged: true,
+    }
+}
