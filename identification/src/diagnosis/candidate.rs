@@ -39,6 +39,12 @@ impl Candidate {
         self.physics.card().name
     }
 
+    /// Number of its own parameters that were fitted.
+    pub fn parameter_count(&self) -> usize {
+        let own = self.fit.model.effects.last().map_or(&[][..], |effect| &effect.parameters);
+        own.iter().filter(|parameter| !parameter.known).count()
+    }
+
     /// The fitted model without the candidate's own effect, nothing fitted again.
     pub fn without_effect(&self) -> Model {
         let mut model = self.fit.model.clone();
@@ -138,7 +144,7 @@ pub(super) fn best_start(
     match (best, failure) {
         (Some(best), _) => Ok(best),
         (None, Some(error)) => Err(error.into()),
-        (None, None) => Err(FitError::TooShort.into()),
+        (None, None) => Err(FitError::NoWindow.into()),
     }
 }
 

@@ -241,7 +241,9 @@ fn mark_ties(candidates: &mut [Candidate], settings: &DiagnosisSettings) {
     let Some(first) = accepted.next() else { return };
     for other in accepted {
         let lead = compare_losses(&other.validation, &first.validation);
-        other.tied_with_first = lead.gain < settings.tie_gain || lead.significance < settings.tie_significance;
+        // A relief valve that is always open is a leak: who needs more parameters has to explain more with them.
+        let least_lead = if first.parameter_count() < other.parameter_count() { 0.0 } else { settings.tie_gain };
+        other.tied_with_first = lead.gain < least_lead || lead.significance < settings.tie_significance;
         first.tied_with_first |= other.tied_with_first;
     }
 }

@@ -6,6 +6,7 @@ use excavator_model::recording::{Recording, is_measured, noise_level};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
 
 use super::block::{Block, measured_books};
 use super::windows::windows;
@@ -60,20 +61,27 @@ pub(super) fn study_noise(
         .map(|_| Block { recording: with_more_noise(&block.recording, &mut random), ..block.clone() })
         .collect();
     let draws = noisy
-        .iter()
+        .par_iter()
         .map(|block| measured_books(system, &parameters, block, settings))
         .collect::<Result<Vec<Books>, SignalError>>()?;
     let residuals_of = |books: &Books| -> Vec<Vec<f64>> {
         windows(model, books, places, block.own, settings).into_iter().map(|window| window.residuals).collect()
     };
-    let drawn: Vec<Vec<Vec<f64>>> = draws.iter().map(residuals_of).collect();
-    let mut moved = Vec::new();
-    for (index, (_, parameter)) in model.parameters().enumerate() {
-        let Some(error) = parameter.standard_error.filter(|error| error.is_finite() && *error > 0.0) else { continue };
-        let mut values = parameters.clone();
-        values[index] += error;
-        moved.push(residuals_of(&measured_books(system, &values, block, settings)?));
-    }
+    let drawn: Vec<Vec<Vec<f64>>> = draws.par_iter().map(residuals_of).collect();
+    let errors: Vec<(usize, f64)> = model
+        .parameters()
+        .enumerate()
+        .filter_map(|(index, (_, parameter))| Some((index, parameter.standard_error?)))
+        .filter(|(_, error)| error.is_finite() && *error > 0.0)
+        .collect();
+    let mut moved = errors
+        .into_par_iter()
+        .map(|(index, error)| {
+            let mut values = parameters.clone();
+            values[index] += error;
+            measured_books(system, &values, block, settings).map(|books| residuals_of(&books))
+        })
+        .collect::<Result<Vec<_>, SignalError>>()?;
     // A valve's step makes a kink in a pressure, and what a parabola cuts off a kink grows in proportion to its width: the
     // whole of it is what wider ones change, divided by how much wider they are.
     let wider = EnergySettings {
@@ -83,7 +91,8 @@ pub(super) fn study_noise(
     };
     let widened = |block: &Block| measured_books(system, &parameters, block, &wider).map(|books| residuals_of(&books));
     let wide = widened(block)?;
-    let noisy_wide = noisy[..noisy.len().div_ceil(4)].iter().map(widened).collect::<Result<Vec<_>, SignalError>>()?;
+    let noisy_wide =
+        noisy[..noisy.len().div_ceil(4)].par_iter().map(widened).collect::<Result<Vec<_>, SignalError>>()?;
     let later = Block { recording: with_later_openings(&block.recording), ..block.clone() };
     moved.push(residuals_of(&measured_books(system, &parameters, &later, settings)?));
     let difference = |draw: &[Vec<f64>], window: usize, place: usize| {

@@ -33,8 +33,11 @@ pub enum FitError {
         machine: String,
     },
     /// No stretch of a recording is long enough.
-    #[error("the recordings have no stretch of at least 20 samples without a gap")]
+    #[error("the recordings have no stretch of at least 20 samples without a gap that begins with a measured position")]
     TooShort,
+    /// An effect acts in a window of time, and the recordings do not tell where to look for that.
+    #[error("when it acts cannot be told: the force balance needs signals that the recordings lack")]
+    NoWindow,
     /// Whoever watched it wanted no more of it.
     #[error("stopped on request")]
     Stopped,
