@@ -6,7 +6,7 @@ use excavator_model::{Model, ModelError};
 
 use super::starts::starts;
 use super::{Evidence, Inclusion};
-use crate::fit::{Fit, FitError, FitSettings, fit, predict};
+use crate::fit::{Fit, FitError, FitSettings, Prediction, fit_predicted, predict};
 
 /// A candidate that was tried.
 #[derive(Debug, Clone)]
@@ -104,17 +104,15 @@ pub(crate) fn fit_addition(
     settings: &FitSettings,
 ) -> Result<Fit, CandidateError> {
     let start = best_start(model, physics, site, recordings, settings)?;
-    Ok(fit(&start.model, recordings, settings)?)
+    Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
 }
 
-/// A start of a candidate's fit and what one step from it promises.
+/// A start of a candidate's fit.
 pub(super) struct PromisingStart {
     /// The model with the effect, at the start.
     pub model: Model,
-    /// Loss there.
-    pub loss: f64,
-    /// Promised loss.
-    pub promised_loss: f64,
+    /// What one step from there promises.
+    pub promise: Prediction,
 }
 
 /// The start of an addition whose first step promises most.
@@ -133,9 +131,8 @@ pub(super) fn best_start(
     let mut failure = None;
     for start in starts(&extended, recordings) {
         match predict(&start, recordings, settings) {
-            Ok(promise) if best.as_ref().is_none_or(|best| promise.loss_after < best.promised_loss) => {
-                best =
-                    Some(PromisingStart { model: start, loss: promise.loss_before, promised_loss: promise.loss_after });
+            Ok(promise) if best.as_ref().is_none_or(|best| promise.loss_after < best.promise.loss_after) => {
+                best = Some(PromisingStart { model: start, promise });
             }
             Ok(_) => {}
             Err(error) => failure = Some(error),

@@ -15,9 +15,9 @@ use super::candidate::{CandidateError, best_start};
 use super::evidence::joint_significance;
 use super::inclusion::inclusion;
 use super::starts::acts_in_a_window;
-use super::track::{Track, short_fit};
+use super::track::{Track, short};
 use super::{Candidate, DiagnosisSettings, Inclusion, Unpromising, compare_losses, is_adequate};
-use crate::fit::{Fit, FitSettings, evaluate, fit};
+use crate::fit::{Fit, FitSettings, evaluate, fit, fit_predicted};
 
 /// What became of all candidates.
 #[derive(Default)]
@@ -184,12 +184,13 @@ impl Race<'_> {
     ) -> Result<Outcome, CandidateError> {
         let recordings: Vec<&Recording> = track.recordings.iter().collect();
         let start = best_start(&track.base.model, physics, site, &recordings, &self.settings.fit)?;
-        let promised_gain = track.base.loss() - start.promised_loss;
+        let promised_gain = track.base.loss() - start.promise.loss_after;
         // Only from a start next to the base can the promise of one step be trusted.
-        if (start.loss - track.start_loss).abs() < NEXT_TO_BASE && promised_gain < self.least_gain / 4.0 {
+        if (start.promise.loss_before - track.start_loss).abs() < NEXT_TO_BASE && promised_gain < self.least_gain / 4.0
+        {
             return Ok(Outcome::Unpromising(Unpromising { physics, place, promised_gain }));
         }
-        let fit = short_fit(&start.model, &track.recordings, self)?;
+        let fit = fit_predicted(&start.model, start.promise, &recordings, &short(self.settings))?;
         let gain = compare_losses(&track.base, &fit).gain;
         Ok(Outcome::Ran(Box::new(Runner { physics, site, place, fit, gain })))
     }
@@ -233,7 +234,7 @@ fn in_its_own_window(model: &Model, recordings: &[&Recording], settings: &FitSet
     let Some(last) = fixed.effects.pop() else { return Ok(evaluate(model, recordings, settings)?) };
     fixed.parameters_mut().for_each(|parameter| parameter.known = true);
     let start = best_start(&fixed, last.physics, last.site, recordings, settings)?;
-    Ok(fit(&start.model, recordings, settings)?)
+    Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
 }
 
 fn mark_ties(candidates: &mut [Candidate], settings: &DiagnosisSettings) {

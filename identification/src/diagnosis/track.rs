@@ -1,11 +1,11 @@
 //! What candidates race on.
 
-use excavator_model::Model;
 use excavator_model::recording::Recording;
 
+use super::DiagnosisSettings;
 use super::hard_stretches::hard_stretches;
 use super::race::Race;
-use crate::fit::{Fit, FitError, FitSettings, fit, predict};
+use crate::fit::{Fit, FitSettings, fit, predict};
 
 /// Recordings that a race is run on, and the model without additions on them.
 pub(super) struct Track {
@@ -31,7 +31,7 @@ impl Track {
         let duration = settings.fit.segment_duration;
         let recordings = hard_stretches(race.base, race.identification, duration, settings.race_share)?;
         // As many steps as the others get: what parameters gain that adapt to fewer readings is no gain of theirs.
-        let base = short_fit(&race.base.model, &recordings, race).ok()?;
+        let base = fit(&race.base.model, &recordings.iter().collect::<Vec<_>>(), &short(settings)).ok()?;
         Some(Track::of(recordings, base, &settings.fit))
     }
 
@@ -44,11 +44,7 @@ impl Track {
     }
 }
 
-/// The few steps of a race.
-///
-/// # Errors
-/// [`FitError`].
-pub(super) fn short_fit(model: &Model, recordings: &[Recording], race: &Race<'_>) -> Result<Fit, FitError> {
-    let settings = FitSettings { maximum_steps: race.settings.race_steps, ..race.settings.fit };
-    fit(model, &recordings.iter().collect::<Vec<_>>(), &settings)
+/// Settings for the few steps of a race.
+pub(super) fn short(settings: &DiagnosisSettings) -> FitSettings {
+    FitSettings { maximum_steps: settings.race_steps, ..settings.fit }
 }

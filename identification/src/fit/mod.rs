@@ -20,6 +20,7 @@ pub use instruments::{Instrument, instruments, standard_deviation};
 pub(crate) use linear_refit::Remainder;
 pub(crate) use linear_refit::{LinearRefit, scales};
 pub use output_error::{Fit, FitError, evaluate, fit, fit_watched};
+pub(crate) use prediction::fit_predicted;
 pub use prediction::{Prediction, predict};
 pub use profile::{ProfileInterval, profile};
 pub use segments::{Segment, SegmentedRecording};

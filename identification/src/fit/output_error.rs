@@ -126,7 +126,7 @@ pub fn fit_watched(
     watch: Watch<'_>,
 ) -> Result<Fit, FitError> {
     let fitted = model.unknown_parameters();
-    run(model, recordings, settings, fitted, settings.maximum_steps, watch)
+    run(model, recordings, settings, fitted, settings.maximum_steps, None, watch)
 }
 
 /// Errors of `model` on `recordings` with its parameters as they are; only initial states are fitted.
@@ -134,7 +134,7 @@ pub fn fit_watched(
 /// # Errors
 /// [`FitError`].
 pub fn evaluate(model: &Model, recordings: &[&Recording], settings: &FitSettings) -> Result<Fit, FitError> {
-    run(model, recordings, settings, Vec::new(), 4, &|_| ControlFlow::Continue(()))
+    run(model, recordings, settings, Vec::new(), 4, None, &|_| ControlFlow::Continue(()))
 }
 
 struct State {
@@ -143,12 +143,14 @@ struct State {
     loss: f64,
 }
 
-fn run(
+/// The steps of a fit of the parameters `fitted`; `first` is the simulation of the model as it is, where that is known.
+pub(super) fn run(
     model: &Model,
     recordings: &[&Recording],
     settings: &FitSettings,
     fitted: Vec<usize>,
     maximum_steps: usize,
+    first: Option<Vec<RawSums>>,
     watch: Watch<'_>,
 ) -> Result<Fit, FitError> {
     let system = System::new(model);
@@ -164,7 +166,7 @@ fn run(
             .sum();
         squares + sums.iter().map(|segment| segment.prior_loss).sum::<f64>()
     };
-    let raw = problem.sums_at(&values, &segmented)?;
+    let raw = first.map_or_else(|| problem.sums_at(&values, &segmented), Ok)?;
     let mut weights = error_sizes(&raw, noise);
     let sums = problem.weighed(&raw, &weights);
     let loss = loss_of(&sums, &weights);

@@ -1,13 +1,16 @@
 //! What one step of a fit promises, without taking it.
 
+use std::ops::ControlFlow;
+
 use excavator_model::Model;
 use excavator_model::equations::System;
 use excavator_model::recording::Recording;
 use nalgebra::DVector;
 
-use super::output_error::{bounded_step, error_sizes, held_at_bounds, loss_per_reading, parameter_step};
+use super::normal_equations::RawSums;
+use super::output_error::{bounded_step, error_sizes, held_at_bounds, loss_per_reading, parameter_step, run};
 use super::problem::Problem;
-use super::{FitError, FitSettings};
+use super::{Fit, FitError, FitSettings};
 
 /// What a Gauss-Newton step from a model's parameters promises.
 #[derive(Debug, Clone)]
@@ -18,6 +21,8 @@ pub struct Prediction {
     pub loss_after: f64,
     /// The model after the step, within the parameters' bounds.
     pub model: Model,
+    /// The simulation of the model as it is.
+    pub(super) sums: Vec<RawSums>,
 }
 
 /// One simulation with sensitivities, and what it promises for a step of all unknown parameters.
@@ -54,7 +59,21 @@ pub fn predict(model: &Model, recordings: &[&Recording], settings: &FitSettings)
         .collect();
     let mut model = model.clone();
     model.set_parameter_values(&stepped);
-    Ok(Prediction { loss_before, loss_after: loss_per_reading(&errors, &problem.noise), model })
+    Ok(Prediction { loss_before, loss_after: loss_per_reading(&errors, &problem.noise), model, sums: raw })
+}
+
+/// As [`super::fit`], of the model and on the recordings that `predicted` is of: its simulation is not made again.
+///
+/// # Errors
+/// [`FitError`].
+pub(crate) fn fit_predicted(
+    model: &Model,
+    predicted: Prediction,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+) -> Result<Fit, FitError> {
+    let (fitted, first) = (model.unknown_parameters(), Some(predicted.sums));
+    run(model, recordings, settings, fitted, settings.maximum_steps, first, &|_| ControlFlow::Continue(()))
 }
 
 /// Levenberg-Marquardt damping of the promised step: that of a fit's first step.
