@@ -1,5 +1,6 @@
 //! Cases drawn from a seed.
 
+use excavator_model::simulation::Profile;
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -98,6 +99,13 @@ impl Case {
         }
         let plant = Plant { effects, ..bare };
         Case { number, sort, hidden, strength, plant, identification, validation, begin, generator }
+    }
+
+    /// The same machine, moved by a command profile from mid-stroke in both recordings. What is hidden was sized before.
+    pub fn follow(&mut self, profile: &Profile) {
+        self.identification = Manoeuvre::of_profile(profile.clone());
+        self.validation = self.identification.clone();
+        self.begin = [0.0; 2];
     }
 
     /// Names of what is hidden, joined by "+".

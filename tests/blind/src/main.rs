@@ -1,6 +1,6 @@
 //! `blind`: draws cases, asks the diagnosis, prints how it did.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
@@ -10,6 +10,7 @@ use excavator_blind::scoring::{make, score};
 use excavator_blind::storing::store;
 use excavator_blind::strength::Strength;
 use excavator_blind::table::{Judged, line, summary};
+use excavator_model::simulation::Profile;
 
 /// Blind benchmark of the diagnosis: an independent simulator hides effects
 #[derive(Parser)]
@@ -39,6 +40,9 @@ struct Words {
     /// Leave out the small unmodelled extras (ripple, warming, hose stubs)
     #[arg(long)]
     without_extras: bool,
+    /// Move the machines by the first profile of this file (`excavator design` writes such) in both recordings
+    #[arg(long)]
+    profile: Option<PathBuf>,
     /// Store each case in this folder, as two bags and an answer
     #[arg(long)]
     write: Option<PathBuf>,
@@ -90,7 +94,28 @@ fn main() -> ExitCode {
         eprintln!("{} is no secret of the sort {sort:?}; leave out --kind or name another effect", kind.name);
         return ExitCode::from(2);
     }
-    judge_all(&words, &Wish { sort, effects, strength, without_extras: words.without_extras })
+    let profile = match words.profile.as_deref().map(read_profile).transpose() {
+        Ok(profile) => profile,
+        Err(reason) => {
+            eprintln!("{reason}");
+            return ExitCode::from(2);
+        }
+    };
+    judge_all(&words, &Wish { sort, effects, strength, without_extras: words.without_extras }, profile.as_ref())
+}
+
+fn read_profile(path: &Path) -> Result<Profile, String> {
+    /// Only the profiles count: commands come at the recorder's rate.
+    #[derive(serde::Deserialize)]
+    struct File {
+        profiles: Vec<Profile>,
+    }
+    let failed = |reason: String| format!("{}: {reason}", path.display());
+    let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
+    let file: File = toml::from_str(&text).map_err(|error| failed(error.to_string()))?;
+    let profile = file.profiles.into_iter().next().ok_or_else(|| failed("no [[profiles]]".into()))?;
+    profile.check().map_err(|error| failed(error.to_string()))?;
+    Ok(profile)
 }
 
 /// Whether an effect can be the secret of this sort.
@@ -103,10 +128,13 @@ fn fits(sort: Sort, kind: &Kind) -> bool {
     }
 }
 
-fn judge_all(words: &Words, wish: &Wish) -> ExitCode {
+fn judge_all(words: &Words, wish: &Wish, profile: Option<&Profile>) -> ExitCode {
     let mut judged: Vec<Judged> = Vec::new();
     for number in words.first..words.first.saturating_add(words.cases) {
         let mut case = Case::draw(words.seed, number, wish);
+        if let Some(profile) = profile {
+            case.follow(profile);
+        }
         let evidence = match make(&mut case, words.noise) {
             Ok(evidence) => evidence,
             Err(error) => {

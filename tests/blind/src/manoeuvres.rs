@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use excavator_model::simulation::Profile;
+
 /// Largest opening that the operator asks for, m²: 95 % of umax.
 const MOST: f64 = 1.0925e-4;
 /// Speed of centring, m² per m of (slowly averaged) displacement.
@@ -24,6 +26,8 @@ pub enum Motion {
     Trapezoid(f64, f64),
     /// Sine whose frequency rises linearly from the second to the third number.
     Sweep(f64, f64, f64),
+    /// A command profile, followed as it is.
+    Profile(Profile),
 }
 
 /// A manoeuvre: motions with their durations in s.
@@ -33,7 +37,7 @@ pub struct Manoeuvre {
     pub motions: Vec<(f64, Motion)>,
     /// Where the operator keeps the arm, m from mid-stroke.
     pub centre: f64,
-    /// How firmly, 1 = as usual.
+    /// How firmly, 1 = as usual; 0 does as told, whatever the arm does.
     pub firmness: f64,
 }
 
@@ -71,6 +75,11 @@ impl Manoeuvre {
             (0.7, Motion::Pause),
         ];
         Manoeuvre { motions, centre, firmness: 1.0 }
+    }
+
+    /// A command profile without anybody who steers back.
+    pub fn of_profile(profile: Profile) -> Self {
+        Manoeuvre { motions: vec![(profile.duration(), Motion::Profile(profile))], centre: 0.0, firmness: 0.0 }
     }
 
     /// The same by an operator who holds the arm near an end of the stroke, twice as firmly.
@@ -113,6 +122,7 @@ impl Motion {
                 let cycles = from * time + 0.5 * (to - from) * time * time / duration;
                 Some(amplitude * (TAU * cycles).sin())
             }
+            Motion::Profile(profile) => Some(profile.area(time)),
         }
     }
 }
@@ -135,7 +145,30 @@ impl<'m> Operator<'m> {
         self.average += (displacement - self.average) * interval / PATIENCE;
         let Some(wanted) = self.manoeuvre.wanted(time) else { return 0.0 };
         let firmness = self.manoeuvre.firmness;
+        if firmness == 0.0 {
+            return wanted;
+        }
         let centring = (CENTRING * (self.manoeuvre.centre - self.average)).clamp(-MOST_CENTRING, MOST_CENTRING);
         (wanted + firmness * centring).clamp(-MOST, MOST)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use excavator_model::simulation::Segment;
+
+    use super::*;
+
+    #[test]
+    fn a_profile_is_followed_wherever_the_arm_is() {
+        let sine = Segment::Sine { duration: 2.0, amplitude: 1.15e-4, frequency: 0.5 };
+        let profile = Profile { cylinder: "arm".into(), segments: vec![sine] };
+        let manoeuvre = Manoeuvre::of_profile(profile.clone());
+        let mut operator = Operator::new(&manoeuvre, 0.2);
+        for sample in 0..1100 {
+            let time = f64::from(sample) * 0.002;
+            assert_eq!(operator.command(time, 0.002, 0.2), profile.area(time), "at {time} s");
+        }
+        assert_eq!(manoeuvre.duration(), 2.0);
     }
 }
