@@ -264,10 +264,13 @@ pub(super) fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &Diagn
     (fit.typical_loss() <= settings.adequate_loss && !too_large) || error <= settings.adequate_error
 }
 
-/// Whether what is left is no larger than inputs known at samples only leave open.
+/// Whether what is left is no larger than inputs known at samples only leave open, in every instrument: what spoils the
+/// pressures only is no excuse for the displacement.
 fn sampling_explains(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
-    with_input_floor(fit, recordings, &settings.fit)
-        .is_some_and(|raised| raised.typical_loss() <= settings.adequate_loss)
+    with_input_floor(fit, recordings, &settings.fit).is_some_and(|raised| {
+        let worst = raised.typical_losses().into_iter().fold(f64::NEG_INFINITY, f64::max);
+        raised.typical_loss() <= settings.adequate_loss && worst <= settings.excused_loss
+    })
 }
 
 /// Mean over instruments of squared error over the signal's own variance; `NaN` when no signal varies.

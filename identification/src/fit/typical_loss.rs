@@ -10,8 +10,13 @@ const ALLOWED_TO_FAIL: f64 = 0.05;
 impl Fit {
     /// [`Fit::loss`] over all blocks but, for each instrument, the worst twentieth.
     pub fn typical_loss(&self) -> f64 {
-        let losses: Vec<f64> = self
-            .instruments
+        let losses = self.typical_losses();
+        losses.iter().sum::<f64>() / losses.len() as f64
+    }
+
+    /// The same of each instrument that has readings.
+    pub fn typical_losses(&self) -> Vec<f64> {
+        self.instruments
             .iter()
             .enumerate()
             .filter_map(|(number, instrument)| {
@@ -24,8 +29,7 @@ impl Fit {
                 let variance = squares / readings as f64;
                 (readings > 0).then(|| (variance / (instrument.noise * instrument.noise)).max(1e-6).ln())
             })
-            .collect();
-        losses.iter().sum::<f64>() / losses.len() as f64
+            .collect()
     }
 }
 
