@@ -47,7 +47,10 @@ impl Sealed {
     }
 
     /// Draws a machine with a hidden effect.
-    pub(crate) fn draw(generator: &mut ChaCha8Rng) -> Result<Sealed, VerbError> {
+    ///
+    /// # Errors
+    /// [`VerbError::Document`] and the like, if the built-in machine had no place for the effect.
+    pub fn draw(generator: &mut ChaCha8Rng) -> Result<Sealed, VerbError> {
         let mut truth = Self::draw_without_effect(generator)?.truth;
         let (effect, ranges) = HIDDEN[generator.random_range(0..HIDDEN.len())];
         let physics = effects::find(effect)?;
