@@ -49,7 +49,7 @@ impl Sealed {
     /// Draws a machine with a hidden effect.
     ///
     /// # Errors
-    /// [`VerbError::Document`] and the like, if the built-in machine had no place for the effect.
+    /// When the built-in model cannot be read or has no place for the effect.
     pub fn draw(generator: &mut ChaCha8Rng) -> Result<Sealed, VerbError> {
         let mut truth = Self::draw_without_effect(generator)?.truth;
         let (effect, ranges) = HIDDEN[generator.random_range(0..HIDDEN.len())];
