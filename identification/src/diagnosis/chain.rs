@@ -87,9 +87,9 @@ impl Chains<'_> {
         let Some(last) = chain.last().map(|last| &last.validation) else {
             return self.nominal_is_adequate;
         };
-        is_adequate(last, self.validation, settings)
-            || last.typical_loss() <= settings.explained_loss
-                && last.loss() <= (1.0 - settings.explained_share) * self.nominal_validation.loss()
+        let share = 1.0 - last.loss() / self.nominal_validation.loss();
+        share >= settings.least_explained_share && is_adequate(last, self.validation, settings)
+            || share >= settings.explained_share && last.typical_loss() <= settings.explained_loss
     }
 
     fn contains(&self, chain: &[Candidate], other: &Candidate) -> bool {

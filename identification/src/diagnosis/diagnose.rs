@@ -126,7 +126,11 @@ pub fn diagnose(
         validation,
         settings,
     };
-    let (chain, first_round) = chains.best(first_round, progress)?;
+    let (mut chain, first_round) = chains.best(first_round, progress)?;
+    if is_adequate(&nominal_validation, validation, settings) && !chains.explains(&chain) {
+        // A part of what little is left is no reason to doubt a model.
+        chain.clear();
+    }
     let explained = chains.explains(&chain);
     let Round { fitted, unpromising, failed } = first_round;
     let (mut candidates, rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);

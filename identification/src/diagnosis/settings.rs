@@ -42,10 +42,13 @@ pub struct DiagnosisSettings {
     /// each signal's own size. Above it the recordings are too coarse to say that nothing is missing: at 50 Hz the right
     /// model of p00 comes to 0.005, a crane joint with a dead zone that is not in the model to 0.02 at 100 Hz.
     pub excused_error: f64,
-    /// And where no instrument's typical loss is above this: three times the variance that its noise and sampling have. A weak
-    /// droop of the engine that was excused left 1.6 in the displacement, which sampling hardly touches.
+    /// And where no instrument's typical loss is above this, its noise and sampling taken together. On p00 at 100 Hz and 50 Hz, which
+    /// hides nothing, none is above -0.2; a droop of the engine and play in a pin leave one instrument or two at 1.0 to 1.4.
     pub excused_loss: f64,
-    /// Effects explain a recording when they make the model adequate, or take away at least this share of the loss. The
+    /// Effects that make the model adequate explain a recording only when they take away at least this share of the loss. A
+    /// model that was nearly adequate needs little for it: play in a pin was called a sensor's offset that took a fifth.
+    pub least_explained_share: f64,
+    /// Effects that do not make it adequate explain it when they take away at least this share of the loss. The
     /// right effects take away 80 % and more; in the blind benchmark effects that only resemble one that no catalogue
     /// has took away 35 % at most.
     pub explained_share: f64,
@@ -83,7 +86,8 @@ impl Default for DiagnosisSettings {
             adequate_error: 1.5e-4,
             largest_error: 0.03,
             excused_error: 0.01,
-            excused_loss: 1.1,
+            excused_loss: 0.5,
+            least_explained_share: 0.5,
             explained_share: 0.65,
             explained_loss: 2.0,
             most_effects: 5,
