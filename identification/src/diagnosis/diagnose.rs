@@ -127,11 +127,12 @@ pub fn diagnose(
         settings,
     };
     let (mut chain, first_round) = chains.best(first_round, progress)?;
-    if is_adequate(&nominal_validation, validation, settings) && !chains.explains(&chain) {
+    let mut explained = chains.explains(&chain);
+    if !explained && is_adequate(&nominal_validation, validation, settings) {
         // A part of what little is left is no reason to doubt a model.
         chain.clear();
+        explained = true;
     }
-    let explained = chains.explains(&chain);
     let Round { fitted, unpromising, failed } = first_round;
     let (mut candidates, rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);
     if let Some(first) = chain.first() {

@@ -60,8 +60,7 @@ pub struct DiagnosisSettings {
     /// Steps of a fit in the race.
     pub race_steps: usize,
     /// Share of the recordings that the race is run on, the stretches in which the model without additions fails most.
-    /// Half of them costs half the time and leads to the same verdicts on
-    /// the practice recordings.
+    /// Half of them costs half the time and leads to the same verdicts on the practice recordings.
     pub race_share: f64,
     /// So many candidates, the best of the race, are fitted to the end.
     pub finalists: usize,

@@ -62,7 +62,8 @@ pub fn predict(model: &Model, recordings: &[&Recording], settings: &FitSettings)
     Ok(Prediction { loss_before, loss_after: loss_per_reading(&errors, &problem.noise), model, sums: raw })
 }
 
-/// As [`super::fit`], of the model and on the recordings that `predicted` is of: its simulation is not made again.
+/// As [`super::fit`], of the model and on the recordings that `predicted` is of, cut and thinned by the same settings: its
+/// simulation is not made again.
 ///
 /// # Errors
 /// [`FitError`].
