@@ -15,11 +15,10 @@ use ros2_client::action::{
 use ros2_client::action_msgs::{CancelGoalResponseEnum, GoalStatus, GoalStatusArray};
 use ros2_client::qos::{Durability, History, QosProfile, Reliability, WhenFull};
 use ros2_client::{ActionTypeName, Name, RmwRequestId};
-use tokio::runtime::Handle;
 
 use super::goals::{CancelAnswer, Goals, Status};
 use super::types::{Feedback, Goal, GoalId, GoalInfo, Outcome};
-use crate::ros::link::{Connection, Endpoint, Task};
+use crate::ros::connection::{Closed, Connection, Endpoint, Install, Task};
 use crate::ros::{Latched, Mapping, RosError, service_mapping, service_qos, system_nanoseconds};
 
 /// Pace of looking for requests. Nobody waits for identification in milliseconds.
@@ -67,7 +66,7 @@ impl IdentifyAction {
 }
 
 impl Endpoint for IdentifyAction {
-    fn open(&self, connection: &mut Connection, runtime: &Handle) -> Result<(), RosError> {
+    fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError> {
         let failed = |reason: String| RosError::Endpoint { what: self.name.clone(), reason };
         let (namespace, base) = self.name.rsplit_once('/').unwrap_or(("", &self.name));
         let namespace = if namespace.is_empty() { "/" } else { namespace };
@@ -88,18 +87,19 @@ impl Endpoint for IdentifyAction {
             .create_action_server(service_mapping(self.mapping), &name, &type_name, qos)
             .map_err(|error| failed(error.to_string()))?;
         let desk = Arc::clone(&self.desk);
-        let task = runtime.spawn(async move {
+        let serving = async move {
             loop {
                 desk.lock().unwrap_or_else(PoisonError::into_inner).look(&server);
                 tokio::time::sleep(LOOK).await;
             }
-        });
-        *self.task.lock().unwrap_or_else(PoisonError::into_inner) = Some(task);
-        Ok(())
+        };
+        Ok(Box::new(move |runtime| {
+            *self.task.lock().unwrap_or_else(PoisonError::into_inner) = Some(runtime.spawn(serving));
+        }))
     }
 
-    fn close(&self) -> Vec<Task> {
-        self.task.lock().unwrap_or_else(PoisonError::into_inner).take().into_iter().collect()
+    fn close(&self) -> Closed {
+        Closed::tasks(self.task.lock().unwrap_or_else(PoisonError::into_inner).take())
     }
 }
 

@@ -46,6 +46,7 @@ pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbEr
     supervisor.logger.info(format!("recording to {}", folder.display()));
     let dropped = Arc::new(AtomicU64::new(0));
     let (sender, orders) = sync_channel(WAITING);
+    let last = sender.clone();
     let stop = supervisor.stop_flag();
     let outcome = std::thread::scope(|scope| {
         let counter = Arc::clone(&dropped);
@@ -69,8 +70,9 @@ pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbEr
         });
         supervisor.run(|| {});
         let missing = looking.join().unwrap_or_default();
-        // The readers hold senders; the writing thread ends when they are gone.
         supervisor.link.forget_endpoints();
+        // A writing thread that has failed is not there to be told.
+        let _ = last.send(Order::End);
         (writing.join(), missing)
     });
     let (written, missing) = outcome;

@@ -19,6 +19,8 @@ pub(super) enum Order {
     Topic { name: String, type_name: String, qos: Vec<Qos> },
     /// A message of a topic.
     Message { topic: usize, sample: RawSample },
+    /// Nothing comes any more. Said, because a connection that hangs holds its readers, and so their senders, for ever.
+    End,
 }
 
 /// What a recording became.
@@ -40,7 +42,7 @@ struct Recorded {
     losses: Losses,
 }
 
-/// Writes until all senders are gone, then closes the bag. `dropped` tells how many messages the recorder itself had no
+/// Writes until the end is said, then closes the bag. `dropped` tells how many messages the recorder itself had no
 /// room for.
 pub(super) fn write(
     mut bag: BagWriter,
@@ -64,7 +66,7 @@ pub(super) fn write(
                 bag.write(topic.id, sample.received, sample.published.unwrap_or(sample.received), &sample.data)?;
             }
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => break,
+            Ok(Order::End) | Err(RecvTimeoutError::Disconnected) => break,
         }
         if flushed.elapsed() >= FLUSH {
             bag.flush()?;

@@ -7,20 +7,15 @@
 //! that a lost peer is back, a second one without any endpoint, the scout, looks out for it.
 
 use std::collections::BTreeSet;
-use std::time::{Duration, Instant};
 
 use nix::ifaddrs::getifaddrs;
 use nix::net::if_::InterfaceFlags;
 use rustdds::{DomainParticipant, DomainParticipantStatusEvent, LostReason, RTPSEntity, StatusEvented};
 
 use super::Environment;
-use super::link::participant;
-
-/// Threads that the middleware starts for a participant: one for the wire, one for discovery.
-const STARTED: usize = 2;
-
-/// Time after which these have started, s: a hundred times what it takes.
-const SETTLED: Duration = Duration::from_secs(1);
+use super::connection::participant;
+use super::patience::{BUILDING, let_go, within};
+use super::threads::{Died, Threads};
 
 /// Identity of a participant.
 type Prefix = [u8; 12];
@@ -29,7 +24,7 @@ type Prefix = [u8; 12];
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Fault {
     /// Threads of the middleware have ended.
-    ThreadsDied { alive: usize, started: usize },
+    ThreadsDied(Died),
     /// A peer that was lost is there again, but out of reach of our participant.
     PeerReturned(Prefix),
     /// There is a network that our participant does not know, and nobody else to be disturbed.
@@ -39,7 +34,7 @@ pub(super) enum Fault {
 impl std::fmt::Display for Fault {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Fault::ThreadsDied { alive, started } => {
+            Fault::ThreadsDied(Died { alive, started }) => {
                 write!(formatter, "{} of {started} threads of the middleware have ended", started - alive)
             }
             Fault::PeerReturned(prefix) => {
@@ -63,22 +58,20 @@ pub(super) struct Observations {
 pub(super) struct Watch {
     environment: Environment,
     participant: DomainParticipant,
-    since: Instant,
-    threads: BTreeSet<u32>,
+    threads: Threads,
     present: BTreeSet<Prefix>,
     lost: BTreeSet<Prefix>,
-    scout: Option<DomainParticipant>,
+    scout: Option<Scout>,
     networks: BTreeSet<(String, String)>,
 }
 
 impl Watch {
     /// Watches a connection that was built a moment ago.
-    pub fn new(environment: Environment, participant: DomainParticipant) -> Self {
+    pub fn new(environment: Environment, participant: DomainParticipant, threads: Threads) -> Self {
         Watch {
             environment,
             participant,
-            since: Instant::now(),
-            threads: middleware_threads().unwrap_or_default(),
+            threads,
             present: BTreeSet::new(),
             lost: BTreeSet::new(),
             scout: None,
@@ -98,7 +91,7 @@ impl Watch {
 
     /// Looks.
     pub fn look(&mut self) -> Observations {
-        let mut seen = Observations { fault: self.dead_threads(), notes: Vec::new() };
+        let mut seen = Observations { fault: self.threads.died().map(Fault::ThreadsDied), notes: Vec::new() };
         if seen.fault.is_some() {
             return seen;
         }
@@ -153,34 +146,23 @@ impl Watch {
         seen
     }
 
-    /// Threads may end, by a signal that interrupts them, before they were ever counted; and they take a name, which they
-    /// are known by, a moment after their start.
-    fn dead_threads(&mut self) -> Option<Fault> {
-        let now = middleware_threads()?;
-        let settled = self.since.elapsed() > SETTLED;
-        if self.threads.len() < STARTED && !settled {
-            self.threads.extend(&now);
-        }
-        let alive = now.intersection(&self.threads).count();
-        let started = if settled { self.threads.len().max(STARTED) } else { self.threads.len() };
-        (alive < started).then_some(Fault::ThreadsDied { alive, started })
-    }
-
     fn send_scout(&mut self, newly_lost: bool, seen: &mut Observations) {
+        let blind = self.scout.as_mut().is_some_and(|scout| scout.threads.died().is_some());
+        // A scout has met the peer that is lost since, and would miss its return just as we do.
+        if self.lost.is_empty() || newly_lost || blind {
+            self.dismiss_scout();
+        }
         if self.lost.is_empty() {
-            self.scout = None;
             return;
         }
-        if newly_lost || self.scout.is_none() {
-            // The old scout has met the newly lost peer before, and would miss its return just as we do.
-            self.scout = None;
-            match participant(&self.environment) {
+        if self.scout.is_none() {
+            match Scout::send(self.environment) {
                 Ok(scout) => self.scout = Some(scout),
                 Err(reason) => seen.notes.push(format!("cannot look out for lost peers: {reason}")),
             }
         }
         let Some(scout) = &self.scout else { return };
-        let listener = scout.status_listener();
+        let listener = scout.participant.status_listener();
         while let Some(event) = listener.try_recv_status() {
             if let DomainParticipantStatusEvent::ParticipantDiscovered { dpd } = event {
                 let prefix = prefix_of(dpd.guid.prefix.as_ref());
@@ -190,24 +172,38 @@ impl Watch {
             }
         }
     }
+
+    fn dismiss_scout(&mut self) {
+        if let Some(scout) = self.scout.take() {
+            let_go(scout);
+        }
+    }
+}
+
+impl Drop for Watch {
+    fn drop(&mut self) {
+        self.dismiss_scout();
+    }
+}
+
+/// A participant without endpoints.
+struct Scout {
+    participant: DomainParticipant,
+    threads: Threads,
+}
+
+impl Scout {
+    fn send(environment: Environment) -> Result<Self, String> {
+        let threads = Threads::of_the_next();
+        let participant = within(BUILDING, move || participant(&environment));
+        Ok(Scout { participant: participant.unwrap_or_else(|| Err("the middleware does not answer".into()))?, threads })
+    }
 }
 
 fn prefix_of(bytes: &[u8]) -> Prefix {
     let mut prefix = Prefix::default();
     prefix.iter_mut().zip(bytes).for_each(|(slot, byte)| *slot = *byte);
     prefix
-}
-
-/// Threads of this process that the middleware has started; `None` where the system does not tell.
-fn middleware_threads() -> Option<BTreeSet<u32>> {
-    let entries = std::fs::read_dir("/proc/self/task").ok()?;
-    let started = entries
-        .flatten()
-        .filter(|entry| {
-            std::fs::read_to_string(entry.path().join("comm")).is_ok_and(|name| name.starts_with("RustDDS"))
-        })
-        .filter_map(|entry| entry.file_name().to_str()?.parse().ok());
-    Some(started.collect())
 }
 
 /// Names and addresses of the networks that are up.
@@ -234,7 +230,7 @@ mod tests {
 
     #[test]
     fn a_fault_says_what_happened() {
-        let died = Fault::ThreadsDied { alive: 1, started: 2 };
+        let died = Fault::ThreadsDied(Died { alive: 1, started: 2 });
         assert_eq!(died.to_string(), "1 of 2 threads of the middleware have ended");
     }
 }

@@ -10,10 +10,9 @@ use excavator_msgs::Message;
 use futures::StreamExt;
 use ros2_client::Gid;
 use rustdds::DomainParticipant;
-use tokio::runtime::Handle;
 
+use super::connection::{Closed, Connection, Endpoint, Install, Task};
 use super::dds_names::{dds_topic, dds_type};
-use super::link::{Connection, Endpoint, Task};
 use super::{RosError, TopicQos};
 
 /// What is known about a message beside its content.
@@ -53,7 +52,7 @@ impl<M: Message + Send + 'static> Inlet<M> {
 }
 
 impl<M: Message + Send + Sync + 'static> Endpoint for Inlet<M> {
-    fn open(&self, connection: &mut Connection, runtime: &Handle) -> Result<(), RosError> {
+    fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError> {
         let failed = |reason: String| RosError::Endpoint { what: self.topic.clone(), reason };
         let wanted_type = dds_type(M::TYPE_NAME);
         let topic =
@@ -63,7 +62,7 @@ impl<M: Message + Send + Sync + 'static> Endpoint for Inlet<M> {
         let callback = Arc::clone(&self.callback);
         let undecodable = Arc::clone(&self.undecodable);
         let mut types = WriterTypes::new(connection.participant(), wanted_type);
-        let task = runtime.spawn(async move {
+        let reading = async move {
             let mut messages = pin!(subscription.async_stream());
             while let Some(message) = messages.next().await {
                 match message {
@@ -86,13 +85,14 @@ impl<M: Message + Send + Sync + 'static> Endpoint for Inlet<M> {
                     }
                 }
             }
-        });
-        *self.task.lock().unwrap_or_else(PoisonError::into_inner) = Some(task);
-        Ok(())
+        };
+        Ok(Box::new(move |runtime| {
+            *self.task.lock().unwrap_or_else(PoisonError::into_inner) = Some(runtime.spawn(reading));
+        }))
     }
 
-    fn close(&self) -> Vec<Task> {
-        self.task.lock().unwrap_or_else(PoisonError::into_inner).take().into_iter().collect()
+    fn close(&self) -> Closed {
+        Closed::tasks(self.task.lock().unwrap_or_else(PoisonError::into_inner).take())
     }
 
     fn interface(&self) -> Option<(String, String)> {

@@ -3,9 +3,8 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use excavator_msgs::Message;
-use tokio::runtime::Handle;
 
-use super::link::{Connection, Endpoint, Task};
+use super::connection::{Closed, Connection, Endpoint, Install};
 use super::{Outlet, PublishError, RosError};
 
 /// A transient-local publisher of one topic; clones share it.
@@ -36,16 +35,18 @@ impl<M: Message + Clone + Send + Sync + 'static> Latched<M> {
 }
 
 impl<M: Message + Clone + Send + Sync + 'static> Endpoint for Latched<M> {
-    fn open(&self, connection: &mut Connection, runtime: &Handle) -> Result<(), RosError> {
-        self.outlet.open(connection, runtime)?;
-        if let Some(last) = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone() {
-            // A new writer has an empty history: it cannot be full.
-            let _ = self.outlet.publish(last);
-        }
-        Ok(())
+    fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError> {
+        let install = Arc::new(self.outlet.clone()).open(connection)?;
+        Ok(Box::new(move |runtime| {
+            install(runtime);
+            if let Some(last) = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone() {
+                // A new writer has an empty history: it cannot be full.
+                let _ = self.outlet.publish(last);
+            }
+        }))
     }
 
-    fn close(&self) -> Vec<Task> {
+    fn close(&self) -> Closed {
         self.outlet.close()
     }
 

@@ -2,80 +2,17 @@
 
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 
 use excavator_msgs::Message;
-use ros2_client::{Context, Node, NodeName, NodeOptions};
-use rustdds::{DomainParticipant, DomainParticipantBuilder, QosPolicies, Topic, TopicKind};
+use rustdds::DomainParticipant;
 use tokio::runtime::Handle;
 
+use super::connection::{Closed, Connection, Endpoint, Install, Task};
 use super::dds_names::dds_topic;
 use super::inlet::{Inlet, Received};
+use super::patience::{BUILDING, FAREWELL, let_go, within};
+use super::threads::Threads;
 use super::{Environment, Latched, NodeIdentity, Outlet, RosError, TopicQos};
-
-/// Something that runs as long as an endpoint is open.
-pub(crate) type Task = tokio::task::JoinHandle<()>;
-
-/// How long the old connection may take to go before it is left to itself.
-const FAREWELL: Duration = Duration::from_secs(2);
-
-/// Something that exists on a connection and is opened again on the next one.
-pub(crate) trait Endpoint: Send + Sync {
-    /// Creates the endpoint on a new connection.
-    fn open(&self, connection: &mut Connection, runtime: &Handle) -> Result<(), RosError>;
-
-    /// Gives up what belongs to the connection; the tasks are ended by the caller.
-    fn close(&self) -> Vec<Task>;
-
-    /// Full name and ROS type of the topic, where it is one.
-    fn interface(&self) -> Option<(String, String)> {
-        None
-    }
-}
-
-/// One participant with its node.
-pub(crate) struct Connection {
-    // Dropped in this order: the node says good-bye through the context.
-    node: Node,
-    context: Context,
-}
-
-impl Connection {
-    fn join(identity: &NodeIdentity, environment: &Environment) -> Result<Self, RosError> {
-        let failed = |reason: String| RosError::Join { domain: environment.domain, reason };
-        let participant = participant(environment).map_err(failed)?;
-        let context = Context::from_domain_participant(participant).map_err(|error| failed(error.to_string()))?;
-        let name = NodeName::new(identity.namespace(), identity.name()).map_err(|error| failed(error.to_string()))?;
-        // Parameter services and log are ours: the library's are bound to one mapping and to its own spinner.
-        let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
-        let node = context.new_node(name, options).map_err(|error| failed(error.to_string()))?;
-        Ok(Connection { node, context })
-    }
-
-    pub(crate) fn node(&mut self) -> &mut Node {
-        &mut self.node
-    }
-
-    pub(crate) fn participant(&self) -> DomainParticipant {
-        self.context.domain_participant()
-    }
-
-    pub(crate) fn create_topic(&self, dds_name: &str, dds_type: &str, qos: &QosPolicies) -> Result<Topic, String> {
-        self.participant()
-            .create_topic(dds_name.to_string(), dds_type.to_string(), qos, TopicKind::NoKey)
-            .map_err(|error| error.to_string())
-    }
-}
-
-/// A participant in the domain and on the networks of the environment.
-pub(super) fn participant(environment: &Environment) -> Result<DomainParticipant, String> {
-    let builder = DomainParticipantBuilder::new(environment.domain);
-    let builder = match environment.networks() {
-        Some(networks) => builder.with_only_networks(networks),
-        None => builder,
-    };
-    builder.build().map_err(|error| error.to_string())
-}
 
 /// The connection of this process to the ROS graph; clones share it.
 #[derive(Clone)]
@@ -98,7 +35,7 @@ struct State {
 
 impl Link {
     pub(super) fn join(identity: NodeIdentity, environment: Environment, runtime: Handle) -> Result<Self, RosError> {
-        let connection = Connection::join(&identity, &environment)?;
+        let (connection, _) = build(&identity, &environment, Vec::new())?;
         let state = Mutex::new(State { connection: Some(connection), endpoints: Vec::new() });
         Ok(Link { shared: Arc::new(Shared { identity, environment, runtime, state }) })
     }
@@ -161,31 +98,51 @@ impl Link {
         Ok(undecodable)
     }
 
+    /// Opens an endpoint, now and on every connection to come. Where the middleware breaks meanwhile, the endpoint waits for
+    /// the next connection.
+    ///
+    /// # Errors
+    /// [`RosError::Endpoint`]: it cannot be opened, and not later either.
     pub(crate) fn add(&self, endpoint: Arc<dyn Endpoint>) -> Result<(), RosError> {
         let mut state = self.lock();
-        let State { connection, endpoints } = &mut *state;
-        if let Some(connection) = connection {
-            endpoint.open(connection, &self.shared.runtime)?;
+        if let Some(connection) = state.connection.take() {
+            let opening = Arc::clone(&endpoint);
+            if let Some((connection, opened)) = within(BUILDING, move || connection.with(opening)) {
+                match opened {
+                    Ok(install) => install(&self.shared.runtime),
+                    Err(_) if connection.threads().died().is_some() => {}
+                    Err(error) => {
+                        state.connection = Some(connection);
+                        return Err(error);
+                    }
+                }
+                state.connection = Some(connection);
+            }
         }
-        endpoints.push(endpoint);
+        state.endpoints.push(endpoint);
         Ok(())
     }
 
     /// Closes all endpoints for good, with what their callbacks hold. Must not be called from the runtime.
     pub(crate) fn forget_endpoints(&self) {
-        let (endpoints, tasks) = {
+        let (endpoints, closed) = {
             let mut state = self.lock();
             let endpoints = std::mem::take(&mut state.endpoints);
-            let tasks: Vec<Task> = endpoints.iter().flat_map(|endpoint| endpoint.close()).collect();
-            (endpoints, tasks)
+            let closed = close(&endpoints);
+            (endpoints, closed)
         };
-        self.end(tasks);
-        drop(endpoints);
+        self.end(closed.tasks);
+        let_go((closed.remains, endpoints));
     }
 
     /// The participant of the connection, `None` while there is none.
     pub(crate) fn participant(&self) -> Option<DomainParticipant> {
         self.lock().connection.as_ref().map(Connection::participant)
+    }
+
+    /// The participant of the connection and its threads, `None` while there is none.
+    pub(super) fn alive(&self) -> Option<(DomainParticipant, Threads)> {
+        self.lock().connection.as_ref().map(|connection| (connection.participant(), connection.threads()))
     }
 
     /// Whether somebody on the graph reads a topic.
@@ -208,30 +165,23 @@ impl Link {
     /// [`RosError`]; the link is down then, and this can be tried again.
     pub(super) fn rebuild(&self) -> Result<(), RosError> {
         self.leave();
-        let mut connection = Connection::join(&self.shared.identity, &self.shared.environment)?;
+        // Whoever wants to add an endpoint waits until the new connection is there.
         let mut state = self.lock();
-        for endpoint in &state.endpoints {
-            endpoint.open(&mut connection, &self.shared.runtime)?;
-        }
+        let (connection, installs) = build(&self.shared.identity, &self.shared.environment, state.endpoints.clone())?;
+        installs.into_iter().for_each(|install| install(&self.shared.runtime));
         state.connection = Some(connection);
         Ok(())
     }
 
     /// Leaves the graph: endpoints first, then the node, then the participant. Must not be called from the runtime.
     pub(super) fn leave(&self) {
-        let (connection, tasks) = {
+        let (connection, closed) = {
             let mut state = self.lock();
-            let tasks: Vec<Task> = state.endpoints.iter().flat_map(|endpoint| endpoint.close()).collect();
-            (state.connection.take(), tasks)
+            let closed = close(&state.endpoints);
+            (state.connection.take(), closed)
         };
-        self.end(tasks);
-        // A middleware whose threads have died can hang in its farewell; nobody may wait for that for ever.
-        let (gone, wait) = std::sync::mpsc::channel();
-        std::thread::spawn(move || {
-            drop(connection);
-            let _ = gone.send(());
-        });
-        let _ = wait.recv_timeout(FAREWELL);
+        self.end(closed.tasks);
+        let_go((closed.remains, connection));
     }
 
     fn end(&self, tasks: Vec<Task>) {
@@ -246,4 +196,28 @@ impl Link {
     fn lock(&self) -> std::sync::MutexGuard<'_, State> {
         self.shared.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Gives up what belongs to the connection.
+fn close(endpoints: &[Arc<dyn Endpoint>]) -> Closed {
+    let mut closed = Closed::default();
+    closed.extend(endpoints.iter().map(|endpoint| endpoint.close()));
+    closed
+}
+
+/// A new connection, with endpoints that wait to be installed.
+fn build(
+    identity: &NodeIdentity,
+    environment: &Environment,
+    endpoints: Vec<Arc<dyn Endpoint>>,
+) -> Result<(Connection, Vec<Install>), RosError> {
+    let (identity, environment, domain) = (identity.clone(), *environment, environment.domain);
+    let built = within(BUILDING, move || {
+        let mut connection = Connection::join(&identity, &environment)?;
+        let installs: Result<_, RosError> =
+            endpoints.into_iter().map(|endpoint| endpoint.open(&mut connection)).collect();
+        Ok((connection, installs?))
+    });
+    let reason = || format!("the middleware does not answer within {} s", BUILDING.as_secs());
+    built.unwrap_or_else(|| Err(RosError::Join { domain, reason: reason() }))
 }

@@ -22,6 +22,7 @@
 
 mod arguments;
 mod clock;
+pub(crate) mod connection;
 pub(crate) mod dds_names;
 mod diagnostics;
 mod environment;
@@ -29,7 +30,7 @@ mod error;
 mod health;
 mod inlet;
 mod latched;
-pub(crate) mod link;
+mod link;
 mod logger;
 mod middleware_log;
 mod names;
@@ -39,10 +40,12 @@ mod parameter;
 mod parameter_file;
 mod parameter_services;
 mod parameters;
+mod patience;
 mod qos;
 pub(crate) mod raw;
 mod signals;
 mod supervisor;
+mod threads;
 mod value_text;
 
 pub(crate) use arguments::ros_words;

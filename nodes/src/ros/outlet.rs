@@ -5,10 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use excavator_msgs::Message;
 use ros2_client::{Publisher, WriteError};
-use tokio::runtime::Handle;
 
+use super::connection::{Closed, Connection, Endpoint, Install};
 use super::dds_names::{dds_topic, dds_type};
-use super::link::{Connection, Endpoint, Task};
 use super::{RosError, TopicQos};
 
 /// Why a message was not taken.
@@ -86,19 +85,19 @@ impl<M: Message + Send + Sync + 'static> Outlet<M> {
 }
 
 impl<M: Message + Send + Sync + 'static> Endpoint for Outlet<M> {
-    fn open(&self, connection: &mut Connection, _runtime: &Handle) -> Result<(), RosError> {
+    fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError> {
         let failed = |reason: String| RosError::Endpoint { what: self.shared.topic.clone(), reason };
         let topic = connection
             .create_topic(&dds_topic(&self.shared.topic), &dds_type(M::TYPE_NAME), &self.shared.qos.to_dds())
             .map_err(failed)?;
         let publisher = connection.node().create_publisher(&topic, None).map_err(|error| failed(error.to_string()))?;
-        *self.shared.publisher.lock().unwrap_or_else(PoisonError::into_inner) = Some(publisher);
-        Ok(())
+        Ok(Box::new(move |_| {
+            *self.shared.publisher.lock().unwrap_or_else(PoisonError::into_inner) = Some(publisher);
+        }))
     }
 
-    fn close(&self) -> Vec<Task> {
-        *self.shared.publisher.lock().unwrap_or_else(PoisonError::into_inner) = None;
-        Vec::new()
+    fn close(&self) -> Closed {
+        Closed::writer(self.shared.publisher.lock().unwrap_or_else(PoisonError::into_inner).take())
     }
 
     fn interface(&self) -> Option<(String, String)> {

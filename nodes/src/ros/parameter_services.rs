@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use excavator_msgs::Time;
 use futures::StreamExt;
+use futures::future::BoxFuture;
 use ros2_client::parameters::raw;
 use ros2_client::rcl_interfaces::{
     DescribeParametersRequest, DescribeParametersResponse, GetParameterTypesRequest, GetParameterTypesResponse,
@@ -17,9 +18,8 @@ use ros2_client::rcl_interfaces::{
 use ros2_client::{Gid, Message, Name, QosProfile, ServiceMapping, ServiceTypeName};
 use rustdds::DomainParticipant;
 use serde::{Deserialize, Serialize};
-use tokio::runtime::Handle;
 
-use super::link::{Connection, Endpoint, Task};
+use super::connection::{Closed, Connection, Endpoint, Install, Task};
 use super::{Link, Mapping, Outlet, Parameter, Parameters, Range, RosClock, RosError, TopicQos, Value};
 
 /// Requests that wait: rmw_qos_profile_services_default.
@@ -79,29 +79,31 @@ struct Services {
 }
 
 impl Endpoint for Services {
-    fn open(&self, connection: &mut Connection, runtime: &Handle) -> Result<(), RosError> {
-        let mut opening = Opening { services: self, connection, runtime, tasks: Vec::new() };
+    fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError> {
+        let mut opening = Opening { services: &self, connection, counters: Vec::new() };
         opening.serve("get_parameters", "GetParameters", Desk::get)?;
         opening.serve("get_parameter_types", "GetParameterTypes", Desk::types)?;
         opening.serve("list_parameters", "ListParameters", Desk::list)?;
         opening.serve("describe_parameters", "DescribeParameters", Desk::describe)?;
         opening.serve("set_parameters", "SetParameters", Desk::set)?;
         opening.serve("set_parameters_atomically", "SetParametersAtomically", Desk::set_together)?;
-        let tasks = opening.tasks;
-        *self.tasks.lock().unwrap_or_else(PoisonError::into_inner) = tasks;
-        Ok(())
+        let counters = opening.counters;
+        Ok(Box::new(move |runtime| {
+            let tasks = counters.into_iter().map(|counter| runtime.spawn(counter)).collect();
+            *self.tasks.lock().unwrap_or_else(PoisonError::into_inner) = tasks;
+        }))
     }
 
-    fn close(&self) -> Vec<Task> {
-        std::mem::take(&mut *self.tasks.lock().unwrap_or_else(PoisonError::into_inner))
+    fn close(&self) -> Closed {
+        Closed::tasks(std::mem::take(&mut *self.tasks.lock().unwrap_or_else(PoisonError::into_inner)))
     }
 }
 
+/// Services that are being created; at each counter somebody will answer one kind of request.
 struct Opening<'o> {
     services: &'o Services,
     connection: &'o mut Connection,
-    runtime: &'o Handle,
-    tasks: Vec<Task>,
+    counters: Vec<BoxFuture<'static, ()>>,
 }
 
 impl Opening<'_> {
@@ -121,7 +123,7 @@ impl Opening<'_> {
         let desk = Arc::clone(&self.services.desk);
         let reply_topic = format!("rr{}/{service}Reply", self.services.desk.node);
         let mut clients = Clients { participant: self.connection.participant(), reply_topic, known: HashSet::new() };
-        self.tasks.push(self.runtime.spawn(async move {
+        self.counters.push(Box::pin(async move {
             let mut requests = server.receive_request_stream();
             while let Some(request) = requests.next().await {
                 // A request that cannot be decoded has nobody to be answered.

@@ -9,11 +9,10 @@ use rustdds::bytes::Bytes;
 use rustdds::no_key::{DataWriter, Decode, DefaultDecoder, DeserializerAdapter, SerializerAdapter};
 use rustdds::policy::Durability;
 use rustdds::{GUID, QosPolicies, RepresentationIdentifier, Timestamp, WriteOptionsBuilder};
-use tokio::runtime::Handle;
 
 use super::clock::system_nanoseconds;
+use super::connection::{Closed, Connection, Endpoint, Install, Task};
 use super::dds_names::{dds_topic, dds_type};
-use super::link::{Connection, Endpoint, Task};
 use super::{Link, PublishError, RosError};
 
 /// Length of the encapsulation in front of every message.
@@ -121,7 +120,7 @@ impl RawInlet {
 }
 
 impl Endpoint for RawInlet {
-    fn open(&self, connection: &mut Connection, runtime: &Handle) -> Result<(), RosError> {
+    fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError> {
         let failed = |reason: String| RosError::Endpoint { what: self.topic.clone(), reason };
         let topic =
             connection.create_topic(&dds_topic(&self.topic), &dds_type(&self.type_name), &self.qos).map_err(failed)?;
@@ -131,7 +130,7 @@ impl Endpoint for RawInlet {
             .create_simple_datareader_no_key::<RawBytes, RawAdapter>(&topic, Some(self.qos.clone()))
             .map_err(|error| failed(error.to_string()))?;
         let callback = Arc::clone(&self.callback);
-        let task = runtime.spawn(async move {
+        let reading = async move {
             let mut samples = pin!(reader.as_async_stream());
             while let Some(sample) = samples.next().await {
                 let Ok(sample) = sample else {
@@ -147,13 +146,14 @@ impl Endpoint for RawInlet {
                 };
                 (callback.lock().unwrap_or_else(PoisonError::into_inner))(raw);
             }
-        });
-        *self.task.lock().unwrap_or_else(PoisonError::into_inner) = Some(task);
-        Ok(())
+        };
+        Ok(Box::new(move |runtime| {
+            *self.task.lock().unwrap_or_else(PoisonError::into_inner) = Some(runtime.spawn(reading));
+        }))
     }
 
-    fn close(&self) -> Vec<Task> {
-        self.task.lock().unwrap_or_else(PoisonError::into_inner).take().into_iter().collect()
+    fn close(&self) -> Closed {
+        Closed::tasks(self.task.lock().unwrap_or_else(PoisonError::into_inner).take())
     }
 }
 
@@ -213,7 +213,7 @@ fn announce(writer: &DataWriter<RawBytes, RawAdapter>) {
 }
 
 impl Endpoint for RawOutlet {
-    fn open(&self, connection: &mut Connection, _runtime: &Handle) -> Result<(), RosError> {
+    fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError> {
         let failed = |reason: String| RosError::Endpoint { what: self.topic.clone(), reason };
         let topic =
             connection.create_topic(&dds_topic(&self.topic), &dds_type(&self.type_name), &self.qos).map_err(failed)?;
@@ -225,13 +225,13 @@ impl Endpoint for RawOutlet {
         if self.qos.durability() != Some(Durability::TransientLocal) {
             announce(&writer);
         }
-        *self.writer.lock().unwrap_or_else(PoisonError::into_inner) = Some(writer);
-        Ok(())
+        Ok(Box::new(move |_| {
+            *self.writer.lock().unwrap_or_else(PoisonError::into_inner) = Some(writer);
+        }))
     }
 
-    fn close(&self) -> Vec<Task> {
-        *self.writer.lock().unwrap_or_else(PoisonError::into_inner) = None;
-        Vec::new()
+    fn close(&self) -> Closed {
+        Closed::writer(self.writer.lock().unwrap_or_else(PoisonError::into_inner).take())
     }
 }
 

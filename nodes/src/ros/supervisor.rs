@@ -37,7 +37,18 @@ pub struct Supervisor {
     signals: Signals,
     stop: Arc<AtomicBool>,
     // Last, so that it outlives everything that runs on it.
-    _runtime: Runtime,
+    _runtime: Background,
+}
+
+/// The runtime of the link. What hangs on it when the process ends is left behind.
+struct Background(Option<Runtime>);
+
+impl Drop for Background {
+    fn drop(&mut self) {
+        if let Some(runtime) = self.0.take() {
+            runtime.shutdown_background();
+        }
+    }
 }
 
 impl Supervisor {
@@ -66,6 +77,7 @@ impl Supervisor {
             .build()
             .map_err(|source| RosError::System { action: "start the runtime", source })?;
         let link = Link::join(identity, environment, runtime.handle().clone())?;
+        let runtime = Background(Some(runtime));
         let logger = Logger::new(&link, arguments)?;
         let clock = RosClock::of(&link, parameters.flag("use_sim_time"))?;
         let diagnostics = Diagnostics::new(&link, &clock)?;
@@ -108,7 +120,7 @@ impl Supervisor {
             if let Some(fault) = pending.take() {
                 self.diagnostics.tell("link", Health::Warning, format!("{fault}: building it anew"), &[]);
                 self.logger.warn(format!("{fault}: building the link anew"));
-            } else if watch.is_some() {
+            } else if watch.is_some() && self.link.participant().is_some() {
                 self.tell_link(watch.as_ref(), rebuilds);
                 continue;
             }
@@ -128,7 +140,8 @@ impl Supervisor {
     }
 
     fn watch(&self) -> Option<Watch> {
-        self.link.participant().map(|participant| Watch::new(*self.link.environment(), participant))
+        let (participant, threads) = self.link.alive()?;
+        Some(Watch::new(*self.link.environment(), participant, threads))
     }
 
     fn tell_link(&self, watch: Option<&Watch>, rebuilds: u32) {

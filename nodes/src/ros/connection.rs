@@ -1,0 +1,120 @@
+//! One life in the ROS graph, and what exists only as long as it lasts.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use ros2_client::{Context, Node, NodeName, NodeOptions};
+use rustdds::{DomainParticipant, DomainParticipantBuilder, QosPolicies, Topic, TopicKind};
+use tokio::runtime::Handle;
+
+use super::threads::Threads;
+use super::{Environment, NodeIdentity, RosError};
+
+/// Something that runs as long as an endpoint is open.
+pub(crate) type Task = tokio::task::JoinHandle<()>;
+
+/// Puts what was created on a new connection into its place. Creating may hang, this must not.
+pub(crate) type Install = Box<dyn FnOnce(&Handle) + Send>;
+
+/// What is left of an endpoint that was closed.
+#[derive(Default)]
+pub(crate) struct Closed {
+    /// To be ended.
+    pub tasks: Vec<Task>,
+    /// To be dropped, which may hang.
+    pub remains: Vec<Box<dyn Any + Send>>,
+}
+
+impl Closed {
+    /// Nothing but tasks.
+    pub fn tasks(tasks: impl IntoIterator<Item = Task>) -> Self {
+        Closed { tasks: tasks.into_iter().collect(), remains: Vec::new() }
+    }
+
+    /// Nothing but a writer, where there was one.
+    pub fn writer<W: Send + 'static>(writer: Option<W>) -> Self {
+        let boxed = writer.map(|writer| Box::new(writer) as Box<dyn Any + Send>);
+        Closed { tasks: Vec::new(), remains: boxed.into_iter().collect() }
+    }
+}
+
+impl Extend<Closed> for Closed {
+    fn extend<I: IntoIterator<Item = Closed>>(&mut self, others: I) {
+        for other in others {
+            self.tasks.extend(other.tasks);
+            self.remains.extend(other.remains);
+        }
+    }
+}
+
+/// Something that exists on a connection and is opened again on the next one.
+pub(crate) trait Endpoint: Send + Sync {
+    /// Creates the endpoint on a new connection. It is not in use before it is installed: a connection may turn out to be
+    /// dead while the next one is there already.
+    fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError>;
+
+    /// Gives up what belongs to the connection.
+    fn close(&self) -> Closed;
+
+    /// Full name and ROS type of the topic, where it is one.
+    fn interface(&self) -> Option<(String, String)> {
+        None
+    }
+}
+
+/// One participant with its node.
+pub(crate) struct Connection {
+    // Dropped in this order: the node says good-bye through the context.
+    node: Node,
+    context: Context,
+    threads: Threads,
+}
+
+impl Connection {
+    pub(super) fn join(identity: &NodeIdentity, environment: &Environment) -> Result<Self, RosError> {
+        let failed = |reason: String| RosError::Join { domain: environment.domain, reason };
+        let threads = Threads::of_the_next();
+        let participant = participant(environment).map_err(failed)?;
+        let context = Context::from_domain_participant(participant).map_err(|error| failed(error.to_string()))?;
+        let name = NodeName::new(identity.namespace(), identity.name()).map_err(|error| failed(error.to_string()))?;
+        // Parameter services and log are ours: the library's are bound to one mapping and to its own spinner.
+        let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
+        let node = context.new_node(name, options).map_err(|error| failed(error.to_string()))?;
+        Ok(Connection { node, context, threads })
+    }
+
+    /// Creates an endpoint on this connection; the connection is returned with it.
+    pub(super) fn with(mut self, endpoint: Arc<dyn Endpoint>) -> (Self, Result<Install, RosError>) {
+        let opened = endpoint.open(&mut self);
+        (self, opened)
+    }
+
+    pub(crate) fn node(&mut self) -> &mut Node {
+        &mut self.node
+    }
+
+    pub(crate) fn participant(&self) -> DomainParticipant {
+        self.context.domain_participant()
+    }
+
+    /// The threads of the participant.
+    pub(super) fn threads(&self) -> Threads {
+        self.threads.clone()
+    }
+
+    pub(crate) fn create_topic(&self, dds_name: &str, dds_type: &str, qos: &QosPolicies) -> Result<Topic, String> {
+        self.participant()
+            .create_topic(dds_name.to_string(), dds_type.to_string(), qos, TopicKind::NoKey)
+            .map_err(|error| error.to_string())
+    }
+}
+
+/// A participant in the domain and on the networks of the environment.
+pub(super) fn participant(environment: &Environment) -> Result<DomainParticipant, String> {
+    let builder = DomainParticipantBuilder::new(environment.domain);
+    let builder = match environment.networks() {
+        Some(networks) => builder.with_only_networks(networks),
+        None => builder,
+    };
+    builder.build().map_err(|error| error.to_string())
+}
