@@ -156,18 +156,17 @@ impl Chains<'_> {
             }
         }
         let Some((_, superfluous)) = least else { return Ok(None) };
-        let mut rebuilt: Vec<Candidate> = Vec::new();
-        for (number, link) in chain.iter().enumerate() {
-            if number < superfluous {
-                rebuilt.push(link.clone());
-            } else if number > superfluous {
-                let race = self.race(&rebuilt);
-                match race.run(&[(link.physics, link.site)], &|what, _| progress(what, 0.9)).fitted.into_iter().next() {
-                    Some(link) => rebuilt.push(link),
-                    // Without the other it cannot even be begun with: then that was needed after all.
-                    None => return Ok(None),
-                }
-            }
+        // What came after it is begun with in the order that suits the chain without it: a link that only helps on top of
+        // another, which came later, would not get past the start.
+        let (kept, rest) = chain.split_at(superfluous);
+        let mut rebuilt = kept.to_vec();
+        let mut wanted: Vec<_> = rest.iter().skip(1).map(|link| (link.physics, link.site)).collect();
+        while !wanted.is_empty() {
+            let round = self.race(&rebuilt).run(&wanted, &|what, _| progress(what, 0.9));
+            // Without the other it cannot even be begun with: then that was needed after all.
+            let Some(next) = round.fitted.into_iter().next() else { return Ok(None) };
+            wanted.retain(|&(physics, site)| (physics.card().name, site) != (next.name(), next.site));
+            rebuilt.push(next);
         }
         Ok(Some(rebuilt))
     }

@@ -70,10 +70,28 @@ pub struct Score {
     pub typical: [f64; 2],
     /// Name, gain and significance of the best candidates for the first place.
     pub gains: Vec<(&'static str, f64, f64)>,
-    /// Base parameters inside their 95 % interval, and how many have one, in the last model.
-    pub covered: [usize; 2],
+    /// Base parameters of the last model that have an interval.
+    pub estimates: Vec<Estimate>,
     /// Wall-clock time of the diagnosis, s.
     pub seconds: f64,
+}
+
+/// A base parameter of the last model against the truth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// As the model calls it.
+    pub name: &'static str,
+    /// Error over the true value.
+    pub relative_error: f64,
+    /// Error over the standard error.
+    pub standardised_error: f64,
+}
+
+impl Estimate {
+    /// Whether the 95 % interval holds the truth.
+    pub fn is_covered(&self) -> bool {
+        self.standardised_error.abs() <= 1.96
+    }
 }
 
 /// Two recordings of a case, with how much is hidden in them.
@@ -160,7 +178,7 @@ pub fn score(case: &Case, evidence: &Evidence) -> Result<Score, ScoreError> {
             .take(3)
             .map(|candidate| (candidate.name(), candidate.evidence.gain, candidate.evidence.significance))
             .collect(),
-        covered: coverage(case, &last.model),
+        estimates: estimates(case, &last.model),
         verdict: diagnosis.verdict,
         first,
         tied,
@@ -238,17 +256,16 @@ fn coefficient_error(case: &Case, diagnosis: &Diagnosis) -> Option<f64> {
     median(&mut errors)
 }
 
-fn coverage(case: &Case, model: &Model) -> [usize; 2] {
+fn estimates(case: &Case, model: &Model) -> Vec<Estimate> {
     let names = model.parameter_names();
-    let mut covered = [0, 0];
-    for (name, truth) in case.plant.base.named() {
-        let found = names.iter().position(|candidate| candidate == name);
-        let Some((_, parameter)) = found.and_then(|index| model.parameters().nth(index)) else { continue };
-        let Some(standard_error) = parameter.standard_error else { continue };
-        covered[1] += 1;
-        covered[0] += usize::from((parameter.value - truth).abs() <= 1.96 * standard_error);
-    }
-    covered
+    let estimate = |(name, truth): (&'static str, f64)| {
+        let index = names.iter().position(|candidate| candidate == name)?;
+        let (_, parameter) = model.parameters().nth(index)?;
+        let standard_error = parameter.standard_error?;
+        let error = parameter.value - truth;
+        Some(Estimate { name, relative_error: error / truth, standardised_error: error / standard_error })
+    };
+    case.plant.base.named().into_iter().filter_map(estimate).collect()
 }
 
 /// Middle value; `None` of nothing.

@@ -3,7 +3,7 @@
 use comfy_table::{Table, presets};
 
 use crate::cases::{Case, Sort};
-use crate::scoring::{Evidence, Outcome, Score, median};
+use crate::scoring::{Estimate, Evidence, Outcome, Score, median};
 
 /// A case with its score, or why it has none.
 pub type Judged = (Case, Result<Score, String>);
@@ -35,8 +35,8 @@ pub fn line(case: &Case, evidence: &Evidence, score: &Score) -> String {
         score.verdict.name(),
         score.nmse[0],
         score.nmse[1],
-        score.covered[0],
-        score.covered[1],
+        score.estimates.iter().filter(|estimate| estimate.is_covered()).count(),
+        score.estimates.len(),
         score.seconds,
         losses.join(" -> "),
         score.typical[0],
@@ -118,8 +118,9 @@ fn figures(judged: &[Judged]) -> String {
     let error = median(&mut errors).map_or("none".to_string(), |error| format!("{:.1} %", 100.0 * error));
     let good = |outcome: Outcome| matches!(outcome, Outcome::Right | Outcome::Tied);
     let models: Vec<&Score> = scores.iter().map(|(_, score)| *score).filter(|score| good(score.outcome)).collect();
-    let covered: usize = models.iter().map(|score| score.covered[0]).sum();
-    let intervals: usize = models.iter().map(|score| score.covered[1]).sum();
+    let estimates: Vec<Estimate> = models.iter().flat_map(|score| score.estimates.iter().copied()).collect();
+    let covered = estimates.iter().filter(|estimate| estimate.is_covered()).count();
+    let intervals = estimates.len();
     let mut seconds: Vec<f64> = scores.iter().map(|(_, score)| score.seconds).collect();
     let longest = seconds.iter().copied().fold(0.0, f64::max);
     let middle = median(&mut seconds).unwrap_or(f64::NAN);
@@ -128,7 +129,33 @@ fn figures(judged: &[Judged]) -> String {
         "false alarms where nothing can be seen: {alarms} of {silent_cases}\n\
          coefficient error, median of {named} cases: {error}\n\
          95 % intervals of base parameters that contain the truth, in {} rightly answered cases: {covered} of {intervals}\n\
+         {}\n\
          seconds per diagnosis: median {middle:.0}, longest {longest:.0}; cases without a score: {failed}",
-        models.len()
+        models.len(),
+        by_parameter(&estimates)
     )
+}
+
+/// How often the interval of each base parameter holds the truth, and how far off it is.
+fn by_parameter(estimates: &[Estimate]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header(["parameter", "in the interval", "error, median", "bias, median", "bias, standard errors"]);
+    let mut names: Vec<&str> = estimates.iter().map(|estimate| estimate.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    for name in names {
+        let own: Vec<&Estimate> = estimates.iter().filter(|estimate| estimate.name == name).collect();
+        let middle = |of: &dyn Fn(&Estimate) -> f64| {
+            median(&mut own.iter().map(|estimate| of(estimate)).collect::<Vec<f64>>()).unwrap_or(f64::NAN)
+        };
+        table.add_row([
+            name.to_string(),
+            format!("{} of {}", own.iter().filter(|estimate| estimate.is_covered()).count(), own.len()),
+            format!("{:.2} %", 100.0 * middle(&|estimate| estimate.relative_error.abs())),
+            format!("{:+.2} %", 100.0 * middle(&|estimate| estimate.relative_error)),
+            format!("{:+.1}", middle(&|estimate| estimate.standardised_error)),
+        ]);
+    }
+    table
 }
