@@ -36,6 +36,9 @@ pub struct Parameter {
     pub known: bool,
     /// Standard error of an identified value, in the card's unit.
     pub standard_error: Option<f64>,
+    /// Half width of its 95 % interval, in the card's unit: more than 1.96 standard errors where these are badly known
+    /// themselves.
+    pub margin_95: Option<f64>,
     /// Where the value comes from, for people.
     pub source: String,
 }
@@ -143,6 +146,7 @@ impl ModelEffect {
                 },
                 known: false,
                 standard_error: None,
+                margin_95: None,
                 source: String::new(),
             })
             .collect();

@@ -255,5 +255,6 @@ fn a_crawl_ends_with_a_reason() {
     let tolerances = Tolerances { most_steps_per_second: 1.0, ..Tolerances::default().scaled(1e-7) };
     let error = simulate_from_rest(&model, &recording, &[0.0], tolerances).unwrap_err();
     assert!(matches!(error, RunError::Simulation(SimulationError::TooSlow { .. })), "{error:?}");
-    assert!(error.to_string().contains("crawls at"), "{error}");
+    let told = error.to_string();
+    assert!(told.contains("crawls at") && told.contains("with arm at") && told.contains("cap side"), "{told}");
 }

@@ -35,7 +35,7 @@ fn intervals_cover() {
             let (_, parameter) = result.model.parameters().nth(index).unwrap();
             let error = parameter.value - truth[index];
             let standard_error = parameter.standard_error.unwrap();
-            covered[number] += usize::from(error.abs() <= 1.96 * standard_error);
+            covered[number] += usize::from(error.abs() <= parameter.margin_95.unwrap());
             biases[number] += error / standard_error / COVERAGE_DRAWS as f64;
             errors[number] += (error / truth[index]).abs() / COVERAGE_DRAWS as f64;
         }

@@ -98,7 +98,7 @@ impl Fit {
         let parameters: Vec<_> = self.model.parameters().map(|(_, parameter)| parameter).collect();
         let unknown = |&&index: &&usize| {
             let parameter = parameters[index];
-            parameter.standard_error.is_none_or(|error| error.is_nan() || 1.96 * error >= parameter.value.abs())
+            parameter.margin_95.is_none_or(|margin| margin.is_nan() || margin >= parameter.value.abs())
         };
         self.fitted.iter().filter(unknown).copied().collect()
     }
@@ -321,7 +321,9 @@ fn result(model: &Model, problem: Problem<'_, '_>, state: State, steps: usize, c
     for (index, parameter) in model.parameters_mut().enumerate() {
         if let Some(number) = fitted.iter().position(|&candidate| candidate == index) {
             let variance = covariance[(number, number)];
-            parameter.standard_error = Some(variance.max(0.0).sqrt());
+            let error = variance.max(0.0).sqrt();
+            parameter.standard_error = Some(error);
+            parameter.margin_95 = Some(1.96 * error);
         }
     }
     let errors = instruments

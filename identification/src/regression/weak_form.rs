@@ -126,6 +126,7 @@ pub fn weak_form_watched(
         for (index, parameter) in model.parameters_mut().enumerate() {
             if held.iter().any(|(other, _)| *other == index) {
                 parameter.standard_error = None;
+                parameter.margin_95 = None;
             }
         }
     }

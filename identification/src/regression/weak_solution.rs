@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::equation::EquationKind;
 use super::solution::{ConditionNumber, condition_numbers};
-use super::weak_covariance::jackknife_covariance;
+use super::weak_covariance::jackknife;
 use super::weak_form::sources;
 use super::weak_rows::Row;
 use super::{EquationGauge, Regression, RegressionError, WeakFormSettings};
@@ -117,10 +117,11 @@ pub(super) fn solve(
     }
     improved.set_parameter_values(&new_values);
 
-    let coefficient_covariance = if with_errors {
-        jackknife_covariance(rows, &instruments, &regressors, &remaining)
+    let (coefficient_covariance, quantiles) = if with_errors {
+        let spread = jackknife(rows, &instruments, &regressors, &remaining);
+        (spread.covariance, spread.quantiles)
     } else {
-        DMatrix::from_element(seen.len(), seen.len(), f64::NAN)
+        (DMatrix::from_element(seen.len(), seen.len(), f64::NAN), DVector::from_element(seen.len(), f64::NAN))
     };
     let mut covariance = DMatrix::zeros(seen.len(), seen.len());
     let to_parameter = |column: usize| {
@@ -141,6 +142,7 @@ pub(super) fn solve(
         if let Some(column) = seen.iter().position(|&s| unknown[s] == index) {
             let variance = covariance[(column, column)];
             parameter.standard_error = variance.is_finite().then(|| variance.max(0.0).sqrt());
+            parameter.margin_95 = parameter.standard_error.map(|error| quantiles[column] * error);
             parameter.source = "identified".into();
         }
     }

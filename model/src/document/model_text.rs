@@ -39,6 +39,8 @@ struct ParameterText {
     known: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     standard_error: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    margin_95: Option<f64>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     source: String,
 }
@@ -108,6 +110,7 @@ fn fill_parameters(name: &str, text: &EffectText, effect: &mut ModelEffect) -> R
         parameter.value = given.value;
         parameter.known = given.known;
         parameter.standard_error = given.standard_error;
+        parameter.margin_95 = given.margin_95;
         parameter.source.clone_from(&given.source);
     }
     Ok(())
@@ -135,6 +138,7 @@ pub fn to_text(model: &Model) -> Result<String, DocumentError> {
                             unit: parameter.card.unit.to_string(),
                             known: parameter.known,
                             standard_error: parameter.standard_error,
+                            margin_95: parameter.margin_95,
                             source: parameter.source.clone(),
                         };
                         (parameter.card.name.to_string(), text)

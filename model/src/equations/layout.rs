@@ -64,4 +64,22 @@ impl Layout {
     pub fn rod_pressure(&self, cylinder: usize) -> Option<usize> {
         self.chambers.then_some(2 * self.joints + 2 * cylinder + 1)
     }
+
+    /// A state for people: where pistons are and how pressures stand.
+    pub fn told(&self, model: &Model, state: &[f64]) -> String {
+        let at = |index: Option<usize>| index.and_then(|index| state.get(index)).copied();
+        let bar =
+            |what: &str, pressure: Option<f64>| pressure.map(|pascals| format!("{what} {:.1} bar", pascals / 1e5));
+        let cylinders = model.machine.cylinders.iter().enumerate().flat_map(|(number, cylinder)| {
+            let joint = at(Some(self.joint(number))).unwrap_or(f64::NAN);
+            let place = format!("{} at {:.1} mm", cylinder.name, 1e3 * cylinder.linkage.displacement(joint));
+            let pressures = [
+                bar("cap side", at(self.cap_pressure(number))),
+                bar("rod side", at(self.rod_pressure(number))),
+                at(self.rod_force(number)).map(|force| format!("{force:.0} N on the rod")),
+            ];
+            std::iter::once(place).chain(pressures.into_iter().flatten())
+        });
+        cylinders.chain(bar("pump", at(self.pump))).collect::<Vec<_>>().join(", ")
+    }
 }

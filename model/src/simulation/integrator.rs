@@ -19,7 +19,7 @@ use crate::equations::{Inputs, System, Workspace};
 pub enum SimulationError {
     /// The step size fell below what can carry the solution on.
     #[error(
-        "the simulation of {model} cannot go on at {time:.3} s: step {step:.1e} s is below {minimum:.1e} s; state {state:?}"
+        "the simulation of {model} cannot go on at {time:.3} s: step {step:.1e} s is below {minimum:.1e} s; {state}"
     )]
     StepTooSmall {
         /// Machine of the model.
@@ -30,12 +30,12 @@ pub enum SimulationError {
         step: f64,
         /// Smallest step allowed, s.
         minimum: f64,
-        /// State there.
-        state: Vec<f64>,
+        /// State there, for people.
+        state: String,
     },
     /// The solution can only be carried on in steps so short that it would take hours.
     #[error(
-        "the simulation of {model} crawls at {time:.3} s in steps of {step:.1e} s; its parameters make it far stiffer than a machine is: {state:?}"
+        "the simulation of {model} crawls at {time:.3} s in steps of {step:.1e} s, with {state}; something is far stiffer there than a machine is: look at volumes, masses and the parameters of what acts there"
     )]
     TooSlow {
         /// Machine of the model.
@@ -44,18 +44,18 @@ pub enum SimulationError {
         time: f64,
         /// Step, s.
         step: f64,
-        /// State there.
-        state: Vec<f64>,
+        /// State there, for people.
+        state: String,
     },
     /// The state is no longer a number.
-    #[error("the simulation of {model} left all bounds at {time:.3} s; check its parameters: {state:?}")]
+    #[error("the simulation of {model} left all bounds at {time:.3} s, with {state}; check its parameters")]
     NotFinite {
         /// Machine of the model.
         model: String,
         /// Simulated time, s.
         time: f64,
-        /// State there.
-        state: Vec<f64>,
+        /// State there, for people.
+        state: String,
     },
 }
 
@@ -208,8 +208,9 @@ impl<'m, 's> Integrator<'m, 's> {
             let time = signals.time[index] + done;
             self.allowance -= 1.0;
             if self.allowance < 0.0 {
+                let state = self.system.layout().told(self.system.model(), state);
                 let model = self.system.model().machine.name.clone();
-                return Err(SimulationError::TooSlow { model, time, step, state: state.to_vec() });
+                return Err(SimulationError::TooSlow { model, time, step, state });
             }
             if !self.judge(error, step) {
                 if self.step < self.settings.minimum_step {
@@ -331,17 +332,13 @@ impl<'m, 's> Integrator<'m, 's> {
     }
 
     fn give_up(&self, time: f64, state: &[f64]) -> SimulationError {
+        let told = self.system.layout().told(self.system.model(), state);
         let model = self.system.model().machine.name.clone();
         if state.iter().all(|value| value.is_finite()) {
-            SimulationError::StepTooSmall {
-                model,
-                time,
-                step: self.step,
-                minimum: self.settings.minimum_step,
-                state: state.to_vec(),
-            }
+            let (step, minimum) = (self.step, self.settings.minimum_step);
+            SimulationError::StepTooSmall { model, time, step, minimum, state: told }
         } else {
-            SimulationError::NotFinite { model, time, state: state.to_vec() }
+            SimulationError::NotFinite { model, time, state: told }
         }
     }
 }

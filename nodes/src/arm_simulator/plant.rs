@@ -123,8 +123,9 @@ impl<'m, 's> Plant<'m, 's> {
         if self.state.iter().all(|value| value.is_finite()) {
             return Ok(());
         }
-        let model = self.system.model().machine.name.clone();
-        Err(SimulationError::NotFinite { model, time: 0.0, state: self.state.clone() })
+        let model = self.system.model();
+        let state = self.system.layout().told(model, &self.state);
+        Err(SimulationError::NotFinite { model: model.machine.name.clone(), time: 0.0, state })
     }
 
     fn set_up_again(&mut self) {

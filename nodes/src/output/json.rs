@@ -39,6 +39,7 @@ fn parameters(model: &Model, fitted: &[usize]) -> Vec<Value> {
                 "name": names[index],
                 "value": finite(parameter.value),
                 "std_error": parameter.standard_error.map_or(Value::Null, finite),
+                "margin_95": parameter.margin_95.map_or(Value::Null, finite),
                 "unit": parameter.card.unit,
             })
         })

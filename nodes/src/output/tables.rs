@@ -42,7 +42,7 @@ pub fn parameter_table(model: &Model, fitted: &[usize]) -> Table {
     let names = model.parameter_names();
     for (index, (_, parameter)) in model.parameters().enumerate() {
         if fitted.contains(&index) {
-            let margin = parameter.standard_error.map_or("-".into(), |error| number(1.96 * error));
+            let margin = parameter.margin_95.map_or("-".into(), number);
             table.add_row([
                 Cell::new(&names[index]),
                 right(number(parameter.value)),

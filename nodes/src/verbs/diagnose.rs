@@ -87,6 +87,10 @@ pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
     for (name, error) in &diagnosis.failed {
         print(&format!("{name} could not be tried: {error}"));
     }
+    if diagnosis.map.is_empty() {
+        print("Where the fitted model fails cannot be told: no equation of it has all its signals measured.");
+        return;
+    }
     print("Where the fitted model fails (share of the squared residual, in units of sensor noise):");
     for share in diagnosis.map.iter().filter(|share| share.share_of_residual >= LEAST_SHARE).take(6) {
         let (residual, time) = (100.0 * share.share_of_residual, 100.0 * share.share_of_time);
