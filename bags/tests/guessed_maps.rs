@@ -229,3 +229,38 @@ fn a_crane_with_one_named_cylinder_and_a_joystick() {
     let text = guessed.to_text().unwrap();
     assert!(text.contains("put mid-stroke as offset"), "{text}");
 }
+
+/// Levers by a pulse width that rests at a number of its own, and measured positions whose names say nothing else.
+#[test]
+fn what_follows_a_command_is_its_position_and_where_that_rests_is_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drive.csv");
+    let mut text = "Time,Boom Cmd,Stick Cmd,Boom Ms,Stick Ms,Counter\n".to_string();
+    let (mut boom, mut stick) = (60.0, 20.0);
+    for i in 0..1500 {
+        let t = f64::from(i) * 0.02;
+        let moving = |from: f64| if t % 10.0 > from && t % 10.0 < from + 3.0 { (2.0 * t).sin() } else { 0.0 };
+        let (u, v) = (moving(1.0), moving(5.0));
+        boom += 0.3 * u;
+        stick -= 0.2 * v;
+        text += &format!("{t},{},{},{boom},{stick},{i}\n", 7.4745 + 2.0 * u, 6.895 + 1.5 * v);
+    }
+    std::fs::write(&path, text).unwrap();
+    let guessed = guess(&path, "load").unwrap();
+    let expected = [
+        ("boom.orifice_command", "Boom Cmd", "mm2"),
+        ("boom.displacement", "Boom Ms", "mm"),
+        ("arm.orifice_command", "Stick Cmd", "mm2"),
+        ("arm.displacement", "Stick Ms", "mm"),
+    ];
+    assert_guessed(&guessed, &expected);
+    assert_eq!(guessed.left, ["Counter"]);
+    let reason = |signal: &str| {
+        &guessed.signals.iter().find(|guessed| guessed.source.signal.to_string() == signal).unwrap().reason
+    };
+    assert!(reason("arm.displacement").contains("with the sign turned"), "{}", reason("arm.displacement"));
+    assert!(!reason("boom.displacement").contains("with the sign turned"));
+    let (recording, _) = read_mapped(&path, &guessed.to_text().unwrap().parse().unwrap()).unwrap();
+    let command = &recording.cylinder("boom").unwrap().orifice_command;
+    assert!(command[0].abs() < 1e-15 && command.iter().any(|area| *area > 1.5e-6), "{}", command[0]);
+}

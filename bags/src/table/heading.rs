@@ -1,6 +1,6 @@
 //! Names and units in the headings of columns.
 
-use crate::map::Unit;
+use crate::map::{Dimension, Unit};
 
 /// Name and unit of a heading: `p_A [bar]`, `stroke (mm)`, `flow / l/min`, `pressure_bar`.
 pub(super) fn split(heading: &str) -> (String, Option<String>) {
@@ -16,7 +16,7 @@ pub(super) fn split(heading: &str) -> (String, Option<String>) {
     for separator in [" / ", " in ", ", ", "_", " "] {
         if let Some((name, unit)) = heading.rsplit_once(separator)
             && is_telling(unit)
-            && let Some(unit) = Unit::named(unit)
+            && let Some(unit) = Unit::named(unit).filter(|found| !is_a_word(unit, found.dimension))
         {
             // The unit stays part of a name like `time_ms`: that is how the column is asked for.
             let name = if separator == "_" { heading } else { name.trim() };
@@ -29,6 +29,11 @@ pub(super) fn split(heading: &str) -> (String, Option<String>) {
 /// Whether an ending without brackets is meant as a unit: `p_A` is the pressure at port A, no current, and `x_1` the first x.
 fn is_telling(unit: &str) -> bool {
     unit.chars().count() > 1 || ["s", "m", "N", "%"].contains(&unit)
+}
+
+/// Whether an ending that could be a unit is a word: `Boom Ms` is the measured boom, no time.
+fn is_a_word(ending: &str, dimension: Dimension) -> bool {
+    dimension == Dimension::Time && ending.chars().any(char::is_uppercase)
 }
 
 #[cfg(test)]
@@ -45,6 +50,8 @@ mod tests {
             ("angle [°]", "angle", Some("deg")),
             ("area [mm²]", "area", Some("mm2")),
             ("time_ms", "time_ms", Some("ms")),
+            ("delay ms", "delay", Some("ms")),
+            ("Boom Ms", "Boom Ms", None),
             ("\u{feff}time", "time", None),
             ("p_A", "p_A", None),
             ("x_1", "x_1", None),

@@ -7,12 +7,16 @@ use super::super::unit::{Dimension, Unit};
 use super::GuessedSignal;
 use super::candidate::Candidate;
 use super::names;
-use super::shapes::{Shape, derivative, short};
+use super::shapes::{Shape, derivative, rest, short};
 
 /// Below this a name alone is no reason.
 const LEAST_SCORE: f64 = 0.5;
 /// A velocity that goes with the derivative of a position so closely is its velocity.
 const LEAST_CORRELATION: f64 = 0.8;
+
+/// A column whose derivative goes with the command so closely is the position that the command moves; less is enough where
+/// its name says that it is measured.
+const LEAST_FOLLOWING: [f64; 2] = [0.5, 0.3];
 
 /// A candidate, a signal that it may be, and how good that is.
 struct Pair {
@@ -42,13 +46,23 @@ pub(super) fn choose(candidates: Vec<Candidate>, cylinder: &str) -> (Vec<Guessed
         taken.insert(name.clone());
         let (unit, unit_reason) = unit(candidate, shapes[pair.candidate], pair.kind.dimension());
         let mut source = candidate.source(name, unit.as_ref().map(|unit| unit.name));
-        if let Some(unit) = unit.filter(|unit| unit.dimension != pair.kind.dimension()) {
+        if let Some(unit) = unit.as_ref().filter(|unit| unit.dimension != pair.kind.dimension()) {
             // A map needs a scale here; only the maker of the sensor knows it.
             let text = format!("1 {}/{}", pair.kind.dimension().si_unit(), unit.name);
             source.scale = Some(super::super::Quantity::Text(text));
         }
         if pair.kind == SignalKind::Displacement && shapes[pair.candidate].is_some_and(|shape| shape.least >= 0.0) {
             pair.reason += "; never below 0: if it counts from one end, put mid-stroke as offset (\"-300 mm\")";
+        }
+        if pair.kind == SignalKind::OrificeCommand
+            && let Some((value, share)) = rest(&candidate.values)
+        {
+            let unit = unit.filter(|unit| unit.dimension == Dimension::Area).unwrap_or(Unit::si(Dimension::Area));
+            source.offset = Some(super::super::Quantity::Text(format!("{} {}", -value, unit.name)));
+            pair.reason += &format!(
+                "; rests at {value} for {:.0} % of the time, which is taken for closed (the offset goes with the scale)",
+                100.0 * share
+            );
         }
         signals.push(GuessedSignal { source, reason: pair.reason, unit_reason });
     }
@@ -73,6 +87,7 @@ fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {
     }
     add_derivatives(candidates, &mut pairs);
     add_places_of_pressures(candidates, shapes, &mut pairs);
+    add_followers(candidates, &mut pairs);
     pairs
 }
 
@@ -128,6 +143,38 @@ fn add_derivatives(candidates: &[Candidate], pairs: &mut [Pair]) {
             }
         }
     }
+}
+
+/// Columns of which nothing says what they are, and whose derivative follows the command of the same cylinder.
+fn add_followers(candidates: &[Candidate], pairs: &mut Vec<Pair>) {
+    let placed: HashSet<usize> =
+        pairs.iter().filter(|pair| pair.score >= LEAST_SCORE).map(|pair| pair.candidate).collect();
+    let is_command = |pair: &&Pair| pair.kind == SignalKind::OrificeCommand && pair.score >= LEAST_SCORE;
+    let commands: Vec<&Candidate> = pairs.iter().filter(is_command).map(|pair| &candidates[pair.candidate]).collect();
+    let mut found = Vec::new();
+    for (index, candidate) in candidates.iter().enumerate() {
+        if placed.contains(&index) || !matches!(candidate.dimension, None | Some(Dimension::Number)) {
+            continue;
+        }
+        let own = names::cylinder(&candidate.words);
+        let mine = |command: &&&Candidate| names::cylinder(&command.words) == own;
+        let Some(command) = commands.iter().find(mine) else { continue };
+        let closed = rest(&command.values).map_or(0.0, |(value, _)| value);
+        let opening: Vec<f64> = command.values.iter().map(|value| value - closed).collect();
+        let Some((correlation, _)) = derivative((&candidate.time, &candidate.values), (&command.time, &opening)) else {
+            continue;
+        };
+        let measured = names::is_measured(&candidate.words);
+        if correlation.abs() >= LEAST_FOLLOWING[usize::from(measured)] {
+            let sign = if correlation < 0.0 { ", with the sign turned" } else { "" };
+            let reason = format!(
+                "its derivative follows {} (correlation {correlation:.2}{sign}); displacement, unless it is an angle",
+                command.label()
+            );
+            found.push(Pair { candidate: index, kind: SignalKind::Displacement, score: LEAST_SCORE, reason });
+        }
+    }
+    pairs.extend(found);
 }
 
 /// Pressures whose names do not say where they are: the highest on average is the supply, the lowest the tank, two

@@ -54,6 +54,9 @@ const COMMANDS: [&str; 16] = [
     "soll",
     "pwm",
 ];
+/// Words that tell a measured value from the one that was asked for.
+const MEASURED: [&str; 10] =
+    ["ms", "meas", "measured", "measurement", "actual", "act", "ist", "feedback", "fbk", "sensor"];
 const OPENINGS: [&str; 4] = ["spool", "opening", "orifice", "area"];
 
 /// How well a name suits a signal, 0 to 1, and the word that says so.
@@ -77,6 +80,11 @@ pub(super) fn score(kind: SignalKind, words: &[String]) -> Option<(f64, String)>
         _ if kind.is_of_cylinder() && find(words, &ROTATING).is_some() => None,
         _ => find(words, quantity(kind.dimension())),
     }
+}
+
+/// Whether a name says that something is measured, whatever it is.
+pub(super) fn is_measured(words: &[String]) -> bool {
+    find(words, &MEASURED).is_some()
 }
 
 /// Whether a name speaks of a pump.

@@ -58,6 +58,23 @@ impl Shape {
     }
 }
 
+/// The value of a command that a valve rests at, where that is not zero, and the share of the time that it does. A lever
+/// that is let go gives the same number again and again, and others to both sides of it.
+pub(super) fn rest(values: &[f64]) -> Option<(f64, f64)> {
+    let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    known.sort_by(f64::total_cmp);
+    let (least, most) = (*known.first()?, *known.last()?);
+    let longest = known.chunk_by(|one, other| one == other).max_by_key(|same| same.len())?;
+    let (value, share) = (*longest.first()?, longest.len() as f64 / known.len() as f64);
+    let to_both_sides = (value - least).min(most - value) > BOTH_SIDES * (most - least);
+    (share >= LEAST_REST && to_both_sides && value.abs() > 0.02 * (most - least)).then_some((value, share))
+}
+
+/// Least share of the time that a valve rests.
+const LEAST_REST: f64 = 0.3;
+/// Least share of its range that a command has to each side of where it rests.
+const BOTH_SIDES: f64 = 0.1;
+
 /// A number with three digits.
 pub(super) fn short(value: f64) -> String {
     if value == 0.0 || (0.01..1e4).contains(&value.abs()) {
