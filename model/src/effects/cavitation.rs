@@ -58,10 +58,10 @@ impl Physics for Cavitation {
     }
 }
 
-/// Half width of the rounding of the corner where make-up flow sets in, Pa: less than the noise of a pressure sensor. With a
+/// Half width of the rounding of the corner where make-up flow sets in, Pa: far less than the noise of a pressure sensor. With a
 /// corner the flow of a small chamber jumps between two time constants a million apart, and a simulation crawls along it in
 /// steps of 10 ns.
-const ROUNDING: f64 = 1e3;
+const ROUNDING: f64 = 100.0;
 
 /// Flow into each chamber whose pressure is below `limit` (Pa), `gain` (m3/(s Pa)) times what it lacks.
 pub(super) fn fill_below<T: Scalar>(limit: T, gain: T, site: Site, now: &Situation<T>, rows: &mut Rows<T>) {
