@@ -73,9 +73,9 @@ pub(crate) struct Connection {
 impl Connection {
     pub(super) fn join(identity: &NodeIdentity, environment: &Environment) -> Result<Self, RosError> {
         let failed = |reason: String| RosError::Join { domain: environment.domain, reason };
-        let threads = Threads::of_the_next();
-        let participant = participant(environment).map_err(failed)?;
-        let context = Context::from_domain_participant(participant).map_err(|error| failed(error.to_string()))?;
+        let (participant, threads) = Threads::started_by(|| participant(environment));
+        let context = Context::from_domain_participant(participant.map_err(failed)?)
+            .map_err(|error| failed(error.to_string()))?;
         let name = NodeName::new(identity.namespace(), identity.name()).map_err(|error| failed(error.to_string()))?;
         // Parameter services and log are ours: the library's are bound to one mapping and to its own spinner.
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);

@@ -194,9 +194,9 @@ struct Scout {
 
 impl Scout {
     fn send(environment: Environment) -> Result<Self, String> {
-        let threads = Threads::of_the_next();
-        let participant = within(BUILDING, move || participant(&environment));
-        Ok(Scout { participant: participant.unwrap_or_else(|| Err("the middleware does not answer".into()))?, threads })
+        let built = within(BUILDING, move || Threads::started_by(|| participant(&environment)));
+        let (participant, threads) = built.ok_or("the middleware does not answer")?;
+        Ok(Scout { participant: participant?, threads })
     }
 }
 

@@ -27,9 +27,13 @@ pub(super) struct Died {
 }
 
 impl Threads {
-    /// Of the participant that is built next.
-    pub fn of_the_next() -> Self {
-        Threads { since: Instant::now(), others: running().unwrap_or_default(), own: BTreeSet::new() }
+    /// What `build` makes, and the threads that it has started. They are counted when it is done, however long it takes: a
+    /// copy that is asked later knows them.
+    pub fn started_by<T>(build: impl FnOnce() -> T) -> (T, Self) {
+        let others = running().unwrap_or_default();
+        let built = build();
+        let own = running().unwrap_or_default().difference(&others).copied().collect();
+        (built, Threads { since: Instant::now(), others, own })
     }
 
     /// Whether some have ended; `None` too where the system does not tell.
@@ -83,6 +87,22 @@ mod tests {
         assert_eq!(threads.judge(&set(&[1, 2, 3, 4])), None);
         assert_eq!(threads.judge(&set(&[3, 4])), None, "the others may end");
         assert_eq!(threads.judge(&set(&[2, 4])), Some(Died { alive: 1, started: 2 }));
+    }
+
+    #[test]
+    fn a_copy_that_is_asked_late_knows_the_threads() {
+        let mut threads = with_others(&[1]);
+        threads.own = set(&[2, 3]);
+        threads.since = Instant::now().checked_sub(2 * SETTLED).unwrap();
+        assert_eq!(threads.clone().judge(&set(&[1, 2, 3])), None);
+        assert_eq!(threads.clone().judge(&set(&[1, 2])), Some(Died { alive: 1, started: 2 }));
+    }
+
+    #[test]
+    fn the_clock_starts_when_the_participant_is_there() {
+        let mut begun = None;
+        let ((), threads) = Threads::started_by(|| begun = Some(Instant::now()));
+        assert!(begun.is_some_and(|begun| threads.since >= begun));
     }
 
     #[test]
