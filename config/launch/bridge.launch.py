@@ -9,8 +9,9 @@
 
 from pathlib import Path
 
+from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction
+from launch.actions import DeclareLaunchArgument, ExecuteProcess, LogInfo, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
@@ -30,6 +31,16 @@ def value(context, name):
     return LaunchConfiguration(name).perform(context)
 
 
+def robot_description(urdf):
+    """Publishes a URDF file; without robot_state_publisher, which not every ROS 2 has, a word about it."""
+    package = "robot_state_publisher"
+    try:
+        get_package_prefix(package)
+    except PackageNotFoundError:
+        return LogInfo(msg=f"{package} is not installed: no robot description is published")
+    return Node(package=package, executable=package, parameters=[{"robot_description": urdf.read_text()}])
+
+
 def start(context):
     """What depends on the values of the arguments."""
     program = value(context, "program")
@@ -42,13 +53,7 @@ def start(context):
         actions.append(ExecuteProcess(cmd=monitor, name="energy-monitor", output="screen"))
     if value(context, "description"):
         urdf = CONFIG / "description" / f"{value(context, 'description')}.urdf"
-        actions.append(
-            Node(
-                package="robot_state_publisher",
-                executable="robot_state_publisher",
-                parameters=[{"robot_description": urdf.read_text()}],
-            )
-        )
+        actions.append(robot_description(urdf))
     if value(context, "record"):
         recorder = [program, "record", "--all", "-o", value(context, "record")]
         actions.append(ExecuteProcess(cmd=recorder, name="recorder", output="screen", sigterm_timeout="10"))

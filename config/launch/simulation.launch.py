@@ -8,8 +8,9 @@
 
 from pathlib import Path
 
+from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction
+from launch.actions import DeclareLaunchArgument, ExecuteProcess, LogInfo, OpaqueFunction
 from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
@@ -42,6 +43,16 @@ def node(context, kind, parameters):
     return ExecuteProcess(cmd=command, name=kind, output="screen", sigterm_timeout="10")
 
 
+def robot_description(urdf):
+    """Publishes a URDF file; without robot_state_publisher, which not every ROS 2 has, a word about it."""
+    package = "robot_state_publisher"
+    try:
+        get_package_prefix(package)
+    except PackageNotFoundError:
+        return LogInfo(msg=f"{package} is not installed: no robot description is published")
+    return Node(package=package, executable=package, parameters=[{"robot_description": urdf.read_text()}])
+
+
 def start(context):
     """What depends on the values of the arguments."""
     actions = [node(context, "arm-simulator", {name: value(context, name) for name in SIMULATOR_PARAMETERS})]
@@ -49,13 +60,7 @@ def start(context):
         actions.append(node(context, "energy-monitor", {}))
     urdf = CONFIG / "description" / f"{Path(value(context, 'model')).stem}.urdf"
     if value(context, "description") == "true" and urdf.is_file():
-        actions.append(
-            Node(
-                package="robot_state_publisher",
-                executable="robot_state_publisher",
-                parameters=[{"robot_description": urdf.read_text()}],
-            )
-        )
+        actions.append(robot_description(urdf))
     bag = value(context, "record")
     if bag:
         actions.append(ExecuteProcess(cmd=[value(context, "program"), "record", "--all", "-o", bag], output="screen"))

@@ -1,6 +1,12 @@
 """Launch files: valid Python everywhere; with ROS 2's launch here, descriptions that can be shown."""
 
 import importlib.util
+import os
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
 
 import pytest
 from interfaces import CONFIG
@@ -33,3 +39,30 @@ def test_it_describes_a_launch(file):
     for name, (default, _) in module.ARGUMENTS.items():
         context.launch_configurations[name] = default
     assert module.start(context)
+
+
+def test_ros2_launch_starts_simulator_and_monitor_and_ends_them(tmp_path):
+    if not shutil.which("ros2"):
+        pytest.skip("ROS 2's command line is not installed")
+    program = Path(os.environ.get("EXCAVATOR_BINARY", CONFIG.parent / "target/debug/excavator")).resolve()
+    if not program.is_file():
+        pytest.skip(f"{program} is not built")
+    words = ["ros2", "launch", CONFIG / "launch" / "simulation.launch.py", f"program:={program}"]
+    output = tmp_path / "output"
+    with open(output, "w") as file:
+        environment = dict(os.environ, ROS_DOMAIN_ID="102", ROS_LOG_DIR=str(tmp_path))
+        launched = subprocess.Popen(words, stdout=file, stderr=file, env=environment, start_new_session=True)
+        try:
+            deadline = time.monotonic() + 30.0
+            while "energy-monitor" not in output.read_text() or "arm-simulator" not in output.read_text():
+                assert launched.poll() is None and time.monotonic() < deadline, output.read_text()
+                time.sleep(0.1)
+            time.sleep(2.0)
+            launched.send_signal(signal.SIGINT)
+            assert launched.wait(20.0) == 0, output.read_text()
+        finally:
+            if launched.poll() is None:
+                os.killpg(launched.pid, signal.SIGKILL)
+    said = output.read_text()
+    assert "Caught exception" not in said
+    assert said.count("process has finished cleanly") == 2, said

@@ -201,4 +201,4 @@ def test_a_killed_reader_is_replaced(ros, excavator):
     second = ros.start_python(VISITORS, "stay")
     ros.spin_until(lambda: "heard" in second.output(), "the second reader")
     os.kill(second.pid, signal.SIGINT)
-    assert second.wait(10.0) == 0
+    assert second.wait(10.0) == 0, second.output()

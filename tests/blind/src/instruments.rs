@@ -15,6 +15,9 @@ pub struct Instruments {
     pub noise: f64,
     /// Whether there is a spool sensor.
     pub spool_sensor: bool,
+    /// Time by which the spool's samples are taken ahead of all others in the same message, s: buses and converters read
+    /// one channel after the other.
+    pub spool_lead: f64,
 }
 
 /// Noise of the displacement sensor, m.
@@ -68,7 +71,7 @@ pub fn record(
     let rod = seen(Truth::late(&truth.rod, late), sensors.rod_offset, PRESSURE_NOISE, pressure);
     let pump = seen(Truth::late(&truth.pump, late), sensors.pump_offset, PRESSURE_NOISE, pressure);
     let tank = seen(vec![TANK_PRESSURE; samples], 0.0, PRESSURE_NOISE, pressure);
-    let spool = seen(Truth::late(&truth.spool, 0.0), 0.0, SPOOL_NOISE, area);
+    let spool = seen(Truth::late(&truth.spool, -instruments.spool_lead), 0.0, SPOOL_NOISE, area);
 
     let time: Vec<f64> = kept.iter().map(|&sample| stamps[sample] - first).collect();
     let mut recording = Recording::unmeasured(source, time, &["arm"]);

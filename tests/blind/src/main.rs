@@ -37,6 +37,9 @@ struct Words {
     /// Factor on all sensor noise
     #[arg(long, default_value_t = 1.0)]
     noise: f64,
+    /// Time in s by which the spool's samples are ahead of all others (half an interval is 0.001)
+    #[arg(long, default_value_t = 0.0)]
+    spool_lead: f64,
     /// Leave out the small unmodelled extras (ripple, warming, hose stubs)
     #[arg(long)]
     without_extras: bool,
@@ -135,7 +138,7 @@ fn judge_all(words: &Words, wish: &Wish, profile: Option<&Profile>) -> ExitCode 
         if let Some(profile) = profile {
             case.follow(profile);
         }
-        let evidence = match make(&mut case, words.noise) {
+        let evidence = match make(&mut case, words.noise, words.spool_lead) {
             Ok(evidence) => evidence,
             Err(error) => {
                 println!("{number:>4}  no recording: {} {}: {error}", case.secret(), case.strength.name());

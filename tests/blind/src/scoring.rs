@@ -119,12 +119,12 @@ pub enum ScoreError {
     Diagnosis(#[from] DiagnosisError),
 }
 
-/// Runs and records a case.
+/// Runs and records a case, with a factor on all sensor noise and a spool sensor that is `spool_lead` s ahead.
 ///
 /// # Errors
 /// [`Diverged`].
-pub fn make(case: &mut Case, noise: f64) -> Result<Evidence, Diverged> {
-    let instruments = Instruments { noise, spool_sensor: !case.plant.blind_spool };
+pub fn make(case: &mut Case, noise: f64, spool_lead: f64) -> Result<Evidence, Diverged> {
+    let instruments = Instruments { noise, spool_sensor: !case.plant.blind_spool, spool_lead };
     let (plant, name) = (case.plant, format!("case {}", case.number));
     let (first, first_change) = run_and_compare(&plant, &case.identification, case.begin[0])?;
     let (second, second_change) = run_and_compare(&plant, &case.validation, case.begin[1])?;
