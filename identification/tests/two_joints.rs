@@ -125,8 +125,12 @@ fn diagnosed(hidden: &[Hidden]) -> Diagnosis {
         &|_, _| (),
     )
     .unwrap();
-    let tied: Vec<String> =
-        diagnosis.candidates.iter().filter(|candidate| candidate.tied_with_first).map(|c| format!("{}@{}", c.name(), c.place)).collect();
+    let tied: Vec<String> = diagnosis
+        .candidates
+        .iter()
+        .filter(|candidate| candidate.tied_with_first)
+        .map(|c| format!("{}@{}", c.name(), c.place))
+        .collect();
     let chain: Vec<String> = diagnosis.chain.iter().map(|link| format!("{}@{}", link.name(), link.place)).collect();
     println!(
         "{hidden:?}\n  {}: chain {chain:?}, tied {tied:?}, loss {:.2} -> {:.2}, {:.0} s",

@@ -19,7 +19,7 @@ use ros2_client::{ActionTypeName, Name, RmwRequestId};
 use super::goals::{CancelAnswer, Goals, Status};
 use super::types::{Feedback, Goal, GoalId, GoalInfo, Outcome};
 use crate::ros::connection::{Closed, Connection, Endpoint, Install, Task};
-use crate::ros::{Latched, Mapping, RosError, service_mapping, service_qos, system_nanoseconds};
+use crate::ros::{LargeReplies, Latched, Mapping, RosError, service_mapping, service_qos, system_nanoseconds};
 
 /// Pace of looking for requests. Nobody waits for identification in milliseconds.
 const LOOK: Duration = Duration::from_millis(10);
@@ -86,10 +86,14 @@ impl Endpoint for IdentifyAction {
             .node()
             .create_action_server(service_mapping(self.mapping), &name, &type_name, qos)
             .map_err(|error| failed(error.to_string()))?;
+        let service = format!("{}/_action/get_result", self.name);
+        let large =
+            LargeReplies::open(connection, self.mapping, &service, "excavator_msgs::action::dds_::Identify_GetResult");
+        let large = large.map_err(failed)?;
         let desk = Arc::clone(&self.desk);
         let serving = async move {
             loop {
-                desk.lock().unwrap_or_else(PoisonError::into_inner).look(&server);
+                desk.lock().unwrap_or_else(PoisonError::into_inner).look(&server, &large);
                 tokio::time::sleep(LOOK).await;
             }
         };
@@ -105,7 +109,7 @@ impl Endpoint for IdentifyAction {
 
 // Whoever asks hears nothing when an answer cannot be sent, and asks again: that is how services are.
 impl Desk {
-    fn look(&mut self, server: &Server) {
+    fn look(&mut self, server: &Server, large: &LargeReplies) {
         let mut changed = false;
         while let Ok(Some((request, wanted))) = server.receive_goal() {
             let id = *wanted.goal_id.uuid.as_bytes();
@@ -149,7 +153,10 @@ impl Desk {
         self.waiting.retain(|(request, id)| match goals.result(id) {
             None => true,
             Some((status, result)) => {
-                let _ = server.send_result(*request, GetResultResponse { status: library_status(status), result });
+                let answer = GetResultResponse { status: library_status(status), result };
+                if large.send(*request, &answer).is_none() {
+                    let _ = server.send_result(*request, answer);
+                }
                 false
             }
         });

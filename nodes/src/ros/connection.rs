@@ -7,6 +7,7 @@ use ros2_client::{Context, Node, NodeName, NodeOptions};
 use rustdds::{DomainParticipant, DomainParticipantBuilder, QosPolicies, Topic, TopicKind};
 use tokio::runtime::Handle;
 
+use super::farewell::Farewell;
 use super::threads::Threads;
 use super::{Environment, NodeIdentity, RosError};
 
@@ -68,6 +69,14 @@ pub(crate) struct Connection {
     node: Node,
     context: Context,
     threads: Threads,
+    // Last: it speaks when the participant has gone.
+    farewell: Farewell,
+}
+
+impl Drop for Connection {
+    fn drop(&mut self) {
+        self.farewell.prepare(&self.context.domain_participant());
+    }
 }
 
 impl Connection {
@@ -80,7 +89,7 @@ impl Connection {
         // Parameter services and log are ours: the library's are bound to one mapping and to its own spinner.
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
         let node = context.new_node(name, options).map_err(|error| failed(error.to_string()))?;
-        Ok(Connection { node, context, threads })
+        Ok(Connection { node, context, threads, farewell: Farewell::new(environment) })
     }
 
     /// Creates an endpoint on this connection; the connection is returned with it.

@@ -15,6 +15,7 @@ use rustdds::{DomainParticipant, DomainParticipantStatusEvent, LostReason, RTPSE
 use super::Environment;
 use super::connection::participant;
 use super::patience::{BUILDING, let_go, within};
+use super::reminder::{ask_for_endpoints, ask_for_samples};
 use super::threads::{Died, Threads};
 
 /// Identity of a participant.
@@ -110,6 +111,7 @@ impl Watch {
                         seen.fault = Some(Fault::PeerReturned(prefix));
                     }
                     self.present.insert(prefix);
+                    ask_for_endpoints(&self.participant, self.environment.domain, dpd.guid);
                 }
                 DomainParticipantStatusEvent::ParticipantLost { id, reason } => {
                     let prefix = prefix_of(id.as_ref());
@@ -126,6 +128,9 @@ impl Watch {
                             seen.notes.push(format!("peer {id:?} is out of reach"));
                         }
                     }
+                }
+                DomainParticipantStatusEvent::RemoteWriterMatched { local_reader, remote_writer } => {
+                    ask_for_samples(&self.participant, local_reader, remote_writer);
                 }
                 DomainParticipantStatusEvent::RemoteReaderQosIncompatible { remote_reader, .. } => {
                     seen.notes

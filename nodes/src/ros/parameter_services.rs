@@ -20,10 +20,11 @@ use rustdds::DomainParticipant;
 use serde::{Deserialize, Serialize};
 
 use super::connection::{Closed, Connection, Endpoint, Install, Task};
+use super::large_replies::{LargeReplies, reply_topic};
 use super::{Link, Mapping, Outlet, Parameter, Parameters, Range, RosClock, RosError, TopicQos, Value};
 
 /// Requests that wait: rmw_qos_profile_services_default.
-const SERVICE_DEPTH: usize = 10;
+pub(super) const SERVICE_DEPTH: u32 = 10;
 
 /// `rcl_interfaces/msg/ParameterEvent`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -47,7 +48,7 @@ pub(super) fn offer(link: &Link, parameters: &Parameters, clock: &RosClock) -> R
     let events = link.publish("/parameter_events", TopicQos::reliable(1000))?;
     let node = link.identity().full_name();
     let desk = Desk { node, parameters: parameters.clone(), events, clock: clock.clone() };
-    let mapping = service_mapping(link.environment().mapping);
+    let mapping = link.environment().mapping;
     link.add(Arc::new(Services { desk: Arc::new(desk), mapping, tasks: Mutex::default() }))
 }
 
@@ -61,7 +62,7 @@ pub(crate) fn service_mapping(mapping: Mapping) -> ServiceMapping {
 
 /// Quality of service of requests and replies.
 pub(crate) fn service_qos() -> QosProfile {
-    QosProfile::publisher_default().history(ros2_client::qos::History::KeepLast { depth: SERVICE_DEPTH })
+    QosProfile::publisher_default().history(ros2_client::qos::History::KeepLast { depth: SERVICE_DEPTH as usize })
 }
 
 /// Answers requests.
@@ -74,7 +75,7 @@ struct Desk {
 
 struct Services {
     desk: Arc<Desk>,
-    mapping: ServiceMapping,
+    mapping: Mapping,
     tasks: Mutex<Vec<Task>>,
 }
 
@@ -118,10 +119,20 @@ impl Opening<'_> {
         let server = self
             .connection
             .node()
-            .create_server::<Q, A>(self.services.mapping, &name, &service_type, service_qos(), service_qos())
+            .create_server::<Q, A>(
+                service_mapping(self.services.mapping),
+                &name,
+                &service_type,
+                service_qos(),
+                service_qos(),
+            )
             .map_err(|error| failed(error.to_string()))?;
         let desk = Arc::clone(&self.services.desk);
-        let reply_topic = format!("rr{}/{service}Reply", self.services.desk.node);
+        let full_name = format!("{}/{service}", desk.node);
+        let dds_type = format!("rcl_interfaces::srv::dds_::{type_name}");
+        let large =
+            LargeReplies::open(self.connection, self.services.mapping, &full_name, &dds_type).map_err(failed)?;
+        let reply_topic = reply_topic(&full_name);
         let mut clients = Clients { participant: self.connection.participant(), reply_topic, known: HashSet::new() };
         self.counters.push(Box::pin(async move {
             let mut requests = server.receive_request_stream();
@@ -129,7 +140,11 @@ impl Opening<'_> {
                 // A request that cannot be decoded has nobody to be answered.
                 if let Ok((id, request)) = request {
                     clients.wait_for(id.writer_gid).await;
-                    let _ = server.async_send_response(id, answer(&desk, request)).await;
+                    let answer = answer(&desk, request);
+                    // Whoever asks hears nothing when an answer cannot be sent, and asks again.
+                    if large.send(id, &answer).is_none() {
+                        let _ = server.async_send_response(id, answer).await;
+                    }
                 }
             }
         }));

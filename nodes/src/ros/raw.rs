@@ -20,17 +20,17 @@ const ENCAPSULATION: usize = 4;
 
 /// A message with its four bytes of encapsulation.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct RawBytes(Bytes);
+pub(super) struct RawBytes(pub(super) Bytes);
 
 /// Never happens: bytes are always bytes.
 #[derive(Debug, thiserror::Error)]
 #[error("bytes that are none")]
-struct NoError;
+pub(super) struct NoError;
 
-struct RawAdapter;
+pub(super) struct RawAdapter;
 
 #[derive(Clone)]
-struct RawDecoder;
+pub(super) struct RawDecoder;
 
 impl DeserializerAdapter<RawBytes> for RawAdapter {
     type Error = NoError;

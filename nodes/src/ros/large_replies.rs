@@ -1,0 +1,146 @@
+//! Replies of services that are too long for one packet of the network.
+//!
+//! RustDDS cuts a long sample into fragments, and puts one byte too many in front of the inline parameters of each. The
+//! library sends those with every reply, so that a reply of more than some 1400 bytes reaches nobody, unless the way is over
+//! the loopback interface with its long packets: results of actions, descriptions of parameters. Replies of that length take
+//! another way here, a writer of the same topic without inline parameters. Where the request's identity must be in them
+//! (`Enhanced` mapping), the whole sample goes ahead in one datagram that the network may cut as it likes; the fragments
+//! that follow, the same sample again, keep the writer's numbers in order.
+
+use std::net::SocketAddr;
+use std::sync::{Mutex, PoisonError};
+
+use excavator_bags::cdr;
+use ros2_client::RmwRequestId;
+use rustdds::bytes::Bytes;
+use rustdds::no_key::{DataWriter, SimpleDataReader};
+use rustdds::{DomainParticipant, RTPSEntity, Timestamp, WriteOptionsBuilder};
+use serde::Serialize;
+
+use super::connection::Connection;
+use super::parameter_services::SERVICE_DEPTH;
+use super::raw::{RawAdapter, RawBytes};
+use super::rtps::{Packet, entity, parameter, sequence_number};
+use super::{Mapping, PublishError, TopicQos};
+
+/// Content up to which a reply is left to the library: with all headers it fits into the 1452 bytes that RustDDS allows
+/// for a packet of Ethernet, with 100 to spare.
+const SMALL: usize = 1200;
+/// Where rmw_fastrtps_cpp of older distributions looks for the identity of the request.
+const OLD_RELATED_SAMPLE_IDENTITY: u16 = 0x800f;
+
+/// The way of long replies of one service.
+pub(crate) struct LargeReplies {
+    participant: DomainParticipant,
+    topic: String,
+    mapping: Mapping,
+    writer: DataWriter<RawBytes, RawAdapter>,
+    /// Never read. A client of rmw_fastrtps_cpp takes a service for ready when its topics have as many readers of requests
+    /// as writers of replies.
+    _partner: SimpleDataReader<RawBytes, RawAdapter>,
+    /// Number of the last sample.
+    last: Mutex<i64>,
+}
+
+impl LargeReplies {
+    /// For the service `name` (full name), whose type in DDS begins with `dds_type`, as in
+    /// `rcl_interfaces::srv::dds_::GetParameters`.
+    pub fn open(connection: &Connection, mapping: Mapping, name: &str, dds_type: &str) -> Result<Self, String> {
+        let qos = TopicQos::reliable(SERVICE_DEPTH).to_dds();
+        let participant = connection.participant();
+        let failed = |error: rustdds::dds::CreateError| error.to_string();
+        let replies = connection.create_topic(&reply_topic(name), &format!("{dds_type}_Response_"), &qos)?;
+        let publisher = participant.create_publisher(&qos).map_err(failed)?;
+        let writer = publisher.create_datawriter_no_key(&replies, Some(qos.clone())).map_err(failed)?;
+        let requests = connection.create_topic(&format!("rq{name}Request"), &format!("{dds_type}_Request_"), &qos)?;
+        let subscriber = participant.create_subscriber(&qos).map_err(failed)?;
+        let partner = subscriber.create_simple_datareader_no_key(&requests, Some(qos)).map_err(failed)?;
+        let last = Mutex::new(0);
+        Ok(LargeReplies { participant, topic: reply_topic(name), mapping, writer, _partner: partner, last })
+    }
+
+    /// Sends a reply that is too long for the library; `None` for any other, which is left to it.
+    pub fn send<A: Serialize>(&self, request: RmwRequestId, answer: &A) -> Option<Result<(), PublishError>> {
+        let content = match cdr::encode(answer) {
+            Ok(content) => content,
+            Err(error) => return Some(Err(PublishError::Failed(error.to_string()))),
+        };
+        (content.len() > SMALL).then(|| self.send_long(request, content))
+    }
+
+    fn send_long(&self, request: RmwRequestId, content: Vec<u8>) -> Result<(), PublishError> {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let sample = match self.mapping {
+            Mapping::Cyclone => behind_header(request, &content),
+            Mapping::Enhanced => {
+                self.send_ahead(request, *last + 1, &content)?;
+                content
+            }
+        };
+        let options = WriteOptionsBuilder::new().source_timestamp(Timestamp::now()).build();
+        let written = self.writer.write_with_options(RawBytes(Bytes::from(sample)), options);
+        *last = i64::from(written.map_err(|error| PublishError::Failed(error.to_string()))?.sequence_number);
+        Ok(())
+    }
+
+    /// The whole sample in one datagram, with the identity of the request.
+    fn send_ahead(&self, request: RmwRequestId, sequence: i64, content: &[u8]) -> Result<(), PublishError> {
+        let mut related = request.writer_gid.to_bytes16().to_vec();
+        related.extend(sequence_number(request.sequence_number));
+        let inline = [(parameter::RELATED_SAMPLE_IDENTITY, &related[..]), (OLD_RELATED_SAMPLE_IDENTITY, &related[..])];
+        let client = request.writer_gid.to_bytes16();
+        for reader in self.participant.discovered_readers() {
+            let guid = reader.subscription_topic_data.key();
+            // The first twelve bytes name the participant.
+            if *reader.subscription_topic_data.topic_name() != self.topic || guid.prefix.as_ref() != &client[..12] {
+                continue;
+            }
+            let packet = Packet::of(self.writer.guid()).to(guid).data(
+                entity(guid),
+                entity(self.writer.guid()),
+                sequence,
+                &inline,
+                Some(content),
+            );
+            if !packet.fits() {
+                let bytes = content.len();
+                return Err(PublishError::Failed(format!("a reply of {bytes} bytes is too long for one datagram")));
+            }
+            packet.send(reader.reader_proxy.unicast_locator_list.iter().map(|locator| SocketAddr::from(*locator)));
+        }
+        Ok(())
+    }
+}
+
+/// Topic in DDS of the replies of a service.
+pub(super) fn reply_topic(service: &str) -> String {
+    format!("rr{service}Reply")
+}
+
+/// As rmw_cyclonedds_cpp wants it: behind the encapsulation, the second half of the client's identity and the number of the
+/// request, high part first.
+fn behind_header(request: RmwRequestId, content: &[u8]) -> Vec<u8> {
+    let (encapsulation, body) = content.split_at(4.min(content.len()));
+    let mut sample = encapsulation.to_vec();
+    sample.extend(&request.writer_gid.to_bytes16()[8..]);
+    sample.extend(sequence_number(request.sequence_number));
+    sample.extend(body);
+    sample
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_header_of_cyclone_stands_between_encapsulation_and_content() {
+        let mut bytes = [0; 16];
+        bytes.iter_mut().zip(1..).for_each(|(byte, number)| *byte = number);
+        let request = RmwRequestId { writer_gid: ros2_client::Gid::from(bytes), sequence_number: 7 };
+        let sample = behind_header(request, &[0, 1, 0, 0, 42]);
+        assert_eq!(sample[..4], [0, 1, 0, 0]);
+        assert_eq!(sample[4..12], [9, 10, 11, 12, 13, 14, 15, 16]);
+        assert_eq!(sample[12..20], [0, 0, 0, 0, 7, 0, 0, 0]);
+        assert_eq!(sample[20..], [42]);
+    }
+}

@@ -1,0 +1,232 @@
+//! Single messages of the wire protocol (RTPS 2.5) that the middleware cannot be asked for.
+//!
+//! They are sent beside the middleware in the name of its participant, from a socket of their own: receivers go by the
+//! identities inside a message, not by the port that it comes from.
+
+use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
+
+use nix::ifaddrs::getifaddrs;
+use nix::net::if_::InterfaceFlags;
+use rustdds::GUID;
+use socket2::SockRef;
+
+/// Vendor of the participant in whose name is spoken: RustDDS.
+const VENDOR: [u8; 2] = [1, 18];
+/// Vendor of eProsima Fast DDS, the first two bytes of its identities.
+const FAST_DDS: [u8; 2] = [1, 15];
+/// Most bytes of a datagram over IPv4.
+const LARGEST: usize = 65_507;
+
+/// Kinds of submessages, RTPS 9.4.5.
+mod kind {
+    pub const ACKNACK: u8 = 0x06;
+    pub const INFO_DESTINATION: u8 = 0x0e;
+    pub const DATA: u8 = 0x15;
+}
+
+/// Flags of a DATA submessage: inline quality of service; a key instead of a sample; a sample.
+mod flag {
+    pub const LITTLE_ENDIAN: u8 = 0x01;
+    pub const INLINE_QOS: u8 = 0x02;
+    pub const SAMPLE: u8 = 0x04;
+}
+
+/// Inline parameters of a DATA submessage, RTPS 9.6.4.
+pub(super) mod parameter {
+    pub const KEY_HASH: u16 = 0x0070;
+    pub const STATUS_INFO: u16 = 0x0071;
+    pub const RELATED_SAMPLE_IDENTITY: u16 = 0x0083;
+}
+const SENTINEL: u16 = 0x0001;
+
+/// The sixteen bytes of an identity as they are on the wire.
+pub(super) fn identity(guid: GUID) -> [u8; 16] {
+    ros2_client::Gid::from(guid).to_bytes16()
+}
+
+/// Whether a participant, reader or writer belongs to Fast DDS.
+pub(super) fn is_fast_dds(guid: GUID) -> bool {
+    identity(guid).starts_with(&FAST_DDS)
+}
+
+/// A message that grows submessage by submessage.
+pub(super) struct Packet(Vec<u8>);
+
+impl Packet {
+    /// An empty message in the name of the participant that `speaker` belongs to.
+    pub fn of(speaker: GUID) -> Self {
+        let mut bytes = b"RTPS\x02\x04".to_vec();
+        bytes.extend(VENDOR);
+        bytes.extend(&identity(speaker)[..12]);
+        Packet(bytes)
+    }
+
+    /// What follows is for the participant of `peer` only.
+    pub fn to(self, peer: GUID) -> Self {
+        self.with(kind::INFO_DESTINATION, flag::LITTLE_ENDIAN, &identity(peer)[..12])
+    }
+
+    /// A sample of `writer` for `reader` (entities, the last four bytes of their identities), or, without `content`, the
+    /// message that an instance is gone. `content` begins with its encapsulation.
+    pub fn data(
+        self,
+        reader: [u8; 4],
+        writer: [u8; 4],
+        sequence: i64,
+        inline: &[(u16, &[u8])],
+        content: Option<&[u8]>,
+    ) -> Self {
+        // Nothing extra; sixteen bytes from here to the inline parameters.
+        let mut body = vec![0, 0, 16, 0];
+        body.extend(reader);
+        body.extend(writer);
+        body.extend(sequence_number(sequence));
+        for (name, value) in inline {
+            body.extend(name.to_le_bytes());
+            body.extend((value.len() as u16).to_le_bytes());
+            body.extend(*value);
+        }
+        body.extend(SENTINEL.to_le_bytes());
+        body.extend([0, 0]);
+        body.extend(content.unwrap_or_default());
+        let sample = if content.is_some() { flag::SAMPLE } else { 0 };
+        self.with(kind::DATA, flag::LITTLE_ENDIAN | flag::INLINE_QOS | sample, &body)
+    }
+
+    /// `reader` asks `writer` for its first samples, at most so many, and acknowledges none.
+    ///
+    /// Fast DDS does not hear a question for more samples than there are, nor one whose count is not above the last one
+    /// that it heard. So questions for fewer and fewer samples with the same count are one question for all that there are.
+    pub fn ask_for_first(self, reader: [u8; 4], writer: [u8; 4], most: u32) -> Self {
+        (1..=most).rev().fold(self, |packet, samples| {
+            let mut body = Vec::new();
+            body.extend(reader);
+            body.extend(writer);
+            body.extend(sequence_number(1));
+            body.extend(samples.to_le_bytes());
+            for first in (0..samples).step_by(32) {
+                let bits = (samples - first).min(32);
+                body.extend((u32::MAX << (32 - bits)).to_le_bytes());
+            }
+            // The first count that Fast DDS listens to.
+            body.extend(1_i32.to_le_bytes());
+            packet.with(kind::ACKNACK, flag::LITTLE_ENDIAN, &body)
+        })
+    }
+
+    fn with(mut self, kind: u8, flags: u8, body: &[u8]) -> Self {
+        // A last submessage that is too long for the field has 0 there: it goes to the end of the message.
+        let length = u16::try_from(body.len()).unwrap_or_default();
+        self.0.extend([kind, flags]);
+        self.0.extend(length.to_le_bytes());
+        self.0.extend(body);
+        self
+    }
+
+    /// Sends the message to each address. Whether it arrives nobody knows, as with every datagram.
+    pub fn send(&self, addresses: impl IntoIterator<Item = SocketAddr>) {
+        if !self.fits() {
+            return;
+        }
+        let Ok(socket) = UdpSocket::bind("0.0.0.0:0") else { return };
+        for address in addresses.into_iter().filter(|address| address.is_ipv4() && address.port() != 0) {
+            if address.ip().is_multicast() {
+                for network in networks() {
+                    let _ = SockRef::from(&socket).set_multicast_if_v4(&network);
+                    let _ = socket.send_to(&self.0, address);
+                }
+            } else {
+                let _ = socket.send_to(&self.0, address);
+            }
+        }
+    }
+
+    /// Whether it fits into one datagram.
+    pub fn fits(&self) -> bool {
+        self.0.len() <= LARGEST
+    }
+}
+
+/// Addresses of this machine on the networks that are up and take multicast.
+fn networks() -> Vec<Ipv4Addr> {
+    let Ok(interfaces) = getifaddrs() else { return Vec::new() };
+    let reached = InterfaceFlags::IFF_UP | InterfaceFlags::IFF_MULTICAST;
+    interfaces
+        .filter(|interface| interface.flags.contains(reached))
+        .filter_map(|interface| Some(interface.address?.as_sockaddr_in()?.ip()))
+        .collect()
+}
+
+/// Where the participants of a domain listen for others (RTPS 9.6.2.3): everybody by multicast, those on this machine also
+/// where they can be expected, as many as RustDDS looks for there.
+pub(super) fn everybody(domain: u16) -> Vec<SocketAddr> {
+    let first = 7400 + 250 * domain;
+    let here = (0..PARTICIPANTS_HERE).map(|number| SocketAddr::from((Ipv4Addr::LOCALHOST, first + 10 + 2 * number)));
+    here.chain([SocketAddr::from((Ipv4Addr::new(239, 255, 0, 1), first))]).collect()
+}
+const PARTICIPANTS_HERE: u16 = 12;
+
+/// High part, low part.
+pub(super) fn sequence_number(number: i64) -> [u8; 8] {
+    let [high, low] = [(number >> 32) as u32, number as u32];
+    let mut bytes = [0; 8];
+    bytes[..4].copy_from_slice(&high.to_le_bytes());
+    bytes[4..].copy_from_slice(&low.to_le_bytes());
+    bytes
+}
+
+/// The last four bytes of an identity.
+pub(super) fn entity(guid: GUID) -> [u8; 4] {
+    let mut entity = [0; 4];
+    entity.copy_from_slice(&identity(guid)[12..]);
+    entity
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sample_is_laid_out_as_the_standard_says() {
+        let packet = Packet::of(GUID::GUID_UNKNOWN).data(
+            [1, 2, 3, 4],
+            [5, 6, 7, 8],
+            0x1_0000_0002,
+            &[(0x70, &[9; 4])],
+            Some(&[0, 1, 0, 0, 42]),
+        );
+        let bytes = packet.0;
+        assert_eq!(&bytes[..8], b"RTPS\x02\x04\x01\x12");
+        assert_eq!(&bytes[8..20], &[0; 12]);
+        // header: kind, flags, length of all that follows
+        assert_eq!(&bytes[20..24], &[0x15, 0x07, (bytes.len() - 24) as u8, 0]);
+        assert_eq!(&bytes[24..28], &[0, 0, 16, 0]);
+        // the inline parameters begin sixteen bytes behind the field that says so
+        assert_eq!(&bytes[28..36], &[1, 2, 3, 4, 5, 6, 7, 8]);
+        assert_eq!(&bytes[36..44], &[1, 0, 0, 0, 2, 0, 0, 0]);
+        assert_eq!(&bytes[44..52], &[0x70, 0, 4, 0, 9, 9, 9, 9]);
+        assert_eq!(&bytes[52..56], &[1, 0, 0, 0]);
+        assert_eq!(&bytes[56..], &[0, 1, 0, 0, 42]);
+    }
+
+    #[test]
+    fn a_question_is_asked_for_fewer_and_fewer_samples() {
+        let bytes = Packet::of(GUID::GUID_UNKNOWN).ask_for_first([1; 4], [2; 4], 33).0;
+        let (first, last) = (&bytes[20..], &bytes[bytes.len() - 32..]);
+        // not final: an answer is wanted
+        assert_eq!(first[..4], [0x06, 0x01, 32, 0]);
+        assert_eq!(first[4..12], [1, 1, 1, 1, 2, 2, 2, 2]);
+        assert_eq!(first[12..20], [0, 0, 0, 0, 1, 0, 0, 0]);
+        assert_eq!(first[20..36], [33, 0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 128, 1, 0, 0, 0]);
+        assert_eq!(last[..4], [0x06, 0x01, 28, 0]);
+        assert_eq!(last[20..], [1, 0, 0, 0, 0, 0, 0, 128, 1, 0, 0, 0]);
+    }
+
+    #[test]
+    fn what_is_too_long_for_a_datagram_is_not_sent() {
+        let packet = Packet::of(GUID::GUID_UNKNOWN).data([0; 4], [0; 4], 1, &[], Some(&vec![0; 70_000]));
+        assert!(!packet.fits());
+        packet.send(["127.0.0.1:9".parse().unwrap()]);
+    }
+}
