@@ -79,6 +79,15 @@ def test_describe(ros, simulator):
     assert rate.read_only
 
 
+def test_all_are_described_at_once(ros, simulator):
+    """Several kB: what a parameter editor asks for."""
+    listed = ros.call(ListParameters, f"{NODE}/list_parameters", ListParameters.Request()).result.names
+    request = DescribeParameters.Request(names=listed)
+    descriptors = ros.call(DescribeParameters, f"{NODE}/describe_parameters", request).descriptors
+    assert [descriptor.name for descriptor in descriptors] == list(listed)
+    assert all(descriptor.description for descriptor in descriptors if descriptor.name != "use_sim_time")
+
+
 def test_set_is_at_work_at_once(ros, simulator):
     (answer,) = set_(ros, double("oil_temperature", 41.5))
     assert answer.successful, answer.reason

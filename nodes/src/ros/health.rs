@@ -15,7 +15,7 @@ use rustdds::{DomainParticipant, DomainParticipantStatusEvent, LostReason, RTPSE
 use super::Environment;
 use super::connection::participant;
 use super::patience::{BUILDING, let_go, within};
-use super::reminder::{ask_for_endpoints, ask_for_samples};
+use super::reminder::ask_again;
 use super::threads::{Died, Threads};
 
 /// Identity of a participant.
@@ -111,7 +111,6 @@ impl Watch {
                         seen.fault = Some(Fault::PeerReturned(prefix));
                     }
                     self.present.insert(prefix);
-                    ask_for_endpoints(&self.participant, self.environment.domain, dpd.guid);
                 }
                 DomainParticipantStatusEvent::ParticipantLost { id, reason } => {
                     let prefix = prefix_of(id.as_ref());
@@ -130,7 +129,7 @@ impl Watch {
                     }
                 }
                 DomainParticipantStatusEvent::RemoteWriterMatched { local_reader, remote_writer } => {
-                    ask_for_samples(&self.participant, local_reader, remote_writer);
+                    ask_again(&self.participant, local_reader, remote_writer);
                 }
                 DomainParticipantStatusEvent::RemoteReaderQosIncompatible { remote_reader, .. } => {
                     seen.notes

@@ -93,25 +93,21 @@ impl Packet {
         self.with(kind::DATA, flag::LITTLE_ENDIAN | flag::INLINE_QOS | sample, &body)
     }
 
-    /// `reader` asks `writer` for its first samples, at most so many, and acknowledges none.
+    /// `reader` asks `writer` for its first sample, and acknowledges none.
     ///
-    /// Fast DDS does not hear a question for more samples than there are, nor one whose count is not above the last one
-    /// that it heard. So questions for fewer and fewer samples with the same count are one question for all that there are.
-    pub fn ask_for_first(self, reader: [u8; 4], writer: [u8; 4], most: u32) -> Self {
-        (1..=most).rev().fold(self, |packet, samples| {
-            let mut body = Vec::new();
-            body.extend(reader);
-            body.extend(writer);
-            body.extend(sequence_number(1));
-            body.extend(samples.to_le_bytes());
-            for first in (0..samples).step_by(32) {
-                let bits = (samples - first).min(32);
-                body.extend((u32::MAX << (32 - bits)).to_le_bytes());
-            }
-            // The first count that Fast DDS listens to.
-            body.extend(1_i32.to_le_bytes());
-            packet.with(kind::ACKNACK, flag::LITTLE_ENDIAN, &body)
-        })
+    /// For no other: Fast DDS declares a sample that it is asked for before it is written to be irrelevant, unless nothing was
+    /// written at all.
+    pub fn ask_for_first(self, reader: [u8; 4], writer: [u8; 4]) -> Self {
+        let mut body = Vec::new();
+        body.extend(reader);
+        body.extend(writer);
+        body.extend(sequence_number(1));
+        // A set of one: the first of the bits from the base on.
+        body.extend(1_u32.to_le_bytes());
+        body.extend(0x8000_0000_u32.to_le_bytes());
+        // The first count that Fast DDS listens to.
+        body.extend(1_i32.to_le_bytes());
+        self.with(kind::ACKNACK, flag::LITTLE_ENDIAN, &body)
     }
 
     fn with(mut self, kind: u8, flags: u8, body: &[u8]) -> Self {
@@ -211,16 +207,12 @@ mod tests {
     }
 
     #[test]
-    fn a_question_is_asked_for_fewer_and_fewer_samples() {
-        let bytes = Packet::of(GUID::GUID_UNKNOWN).ask_for_first([1; 4], [2; 4], 33).0;
-        let (first, last) = (&bytes[20..], &bytes[bytes.len() - 32..]);
+    fn a_question_asks_for_number_one_and_acknowledges_nothing() {
+        let bytes = Packet::of(GUID::GUID_UNKNOWN).ask_for_first([1; 4], [2; 4]).0;
         // not final: an answer is wanted
-        assert_eq!(first[..4], [0x06, 0x01, 32, 0]);
-        assert_eq!(first[4..12], [1, 1, 1, 1, 2, 2, 2, 2]);
-        assert_eq!(first[12..20], [0, 0, 0, 0, 1, 0, 0, 0]);
-        assert_eq!(first[20..36], [33, 0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 128, 1, 0, 0, 0]);
-        assert_eq!(last[..4], [0x06, 0x01, 28, 0]);
-        assert_eq!(last[20..], [1, 0, 0, 0, 0, 0, 0, 128, 1, 0, 0, 0]);
+        assert_eq!(bytes[20..24], [0x06, 0x01, 28, 0]);
+        assert_eq!(bytes[24..32], [1, 1, 1, 1, 2, 2, 2, 2]);
+        assert_eq!(bytes[32..], [0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 128, 1, 0, 0, 0]);
     }
 
     #[test]
