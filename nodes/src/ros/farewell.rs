@@ -4,12 +4,12 @@
 //! instead and takes no other word for it, so a node that had ended, or whose link was built anew, stood on its graph
 //! until its lease ran out, a minute later.
 
-use std::net::SocketAddr;
+use std::net::{Ipv4Addr, SocketAddr};
 
 use rustdds::{DomainParticipant, GUID, RTPSEntity};
 
-use super::Environment;
-use super::rtps::{Packet, everybody, identity, parameter};
+use super::rtps::{Packet, identity, is_fast_dds, parameter};
+use super::{DiscoveryRange, Environment};
 
 /// Entities that announce participants and hear of them, RTPS 9.3.1.5.
 const ANNOUNCER: [u8; 4] = [0, 1, 0, 0xc2];
@@ -22,14 +22,14 @@ const GONE: [u8; 4] = [0, 0, 0, 3];
 /// Says good-bye for a participant when it is dropped, which must be after the participant has gone: an announcement that
 /// comes later would call it back.
 pub(super) struct Farewell {
-    domain: u16,
+    environment: Environment,
     speaker: Option<GUID>,
     addresses: Vec<SocketAddr>,
 }
 
 impl Farewell {
     pub fn new(environment: &Environment) -> Self {
-        Farewell { domain: environment.domain, speaker: None, addresses: Vec::new() }
+        Farewell { environment: *environment, speaker: None, addresses: Vec::new() }
     }
 
     /// Notes who goes, and where the peers are that must hear of it.
@@ -37,16 +37,25 @@ impl Farewell {
         self.speaker = Some(participant.guid());
         let readers = participant.discovered_readers();
         let writers = participant.discovered_writers();
-        let users = readers
-            .iter()
-            .flat_map(|reader| &reader.reader_proxy.unicast_locator_list)
-            .chain(writers.iter().flat_map(|writer| &writer.writer_proxy.unicast_locator_list));
+        let reading = readers.iter().map(|r| (r.reader_proxy.remote_reader_guid, &r.reader_proxy.unicast_locator_list));
+        let writing = writers.iter().map(|w| (w.writer_proxy.remote_writer_guid, &w.writer_proxy.unicast_locator_list));
+        let users = reading.chain(writing).filter(|(guid, _)| is_fast_dds(*guid)).flat_map(|(_, locators)| locators);
         self.addresses = users.map(|locator| SocketAddr::from(*locator)).filter_map(discovery).collect();
-        self.addresses.extend(everybody(self.domain));
+        self.addresses.extend(everybody(&self.environment));
         self.addresses.sort_unstable();
         self.addresses.dedup();
     }
 }
+
+/// Where the participants of a domain listen for others (RTPS 9.6.2.3): those on this machine where they can be expected, as
+/// many as RustDDS looks for there, and everybody by multicast.
+fn everybody(environment: &Environment) -> Vec<SocketAddr> {
+    let first = 7400 + 250 * environment.domain;
+    let here = (0..PARTICIPANTS_HERE).map(|number| SocketAddr::from((Ipv4Addr::LOCALHOST, first + 10 + 2 * number)));
+    let subnet = environment.range == DiscoveryRange::Subnet;
+    here.chain(subnet.then(|| SocketAddr::from((Ipv4Addr::new(239, 255, 0, 1), first)))).collect()
+}
+const PARTICIPANTS_HERE: u16 = 12;
 
 /// Where the participant with this address for user traffic listens for others: one port below, RTPS 9.6.2.3.
 fn discovery(mut user: SocketAddr) -> Option<SocketAddr> {
@@ -66,4 +75,27 @@ fn words(speaker: GUID) -> Packet {
     let key = identity(speaker);
     let inline: [(u16, &[u8]); 2] = [(parameter::KEY_HASH, &key), (parameter::STATUS_INFO, &GONE)];
     Packet::of(speaker).data(HEARER, ANNOUNCER, LAST_WORD, &inline, None)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nobody_beyond_this_machine_hears_what_is_for_it_alone() {
+        let environment = |range| Environment { domain: 3, range, mapping: super::super::Mapping::Enhanced };
+        let here = everybody(&environment(DiscoveryRange::Localhost));
+        assert!(here.iter().all(|address| address.ip().is_loopback()));
+        assert_eq!(here.first().map(SocketAddr::port), Some(8160));
+        let all = everybody(&environment(DiscoveryRange::Subnet));
+        assert_eq!(all.last(), Some(&"239.255.0.1:8150".parse().unwrap()));
+        assert_eq!(all.len(), here.len() + 1);
+    }
+
+    #[test]
+    fn discovery_is_one_port_below_user_traffic() {
+        assert_eq!(discovery("10.0.0.1:7411".parse().unwrap()), Some("10.0.0.1:7410".parse().unwrap()));
+        assert_eq!(discovery("10.0.0.1:0".parse().unwrap()), None);
+    }
 }

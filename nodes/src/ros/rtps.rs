@@ -153,15 +153,6 @@ fn networks() -> Vec<Ipv4Addr> {
         .collect()
 }
 
-/// Where the participants of a domain listen for others (RTPS 9.6.2.3): everybody by multicast, those on this machine also
-/// where they can be expected, as many as RustDDS looks for there.
-pub(super) fn everybody(domain: u16) -> Vec<SocketAddr> {
-    let first = 7400 + 250 * domain;
-    let here = (0..PARTICIPANTS_HERE).map(|number| SocketAddr::from((Ipv4Addr::LOCALHOST, first + 10 + 2 * number)));
-    here.chain([SocketAddr::from((Ipv4Addr::new(239, 255, 0, 1), first))]).collect()
-}
-const PARTICIPANTS_HERE: u16 = 12;
-
 /// High part, low part.
 pub(super) fn sequence_number(number: i64) -> [u8; 8] {
     let [high, low] = [(number >> 32) as u32, number as u32];
