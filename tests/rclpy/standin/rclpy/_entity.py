@@ -20,8 +20,12 @@ class Writer:
         """Lets go of the DDS entity, which lives as long as somebody holds it."""
         self.dds = None
 
+    def matched_readers(self):
+        """Handles of the readers that this writer writes to."""
+        return _matched(self.dds.get_matched_subscriptions)
+
     def user_data_of_readers(self):
-        return [_user_data(self.dds.get_matched_subscription_data(handle)) for handle in self.dds.matched_sub]
+        return [_user_data(self.dds.get_matched_subscription_data(handle)) for handle in self.matched_readers()]
 
 
 class Reader:
@@ -41,11 +45,27 @@ class Reader:
                 return samples[0]
         return None
 
+    def matched_writers(self):
+        """Handles of the writers that this reader hears."""
+        return _matched(self.dds.get_matched_publications)
+
     def user_data_of_writers(self):
-        return [_user_data(self.dds.get_matched_publication_data(handle)) for handle in self.dds.matched_pub]
+        return [_user_data(self.dds.get_matched_publication_data(handle)) for handle in self.matched_writers()]
 
     def user_data_of_writer(self, handle):
         return _user_data(self.dds.get_matched_publication_data(handle))
+
+
+def _matched(ask):
+    """The answer of a binding that counts the matched endpoints first and fetches them then.
+
+    One that is matched in between makes it read past the list that it has made room for; asked again, it has counted that one.
+    """
+    while True:
+        try:
+            return ask()
+        except IndexError:
+            continue
 
 
 def _user_data(endpoint):

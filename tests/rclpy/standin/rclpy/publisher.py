@@ -20,7 +20,7 @@ class Publisher:
         self._writer.dds.write(self._writer.codec.encode(msg))
 
     def get_subscription_count(self):
-        return len(self._writer.dds.matched_sub)
+        return len(self._writer.matched_readers())
 
     def destroy(self):
         self._node.destroy_publisher(self)

@@ -16,7 +16,7 @@ class Subscription:
         self._readers, self._writers = [self._reader], []
 
     def get_publisher_count(self):
-        return len(self._reader.dds.matched_pub)
+        return len(self._reader.matched_writers())
 
     def _execute_one(self):
         sample = self._reader.take()
