@@ -7,7 +7,7 @@
 mod common;
 
 use common::add_noise;
-use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, Verdict, diagnose};
+use excavator_identification::diagnosis::{Candidate, Diagnosis, DiagnosisSettings, Verdict, diagnose};
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
@@ -125,13 +125,8 @@ fn diagnosed(hidden: &[Hidden]) -> Diagnosis {
         &|_, _| (),
     )
     .unwrap();
-    let tied: Vec<String> = diagnosis
-        .candidates
-        .iter()
-        .filter(|candidate| candidate.tied_with_first)
-        .map(|c| format!("{}@{}", c.name(), c.place))
-        .collect();
-    let chain: Vec<String> = diagnosis.chain.iter().map(|link| format!("{}@{}", link.name(), link.place)).collect();
+    let tied: Vec<String> = tied(&diagnosis).map(found_label).collect();
+    let chain: Vec<String> = diagnosis.chain.iter().map(found_label).collect();
     println!(
         "{hidden:?}\n  {}: chain {chain:?}, tied {tied:?}, loss {:.2} -> {:.2}, {:.0} s",
         diagnosis.verdict.name(),
@@ -140,6 +135,16 @@ fn diagnosed(hidden: &[Hidden]) -> Diagnosis {
         begin.elapsed().as_secs_f64()
     );
     diagnosis
+}
+
+/// Candidates among which the recordings cannot tell.
+fn tied(diagnosis: &Diagnosis) -> impl Iterator<Item = &Candidate> {
+    diagnosis.candidates.iter().filter(|candidate| candidate.tied_with_first)
+}
+
+/// Name and place of what was found, as [`label`] has them of what is hidden.
+fn found_label(candidate: &Candidate) -> String {
+    format!("{}@{}", candidate.name(), candidate.place)
 }
 
 /// Name and place, as `valve_dead_zone@boom`.
@@ -177,12 +182,11 @@ fn the_effect_and_its_cylinder_are_named() {
         .iter()
         .filter_map(|hidden| {
             let diagnosis = diagnosed(hidden);
-            let mut found: Vec<String> =
-                diagnosis.chain.iter().map(|link| format!("{}@{}", link.name(), link.place)).collect();
+            let mut found: Vec<String> = diagnosis.chain.iter().map(found_label).collect();
             let mut wanted: Vec<String> = hidden.iter().map(label).collect();
             found.sort_unstable();
             wanted.sort_unstable();
-            let tied = diagnosis.candidates.iter().filter(|candidate| candidate.tied_with_first).count();
+            let tied = tied(&diagnosis).count();
             let right = diagnosis.verdict == Verdict::MissingEffect && found == wanted && tied <= 2;
             (!right).then(|| format!("{wanted:?}: {} {found:?}, {tied} tied", diagnosis.verdict.name()))
         })

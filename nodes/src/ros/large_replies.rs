@@ -7,12 +7,12 @@
 //! (`Enhanced` mapping), the whole sample goes ahead in one datagram that the network may cut as it likes; the fragments
 //! that follow, the same sample again, keep the writer's numbers in order.
 
-use std::net::SocketAddr;
 use std::sync::{Mutex, PoisonError};
 
 use excavator_bags::cdr;
-use ros2_client::RmwRequestId;
+use ros2_client::{Gid, RmwRequestId};
 use rustdds::bytes::Bytes;
+use rustdds::discovery::DiscoveredReaderData;
 use rustdds::no_key::{DataWriter, SimpleDataReader};
 use rustdds::{DomainParticipant, RTPSEntity, Timestamp, WriteOptionsBuilder};
 use serde::Serialize;
@@ -88,13 +88,8 @@ impl LargeReplies {
         let mut related = request.writer_gid.to_bytes16().to_vec();
         related.extend(sequence_number(request.sequence_number));
         let inline = [(parameter::RELATED_SAMPLE_IDENTITY, &related[..]), (OLD_RELATED_SAMPLE_IDENTITY, &related[..])];
-        let client = request.writer_gid.to_bytes16();
-        for reader in self.participant.discovered_readers() {
+        for reader in readers_of(request.writer_gid, &self.topic, &self.participant) {
             let guid = reader.subscription_topic_data.key();
-            // The first twelve bytes name the participant.
-            if *reader.subscription_topic_data.topic_name() != self.topic || guid.prefix.as_ref() != &client[..12] {
-                continue;
-            }
             let packet = Packet::of(self.writer.guid()).to(guid).data(
                 entity(guid),
                 entity(self.writer.guid()),
@@ -106,10 +101,22 @@ impl LargeReplies {
                 let bytes = content.len();
                 return Err(PublishError::Failed(format!("a reply of {bytes} bytes is too long for one datagram")));
             }
-            packet.send(reader.reader_proxy.unicast_locator_list.iter().map(|locator| SocketAddr::from(*locator)));
+            packet.send(reader.reader_proxy.unicast_locator_list);
         }
         Ok(())
     }
+}
+
+/// Readers of a topic in DDS that the participant of a client has.
+pub(super) fn readers_of(client: Gid, topic: &str, participant: &DomainParticipant) -> Vec<DiscoveredReaderData> {
+    // The first twelve bytes name the participant.
+    let owner = &client.to_bytes16()[..12];
+    let mut readers = participant.discovered_readers();
+    readers.retain(|reader| {
+        let data = &reader.subscription_topic_data;
+        data.topic_name() == topic && data.key().prefix.as_ref() == owner
+    });
+    readers
 }
 
 /// Topic in DDS of the replies of a service.
@@ -136,7 +143,7 @@ mod tests {
     fn the_header_of_cyclone_stands_between_encapsulation_and_content() {
         let mut bytes = [0; 16];
         bytes.iter_mut().zip(1..).for_each(|(byte, number)| *byte = number);
-        let request = RmwRequestId { writer_gid: ros2_client::Gid::from(bytes), sequence_number: 7 };
+        let request = RmwRequestId { writer_gid: Gid::from(bytes), sequence_number: 7 };
         let sample = behind_header(request, &[0, 1, 0, 0, 42]);
         assert_eq!(sample[..4], [0, 1, 0, 0]);
         assert_eq!(sample[4..12], [9, 10, 11, 12, 13, 14, 15, 16]);

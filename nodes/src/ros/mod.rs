@@ -36,6 +36,7 @@ mod link;
 mod logger;
 mod middleware_log;
 mod names;
+mod networks;
 mod outlet;
 mod pace;
 mod parameter;

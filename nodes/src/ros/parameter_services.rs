@@ -20,7 +20,7 @@ use rustdds::DomainParticipant;
 use serde::{Deserialize, Serialize};
 
 use super::connection::{Closed, Connection, Endpoint, Install, Task};
-use super::large_replies::{LargeReplies, reply_topic};
+use super::large_replies::{LargeReplies, readers_of, reply_topic};
 use super::{Link, Mapping, Outlet, Parameter, Parameters, Range, RosClock, RosError, TopicQos, Value};
 
 /// Requests that wait: rmw_qos_profile_services_default.
@@ -171,19 +171,10 @@ impl Clients {
             return;
         }
         let start = Instant::now();
-        while start.elapsed() < READER && !self.has_reader(client) {
+        while start.elapsed() < READER && readers_of(client, &self.reply_topic, &self.participant).is_empty() {
             tokio::time::sleep(MATCHING / 2).await;
         }
         tokio::time::sleep(MATCHING).await;
-    }
-
-    fn has_reader(&self, client: Gid) -> bool {
-        // The first twelve bytes name the participant.
-        let participant = &client.as_bytes()[..12];
-        self.participant.discovered_readers().iter().any(|reader| {
-            let data = &reader.subscription_topic_data;
-            *data.topic_name() == self.reply_topic && data.key().prefix.as_ref() == participant
-        })
     }
 }
 

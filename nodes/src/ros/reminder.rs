@@ -5,8 +5,6 @@
 //! number 0, which Fast DDS takes for one that it has heard already, and the writer repeats itself three seconds later. This
 //! question has the number 1.
 
-use std::net::SocketAddr;
-
 use rustdds::{DomainParticipant, GUID};
 
 use super::rtps::{Packet, entity, is_fast_dds};
@@ -24,6 +22,6 @@ pub(super) fn ask_again(participant: &DomainParticipant, reader: GUID, writer: G
         other.writer_proxy.remote_writer_guid == writer && other.publication_topic_data.topic_name.starts_with(REQUESTS)
     });
     let Some(found) = of_client else { return };
-    let addresses = found.writer_proxy.unicast_locator_list.iter().map(|locator| SocketAddr::from(*locator));
-    Packet::of(reader).to(writer).ask_for_first(entity(reader), entity(writer)).send(addresses);
+    let question = Packet::of(reader).to(writer).ask_for_first(entity(reader), entity(writer));
+    question.send(found.writer_proxy.unicast_locator_list.iter().copied());
 }

@@ -3,12 +3,12 @@
 //! They are sent beside the middleware in the name of its participant, from a socket of their own: receivers go by the
 //! identities inside a message, not by the port that it comes from.
 
-use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
+use std::net::{SocketAddr, UdpSocket};
 
-use nix::ifaddrs::getifaddrs;
-use nix::net::if_::InterfaceFlags;
 use rustdds::GUID;
 use socket2::SockRef;
+
+use super::networks::networks;
 
 /// Vendor of the participant in whose name is spoken: RustDDS.
 const VENDOR: [u8; 2] = [1, 18];
@@ -24,7 +24,7 @@ mod kind {
     pub const DATA: u8 = 0x15;
 }
 
-/// Flags of a DATA submessage: inline quality of service; a key instead of a sample; a sample.
+/// Flags of submessages, RTPS 9.4.5: all numbers little endian; of DATA: inline parameters, a sample.
 mod flag {
     pub const LITTLE_ENDIAN: u8 = 0x01;
     pub const INLINE_QOS: u8 = 0x02;
@@ -120,14 +120,15 @@ impl Packet {
     }
 
     /// Sends the message to each address. Whether it arrives nobody knows, as with every datagram.
-    pub fn send(&self, addresses: impl IntoIterator<Item = SocketAddr>) {
+    pub fn send(&self, addresses: impl IntoIterator<Item = impl Into<SocketAddr>>) {
         if !self.fits() {
             return;
         }
         let Ok(socket) = UdpSocket::bind("0.0.0.0:0") else { return };
-        for address in addresses.into_iter().filter(|address| address.is_ipv4() && address.port() != 0) {
+        let addresses = addresses.into_iter().map(Into::into);
+        for address in addresses.filter(|address: &SocketAddr| address.is_ipv4() && address.port() != 0) {
             if address.ip().is_multicast() {
-                for network in networks() {
+                for (_, network, _) in networks().into_iter().filter(|&(_, _, takes_multicast)| takes_multicast) {
                     let _ = SockRef::from(&socket).set_multicast_if_v4(&network);
                     let _ = socket.send_to(&self.0, address);
                 }
@@ -141,16 +142,6 @@ impl Packet {
     pub fn fits(&self) -> bool {
         self.0.len() <= LARGEST
     }
-}
-
-/// Addresses of this machine on the networks that are up and take multicast.
-fn networks() -> Vec<Ipv4Addr> {
-    let Ok(interfaces) = getifaddrs() else { return Vec::new() };
-    let reached = InterfaceFlags::IFF_UP | InterfaceFlags::IFF_MULTICAST;
-    interfaces
-        .filter(|interface| interface.flags.contains(reached))
-        .filter_map(|interface| Some(interface.address?.as_sockaddr_in()?.ip()))
-        .collect()
 }
 
 /// High part, low part.
@@ -210,6 +201,6 @@ mod tests {
     fn what_is_too_long_for_a_datagram_is_not_sent() {
         let packet = Packet::of(GUID::GUID_UNKNOWN).data([0; 4], [0; 4], 1, &[], Some(&vec![0; 70_000]));
         assert!(!packet.fits());
-        packet.send(["127.0.0.1:9".parse().unwrap()]);
+        packet.send(["127.0.0.1:9".parse::<SocketAddr>().unwrap()]);
     }
 }
