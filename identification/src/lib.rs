@@ -10,6 +10,7 @@ pub mod diagnosis;
 pub mod energy;
 pub mod fit;
 pub mod gate;
+pub mod recording_effects;
 pub mod refinement;
 pub mod regression;
 pub mod report;

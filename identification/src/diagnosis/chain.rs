@@ -5,11 +5,13 @@
 //! way leads nowhere, the runner-up is tried as a first step too.
 
 use excavator_model::recording::Recording;
+use excavator_model::{Model, ModelEffect};
 
 use super::race::{Race, Round};
 use super::starts::acts_in_a_window;
 use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, compare_losses, is_adequate};
 use crate::fit::{Fit, evaluate, fit};
+use crate::recording_effects::with_recording_effects;
 
 /// A gain below this part of the best one's is no other way to begin.
 const OTHER_WAY: f64 = 0.5;
@@ -98,7 +100,7 @@ impl Chains<'_> {
 
     /// The chain that begins with `first`, until nothing more is gained and every link is needed.
     fn grow(&self, first: Candidate, progress: &(dyn Fn(&str, f64) + Sync)) -> Result<Vec<Candidate>, DiagnosisError> {
-        let mut chain = vec![first];
+        let mut chain = vec![self.with_recording_effects(first)?];
         // Each detour costs a link that is taken out again.
         for _ in 0..2 * self.settings.most_effects {
             let next = if chain.last().is_some_and(|last| self.leaves_little(last))
@@ -109,7 +111,7 @@ impl Chains<'_> {
                 self.round(&chain, progress).fitted.into_iter().find(|candidate| candidate.accepted)
             };
             let complete = next.is_none();
-            chain.extend(next);
+            chain.extend(next.map(|next| self.with_recording_effects(next)).transpose()?);
             match self.without_superfluous(&chain, progress)? {
                 Some(shorter) => chain = shorter,
                 None if complete => break,
@@ -119,6 +121,21 @@ impl Chains<'_> {
         // One more than the most was for a detour; there was none.
         chain.truncate(self.settings.most_effects);
         Ok(chain)
+    }
+
+    /// A link with what the recordings show of how they were made once it is there: without it that was hidden under what
+    /// was missing.
+    fn with_recording_effects(&self, mut link: Candidate) -> Result<Candidate, DiagnosisError> {
+        if acts_in_a_window(link.physics, &link.fit.model.machine, link.site) {
+            return Ok(link);
+        }
+        let (given, behind) = (link.fit.model.effects.len(), link.fit.model.effects.len() - 1);
+        let anew = |model: &Model| fit(model, self.identification, &self.settings.fit).ok();
+        link.fit = with_recording_effects(link.fit, behind, self.identification, |fitted| &fitted.model, anew);
+        if link.fit.model.effects.len() > given {
+            link.validation = evaluate(&link.fit.model, self.validation, &self.settings.fit)?;
+        }
+        Ok(link)
     }
 
     /// Whether nothing that could be named is left: the model is adequate, and its whole loss less than another effect would
@@ -136,14 +153,12 @@ impl Chains<'_> {
     ) -> Result<Option<Vec<Candidate>>, DiagnosisError> {
         let settings = self.settings;
         let Some((last, earlier)) = chain.split_last() else { return Ok(None) };
-        let given = self.nominal.model.effects.len();
         let mut least: Option<(f64, usize)> = None;
-        for link in 0..earlier.len() {
+        for (link, tried) in earlier.iter().enumerate() {
             let mut shorter = last.fit.model.clone();
-            if shorter.effects.len() <= given + link {
-                continue;
-            }
-            let removed = shorter.effects.remove(given + link);
+            let is_link = |effect: &ModelEffect| effect.name() == tried.name() && effect.site == tried.site;
+            let Some(place) = shorter.effects.iter().position(is_link) else { continue };
+            let removed = shorter.effects.remove(place);
             if acts_in_a_window(removed.physics, &shorter.machine, removed.site) {
                 continue;
             }

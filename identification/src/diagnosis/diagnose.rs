@@ -10,6 +10,7 @@ use super::race::Round;
 use super::starts::within_bounds;
 use super::{Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, compare_losses, residual_map, unexplained};
 use crate::fit::{Fit, FitError, evaluate, fit};
+use crate::recording_effects::with_recording_effects;
 use crate::regression::{RegressionError, WeakFormSettings, weak_form};
 
 /// What is to be thought of a model.
@@ -241,16 +242,18 @@ pub(crate) fn fit_nominal(
         .map(|regression| within_bounds(regression.model))
         .ok()
         .and_then(|start| fit(&start, identification, &settings.fit).ok());
-    match regressed {
-        Some(fitted) if fitted.loss() <= settings.adequate_loss => Ok(fitted),
+    let fitted = match regressed {
+        Some(fitted) if fitted.loss() <= settings.adequate_loss => fitted,
         // Something may be missing, the regression may say nothing, or an instrument that is far off may have led it astray:
         // from the given values too.
         regressed => match (regressed, fit(model, identification, &settings.fit)) {
-            (Some(first), Ok(second)) if first.loss() <= second.loss() => Ok(first),
-            (Some(first), Err(_)) => Ok(first),
-            (_, second) => second,
+            (Some(first), Ok(second)) if first.loss() <= second.loss() => first,
+            (Some(first), Err(_)) => first,
+            (_, second) => second?,
         },
-    }
+    };
+    let anew = |model: &Model| fit(model, identification, &settings.fit).ok();
+    Ok(with_recording_effects(fitted, model.effects.len(), identification, |fitted| &fitted.model, anew))
 }
 
 /// Noise, as a part of its spread, up to which a signal is clear: noise alone is no large error of it.

@@ -27,6 +27,8 @@ pub enum Site {
 pub enum Family {
     /// Part of the nominal model of \[A\] or of the frame every simulation needs.
     Base,
+    /// How recordings are made, not how the machine works: fitted along where the recordings show it, never a candidate.
+    Recording,
     /// How a machine is built, which its data sheet says: added by hand, never a candidate.
     Construction,
     /// A loss that the nominal model of \[A\] has, and a candidate where another model leaves it out.

@@ -39,6 +39,7 @@ mod pressure_sensor_offset;
 mod pump_leakage;
 mod relief_valve;
 mod sensor_delay;
+mod spool_sensor_lead;
 mod stribeck_friction;
 mod valve_dead_zone;
 mod valve_directional_gain;
@@ -68,6 +69,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &external_leakage::ExternalLeakage,
     &end_stop::EndStop,
     &cavitation::Cavitation,
+    &spool_sensor_lead::SpoolSensorLead,
     &pressure_compensation::PressureCompensation,
     &valve_dead_zone::ValveDeadZone,
     &valve_directional_gain::ValveDirectionalGain,

@@ -24,6 +24,17 @@ pub trait Physics: Sync {
         spool
     }
 
+    /// Whether the effect looks at how the input changes, by [`Physics::read`].
+    fn reads_course(&self) -> bool {
+        false
+    }
+
+    /// The opening (m²) that the input means, given what it says and how fast that changes before and after this instant
+    /// (m²/s). Asked of effects with [`Physics::reads_course`] only, before any [`Physics::spool`].
+    fn read<T: Scalar>(&self, _parameters: &[T], reading: T, _course: [T; 2]) -> T {
+        reading
+    }
+
     /// The area open to flow (m²), given the area that the effects before it left open; `maximum` is umax.
     fn opening<T: Scalar>(&self, _parameters: &[T], opening: T, _maximum: f64) -> T {
         opening
@@ -55,6 +66,9 @@ pub trait Effect: Sync {
     fn states(&self) -> usize;
     fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> f64;
     fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual;
+    fn reads_course(&self) -> bool;
+    fn read_plain(&self, parameters: &[f64], reading: f64, course: [f64; 2]) -> f64;
+    fn read_dual(&self, parameters: &[Dual], reading: Dual, course: [Dual; 2]) -> Dual;
     fn opening_plain(&self, parameters: &[f64], opening: f64, maximum: f64) -> f64;
     fn opening_dual(&self, parameters: &[Dual], opening: Dual, maximum: f64) -> Dual;
     fn adjust_plain(&self, site: Site, parameters: &[f64], now: &mut Situation<f64>);
@@ -82,6 +96,15 @@ impl<P: Physics> Effect for P {
     }
     fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual {
         self.spool(parameters, states, rates, spool)
+    }
+    fn reads_course(&self) -> bool {
+        Physics::reads_course(self)
+    }
+    fn read_plain(&self, parameters: &[f64], reading: f64, course: [f64; 2]) -> f64 {
+        self.read(parameters, reading, course)
+    }
+    fn read_dual(&self, parameters: &[Dual], reading: Dual, course: [Dual; 2]) -> Dual {
+        self.read(parameters, reading, course)
     }
     fn opening_plain(&self, parameters: &[f64], opening: f64, maximum: f64) -> f64 {
         self.opening(parameters, opening, maximum)
@@ -125,6 +148,7 @@ impl std::fmt::Debug for dyn Effect {
 #[allow(missing_docs)]
 pub trait Number: Scalar {
     fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self;
+    fn read(effect: &dyn Effect, parameters: &[Self], reading: Self, course: [Self; 2]) -> Self;
     fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self;
     fn adjust(effect: &dyn Effect, site: Site, parameters: &[Self], now: &mut Situation<Self>);
     fn distort(effect: &dyn Effect, site: Site, parameters: &[Self], instruments: &mut Instruments<Self>);
@@ -135,6 +159,9 @@ pub trait Number: Scalar {
 impl Number for f64 {
     fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self {
         effect.spool_plain(parameters, states, rates, spool)
+    }
+    fn read(effect: &dyn Effect, parameters: &[Self], reading: Self, course: [Self; 2]) -> Self {
+        effect.read_plain(parameters, reading, course)
     }
     fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self {
         effect.opening_plain(parameters, opening, maximum)
@@ -156,6 +183,9 @@ impl Number for f64 {
 impl Number for Dual {
     fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self {
         effect.spool_dual(parameters, states, rates, spool)
+    }
+    fn read(effect: &dyn Effect, parameters: &[Self], reading: Self, course: [Self; 2]) -> Self {
+        effect.read_dual(parameters, reading, course)
     }
     fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self {
         effect.opening_dual(parameters, opening, maximum)

@@ -37,6 +37,9 @@ pub struct Inputs<T> {
     pub time: T,
     /// Spool opening per cylinder: measured orifice area, or the commanded one where no spool sensor exists, m².
     pub orifice_area: Vec<T>,
+    /// How fast that opening changes before this instant and after it, m²/s, per cylinder: they differ at a sample, where
+    /// the input bends. Zero unless an effect of the model asks for it ([`crate::effects::Physics::reads_course`]).
+    pub orifice_course: Vec<[T; 2]>,
     /// Force that drives the piston, per cylinder, N; used only by cylinders without chambers. Measured on the rod, and
     /// where the motion is imposed with the force of the measured pressures.
     pub rod_force: Vec<T>,
@@ -57,6 +60,7 @@ impl<T: Scalar> Inputs<T> {
         Inputs {
             time: zero,
             orifice_area: vec![zero; cylinders],
+            orifice_course: vec![[zero; 2]; cylinders],
             rod_force: vec![zero; cylinders],
             imposed: vec![
                 ImposedState {
@@ -78,6 +82,7 @@ impl<T: Scalar> Inputs<T> {
     pub fn copy_from(&mut self, other: &Self) {
         self.time = other.time;
         self.orifice_area.copy_from_slice(&other.orifice_area);
+        self.orifice_course.copy_from_slice(&other.orifice_course);
         self.rod_force.copy_from_slice(&other.rod_force);
         self.imposed.copy_from_slice(&other.imposed);
         self.supply_pressure = other.supply_pressure;
@@ -92,6 +97,9 @@ impl Inputs<Dual> {
         self.time = constant(plain.time);
         for (slot, &value) in self.orifice_area.iter_mut().zip(&plain.orifice_area) {
             *slot = constant(value);
+        }
+        for (slot, rates) in self.orifice_course.iter_mut().zip(&plain.orifice_course) {
+            *slot = rates.map(constant);
         }
         for (slot, &value) in self.rod_force.iter_mut().zip(&plain.rod_force) {
             *slot = constant(value);

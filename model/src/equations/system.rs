@@ -13,6 +13,8 @@ pub struct System<'m> {
     parameter_ranges: Vec<(usize, usize)>,
     /// Effects of valves and of the pump line: no other has a say in spools, openings and bypass.
     on_the_way_of_oil: Vec<usize>,
+    /// Effects that look at how the input changes.
+    readers_of_course: Vec<usize>,
     own_instruments: Instruments<f64>,
 }
 
@@ -43,9 +45,17 @@ impl<'m> System<'m> {
         let on_the_way_of_oil = (0..model.effects.len())
             .filter(|&number| matches!(model.effects[number].physics.card().acts_on, ActsOn::Valve | ActsOn::PumpLine))
             .collect();
+        let readers_of_course =
+            (0..model.effects.len()).filter(|&number| model.effects[number].physics.reads_course()).collect();
         let own_instruments = Instruments::true_ones(model.machine.cylinders.len());
-        let mut system =
-            System { model, layout: Layout::of(model), parameter_ranges, on_the_way_of_oil, own_instruments };
+        let mut system = System {
+            model,
+            layout: Layout::of(model),
+            parameter_ranges,
+            on_the_way_of_oil,
+            readers_of_course,
+            own_instruments,
+        };
         system.own_instruments = system.instruments(&model.parameter_values());
         system
     }
@@ -148,6 +158,14 @@ impl<'m> System<'m> {
                 rates[layout.rate(index)] = imposed.acceleration + (imposed.rate - piston.rate) / TRACKING;
             }
             piston.spool = inputs.orifice_area[index];
+        }
+        for &number in &self.readers_of_course {
+            let effect = &self.model.effects[number];
+            let Site::Cylinder(index) = effect.site else { continue };
+            let (first, last) = self.parameter_ranges[number];
+            let piston = &mut situation.pistons[index];
+            let course = inputs.orifice_course[index];
+            piston.spool = T::read(effect.physics, &parameters[first..last], piston.spool, course);
         }
         self.observe_valves(situation, parameters, state, rates);
     }

@@ -3,6 +3,7 @@
 use super::coarse_inputs::{interval_means, nearest_lines};
 use super::imposed_motion::imposed_signals;
 use super::spool_estimate::spool_estimate;
+use crate::effects::Site;
 use crate::equations::{ImposedState, Inputs};
 use crate::machine::{Machine, Supply};
 use crate::recording::{CylinderSignals, Recording, is_measured};
@@ -19,6 +20,8 @@ pub enum Interpolation {
 
 /// Distance from a straight line that does not matter, m²: a two-hundredth of the noise of a good spool sensor.
 const STRAIGHT_AREA: f64 = 1e-9;
+/// The same for the rate of an opening, m²/s: what changes it by [`STRAIGHT_AREA`] in a millisecond of lead.
+const STRAIGHT_RATE: f64 = 1e-6;
 /// The same for rod forces, N: a three-hundredth of a load cell's noise.
 const STRAIGHT_FORCE: f64 = 0.03;
 /// The same for tank and supply pressure, Pa: a tenth of the noise of a good sensor.
@@ -32,6 +35,8 @@ pub struct InputSignals {
     /// Sample times, s.
     pub time: Vec<f64>,
     orifice_area: Vec<(Interpolation, Vec<f64>)>,
+    /// Rate of the opening between each sample and the next, m²/s, where an effect looks at it.
+    orifice_rate: Vec<Option<Vec<f64>>>,
     rod_force: Vec<Vec<f64>>,
     imposed: Vec<Option<ImposedState<Vec<f64>>>>,
     supply_pressure: Vec<f64>,
@@ -80,6 +85,15 @@ impl InputSignals {
                 orifice_area.push((Interpolation::Linear, vec![0.0; samples]));
             }
         }
+        let orifice_rate = orifice_area
+            .iter()
+            .enumerate()
+            .map(|(cylinder, (interpolation, values))| {
+                // A held command is taken for what it is: nobody knows better when it acts.
+                (*interpolation == Interpolation::Linear && reads_course(model, cylinder))
+                    .then(|| secants(&recording.time, values))
+            })
+            .collect();
         let (default_tank, default_flow) = supply_constants(machine);
         let or_constant = |signal: &[f64], constant: f64| {
             without_holes(&recording.time, signal).unwrap_or_else(|| vec![constant; samples])
@@ -90,6 +104,7 @@ impl InputSignals {
         };
         Ok(InputSignals {
             orifice_area,
+            orifice_rate,
             rod_force,
             imposed,
             supply_pressure,
@@ -107,9 +122,18 @@ impl InputSignals {
             Interpolation::Linear => (*interpolation, lines(values)),
             Interpolation::Hold => (*interpolation, interval_means(values, stride)),
         };
+        let time: Vec<f64> = self.time.iter().copied().step_by(stride).collect();
+        let orifice_area: Vec<_> = self.orifice_area.iter().map(thin).collect();
+        let orifice_rate = self
+            .orifice_rate
+            .iter()
+            .zip(&orifice_area)
+            .map(|(rate, (_, values))| rate.as_ref().map(|_| secants(&time, values)))
+            .collect();
         InputSignals {
-            time: self.time.iter().copied().step_by(stride).collect(),
-            orifice_area: self.orifice_area.iter().map(thin).collect(),
+            time,
+            orifice_area,
+            orifice_rate,
             rod_force: self.rod_force.iter().map(|values| lines(values)).collect(),
             imposed: self
                 .imposed
@@ -166,6 +190,9 @@ impl InputSignals {
             // Another edge of the valve opens where the sign changes.
             Interpolation::Linear => near_line(values, STRAIGHT_AREA) && !changes_sign(&values[first..=last]),
             Interpolation::Hold => values[first + 1..last].iter().all(|&value| value == values[first]),
+        }) && self.orifice_rate.iter().flatten().all(|rates| {
+            // With the interval before, whose rate counts at the first sample.
+            rates[first.saturating_sub(1)..=last].iter().all(|rate| (rate - rates[first]).abs() <= STRAIGHT_RATE)
         }) && self.imposed.iter().all(Option::is_none)
             && self.rod_force.iter().all(|values| near_line(values, STRAIGHT_FORCE))
             && near_line(&self.supply_pressure, STRAIGHT_PRESSURE)
@@ -186,6 +213,15 @@ impl InputSignals {
                 Interpolation::Hold => values[index],
             };
         }
+        for (slot, rates) in inputs.orifice_course.iter_mut().zip(&self.orifice_rate) {
+            if let Some(rates) = rates {
+                let [before, here, after] =
+                    [index.saturating_sub(1), index, next.min(rates.len() - 1)].map(|i| rates[i]);
+                let between =
+                    |start: f64, end: f64| if fraction < 1.0 { start + fraction * (end - start) } else { end };
+                *slot = [between(before, here), between(here, after)];
+            }
+        }
         for (slot, values) in inputs.rod_force.iter_mut().zip(&self.rod_force) {
             *slot = line(values);
         }
@@ -203,6 +239,18 @@ impl InputSignals {
 
 fn changes_sign(values: &[f64]) -> bool {
     values.iter().any(|&value| value > 0.0) && values.iter().any(|&value| value < 0.0)
+}
+
+fn reads_course(model: &Model, cylinder: usize) -> bool {
+    model.effects.iter().any(|effect| effect.site == Site::Cylinder(cylinder) && effect.physics.reads_course())
+}
+
+/// Rates between neighbouring samples, the last one twice, so that there are as many as samples.
+fn secants(time: &[f64], values: &[f64]) -> Vec<f64> {
+    let mut rates: Vec<f64> =
+        time.windows(2).zip(values.windows(2)).map(|(t, v)| (v[1] - v[0]) / (t[1] - t[0])).collect();
+    rates.push(rates.last().copied().unwrap_or(0.0));
+    rates
 }
 
 /// Tank pressure and pump flow where nothing measures them.

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use excavator_identification::fit::{FitSettings, ProfileInterval, fit, profile};
+use excavator_identification::recording_effects::with_recording_effects;
 use excavator_identification::regression::{
-    ConditionNumber, EquationGauge, WeakFormSettings, least_squares, weak_form,
+    ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form,
 };
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
@@ -83,9 +84,9 @@ fn method_name(method: Method) -> &'static str {
 fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<Identified, VerbError> {
     let regression = match method {
         Method::LeastSquares => Some(least_squares(model, recordings)?),
-        Method::WeakForm => Some(weak_form(model, recordings, &WeakFormSettings::default())?),
+        Method::WeakForm => Some(in_weak_form(model, recordings)?),
         // Where the equations lack signals the given values are the start.
-        Method::OutputError => weak_form(model, recordings, &WeakFormSettings::default()).ok(),
+        Method::OutputError => in_weak_form(model, recordings).ok(),
     };
     let mut result = match regression {
         Some(regression) => Identified {
@@ -120,6 +121,13 @@ fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<
         result.not_identified.clear();
     }
     Ok(result)
+}
+
+fn in_weak_form(model: &Model, recordings: &[&Recording]) -> Result<Regression, RegressionError> {
+    let estimate = |model: &Model| weak_form(model, recordings, &WeakFormSettings::default());
+    let plain = estimate(model)?;
+    let anew = |model: &Model| estimate(model).ok();
+    Ok(with_recording_effects(plain, model.effects.len(), recordings, |solved| &solved.model, anew))
 }
 
 fn profiles_json(result: &Identified) -> Value {

@@ -1,0 +1,69 @@
+//! Effects of how recordings are made, which are fitted along and never named as missing.
+
+use excavator_model::effects::{CATALOGUE, Effect, Family, Site};
+use excavator_model::recording::{Recording, is_measured};
+use excavator_model::{Model, ModelEffect};
+
+/// Standard errors by which such an effect must differ from nothing. A model without it is the simpler one.
+const LEAST_SIGNIFICANCE: f64 = 3.0;
+
+/// Part of its range in which its value has to be. What would be more than a part of a sample is no matter of how
+/// instruments are read: a valve lags or sensors delay, and candidates are tried for that.
+const INSIDE: f64 = 0.9;
+
+/// What `estimate` makes of a model with those of these effects that `recordings` show; `plain` is what it made of the model
+/// without them, and is returned where they show none or nothing can be made of them. They are put `behind` so many effects
+/// of the model, so that a candidate stays its last. `model_of` is the model in a result, with standard errors.
+pub fn with_recording_effects<R>(
+    plain: R,
+    behind: usize,
+    recordings: &[&Recording],
+    model_of: impl Fn(&R) -> &Model,
+    estimate: impl Fn(&Model) -> Option<R>,
+) -> R {
+    let mut added = shown_by(model_of(&plain), recordings);
+    while !added.is_empty() {
+        let mut model = model_of(&plain).clone();
+        let effects = added.iter().filter_map(|&(physics, site)| ModelEffect::new(physics, &model.machine, site).ok());
+        let effects: Vec<ModelEffect> = effects.collect();
+        model.effects.splice(behind..behind, effects);
+        let Some(extended) = estimate(&model) else { break };
+        let before = added.len();
+        added.retain(|&(physics, site)| is_seen(model_of(&extended), physics, site));
+        if added.len() == before {
+            return extended;
+        }
+    }
+    plain
+}
+
+/// Effects of recordings that the model has not and that `recordings` can show.
+fn shown_by(model: &Model, recordings: &[&Recording]) -> Vec<(&'static dyn Effect, Site)> {
+    // Only a measured opening can be read at another time than the rest; a command acts when it is given.
+    let measures_spool = |site: &Site| match *site {
+        Site::Cylinder(index) => recordings.iter().all(|recording| {
+            let name = &model.machine.cylinders[index].name;
+            recording.cylinder(name).is_ok_and(|signals| is_measured(&signals.orifice_area))
+        }),
+        Site::PumpLine => false,
+    };
+    CATALOGUE
+        .iter()
+        .copied()
+        .filter(|physics| physics.card().family == Family::Recording)
+        .flat_map(|physics| model.free_sites(physics).into_iter().map(move |site| (physics, site)))
+        .filter(|(_, site)| measures_spool(site))
+        .collect()
+}
+
+/// Whether all parameters of an effect differ from nothing and are no more than a matter of recordings.
+fn is_seen(model: &Model, physics: &dyn Effect, site: Site) -> bool {
+    let own = model.effects.iter().find(|effect| effect.name() == physics.card().name && effect.site == site);
+    own.is_some_and(|effect| {
+        effect.parameters.iter().all(|parameter| {
+            let bounds = INSIDE * parameter.card.minimum..=INSIDE * parameter.card.maximum;
+            let least = LEAST_SIGNIFICANCE * parameter.standard_error.unwrap_or(f64::INFINITY);
+            parameter.value.abs() >= least && bounds.contains(&parameter.value)
+        })
+    })
+}

@@ -1,0 +1,63 @@
+//! A spool sensor that is read earlier than the other instruments.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use crate::machine::Machine;
+
+/// A spool sensor that is read earlier than the other instruments, by less than a sample.
+///
+/// Samples of one stamp are not of one instant: converters take turns, controllers compute an output at the end of a cycle
+/// and report it at its beginning, a command that is held between two samples acts half an interval later than straight
+/// lines through its samples. Half a millisecond is nothing for an arm and much for a bulk modulus: a chamber fills in two
+/// to ten milliseconds.
+///
+/// The rate at a sample is the mean of the rates before and after it, as of a smooth curve. Where the two differ much the
+/// input jumps, and the rate is that of the side on which the true value lies: no lead of up to a sample interval then
+/// makes the opening larger than its samples, and the oil that passes is that of the jump at its right time.
+pub struct SpoolSensorLead;
+
+static CARD: Card = Card {
+    name: "spool_sensor_lead",
+    acts_on: ActsOn::Valve,
+    family: Family::Recording,
+    summary: "The spool's sensor is read a little earlier (or later) than the other instruments, or its opening is held between samples.",
+    equation: "u(t) = reading(t) - T d(reading)/dt; where reading jumps, with its rate before t for T > 0 and after t for T < 0",
+    source: "practice (converters that take turns, cycles of controllers)",
+    shows: "Pressures rise before their cause, by less than a sample; bulk moduli come out too low (lead) or too high.",
+    experiment: "Steps and fast sines of the spool.",
+    energy: "None: it acts on the instrument.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "spool_lead_time",
+    symbol: "T",
+    unit: "s",
+    meaning: "how much later than its stamp the opening is what the sensor reports",
+    kind: Kind::Shape,
+    minimum: -1e-3,
+    maximum: 1e-3,
+    typical: 5e-4,
+    start: Start::At(&[0.0]),
+}];
+
+impl Physics for SpoolSensorLead {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn reads_course(&self) -> bool {
+        true
+    }
+
+    fn read<T: Scalar>(&self, parameters: &[T], reading: T, course: [T; 2]) -> T {
+        let lead = parameters[0];
+        let [before, after] = course;
+        let (side, other) = if lead.value() >= 0.0 { (before, after) } else { (after, before) };
+        let size = side.value().abs() + other.value().abs();
+        let jump = if size > 0.0 { (side.value() - other.value()).abs() / size } else { 0.0 };
+        reading - lead * (side + (other - side) * (0.5 * (1.0 - jump)))
+    }
+}
