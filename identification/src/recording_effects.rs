@@ -7,9 +7,12 @@ use excavator_model::{Model, ModelEffect};
 /// Standard errors by which such an effect must differ from nothing. A model without it is the simpler one.
 const LEAST_SIGNIFICANCE: f64 = 3.0;
 
-/// Part of its range in which its value has to be. What would be more than a part of a sample is no matter of how
-/// instruments are read: a valve lags or sensors delay, and candidates are tried for that.
-const INSIDE: f64 = 0.9;
+/// Most that instruments are read apart, as a part of the sample interval: an opening that is held between samples comes
+/// to half. More is no matter of recordings: a valve lags or sensors delay, and candidates are tried for that.
+const MOST_OF_A_SAMPLE: f64 = 0.65;
+
+/// Or this, s, where recordings are fast: a controller's cycle of a millisecond, and a little. Nobody orders a valve for that.
+const MOST_AT_ONCE: f64 = 1.3e-3;
 
 /// What `estimate` makes of a model with those of these effects that `recordings` show; `plain` is what it made of the model
 /// without them, and is returned where they show none or nothing can be made of them. They are put `behind` so many effects
@@ -21,6 +24,8 @@ pub fn with_recording_effects<R>(
     model_of: impl Fn(&R) -> &Model,
     estimate: impl Fn(&Model) -> Option<R>,
 ) -> R {
+    let interval = recordings.iter().map(|recording| recording.sample_interval()).fold(0.0, f64::max);
+    let most = (MOST_OF_A_SAMPLE * interval).max(MOST_AT_ONCE);
     let mut added = shown_by(model_of(&plain), recordings);
     while !added.is_empty() {
         let mut model = model_of(&plain).clone();
@@ -29,7 +34,7 @@ pub fn with_recording_effects<R>(
         model.effects.splice(behind..behind, effects);
         let Some(extended) = estimate(&model) else { break };
         let before = added.len();
-        added.retain(|&(physics, site)| is_seen(model_of(&extended), physics, site));
+        added.retain(|&(physics, site)| is_seen(model_of(&extended), physics, site, most));
         if added.len() == before {
             return extended;
         }
@@ -56,14 +61,13 @@ fn shown_by(model: &Model, recordings: &[&Recording]) -> Vec<(&'static dyn Effec
         .collect()
 }
 
-/// Whether all parameters of an effect differ from nothing and are no more than a matter of recordings.
-fn is_seen(model: &Model, physics: &dyn Effect, site: Site) -> bool {
+/// Whether all parameters of an effect, times in s, differ from nothing and are no more than `most`.
+fn is_seen(model: &Model, physics: &dyn Effect, site: Site, most: f64) -> bool {
     let own = model.effects.iter().find(|effect| effect.name() == physics.card().name && effect.site == site);
     own.is_some_and(|effect| {
         effect.parameters.iter().all(|parameter| {
-            let bounds = INSIDE * parameter.card.minimum..=INSIDE * parameter.card.maximum;
             let least = LEAST_SIGNIFICANCE * parameter.standard_error.unwrap_or(f64::INFINITY);
-            parameter.value.abs() >= least && bounds.contains(&parameter.value)
+            parameter.value.abs() >= least && parameter.value.abs() <= most
         })
     })
 }

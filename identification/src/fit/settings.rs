@@ -7,7 +7,7 @@ pub struct FitSettings {
     /// enough that a wrong model cannot run away from the data: a wrong model is what we want to look at.
     pub segment_duration: f64,
     /// Samples per second that are compared; faster recordings are thinned to about this. Errors of a model are slower
-    /// than that, and thinning saves time in proportion.
+    /// than that, and thinning saves time in proportion. Not where a valve moves too fast for it.
     pub sample_rate: f64,
     /// A fit whose loss (see [`crate::fit::Fit::loss`]) is still above this after four steps is given up.
     pub give_up_above: f64,

@@ -33,8 +33,8 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: "s",
     meaning: "how much later than its stamp the opening is what the sensor reports",
     kind: Kind::Shape,
-    minimum: -1e-3,
-    maximum: 1e-3,
+    minimum: -2e-2,
+    maximum: 2e-2,
     typical: 5e-4,
     start: Start::At(&[0.0]),
 }];

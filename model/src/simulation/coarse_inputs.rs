@@ -19,6 +19,22 @@ pub(super) fn nearest_lines(time: &[f64], values: &[f64], stride: usize) -> Vec<
     lines
 }
 
+/// Root mean square distance of `values` from the `lines` through every `stride`-th time, as a share of their own spread; zero
+/// where they have none.
+pub(super) fn missed_share(time: &[f64], values: &[f64], lines: &[f64], stride: usize) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let spread: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let missed = |sample: usize| {
+        let node = sample / stride;
+        let (Some(from), Some(to)) = (lines.get(node), lines.get(node + 1)) else { return 0.0 };
+        let (first, last) = (time[node * stride], time[(node + 1) * stride]);
+        values[sample] - (from + (time[sample] - first) / (last - first) * (to - from))
+    };
+    let squares: f64 = (0..values.len()).map(|sample| missed(sample).powi(2)).sum();
+    if spread > 0.0 { (squares / spread).sqrt() } else { 0.0 }
+}
+
 /// The nearest lines, wherever they lead.
 fn projected(time: &[f64], values: &[f64], stride: usize) -> Vec<f64> {
     let picked: Vec<f64> = values.iter().copied().step_by(stride).collect();
@@ -110,6 +126,21 @@ mod tests {
             assert!(distance(&values, &lines) < distance(&values, &picked));
             assert!(lines.iter().all(|&value| (0.0..=1.0).contains(&value)));
         }
+    }
+
+    #[test]
+    fn jumps_are_missed_and_lines_are_not() {
+        let time: Vec<f64> = (0..1001).map(|k| k as f64 * STEP).collect();
+        let missed = |of: &dyn Fn(f64) -> f64, stride: usize| {
+            let values: Vec<f64> = time.iter().map(|&t| of(t)).collect();
+            missed_share(&time, &values, &nearest_lines(&time, &values, stride), stride)
+        };
+        assert!(missed(&|t| 1.0 - 2.0 * t, STRIDE) < 1e-12);
+        assert_eq!(missed(&|_| 3.0, STRIDE), 0.0);
+        let jump = |t: f64| f64::from(u8::from(t > 0.507));
+        // Some two samples of every twenty about the one jump in a second, by up to half of it.
+        assert!((0.03..0.1).contains(&missed(&jump, STRIDE)), "{}", missed(&jump, STRIDE));
+        assert!(missed(&jump, 1) < 1e-12);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The inputs of a simulation as functions of time.
 
-use super::coarse_inputs::{interval_means, nearest_lines};
+use super::coarse_inputs::{interval_means, missed_share, nearest_lines};
 use super::imposed_motion::imposed_signals;
 use super::spool_estimate::spool_estimate;
 use crate::effects::Site;
@@ -144,6 +144,16 @@ impl InputSignals {
             tank_pressure: lines(&self.tank_pressure),
             pump_flow: lines(&self.pump_flow),
         }
+    }
+
+    /// What the openings of `thinned`, which has every `stride`-th sample of these inputs, miss of these: root mean square as a
+    /// share of the opening's own spread, the largest of all cylinders. Held ones do not count: a mean misses nothing that
+    /// matters but where it changes.
+    pub fn missed_by(&self, thinned: &Self, stride: usize) -> f64 {
+        let both = self.orifice_area.iter().zip(&thinned.orifice_area);
+        both.filter(|((interpolation, _), _)| *interpolation == Interpolation::Linear)
+            .map(|((_, full), (_, lines))| missed_share(&self.time, full, lines, stride))
+            .fold(0.0, f64::max)
     }
 
     /// Number of samples.

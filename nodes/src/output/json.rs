@@ -148,7 +148,14 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
     let chain: Vec<Value> = diagnosis
         .chain
         .iter()
-        .map(|c| json!({"effect": c.name(), "cylinder": c.place, "loss_after": finite(c.validation.loss())}))
+        .map(|c| {
+            json!({
+                "effect": c.name(),
+                "cylinder": c.place,
+                "loss_after": finite(c.validation.loss()),
+                "typical_loss_after": finite(c.validation.typical_loss()),
+            })
+        })
         .collect();
     let instruments: Vec<Value> = diagnosis
         .nominal
@@ -170,7 +177,10 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
             "curve": rest.curve,
         })),
         "too_coarse": diagnosis.too_coarse,
-        "loss": {"nominal": finite(diagnosis.nominal_validation.loss())},
+        "loss": {
+            "nominal": finite(diagnosis.nominal_validation.loss()),
+            "nominal_typical": finite(diagnosis.nominal_validation.typical_loss()),
+        },
         "refitted": parameters(&diagnosis.nominal.model, &diagnosis.nominal.model.unknown_parameters()),
         "instruments": instruments,
     })
