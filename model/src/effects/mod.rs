@@ -24,6 +24,7 @@ mod external_leakage;
 mod force_offset;
 mod gravity;
 mod hose_loss;
+mod hose_pressure_loss;
 mod inertia;
 mod internal_leakage;
 mod load_check_valve;
@@ -80,6 +81,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &load_check_valve::LoadCheckValve,
     &make_up_valve::MakeUpValve,
     &hose_loss::HoseLoss,
+    &hose_pressure_loss::HosePressureLoss,
     &entrained_air::EntrainedAir,
     &stribeck_friction::StribeckFriction,
     &pressure_dependent_friction::PressureDependentFriction,

@@ -61,8 +61,8 @@ impl Physics for OrificeFlow {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
         let (tank, pump) = (now.tank_pressure, now.pump_pressure);
-        let cap_gain = parameters[0] * piston.opening;
-        let rod_gain = parameters[1] * piston.opening;
+        let cap_gain = piston.with_hose(parameters[0] * piston.opening);
+        let rod_gain = piston.with_hose(parameters[1] * piston.opening);
         if piston.opening.value() >= 0.0 {
             let drawn = cap_gain * piston.drawn_root(pump - piston.cap_pressure);
             rows.cap_flow[cylinder] += drawn;

@@ -35,12 +35,19 @@ pub struct Piston<T> {
     pub backflow: T,
     /// Pressure drop that a compensator leaves to the edges fed by the pump, Pa; `None` without one.
     pub compensator_margin: Option<T>,
+    /// Pressure loss per square of the flow in each hose between valve and chamber, Pa s²/m⁶; `None` without.
+    pub hose_resistance: Option<T>,
     /// Force that drives a cylinder without chambers, N: measured on the rod, and with the pressures' where the motion is
     /// imposed.
     pub rod_force: T,
 }
 
 impl<T: Scalar> Piston<T> {
+    /// Gain of an edge (m³/(s sqrt(Pa))) in series with its hose.
+    pub fn with_hose(&self, gain: T) -> T {
+        self.hose_resistance.map_or(gain, |resistance| gain / (resistance * gain * gain + 1.0).sqrt())
+    }
+
     /// `phi` of the pressure drop (Pa) from pump to chamber over a metering edge, as far as a compensator leaves it and flow
     /// may run back.
     pub fn drawn_root(&self, pressure_drop: T) -> T {
@@ -85,6 +92,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             bypass_closing: zero,
             backflow: T::from(1.0),
             compensator_margin: None,
+            hose_resistance: None,
             rod_force: zero,
         };
         Situation {

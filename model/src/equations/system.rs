@@ -194,6 +194,7 @@ impl<'m> System<'m> {
             piston.bypass_closing = piston.spool.abs();
             piston.backflow = T::from(1.0);
             piston.compensator_margin = None;
+            piston.hose_resistance = None;
         }
         for &number in &self.on_the_way_of_oil {
             let effect = &self.model.effects[number];

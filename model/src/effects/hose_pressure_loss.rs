@@ -1,0 +1,52 @@
+//! Pressure loss between valve and chamber.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::Machine;
+
+/// Pressure loss between valve and chamber.
+///
+/// A hose in series with a metering edge: the edge is left with what the hose leaves of the pressure drop. For turbulent flow
+/// both grow with its square, so they join into one edge, and pressures between them need no state. It is the second
+/// form of \[B\] Eq. 17-18; the first, [`super::hose_loss`], is a force on the piston, which is the same loss only where
+/// chamber pressures are measured at the valve. Flow that `valve_directional_gain` adds to an edge is not throttled with it.
+pub struct HosePressureLoss;
+
+static CARD: Card = Card {
+    name: "hose_pressure_loss",
+    acts_on: ActsOn::Valve,
+    family: Family::Candidate,
+    summary: "The hose between valve and chamber takes pressure in proportion to the square of the flow, before the sensor at the chamber.",
+    equation: "q = C a sqrt(dp) / sqrt(1 + R (C a)^2) for each metering edge, from dp = R q^2 + (q / (C a))^2",
+    source: "[B] Eq. 17-18, as a pressure loss",
+    shows: "Flow over sqrt(dp) against opening bends down at large openings, on both sides of the cylinder. A bent area law of the valve looks much the same: a look at hose and couplings tells them apart.",
+    experiment: "Steady strokes from small openings to the largest.",
+    energy: "Dissipates R q^3, booked with the metering edge that it is in series with.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "hose_resistance",
+    symbol: "R",
+    unit: "Pa s2/m6",
+    meaning: "pressure loss per square of the flow, in each of the two hoses",
+    kind: Kind::Shape,
+    minimum: 0.0,
+    maximum: 1e15,
+    typical: 1e12,
+    start: Start::At(&[1e11]),
+}];
+
+impl Physics for HosePressureLoss {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        now.pistons[cylinder].hose_resistance = Some(parameters[0]);
+    }
+}
