@@ -70,6 +70,34 @@ fn directional_gains_are_other_gains_for_retraction() {
     }
 }
 
+/// Of the pressure drop the hose takes R q² and the edge what it takes for this flow alone.
+#[test]
+fn hose_and_edge_share_the_pressure_drop() {
+    const RESISTANCE: f64 = 1.5e12;
+    let nominal = built_in("zx30u-arm").unwrap();
+    let hose = arm_with("hose_pressure_loss", CYLINDER, &[RESISTANCE]);
+    let pump = System::new(&nominal).layout().pump.unwrap();
+    for (mut state, mut inputs) in situations(22) {
+        // Drops above what is smoothed about zero.
+        (state[2], state[3], state[pump], inputs.tank_pressure) = (4e6, 3e6, 7e6, 1e5);
+        let area = inputs.orifice_area[0];
+        let through = |model: &Model, area: f64| {
+            inputs.orifice_area[0] = area;
+            let all = rows(model, &state, &inputs);
+            inputs.orifice_area[0] = 0.0;
+            let leaks = rows(model, &state, &inputs);
+            [all.cap_flow[0] - leaks.cap_flow[0], all.rod_flow[0] - leaks.rod_flow[0]]
+        };
+        let mut through = through;
+        let (edges, with_hose) = (through(&nominal, area), through(&hose, area));
+        let drops = if area > 0.0 { [7e6 - 4e6, 3e6 - 1e5] } else { [4e6 - 1e5, 7e6 - 3e6] };
+        for ((edge, both), drop) in edges.into_iter().zip(with_hose).zip(drops) {
+            let taken = RESISTANCE * both * both + drop * (both / edge).powi(2);
+            assert!((taken / drop - 1.0).abs() < 1e-6 && both * edge > 0.0, "{taken} of {drop} Pa at {area} m2");
+        }
+    }
+}
+
 /// At half opening the area is 1 + c1/2 + c2/4 times as large; the bypass does not know of it.
 #[test]
 fn a_gain_curve_bends_the_opening_but_not_the_bypass() {

@@ -84,6 +84,7 @@ fn energy_is_kept_with_effects_on_flow_and_friction() {
         "valve_directional_gain",
         "load_check_valve",
         "hose_loss",
+        "hose_pressure_loss",
         "stribeck_friction",
         "pressure_dependent_friction",
         "asymmetric_friction",

@@ -154,15 +154,15 @@ impl Plant {
         opening *= relief.max(0.2);
         let (mut into_cap, mut into_rod, mut drawn);
         if opening >= 0.0 {
-            drawn = valve.checked(self.base.flow_gain_cap * opening * root(pump - cap));
+            drawn = valve.checked(valve.behind_hose(self.base.flow_gain_cap * opening) * root(pump - cap));
             into_cap = drawn;
-            into_rod = -self.base.flow_gain_rod * opening * root(rod - TANK_PRESSURE);
+            into_rod = -valve.behind_hose(self.base.flow_gain_rod * opening) * root(rod - TANK_PRESSURE);
         } else {
             let gain_cap = self.base.flow_gain_cap * (1.0 + valve.directional_cap);
             let gain_rod = self.base.flow_gain_rod * (1.0 + valve.directional_rod);
-            drawn = valve.checked(gain_rod * -opening * root(pump - rod));
+            drawn = valve.checked(valve.behind_hose(gain_rod * -opening) * root(pump - rod));
             into_rod = drawn;
-            into_cap = gain_cap * opening * root(cap - TANK_PRESSURE);
+            into_cap = valve.behind_hose(gain_cap * opening) * root(cap - TANK_PRESSURE);
         }
         let [pump_cap, cap_tank, pump_rod, rod_tank] = valve.leakage;
         let (leak_cap, leak_rod) = (pump_cap * (pump - cap), pump_rod * (pump - rod));

@@ -277,6 +277,12 @@ pub static CATALOGUE: &[Kind] = &[
         |effects, _, factor| effects.oil.make_up_pressure = Some(-9e4 + 2e5 * factor),
         |effects| effects.oil.make_up_pressure.map_or_else(Vec::new, |pressure| vec![("make_up_pressure", pressure)]),
     ),
+    new(
+        "hose_pressure_loss",
+        20.0,
+        |effects, shape, factor| effects.valve.hose_resistance = factor * between(shape[0], 5e11, 1e12),
+        |effects| vec![("arm.hose_resistance", effects.valve.hose_resistance)],
+    ),
 ];
 
 /// Effects in nobody's catalogue: the right verdict is that something is left unexplained.

@@ -36,6 +36,8 @@ pub struct Valve {
     pub lag: Option<Lag>,
     /// Share of the flow from chamber back to pump that a check valve stops.
     pub load_check: f64,
+    /// Pressure loss per square of the flow in each hose between valve and chamber, Pa s²/m⁶.
+    pub hose_resistance: f64,
 }
 
 impl Valve {
@@ -46,6 +48,11 @@ impl Valve {
         }
         let half = self.hysteresis / 2.0;
         before.clamp(wanted - half, wanted + half)
+    }
+
+    /// Flow over the root of the pressure drop, m³/(s sqrt(Pa)), of an edge of this gain and the hose behind it.
+    pub fn behind_hose(&self, gain: f64) -> f64 {
+        gain / (1.0 + self.hose_resistance * gain * gain).sqrt()
     }
 
     /// Opening of the metering edges for a spool position, both m².
