@@ -144,7 +144,7 @@ fn what_may_be_noise_becomes_zero() {
     let noisy: Vec<f64> = (0..4000)
         .map(|index| noise * random.normal() + if (2000..2200).contains(&index) { wave(index) } else { 0.0 })
         .collect();
-    let rest = denoised_towards_zero(&noisy);
+    let rest = denoised_towards_zero(&noisy, 0.0);
     let quiet: Vec<f64> = rest[..1900].iter().chain(&rest[2300..]).map(|value| value.abs()).collect();
     let zero = quiet.iter().filter(|&&value| value == 0.0).count() as f64 / quiet.len() as f64;
     let largest = quiet.iter().copied().fold(0.0, f64::max);

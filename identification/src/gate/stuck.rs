@@ -1,6 +1,6 @@
 //! Sensors that show one value while the machine works.
 
-use excavator_model::recording::{Recording, is_measured};
+use excavator_model::recording::{Recording, is_measured, resolution};
 
 use super::GateError;
 use super::opening::{largest, open_one_way};
@@ -18,6 +18,10 @@ const NEAR_TANK: f64 = 2e5;
 
 /// Share of a piston's range at each end in which it may stand still truly, at a stop.
 const NEAR_THE_END: f64 = 0.05;
+
+/// Share of a signal's range from which on a converter's step is coarse: whether the sensor lives cannot be told from its noise,
+/// which is smaller than a step.
+const COARSE: f64 = 5e-3;
 
 /// When and where a sensor is stuck.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +45,9 @@ impl Stretch {
 
 /// The longest stretch in which a pressure keeps one value although all signals in `witnesses` that are measured move.
 pub(super) fn stuck_pressure(time: &[f64], signal: &[f64], witnesses: &[&[f64]]) -> Option<Stretch> {
+    if resolution(signal) > COARSE * spread(signal) {
+        return None;
+    }
     longest(time, signal, |run| run.value.abs() >= NEAR_TANK && all_move(witnesses, run))
 }
 

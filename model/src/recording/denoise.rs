@@ -1,5 +1,7 @@
 //! Removing sensor noise from a signal without blurring its corners.
 
+use super::resolution;
+
 /// Half widths of the windows that are tried, in samples; below two a parabola has nothing to average.
 const HALF_WIDTHS: [usize; 7] = [2, 4, 8, 16, 32, 64, 128];
 
@@ -8,7 +10,8 @@ const HALF_WIDTHS: [usize; 7] = [2, 4, 8, 16, 32, 64, 128];
 const CONFIDENCE: f64 = 1.6;
 
 /// Standard deviation of white noise on a smooth signal, from the median size of second differences, which smooth
-/// motion hardly enters and which outliers do not move. Zero for fewer than three values or a noiseless signal.
+/// motion hardly enters and which outliers do not move; and at least the error of a coarse converter, evenly spread over its
+/// step. Zero for fewer than three values or a noiseless signal.
 pub fn noise_level(signal: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = signal
         .windows(3)
@@ -22,7 +25,7 @@ pub fn noise_level(signal: &[f64]) -> f64 {
     let median = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
     // Second differences of white noise have variance 1 + 4 + 1; a normal variable's median size is 0.6745 of its
     // standard deviation.
-    median / (0.6745 * 6.0_f64.sqrt())
+    (median / (0.6745 * 6.0_f64.sqrt())).max(resolution(signal) / 12.0_f64.sqrt())
 }
 
 /// Parabola through the widest symmetric window that the noise allows at each sample: the intersection-of-confidence-
@@ -37,10 +40,11 @@ pub fn denoised(signal: &[f64]) -> Vec<f64> {
 
 /// [`denoised`] of a signal that is nothing but noise where nothing contradicts it: each value shrunk towards zero by what
 /// its standard error leaves in doubt, with the weights of the non-negative garrote (Breiman 1995), which leave values
-/// far beyond their errors as they are and come to zero without a jump.
-pub fn denoised_towards_zero(signal: &[f64]) -> Vec<f64> {
+/// far beyond their errors as they are and come to zero without a jump. Nothing below `least` is taken for more than zero,
+/// however often it is repeated: half a step of a converter does not average out.
+pub fn denoised_towards_zero(signal: &[f64], least: f64) -> Vec<f64> {
     let kept = |value: f64, doubt: f64| if value.abs() > doubt { value * (1.0 - (doubt / value).powi(2)) } else { 0.0 };
-    with_standard_errors(signal).into_iter().map(|(value, error)| kept(value, DOUBT * error)).collect()
+    with_standard_errors(signal).into_iter().map(|(value, error)| kept(value, (DOUBT * error).max(least))).collect()
 }
 
 /// Standard errors within which a value is taken for zero. A recording of a minute holds hundreds of independent

@@ -4,11 +4,13 @@ mod cylinder_signals;
 mod denoise;
 mod error;
 mod interpolation;
+mod resolution;
 
 pub use cylinder_signals::CylinderSignals;
 pub use denoise::{denoised, denoised_towards_zero, noise_level};
 pub use error::RecordingError;
 pub use interpolation::{cubic, linear, zero_order_hold};
+pub use resolution::resolution;
 
 /// A recording of one machine: all signals sampled on one, possibly uneven, clock.
 ///

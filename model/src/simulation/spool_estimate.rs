@@ -1,7 +1,7 @@
 //! The best estimate of where a spool really was.
 
 use super::spool_memory::remembered;
-use crate::recording::{denoised, denoised_towards_zero, noise_level};
+use crate::recording::{denoised, denoised_towards_zero, noise_level, resolution};
 
 /// Spool position (m²) from its sensor and, where there is one, from the command that moved it.
 ///
@@ -24,7 +24,8 @@ fn estimate(time: &[f64], measured: &[f64], command: &[f64]) -> Vec<f64> {
     if noise_level(&rest) > 1.2 * noise_level(measured) {
         return denoised(measured);
     }
-    denoised_towards_zero(&rest).iter().zip(&follower).map(|(rest, follower)| rest + follower).collect()
+    let half_a_step = 0.5 * resolution(measured);
+    denoised_towards_zero(&rest, half_a_step).iter().zip(&follower).map(|(rest, follower)| rest + follower).collect()
 }
 
 /// Time constants that are tried, s: from faster than any sampling to a slow pilot stage.
