@@ -89,7 +89,12 @@ fn fill_parameters(name: &str, text: &EffectText, effect: &mut ModelEffect) -> R
     }
     for parameter in &mut effect.parameters {
         let card = parameter.card;
-        let given = text.parameters.get(card.name).ok_or_else(|| problem(format!("lacks {}", card.name)))?;
+        let Some(given) = text.parameters.get(card.name) else {
+            let left_out = effect.physics.value_where_left_out(card.name);
+            parameter.value = left_out.ok_or_else(|| problem(format!("lacks {}", card.name)))?;
+            parameter.known = true;
+            continue;
+        };
         if given.unit != card.unit {
             return Err(DocumentError::WrongUnit {
                 name: name.to_string(),

@@ -13,6 +13,11 @@ pub trait Physics: Sync {
     /// Its parameters at `site` of `machine`, in the order in which [`Physics::contribute`] gets them.
     fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard];
 
+    /// Value of a parameter that a model file leaves out, where that may be: files that are older than the parameter.
+    fn value_where_left_out(&self, _parameter: &str) -> Option<f64> {
+        None
+    }
+
     /// Number of states that it adds to the model.
     fn states(&self) -> usize {
         0
@@ -63,6 +68,7 @@ pub trait Physics: Sync {
 pub trait Effect: Sync {
     fn card(&self) -> &'static Card;
     fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard];
+    fn value_where_left_out(&self, parameter: &str) -> Option<f64>;
     fn states(&self) -> usize;
     fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> f64;
     fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual;
@@ -87,6 +93,9 @@ impl<P: Physics> Effect for P {
     }
     fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
         Physics::parameters(self, machine, site)
+    }
+    fn value_where_left_out(&self, parameter: &str) -> Option<f64> {
+        Physics::value_where_left_out(self, parameter)
     }
     fn states(&self) -> usize {
         Physics::states(self)
