@@ -7,10 +7,11 @@
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelEffect};
 
+use super::own_windows::evaluate_in_known_windows;
 use super::race::{Race, Round};
 use super::starts::acts_in_a_window;
 use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, compare_losses, is_adequate};
-use crate::fit::{Fit, evaluate, fit};
+use crate::fit::{Fit, fit};
 use crate::recording_effects::with_recording_effects;
 
 /// A gain below this part of the best one's is no other way to begin.
@@ -133,7 +134,8 @@ impl Chains<'_> {
         let anew = |model: &Model| fit(model, self.identification, &self.settings.fit).ok();
         link.fit = with_recording_effects(link.fit, behind, self.identification, |fitted| &fitted.model, anew);
         if link.fit.model.effects.len() > given {
-            link.validation = evaluate(&link.fit.model, self.validation, &self.settings.fit)?;
+            let known = &link.validation.model;
+            link.validation = evaluate_in_known_windows(&link.fit.model, known, self.validation, &self.settings.fit)?;
         }
         Ok(link)
     }
@@ -163,7 +165,8 @@ impl Chains<'_> {
                 continue;
             }
             let Ok(shorter) = fit(&shorter, self.identification, &settings.fit) else { continue };
-            let without = evaluate(&shorter.model, self.validation, &settings.fit)?;
+            let known = &last.validation.model;
+            let without = evaluate_in_known_windows(&shorter.model, known, self.validation, &settings.fit)?;
             let worth = compare_losses(&without, &last.validation);
             let needed = worth.gain >= settings.least_gain && worth.significance >= settings.least_significance;
             if !needed && least.is_none_or(|(gain, _)| worth.gain < gain) {

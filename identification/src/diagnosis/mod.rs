@@ -8,6 +8,7 @@ mod evidence;
 mod hard_stretches;
 mod inclusion;
 mod input_floor;
+mod own_windows;
 mod race;
 mod residual_map;
 mod residual_points;

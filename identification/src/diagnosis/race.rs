@@ -8,16 +8,17 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
-use excavator_model::{Model, addition_name, site_name};
+use excavator_model::{addition_name, site_name};
 use rayon::prelude::*;
 
 use super::candidate::{CandidateError, best_start};
 use super::evidence::joint_significance;
 use super::inclusion::inclusion;
+use super::own_windows::evaluate_in_own_windows;
 use super::starts::acts_in_a_window;
 use super::track::{Track, short};
 use super::{Candidate, DiagnosisSettings, Inclusion, Unpromising, compare_losses, is_adequate};
-use crate::fit::{Fit, FitSettings, evaluate, fit, fit_predicted};
+use crate::fit::{Fit, fit, fit_predicted};
 
 /// What became of all candidates.
 #[derive(Default)]
@@ -201,12 +202,7 @@ impl Race<'_> {
         let settings = &self.settings.fit;
         let Runner { physics, site, place, fit: start, .. } = runner;
         let fit = fit(&start.model, self.identification, settings)?;
-        let validation = match fit.model.effects.last() {
-            Some(effect) if acts_in_a_window(effect.physics, &fit.model.machine, effect.site) => {
-                in_its_own_window(&fit.model, self.validation, settings)?
-            }
-            _ => evaluate(&fit.model, self.validation, settings)?,
-        };
+        let validation = evaluate_in_own_windows(&fit.model, &self.base_validation.model, self.validation, settings)?;
         let evidence = compare_losses(self.base_validation, &validation);
         let fitted = compare_losses(self.base, &fit);
         let accepted = evidence.gain >= self.least_gain
@@ -226,16 +222,6 @@ impl Race<'_> {
             tied_with_first: false,
         })
     }
-}
-
-/// A model whose last effect acts in a window of time, with the window that recordings have themselves. Three numbers of
-/// a fit are no evidence against thousands of readings; whether they lower the loss is.
-fn in_its_own_window(model: &Model, recordings: &[&Recording], settings: &FitSettings) -> Result<Fit, CandidateError> {
-    let mut fixed = model.clone();
-    let Some(last) = fixed.effects.pop() else { return Ok(evaluate(model, recordings, settings)?) };
-    fixed.parameters_mut().for_each(|parameter| parameter.known = true);
-    let start = best_start(&fixed, last.physics, last.site, recordings, settings)?;
-    Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
 }
 
 fn mark_ties(candidates: &mut [Candidate], settings: &DiagnosisSettings) {
