@@ -4,6 +4,7 @@
 //! better than either. So links that are no longer needed once others are there are taken out again, and when the first
 //! way leads nowhere, the runner-up is tried as a first step too.
 
+use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelEffect};
 
@@ -100,7 +101,14 @@ impl Chains<'_> {
     }
 
     /// The chain that begins with `first`, until nothing more is gained and every link is needed.
-    fn grow(&self, first: Candidate, progress: &(dyn Fn(&str, f64) + Sync)) -> Result<Vec<Candidate>, DiagnosisError> {
+    ///
+    /// # Errors
+    /// [`DiagnosisError`] when a model cannot be evaluated.
+    pub fn grow(
+        &self,
+        first: Candidate,
+        progress: &(dyn Fn(&str, f64) + Sync),
+    ) -> Result<Vec<Candidate>, DiagnosisError> {
         let mut chain = vec![self.with_recording_effects(first)?];
         // Each detour costs a link that is taken out again.
         for _ in 0..2 * self.settings.most_effects {
@@ -177,14 +185,23 @@ impl Chains<'_> {
         // What came after it is begun with in the order that suits the chain without it: a link that only helps on top of
         // another, which came later, would not get past the start.
         let (kept, rest) = chain.split_at(superfluous);
+        self.rebuilt(kept, rest.iter().skip(1).map(|link| (link.physics, link.site)).collect(), progress)
+    }
+
+    /// `kept` with the effects `wanted` in the order that suits; `None` when one of them cannot be fitted there.
+    fn rebuilt(
+        &self,
+        kept: &[Candidate],
+        mut wanted: Vec<(&'static dyn Effect, Site)>,
+        progress: &(dyn Fn(&str, f64) + Sync),
+    ) -> Result<Option<Vec<Candidate>>, DiagnosisError> {
         let mut rebuilt = kept.to_vec();
-        let mut wanted: Vec<_> = rest.iter().skip(1).map(|link| (link.physics, link.site)).collect();
         while !wanted.is_empty() {
             let round = self.race(&rebuilt).run(&wanted, &|what, _| progress(what, 0.9));
             // Without the other it cannot even be begun with: then that was needed after all.
             let Some(next) = round.fitted.into_iter().next() else { return Ok(None) };
             wanted.retain(|&(physics, site)| (physics.card().name, site) != (next.name(), next.site));
-            rebuilt.push(next);
+            rebuilt.push(self.with_recording_effects(next)?);
         }
         Ok(Some(rebuilt))
     }
@@ -199,11 +216,20 @@ impl Chains<'_> {
 
     /// What competes for the next link.
     fn race<'c>(&'c self, chain: &'c [Candidate]) -> Race<'c> {
+        match chain.last() {
+            Some(last) => self.race_from(&last.fit, &last.validation),
+            None if self.nominal_is_adequate => Race {
+                least_gain: self.settings.least_gain_when_adequate,
+                ..self.race_from(self.nominal, self.nominal_validation)
+            },
+            None => self.race_from(self.nominal, self.nominal_validation),
+        }
+    }
+
+    /// What competes for a place beside a model.
+    pub fn race_from<'c>(&'c self, base: &'c Fit, base_validation: &'c Fit) -> Race<'c> {
         let settings = self.settings;
-        let (base, base_validation, adequate) = match chain.last() {
-            Some(last) => (&last.fit, &last.validation, is_adequate(&last.validation, self.validation, settings)),
-            None => (self.nominal, self.nominal_validation, self.nominal_is_adequate),
-        };
+        let adequate = is_adequate(base_validation, self.validation, settings);
         let least_gain = if adequate { settings.least_gain_when_adequate } else { settings.least_gain };
         Race {
             base,

@@ -141,6 +141,7 @@ pub fn diagnose(
     }
     if explained && let Some(last) = chain.last() {
         mark_doubtful_leads(&mut candidates, &chain, settings.doubtful_lead * last.validation.loss());
+        chain = chains.settle_ties(chain, &mut candidates, progress)?;
     }
     let verdict = match (chain.is_empty(), explained) {
         (true, true) => Verdict::Adequate,

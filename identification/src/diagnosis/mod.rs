@@ -13,6 +13,7 @@ mod race;
 mod residual_map;
 mod residual_points;
 mod settings;
+mod settle;
 mod starts;
 mod track;
 mod worst_stretch;

@@ -15,7 +15,7 @@ use super::candidate::{CandidateError, best_start};
 use super::evidence::joint_significance;
 use super::inclusion::inclusion;
 use super::own_windows::evaluate_in_own_windows;
-use super::starts::acts_in_a_window;
+use super::starts::{acts_in_a_window, has_visited_thresholds};
 use super::track::{Track, short};
 use super::{Candidate, DiagnosisSettings, Inclusion, Unpromising, compare_losses, is_adequate};
 use crate::fit::{Fit, fit, fit_predicted};
@@ -208,7 +208,8 @@ impl Race<'_> {
         let accepted = evidence.gain >= self.least_gain
             && fitted.gain >= self.least_gain / 2.0
             && evidence.significance >= self.settings.least_significance
-            && joint_significance(evidence, fitted) >= self.settings.least_joint_significance;
+            && joint_significance(evidence, fitted) >= self.settings.least_joint_significance
+            && has_visited_thresholds(&fit.model, self.identification);
         Ok(Candidate {
             physics,
             site,

@@ -1,0 +1,64 @@
+//! Ties that more than one effect leaves, asked again once all of them are known.
+//!
+//! Where two effects are missing, what is tied with the first of them was compared while the second still spoiled the picture:
+//! a valve's leakage looks like its play while a sensor is off as well. With everything else in the model most of such ties
+//! are none.
+
+use super::chain::Chains;
+use super::{Candidate, DiagnosisError};
+use crate::fit::{evaluate, fit};
+
+impl Chains<'_> {
+    /// Compares the first of `candidates` with all that are tied with it beside the other links of `chain`: marks those that
+    /// still are, and begins the chain with the best of them. `candidates` begin with the chain's first link, before and after.
+    ///
+    /// # Errors
+    /// [`DiagnosisError`] when a model cannot be evaluated.
+    pub fn settle_ties(
+        &self,
+        chain: Vec<Candidate>,
+        candidates: &mut [Candidate],
+        progress: &(dyn Fn(&str, f64) + Sync),
+    ) -> Result<Vec<Candidate>, DiagnosisError> {
+        let (Some((first, others)), Some(last)) = (chain.split_first(), chain.last()) else { return Ok(chain) };
+        let is_other = |candidate: &Candidate| others.iter().any(|link| link.is_same_addition(candidate));
+        let rivals: Vec<_> = candidates
+            .iter()
+            .filter(|candidate| candidate.tied_with_first && !is_other(candidate))
+            .map(|candidate| (candidate.physics, candidate.site))
+            .collect();
+        if others.is_empty() || rivals.len() < 2 {
+            return Ok(chain);
+        }
+        let mut without = last.fit.model.clone();
+        without.effects.retain(|effect| effect.name() != first.name() || effect.site != first.site);
+        let Ok(base) = fit(&without, self.identification, &self.settings.fit) else { return Ok(chain) };
+        let base_validation = evaluate(&base.model, self.validation, &self.settings.fit)?;
+        let race = self.race_from(&base, &base_validation);
+        let round = race.run(&rivals, &|what, _| progress(what, 0.95));
+        let Some(best) = round.fitted.first().filter(|best| best.accepted) else { return Ok(chain) };
+        let chain = if best.is_same_addition(first) {
+            chain
+        } else {
+            // What comes after it is looked for anew: what was second beside another need not be second beside this one.
+            let alone = candidates.iter().find(|candidate| candidate.is_same_addition(best)).cloned();
+            let Some(alone) = alone else { return Ok(chain) };
+            let grown = self.grow(alone, progress)?;
+            let is_better = grown.last().is_some_and(|other| other.validation.loss() < last.validation.loss());
+            if !is_better || !self.explains(&grown) || grown.first().is_none_or(|link| !link.is_same_addition(best)) {
+                return Ok(chain);
+            }
+            grown
+        };
+        let still_tied = |candidate: &Candidate| {
+            round.fitted.iter().any(|rival| rival.tied_with_first && rival.is_same_addition(candidate))
+        };
+        for candidate in candidates.iter_mut() {
+            candidate.tied_with_first = still_tied(candidate);
+        }
+        if let Some(place) = candidates.iter().position(|candidate| candidate.is_same_addition(best)) {
+            candidates[..=place].rotate_right(1);
+        }
+        Ok(chain)
+    }
+}
