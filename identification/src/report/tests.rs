@@ -270,6 +270,23 @@ fn diagnosis_shows_evidence_cards_and_what_is_left() {
 }
 
 #[test]
+fn a_spool_that_is_read_early_is_told_once_it_is_known() {
+    let mut found = diagnosis(Verdict::Adequate, vec![]);
+    assert!(!verdict_sentence(&model(), &found).contains("spool sensor"));
+    let lead = effects::find("spool_sensor_lead").unwrap();
+    let mut known = found.nominal.model.with_effect(lead, Site::Cylinder(0)).unwrap();
+    known.effects.last_mut().unwrap().parameters[0].value = -4.5e-4;
+    found.nominal.model = known.clone();
+    let sentence = verdict_sentence(&model(), &found);
+    assert!(
+        sentence.contains("The spool sensor is not read together") && sentence.contains("0.45 ms after"),
+        "{sentence}"
+    );
+    // Whoever says so in the model needs no telling.
+    assert!(!verdict_sentence(&known, &found).contains("spool sensor"));
+}
+
+#[test]
 fn refinement_tells_the_story() {
     let page = refinement_page(&refinement());
     assert_sound(&page);

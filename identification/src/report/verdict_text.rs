@@ -1,6 +1,7 @@
 //! The verdict in plain sentences.
 
-use excavator_model::Model;
+use excavator_model::effects::Family;
+use excavator_model::{Model, site_name};
 
 use super::numbers::{percent, ratio};
 use super::words;
@@ -25,6 +26,7 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
     } else {
         verdict
     };
+    let verdict = format!("{verdict}{}", read_apart(model, diagnosis));
     let (undetermined, fitted) = (diagnosis.nominal.undetermined(), diagnosis.nominal.fitted.len());
     if 2 * undetermined.len() <= fitted {
         return verdict;
@@ -35,6 +37,34 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
         undetermined.len(),
         names_of(&diagnosis.nominal.model, &undetermined).join(", ")
     )
+}
+
+/// What was found of how the recordings were made, with a space before it; nothing where that is nothing.
+fn read_apart(given: &Model, diagnosis: &Diagnosis) -> String {
+    let last = diagnosis.chain.last().map_or(&diagnosis.nominal.model, |link| &link.fit.model);
+    let found = last
+        .effects
+        .iter()
+        .filter(|effect| effect.physics.card().family == Family::Recording && !given.has(effect.name(), effect.site));
+    let found: Vec<String> = found
+        .filter_map(|effect| {
+            let milliseconds = 1e3 * effect.parameters.first()?.value;
+            let when = if milliseconds > 0.0 { "before" } else { "after" };
+            let place = site_name(&last.machine, effect.site);
+            Some(format!("that of the {place} {:.2} ms {when}", milliseconds.abs()))
+        })
+        .collect();
+    match found.len() {
+        0 => String::new(),
+        1 => format!(
+            " The spool sensor is not read together with the other instruments ({}); this is taken into account.",
+            found[0]
+        ),
+        _ => format!(
+            " The spool sensors are not read together with the other instruments ({}); this is taken into account.",
+            words::list(&found, "and")
+        ),
+    }
 }
 
 fn names_of(model: &Model, parameters: &[usize]) -> Vec<String> {
