@@ -92,6 +92,9 @@ impl Chains<'_> {
             return self.nominal_is_adequate;
         };
         let share = 1.0 - last.loss() / self.nominal_validation.loss();
+        if chain.len() > 1 && share < settings.least_shared_share {
+            return false;
+        }
         share >= settings.least_explained_share && is_adequate(last, self.validation, settings)
             || share >= settings.explained_share && last.typical_loss() <= settings.explained_loss
     }
