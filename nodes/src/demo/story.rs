@@ -52,8 +52,7 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
         })?;
     drop(progress);
     if let Some(diagnosis) = &refinement.diagnosis {
-        let all: Vec<_> = diagnosis.candidates.iter().chain(&diagnosis.rejected).collect();
-        print(&candidate_table(&all, &diagnosis.nominal_validation, &validation_only).to_string());
+        print(&candidate_table(diagnosis, &validation_only).to_string());
         print(&format!("\n3  {}", verdict_sentence(&model, diagnosis)));
     }
     print("\n4  Added, refitted, simulated again on the recording that was never fitted:");

@@ -109,10 +109,22 @@ pub fn comparison_json(comparison: &Comparison) -> Value {
     })
 }
 
-fn candidate_json(candidate: &Candidate, before: f64, validation: &[&Recording]) -> Value {
-    let range = candidate.fit.model.effects.last().map_or(0, |effect| effect.parameters.len());
-    let count = candidate.fit.model.parameters().count();
-    let own: Vec<usize> = (count - range..count).collect();
+/// Parameters that a model has of the effect of `candidate`.
+fn own_parameters(model: &Model, candidate: &Candidate) -> Vec<Value> {
+    let is_own = |effect: usize| {
+        let effect = &model.effects[effect];
+        effect.name() == candidate.name() && effect.site == candidate.site
+    };
+    let indices: Vec<usize> =
+        model.parameters().enumerate().filter(|(_, (effect, _))| is_own(*effect)).map(|(index, _)| index).collect();
+    parameters(model, &indices)
+}
+
+/// One candidate. `found` is the model with all effects that were found: where the candidate is among them its parameters are
+/// those beside the others, which one alone had to stand in for.
+fn candidate_json(candidate: &Candidate, before: f64, validation: &[&Recording], found: Option<&Model>) -> Value {
+    let alone = &candidate.fit.model;
+    let model = found.filter(|model| model.has(candidate.name(), candidate.site)).unwrap_or(alone);
     json!({
         "effect": candidate.name(),
         "cylinder": candidate.place,
@@ -122,17 +134,27 @@ fn candidate_json(candidate: &Candidate, before: f64, validation: &[&Recording])
         "significance": finite(candidate.evidence.significance),
         "bootstrap": {"gains": finite(candidate.inclusion.gains), "is_first": finite(candidate.inclusion.is_first)},
         "tied_with_first": candidate.tied_with_first,
-        "parameters": parameters(&candidate.fit.model, &own),
-        "refitted": parameters(&candidate.fit.model, &candidate.fit.model.unknown_parameters()),
+        "parameters": own_parameters(model, candidate),
+        "refitted": parameters(model, &model.unknown_parameters()),
     })
 }
 
 /// Result of `diagnose`.
 pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value {
     let before = normalised_error(&diagnosis.nominal_validation, validation);
+    let found = diagnosis.chain.last().map(|last| &last.fit.model);
     let candidates = |list: &[Candidate]| -> Vec<Value> {
-        list.iter().map(|candidate| candidate_json(candidate, before, validation)).collect()
+        list.iter().map(|candidate| candidate_json(candidate, before, validation, found)).collect()
     };
+    let mut with_evidence = candidates(&diagnosis.candidates);
+    // What has evidence beside the first only is a candidate too; its errors are before and after it was added there.
+    let is_listed = |link: &Candidate| diagnosis.candidates.iter().any(|listed| listed.is_same_addition(link));
+    let further = diagnosis.chain.windows(2).filter(|pair| !is_listed(&pair[1])).map(|pair| {
+        let before = normalised_error(&pair[0].validation, validation);
+        candidate_json(&pair[1], before, validation, found)
+    });
+    let after_the_first = with_evidence.len().min(1);
+    with_evidence.splice(after_the_first..after_the_first, further);
     let places: Vec<Value> = diagnosis
         .map
         .iter()
@@ -154,6 +176,7 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
                 "cylinder": c.place,
                 "loss_after": finite(c.validation.loss()),
                 "typical_loss_after": finite(c.validation.typical_loss()),
+                "parameters": own_parameters(found.unwrap_or(&c.fit.model), c),
             })
         })
         .collect();
@@ -165,7 +188,7 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
         .collect();
     json!({
         "verdict": diagnosis.verdict.name(),
-        "candidates": candidates(&diagnosis.candidates),
+        "candidates": with_evidence,
         "rejected": candidates(&diagnosis.rejected),
         "together": chain,
         "where": places,

@@ -2,7 +2,7 @@
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{Attribute, Cell, CellAlignment, Table};
-use excavator_identification::diagnosis::{Candidate, normalised_error};
+use excavator_identification::diagnosis::{Candidate, Diagnosis, normalised_error};
 use excavator_identification::fit::Fit;
 use excavator_identification::refinement::Refinement;
 use excavator_identification::validation::{Comparison, Correlation};
@@ -79,16 +79,11 @@ fn correlation(found: Option<Correlation>) -> String {
     }
 }
 
-/// Candidates with what they gain on the validation recordings.
-pub fn candidate_table(candidates: &[&Candidate], before: &Fit, validation: &[&Recording]) -> Table {
+/// Candidates with what they gain on the validation recordings, then what was found beside the first, then the rest.
+pub fn candidate_table(diagnosis: &Diagnosis, validation: &[&Recording]) -> Table {
     let mut table =
         table(&["effect", "at", "error before", "error after", "gain", "significance", "first in", "verdict"]);
-    for candidate in candidates {
-        let verdict = match (candidate.accepted, candidate.tied_with_first) {
-            (true, true) => "tied",
-            (true, false) => "evidence",
-            (false, _) => "no evidence",
-        };
+    let mut row = |candidate: &Candidate, before: &Fit, verdict: &str| {
         table.add_row([
             Cell::new(candidate.name()),
             Cell::new(&candidate.place),
@@ -99,6 +94,16 @@ pub fn candidate_table(candidates: &[&Candidate], before: &Fit, validation: &[&R
             right(format!("{:.0} %", 100.0 * candidate.inclusion.is_first)),
             Cell::new(verdict),
         ]);
+    };
+    for candidate in &diagnosis.candidates {
+        row(candidate, &diagnosis.nominal_validation, if candidate.tied_with_first { "tied" } else { "evidence" });
+    }
+    for pair in diagnosis.chain.windows(2) {
+        row(&pair[1], &pair[0].validation, "evidence beside the first");
+    }
+    let is_in_chain = |one: &Candidate| diagnosis.chain.iter().any(|link| link.is_same_addition(one));
+    for candidate in diagnosis.rejected.iter().filter(|one| !is_in_chain(one)) {
+        row(candidate, &diagnosis.nominal_validation, "no evidence");
     }
     table
 }

@@ -67,8 +67,7 @@ const LEAST_SHARE: f64 = 0.05;
 /// Prints a diagnosis for people.
 pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
     print(&verdict_sentence(model, diagnosis));
-    let all: Vec<_> = diagnosis.candidates.iter().chain(&diagnosis.rejected).collect();
-    print(&candidate_table(&all, &diagnosis.nominal_validation, validation).to_string());
+    print(&candidate_table(diagnosis, validation).to_string());
     if !diagnosis.unpromising.is_empty() {
         let same = |effect: &Unpromising| {
             diagnosis.unpromising.iter().filter(|other| other.physics.card().name == effect.physics.card().name).count()
