@@ -4,6 +4,8 @@ use excavator_model::effects::{CATALOGUE, Effect, Family, Site};
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::{Model, ModelEffect};
 
+use crate::fit::{Fit, FitSettings, fit};
+
 /// Standard errors by which such an effect must differ from nothing. A model without it is the simpler one.
 const LEAST_SIGNIFICANCE: f64 = 3.0;
 
@@ -42,6 +44,17 @@ pub fn with_recording_effects<R>(
     plain
 }
 
+/// [`with_recording_effects`] of a fit, by the same fit.
+pub(crate) fn refitted_with_recording_effects(
+    fitted: Fit,
+    behind: usize,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+) -> Fit {
+    let anew = |model: &Model| fit(model, recordings, settings).ok();
+    with_recording_effects(fitted, behind, recordings, |fitted| &fitted.model, anew)
+}
+
 /// Effects of recordings that the model has not and that `recordings` can show.
 fn shown_by(model: &Model, recordings: &[&Recording]) -> Vec<(&'static dyn Effect, Site)> {
     // Only a measured opening can be read at another time than the rest; a command acts when it is given.
@@ -63,8 +76,7 @@ fn shown_by(model: &Model, recordings: &[&Recording]) -> Vec<(&'static dyn Effec
 
 /// Whether all parameters of an effect, times in s, differ from nothing and are no more than `most`.
 fn is_seen(model: &Model, physics: &dyn Effect, site: Site, most: f64) -> bool {
-    let own = model.effects.iter().find(|effect| effect.name() == physics.card().name && effect.site == site);
-    own.is_some_and(|effect| {
+    model.effect(physics.card().name, site).is_some_and(|effect| {
         effect.parameters.iter().all(|parameter| {
             let least = LEAST_SIGNIFICANCE * parameter.standard_error.unwrap_or(f64::INFINITY);
             parameter.value.abs() >= least && parameter.value.abs() <= most

@@ -3,11 +3,11 @@
 
 mod common;
 
-use common::add_noise;
+use common::{measure, off_the_data_sheet, with};
 use excavator_identification::diagnosis::{DiagnosisSettings, Verdict, diagnose};
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::Site;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
@@ -18,17 +18,8 @@ const ARM: Site = Site::Cylinder(0);
 
 /// The arm with a loss in its hoses, and something that leans on it for three seconds from `begin` s on.
 fn machine(begin: f64) -> Model {
-    let mut model = built_in("zx30u-arm").unwrap();
-    for (number, parameter) in model.parameters_mut().filter(|parameter| !parameter.known).enumerate() {
-        parameter.value *= 1.0 + 0.1 * (1.7 * number as f64 + 0.4).sin();
-    }
-    for (name, values) in [("hose_loss", &[8e5][..]), ("external_contact", &[begin, 3.0, -280.0])] {
-        model = model.with_effect(find(name).unwrap(), ARM).unwrap();
-        for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
-            parameter.value = *value;
-        }
-    }
-    model
+    let lossy = with(&off_the_data_sheet("zx30u-arm", 0.1), "hose_loss", ARM, &[8e5]);
+    with(&lossy, "external_contact", ARM, &[begin, 3.0, -280.0])
 }
 
 fn recorded(begin: f64, tempo: f64, duration: f64) -> Recording {
@@ -40,20 +31,8 @@ fn recorded(begin: f64, tempo: f64, duration: f64) -> Recording {
     recording.cylinders[0].orifice_area = recording.time.iter().map(|&t| area(t)).collect();
     let mut seen =
         simulate_from_rest(&machine(begin), &recording, &[0.05], Tolerances::default().scaled(0.05)).unwrap();
-    let random = &mut ChaCha8Rng::seed_from_u64(begin as u64);
-    let arm = &mut seen.cylinders[0];
-    arm.orifice_command = recording.cylinders[0].orifice_area.clone();
-    arm.velocity.fill(f64::NAN);
-    arm.joint_angle.fill(f64::NAN);
-    for (signal, level) in [
-        (&mut arm.displacement, 5e-5),
-        (&mut arm.cap_pressure, 2e3),
-        (&mut arm.rod_pressure, 2e3),
-        (&mut arm.orifice_area, 2e-7),
-        (&mut seen.pump_pressure, 2e3),
-    ] {
-        add_noise(random, signal, level);
-    }
+    seen.cylinders[0].orifice_command = recording.cylinders[0].orifice_area.clone();
+    measure(&mut ChaCha8Rng::seed_from_u64(begin as u64), &mut seen);
     seen
 }
 

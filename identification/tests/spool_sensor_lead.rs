@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::add_noise;
+use common::{measure, off_the_data_sheet};
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, refine};
 use excavator_model::Model;
@@ -23,11 +23,7 @@ fn area(time: f64) -> f64 {
 }
 
 fn machine() -> Model {
-    let mut model = built_in("zx30u-arm").unwrap();
-    for (number, parameter) in model.parameters_mut().filter(|parameter| !parameter.known).enumerate() {
-        parameter.value *= 1.0 + 0.1 * (1.7 * number as f64 + 0.4).sin();
-    }
-    model
+    off_the_data_sheet("zx30u-arm", 0.1)
 }
 
 /// What instruments report of the machine; the spool's reads `lead` s ahead of the others.
@@ -38,21 +34,9 @@ fn recorded(model: &Model, lead: f64, seed: u64) -> Recording {
     recording.pump_flow.fill(3.8e-4);
     recording.cylinders[0].orifice_area = recording.time.iter().map(|&t| area(t)).collect();
     let mut seen = simulate_from_rest(model, &recording, &[0.05], Tolerances::default().scaled(0.05)).unwrap();
-    let random = &mut ChaCha8Rng::seed_from_u64(seed);
     seen.cylinders[0].orifice_area = seen.time.iter().map(|&t| area(t + lead)).collect();
-    let arm = &mut seen.cylinders[0];
-    arm.orifice_command = seen.time.iter().map(|&t| area(t)).collect();
-    arm.velocity.fill(f64::NAN);
-    arm.joint_angle.fill(f64::NAN);
-    for (signal, level) in [
-        (&mut arm.displacement, 5e-5),
-        (&mut arm.cap_pressure, 2e3),
-        (&mut arm.rod_pressure, 2e3),
-        (&mut arm.orifice_area, 2e-7),
-        (&mut seen.pump_pressure, 2e3),
-    ] {
-        add_noise(random, signal, level);
-    }
+    seen.cylinders[0].orifice_command = seen.time.iter().map(|&t| area(t)).collect();
+    measure(&mut ChaCha8Rng::seed_from_u64(seed), &mut seen);
     seen
 }
 

@@ -4,13 +4,13 @@
 
 mod common;
 
-use common::add_noise;
+use common::{add_noise, off_the_data_sheet, with};
 use excavator_identification::fit::{FitSettings, fit};
 use excavator_identification::regression::{WeakFormSettings, least_squares, weak_form};
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::Site;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
@@ -38,17 +38,8 @@ const EXTRAS: [(&str, &[f64]); 5] = [
 
 /// The paper's machine with parameters some way from the published ones, and the extras.
 fn machine() -> Model {
-    let mut model = built_in("zx30u-arm").unwrap();
-    for (number, parameter) in model.parameters_mut().filter(|parameter| !parameter.known).enumerate() {
-        parameter.value *= 1.0 + 0.12 * (1.7 * number as f64 + 0.4).sin();
-    }
-    for (name, values) in EXTRAS {
-        model = model.with_effect(find(name).unwrap(), Site::Cylinder(0)).unwrap();
-        for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
-            parameter.value = *value;
-        }
-    }
-    model
+    let nominal = off_the_data_sheet("zx30u-arm", 0.12);
+    EXTRAS.iter().fold(nominal, |model, &(name, values)| with(&model, name, Site::Cylinder(0), values))
 }
 
 /// The machine moved by `1e-4 sin(2 pi f t)` m² for 16 s and recorded at 500 Hz by sensors with noise. It starts extended:

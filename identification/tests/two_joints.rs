@@ -6,11 +6,11 @@
 
 mod common;
 
-use common::add_noise;
+use common::{measure, off_the_data_sheet, with};
 use excavator_identification::diagnosis::{Candidate, Diagnosis, DiagnosisSettings, Verdict, diagnose};
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::Site;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
@@ -29,17 +29,8 @@ const BOOM: Site = Site::Cylinder(0);
 const ARM: Site = Site::Cylinder(1);
 
 fn machine(hidden: &[Hidden]) -> Model {
-    let mut model = built_in("zx30u").unwrap();
-    for (number, parameter) in model.parameters_mut().filter(|parameter| !parameter.known).enumerate() {
-        parameter.value *= 1.0 + 0.12 * (1.7 * number as f64 + 0.4).sin();
-    }
-    for &(name, site, values) in hidden {
-        model = model.with_effect(find(name).unwrap(), site).unwrap();
-        for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
-            parameter.value = *value;
-        }
-    }
-    model
+    let nominal = off_the_data_sheet("zx30u", 0.12);
+    hidden.iter().fold(nominal, |model, &(name, site, values)| with(&model, name, site, values))
 }
 
 /// Openings in m² of a joint: two sines and trapezoids with pauses, which the other joint has at other times.
@@ -98,18 +89,11 @@ fn run(model: &Model, manoeuvre: usize, duration: f64) -> Recording {
 fn measured(model: &Model, manoeuvre: usize, duration: f64) -> Recording {
     let mut recording = run(model, manoeuvre, duration);
     let mut random = ChaCha8Rng::seed_from_u64(7 + manoeuvre as u64);
-    for cylinder in &mut recording.cylinders {
+    for cylinder in &recording.cylinders {
         let range = cylinder.displacement.iter().fold((9.0_f64, -9.0_f64), |(l, h), &s| (l.min(s), h.max(s)));
         println!("{} moves from {:+.3} m to {:+.3} m", cylinder.name, range.0, range.1);
-        cylinder.velocity.fill(f64::NAN);
-        cylinder.joint_angle.fill(f64::NAN);
-        cylinder.rod_force.fill(f64::NAN);
-        add_noise(&mut random, &mut cylinder.displacement, 5e-5);
-        add_noise(&mut random, &mut cylinder.cap_pressure, 2e3);
-        add_noise(&mut random, &mut cylinder.rod_pressure, 2e3);
-        add_noise(&mut random, &mut cylinder.orifice_area, 2e-7);
     }
-    add_noise(&mut random, &mut recording.pump_pressure, 2e3);
+    measure(&mut random, &mut recording);
     recording
 }
 

@@ -157,6 +157,11 @@ impl ModelEffect {
     pub fn name(&self) -> &'static str {
         self.physics.card().name
     }
+
+    /// Whether this is the effect of that name at that site.
+    pub fn is(&self, name: &str, site: Site) -> bool {
+        self.name() == name && self.site == site
+    }
 }
 
 /// Name of a site: the cylinder's, or "pump".
@@ -239,7 +244,12 @@ impl Model {
 
     /// Whether the model has this effect at this site.
     pub fn has(&self, effect: &str, site: Site) -> bool {
-        self.effects.iter().any(|present| present.name() == effect && present.site == site)
+        self.effect(effect, site).is_some()
+    }
+
+    /// The effect of this name at this site, where the model has it.
+    pub fn effect(&self, name: &str, site: Site) -> Option<&ModelEffect> {
+        self.effects.iter().find(|present| present.is(name, site))
     }
 
     /// Sites of the machine where `physics` can act and is not yet, in order.

@@ -81,14 +81,13 @@ fn hose_and_edge_share_the_pressure_drop() {
         // Drops above what is smoothed about zero.
         (state[2], state[3], state[pump], inputs.tank_pressure) = (4e6, 3e6, 7e6, 1e5);
         let area = inputs.orifice_area[0];
-        let through = |model: &Model, area: f64| {
+        let mut through = |model: &Model, area: f64| {
             inputs.orifice_area[0] = area;
             let all = rows(model, &state, &inputs);
             inputs.orifice_area[0] = 0.0;
             let leaks = rows(model, &state, &inputs);
             [all.cap_flow[0] - leaks.cap_flow[0], all.rod_flow[0] - leaks.rod_flow[0]]
         };
-        let mut through = through;
         let (edges, with_hose) = (through(&nominal, area), through(&hose, area));
         let drops = if area > 0.0 { [7e6 - 4e6, 3e6 - 1e5] } else { [4e6 - 1e5, 7e6 - 3e6] };
         for ((edge, both), drop) in edges.into_iter().zip(with_hose).zip(drops) {

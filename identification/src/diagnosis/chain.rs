@@ -6,14 +6,13 @@
 
 use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
-use excavator_model::{Model, ModelEffect};
 
 use super::own_windows::evaluate_in_known_windows;
 use super::race::{Race, Round};
 use super::starts::acts_in_a_window;
 use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, compare_losses, is_adequate};
 use crate::fit::{Fit, fit};
-use crate::recording_effects::with_recording_effects;
+use crate::recording_effects::refitted_with_recording_effects;
 
 /// A gain below this part of the best one's is no other way to begin.
 const OTHER_WAY: f64 = 0.5;
@@ -95,7 +94,7 @@ impl Chains<'_> {
         if chain.len() > 1 && share < settings.least_shared_share {
             return false;
         }
-        share >= settings.least_explained_share && is_adequate(last, self.validation, settings)
+        share >= settings.least_explained_share && self.is_adequate(last)
             || share >= settings.explained_share && last.typical_loss() <= settings.explained_loss
     }
 
@@ -142,8 +141,7 @@ impl Chains<'_> {
             return Ok(link);
         }
         let (given, behind) = (link.fit.model.effects.len(), link.fit.model.effects.len() - 1);
-        let anew = |model: &Model| fit(model, self.identification, &self.settings.fit).ok();
-        link.fit = with_recording_effects(link.fit, behind, self.identification, |fitted| &fitted.model, anew);
+        link.fit = refitted_with_recording_effects(link.fit, behind, self.identification, &self.settings.fit);
         if link.fit.model.effects.len() > given {
             let known = &link.validation.model;
             link.validation = evaluate_in_known_windows(&link.fit.model, known, self.validation, &self.settings.fit)?;
@@ -151,11 +149,15 @@ impl Chains<'_> {
         Ok(link)
     }
 
+    /// Whether a model is adequate, by its evaluation on the validation recordings.
+    pub fn is_adequate(&self, evaluated: &Fit) -> bool {
+        is_adequate(evaluated, self.validation, self.settings)
+    }
+
     /// Whether nothing that could be named is left: the model is adequate, and its whole loss less than another effect would
     /// have to take away.
     fn leaves_little(&self, last: &Candidate) -> bool {
-        is_adequate(&last.validation, self.validation, self.settings)
-            && last.validation.loss() < self.settings.least_gain_when_adequate
+        self.is_adequate(&last.validation) && last.validation.loss() < self.settings.least_gain_when_adequate
     }
 
     /// The chain without the link whose removal costs least, if that is less than would have let it in.
@@ -169,8 +171,8 @@ impl Chains<'_> {
         let mut least: Option<(f64, usize)> = None;
         for (link, tried) in earlier.iter().enumerate() {
             let mut shorter = last.fit.model.clone();
-            let is_link = |effect: &ModelEffect| effect.name() == tried.name() && effect.site == tried.site;
-            let Some(place) = shorter.effects.iter().position(is_link) else { continue };
+            let place = shorter.effects.iter().position(|effect| effect.is(tried.name(), tried.site));
+            let Some(place) = place else { continue };
             let removed = shorter.effects.remove(place);
             if acts_in_a_window(removed.physics, &shorter.machine, removed.site) {
                 continue;
@@ -220,19 +222,14 @@ impl Chains<'_> {
     /// What competes for the next link.
     fn race<'c>(&'c self, chain: &'c [Candidate]) -> Race<'c> {
         match chain.last() {
-            Some(last) => self.race_from(&last.fit, &last.validation),
-            None if self.nominal_is_adequate => Race {
-                least_gain: self.settings.least_gain_when_adequate,
-                ..self.race_from(self.nominal, self.nominal_validation)
-            },
-            None => self.race_from(self.nominal, self.nominal_validation),
+            Some(last) => self.race_from(&last.fit, &last.validation, self.is_adequate(&last.validation)),
+            None => self.race_from(self.nominal, self.nominal_validation, self.nominal_is_adequate),
         }
     }
 
-    /// What competes for a place beside a model.
-    pub fn race_from<'c>(&'c self, base: &'c Fit, base_validation: &'c Fit) -> Race<'c> {
+    /// What competes for a place beside a model, which is `adequate` or not.
+    pub fn race_from<'c>(&'c self, base: &'c Fit, base_validation: &'c Fit, adequate: bool) -> Race<'c> {
         let settings = self.settings;
-        let adequate = is_adequate(base_validation, self.validation, settings);
         let least_gain = if adequate { settings.least_gain_when_adequate } else { settings.least_gain };
         Race {
             base,

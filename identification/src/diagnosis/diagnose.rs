@@ -10,7 +10,7 @@ use super::race::Round;
 use super::starts::within_bounds;
 use super::{Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, compare_losses, residual_map, unexplained};
 use crate::fit::{Fit, FitError, evaluate, fit};
-use crate::recording_effects::with_recording_effects;
+use crate::recording_effects::refitted_with_recording_effects;
 use crate::regression::{RegressionError, WeakFormSettings, weak_form};
 
 /// What is to be thought of a model.
@@ -253,8 +253,7 @@ pub(crate) fn fit_nominal(
             (_, second) => second?,
         },
     };
-    let anew = |model: &Model| fit(model, identification, &settings.fit).ok();
-    Ok(with_recording_effects(fitted, model.effects.len(), identification, |fitted| &fitted.model, anew))
+    Ok(refitted_with_recording_effects(fitted, model.effects.len(), identification, &settings.fit))
 }
 
 /// Noise, as a part of its spread, up to which a signal is clear: noise alone is no large error of it.

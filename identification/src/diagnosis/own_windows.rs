@@ -4,15 +4,15 @@
 //! the other recording has itself: three numbers of a fit are no evidence against thousands of readings; whether they lower
 //! the loss is.
 
-use excavator_model::Model;
 use excavator_model::recording::Recording;
+use excavator_model::{Model, ModelEffect};
 
 use super::candidate::{CandidateError, best_start};
 use super::starts::acts_in_a_window;
 use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, fit_predicted};
 
-/// `model` on `recordings`, nothing fitted but the windows of its effects; where these are looked for first says `known`, the
-/// model of an evaluation on the same recordings with some of the same effects.
+/// `model` on `recordings`, nothing fitted but the windows of its effects. Where these are says `known`, the model of an
+/// evaluation on the same recordings; the window of a last effect that it does not have is looked for.
 ///
 /// # Errors
 /// [`CandidateError`].
@@ -22,33 +22,17 @@ pub(super) fn evaluate_in_own_windows(
     recordings: &[&Recording],
     settings: &FitSettings,
 ) -> Result<Fit, CandidateError> {
-    let acts = |model: &Model, effect: usize| {
-        let effect = &model.effects[effect];
-        acts_in_a_window(effect.physics, &model.machine, effect.site)
+    let is_new = |last: &&ModelEffect| !known.has(last.name(), last.site) && has_window(model, last);
+    let Some(added) = model.effects.last().filter(is_new) else {
+        return Ok(evaluate_in_known_windows(model, known, recordings, settings)?);
     };
-    let mut model = model.clone();
-    model.parameters_mut().for_each(|parameter| parameter.known = true);
-    let mut has_known_windows = false;
-    for index in 0..model.effects.len() {
-        let own = &model.effects[index];
-        let same = known.effects.iter().find(|other| other.name() == own.name() && other.site == own.site);
-        if let Some(same) = same.filter(|_| acts(&model, index)) {
-            has_known_windows = true;
-            model.effects[index].parameters.clone_from(&same.parameters);
-            model.effects[index].parameters.iter_mut().for_each(|parameter| parameter.known = false);
-        }
-    }
-    let is_new = |last: &excavator_model::ModelEffect| !known.has(last.name(), last.site);
-    let last = model.effects.len().saturating_sub(1);
-    if model.effects.last().is_some_and(is_new) && acts(&model, last) {
-        let Some(added) = model.effects.pop() else { return Ok(evaluate(&model, recordings, settings)?) };
-        let start = best_start(&model, added.physics, added.site, recordings, settings)?;
-        return Ok(fit_predicted(&start.model, start.promise, recordings, settings)?);
-    }
-    Ok(if has_known_windows { fit(&model, recordings, settings)? } else { evaluate(&model, recordings, settings)? })
+    let (mut without, _) = in_windows_of(model, known);
+    without.effects.pop();
+    let start = best_start(&without, added.physics, added.site, recordings, settings)?;
+    Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
 }
 
-/// The same for a model whose effects are all in `known`.
+/// The same for a model whose effects with windows are all in `known`.
 ///
 /// # Errors
 /// [`FitError`].
@@ -58,10 +42,24 @@ pub(super) fn evaluate_in_known_windows(
     recordings: &[&Recording],
     settings: &FitSettings,
 ) -> Result<Fit, FitError> {
-    match evaluate_in_own_windows(model, known, recordings, settings) {
-        Ok(fit) => Ok(fit),
-        Err(CandidateError::Fit(error)) => Err(error),
-        // Nothing is added, so no effect can be refused.
-        Err(CandidateError::Model(_)) => evaluate(model, recordings, settings),
+    let (model, has_windows) = in_windows_of(model, known);
+    if has_windows { fit(&model, recordings, settings) } else { evaluate(&model, recordings, settings) }
+}
+
+/// `model` with the windows of `known`, nothing but these free; and whether there are any.
+fn in_windows_of(model: &Model, known: &Model) -> (Model, bool) {
+    let mut in_windows = model.clone();
+    in_windows.parameters_mut().for_each(|parameter| parameter.known = true);
+    let mut any = false;
+    for effect in in_windows.effects.iter_mut().filter(|effect| has_window(model, effect)) {
+        let Some(same) = known.effect(effect.name(), effect.site) else { continue };
+        any = true;
+        effect.parameters.clone_from(&same.parameters);
+        effect.parameters.iter_mut().for_each(|parameter| parameter.known = false);
     }
+    (in_windows, any)
+}
+
+fn has_window(model: &Model, effect: &ModelEffect) -> bool {
+    acts_in_a_window(effect.physics, &model.machine, effect.site)
 }

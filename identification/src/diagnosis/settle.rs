@@ -5,8 +5,9 @@
 //! are none.
 
 use super::chain::Chains;
+use super::own_windows::evaluate_in_known_windows;
 use super::{Candidate, DiagnosisError};
-use crate::fit::{evaluate, fit};
+use crate::fit::fit;
 
 impl Chains<'_> {
     /// Compares the first of `candidates` with all that are tied with it beside the other links of `chain`: marks those that
@@ -31,10 +32,11 @@ impl Chains<'_> {
             return Ok(chain);
         }
         let mut without = last.fit.model.clone();
-        without.effects.retain(|effect| effect.name() != first.name() || effect.site != first.site);
+        without.effects.retain(|effect| !effect.is(first.name(), first.site));
         let Ok(base) = fit(&without, self.identification, &self.settings.fit) else { return Ok(chain) };
-        let base_validation = evaluate(&base.model, self.validation, &self.settings.fit)?;
-        let race = self.race_from(&base, &base_validation);
+        let known = &last.validation.model;
+        let base_validation = evaluate_in_known_windows(&base.model, known, self.validation, &self.settings.fit)?;
+        let race = self.race_from(&base, &base_validation, self.is_adequate(&base_validation));
         let round = race.run(&rivals, &|what, _| progress(what, 0.95));
         let Some(best) = round.fitted.first().filter(|best| best.accepted) else { return Ok(chain) };
         let chain = if best.is_same_addition(first) {

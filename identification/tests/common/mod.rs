@@ -2,6 +2,8 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use excavator_model::Model;
+use excavator_model::document::built_in;
+use excavator_model::effects::{Site, find};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand_chacha::ChaCha8Rng;
@@ -16,6 +18,38 @@ pub fn swing(model: &Model) -> Recording {
     let area = |t: &f64| 5e-5 * (3.1 * t).sin() + 3e-5 * (7.3 * t).sin();
     recording.cylinders[0].orifice_area = recording.time.iter().map(area).collect();
     simulate_from_rest(model, &recording, &[0.1], Tolerances::default().scaled(0.05)).unwrap()
+}
+
+/// A built-in machine whose unknown parameters are up to `spread` of their size away from the ones of its model.
+pub fn off_the_data_sheet(name: &str, spread: f64) -> Model {
+    let mut model = built_in(name).unwrap();
+    for (number, parameter) in model.parameters_mut().filter(|parameter| !parameter.known).enumerate() {
+        parameter.value *= 1.0 + spread * (1.7 * number as f64 + 0.4).sin();
+    }
+    model
+}
+
+/// The model with one more effect that has these values.
+pub fn with(model: &Model, effect: &str, site: Site, values: &[f64]) -> Model {
+    let mut model = model.with_effect(find(effect).unwrap(), site).unwrap();
+    for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
+        parameter.value = *value;
+    }
+    model
+}
+
+/// What good instruments report: displacement, pressures and opening with noise; no speed, angle or force.
+pub fn measure(random: &mut ChaCha8Rng, recording: &mut Recording) {
+    for cylinder in &mut recording.cylinders {
+        cylinder.velocity.fill(f64::NAN);
+        cylinder.joint_angle.fill(f64::NAN);
+        cylinder.rod_force.fill(f64::NAN);
+        add_noise(random, &mut cylinder.displacement, 5e-5);
+        add_noise(random, &mut cylinder.cap_pressure, 2e3);
+        add_noise(random, &mut cylinder.rod_pressure, 2e3);
+        add_noise(random, &mut cylinder.orifice_area, 2e-7);
+    }
+    add_noise(random, &mut recording.pump_pressure, 2e3);
 }
 
 /// White noise of a standard deviation, in the signal's unit.

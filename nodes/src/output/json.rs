@@ -111,10 +111,7 @@ pub fn comparison_json(comparison: &Comparison) -> Value {
 
 /// Parameters that a model has of the effect of `candidate`.
 fn own_parameters(model: &Model, candidate: &Candidate) -> Vec<Value> {
-    let is_own = |effect: usize| {
-        let effect = &model.effects[effect];
-        effect.name() == candidate.name() && effect.site == candidate.site
-    };
+    let is_own = |effect: usize| model.effects[effect].is(candidate.name(), candidate.site);
     let indices: Vec<usize> =
         model.parameters().enumerate().filter(|(_, (effect, _))| is_own(*effect)).map(|(index, _)| index).collect();
     parameters(model, &indices)
