@@ -127,11 +127,13 @@ impl Shared<'_, '_> {
                     block_errors.push(vec![(0.0, 0); self.instruments.len()]);
                 }
             }
-            observer.observe(&recording.inputs, index, &state, Some(&sensitivity));
-            let settling = recording.recording.time[index] < start + SETTLING;
-            for (number, instrument) in self.instruments.iter().enumerate() {
+            let is_compared = recording.compared[index] && recording.recording.time[index] >= start + SETTLING;
+            if is_compared {
+                observer.observe(&recording.inputs, index, &state, Some(&sensitivity));
+            }
+            for (number, instrument) in self.instruments.iter().enumerate().filter(|_| is_compared) {
                 let measured = signals[number].get(index).copied().unwrap_or(f64::NAN);
-                if !measured.is_finite() || settling {
+                if !measured.is_finite() {
                     continue;
                 }
                 let error = measured - observer.readings()[number];

@@ -10,6 +10,9 @@ use excavator_model::{Model, SignalError};
 pub struct SegmentedRecording {
     /// The recording, thinned.
     pub recording: Recording,
+    /// Whether the model is compared with each sample of it; the others are there because an input bends at them. All that are
+    /// compared are equally far apart, so that no moment counts more than another.
+    pub compared: Vec<bool>,
     /// Inputs of the model on its clock.
     pub inputs: InputSignals,
     /// The pieces, in order.
@@ -30,11 +33,6 @@ pub struct Segment {
 /// A gap in the clock longer than this many sample intervals ends a segment: inputs inside it are unknown.
 const LARGEST_GAP: f64 = 10.0;
 
-/// Share of an opening that thinning may miss. A valve that follows its command through a servo of 12 ms loses 0.001 to 0.005 at
-/// 170 Hz, which leaves a few hundredths of loss; one that jumps between two samples loses 0.05, and then the right model is
-/// as far from the measurement as a wrong one.
-const MOST_MISSED: f64 = 0.008;
-
 /// Fewer samples than this say nothing beyond their own initial state.
 const FEWEST_SAMPLES: usize = 20;
 
@@ -49,16 +47,13 @@ impl SegmentedRecording {
         let stride = if stride.is_finite() { stride as usize } else { 1 };
         // Inputs are freed of noise at the full rate, then thinned.
         let full_inputs = InputSignals::from_recording(model, recording)?;
-        let mut inputs = full_inputs.thinned(stride);
-        let mut stride = stride;
-        while stride > 1 && full_inputs.missed_by(&inputs, stride) > MOST_MISSED {
-            stride -= 1;
-            inputs = full_inputs.thinned(stride);
-        }
+        let kept = full_inputs.needed_samples(stride);
+        let inputs = full_inputs.at(&kept);
         let full = recording;
-        let recording = full.thinned(stride);
+        let recording = full.at(&kept);
+        let compared = kept.iter().map(|sample| sample.is_multiple_of(stride)).collect();
         let system = System::new(model);
-        let interval = recording.sample_interval();
+        let interval = stride as f64 * full.sample_interval();
         let mut stretches = Vec::new();
         let mut first = 0;
         for index in 1..=recording.len() {
@@ -71,16 +66,20 @@ impl SegmentedRecording {
         }
         let mut segments = Vec::new();
         for (first, last) in stretches {
-            let pieces = ((recording.time[last] - recording.time[first]) / duration).round().max(1.0) as usize;
+            let (begin, length) = (recording.time[first], recording.time[last] - recording.time[first]);
+            let pieces = (length / duration).round().max(1.0) as usize;
+            let end = |piece: usize| {
+                let time = begin + length * piece as f64 / pieces as f64;
+                recording.time.partition_point(|&sample| sample < time).clamp(first, last)
+            };
             for piece in 0..pieces {
-                let from = first + (last - first) * piece / pieces;
-                let to = first + (last - first) * (piece + 1) / pieces;
+                let (from, to) = (end(piece), end(piece + 1));
                 if to < from + FEWEST_SAMPLES {
                     continue;
                 }
                 let spool: Vec<f64> =
                     (0..model.machine.cylinders.len()).map(|c| inputs.orifice_area(c)[from]).collect();
-                match initial_state(&system, full, from * stride, &spool, inputs.tank_pressure()[from]) {
+                match initial_state(&system, full, kept[from], &spool, inputs.tank_pressure()[from]) {
                     Ok(state) => segments.push(Segment { first: from, last: to, state }),
                     // A segment that starts in a hole of the displacement cannot be simulated; the others can.
                     Err(SignalError::NoInitialState { .. }) => {}
@@ -88,6 +87,6 @@ impl SegmentedRecording {
                 }
             }
         }
-        Ok(SegmentedRecording { recording, inputs, segments })
+        Ok(SegmentedRecording { recording, compared, inputs, segments })
     }
 }

@@ -67,20 +67,4 @@ impl CylinderSignals {
             ("orifice_command", &self.orifice_command),
         ]
     }
-
-    /// Every `stride`-th sample.
-    pub fn thinned(&self, stride: usize) -> Self {
-        let thin = |values: &[f64]| values.iter().copied().step_by(stride.max(1)).collect::<Vec<f64>>();
-        CylinderSignals {
-            name: self.name.clone(),
-            joint_angle: thin(&self.joint_angle),
-            displacement: thin(&self.displacement),
-            velocity: thin(&self.velocity),
-            cap_pressure: thin(&self.cap_pressure),
-            rod_pressure: thin(&self.rod_pressure),
-            orifice_area: thin(&self.orifice_area),
-            rod_force: thin(&self.rod_force),
-            orifice_command: thin(&self.orifice_command),
-        }
-    }
 }

@@ -56,17 +56,16 @@ impl Recording {
 
     /// Every `stride`-th sample of the recording.
     pub fn thinned(&self, stride: usize) -> Self {
-        let thin = |values: &[f64]| values.iter().copied().step_by(stride.max(1)).collect::<Vec<f64>>();
-        Recording {
-            source: self.source.clone(),
-            start_nanoseconds: self.start_nanoseconds,
-            time: thin(&self.time),
-            cylinders: self.cylinders.iter().map(|cylinder| cylinder.thinned(stride)).collect(),
-            pump_pressure: thin(&self.pump_pressure),
-            tank_pressure: thin(&self.tank_pressure),
-            pump_flow: thin(&self.pump_flow),
-            oil_temperature: thin(&self.oil_temperature),
+        self.at(&(0..self.len()).step_by(stride.max(1)).collect::<Vec<usize>>())
+    }
+
+    /// The samples with these numbers, which are in order and below the recording's length.
+    pub fn at(&self, samples: &[usize]) -> Self {
+        let mut part = self.clone();
+        for column in part.columns_mut() {
+            *column = samples.iter().map(|&sample| column[sample]).collect();
         }
+        part
     }
 
     /// The samples from `from` to `to`, s after the first; the first of them is time 0 of the part.

@@ -1,16 +1,16 @@
 //! An input on a coarser clock.
 
-/// Values at every `stride`-th time whose straight lines come nearest to `values` (least squares over all samples).
+/// Values at the samples `kept`, in order, whose straight lines come nearest to `values` (least squares over all samples).
 ///
-/// Taking every `stride`-th value itself would cut each corner to the same side: a valve that closes between two kept
+/// Taking the kept values themselves would cut each corner to the same side: a valve that closes between two kept
 /// samples would seem open for too long, and the oil that passes meanwhile is a pressure error that lasts. The nearest
 /// lines pass the same oil. They are kept within what the input really was around each time, so that no valve that was
 /// closed opens to the other side; that costs half of what was won at a corner.
-pub(super) fn nearest_lines(time: &[f64], values: &[f64], stride: usize) -> Vec<f64> {
-    let mut lines = projected(time, values, stride);
+pub(super) fn nearest_lines(time: &[f64], values: &[f64], kept: &[usize]) -> Vec<f64> {
+    let mut lines = projected(time, values, kept);
     for (node, value) in lines.iter_mut().enumerate() {
-        let sample = node * stride;
-        let around = &values[sample.saturating_sub(stride)..=(sample + stride).min(values.len() - 1)];
+        let (before, after) = (kept[node.saturating_sub(1)], kept.get(node + 1).map_or(values.len() - 1, |&next| next));
+        let around = &values[before..=after];
         let (low, high) = around
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
@@ -19,32 +19,23 @@ pub(super) fn nearest_lines(time: &[f64], values: &[f64], stride: usize) -> Vec<
     lines
 }
 
-/// Root mean square distance of `values` from the `lines` through every `stride`-th time, as a share of their own spread; zero
-/// where they have none.
-pub(super) fn missed_share(time: &[f64], values: &[f64], lines: &[f64], stride: usize) -> f64 {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let spread: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    let missed = |sample: usize| {
-        let node = sample / stride;
-        let (Some(from), Some(to)) = (lines.get(node), lines.get(node + 1)) else { return 0.0 };
-        let (first, last) = (time[node * stride], time[(node + 1) * stride]);
-        values[sample] - (from + (time[sample] - first) / (last - first) * (to - from))
-    };
-    let squares: f64 = (0..values.len()).map(|sample| missed(sample).powi(2)).sum();
-    if spread > 0.0 { (squares / spread).sqrt() } else { 0.0 }
+/// Largest distance of `values` from the line between the first and the last of them.
+pub(super) fn bend(time: &[f64], values: &[f64]) -> f64 {
+    let last = values.len() - 1;
+    let slope = if last > 0 { (values[last] - values[0]) / (time[last] - time[0]) } else { 0.0 };
+    let distance = |(&t, &value): (&f64, &f64)| (value - values[0] - slope * (t - time[0])).abs();
+    time.iter().zip(values).map(distance).fold(0.0, f64::max)
 }
 
 /// The nearest lines, wherever they lead.
-fn projected(time: &[f64], values: &[f64], stride: usize) -> Vec<f64> {
-    let picked: Vec<f64> = values.iter().copied().step_by(stride).collect();
-    let nodes = picked.len();
-    if stride < 2 || nodes < 2 {
-        return picked;
+fn projected(time: &[f64], values: &[f64], kept: &[usize]) -> Vec<f64> {
+    let nodes = kept.len();
+    if nodes < 2 {
+        return kept.iter().map(|&sample| values[sample]).collect();
     }
     let (mut diagonal, mut beside, mut right) = (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; nodes]);
-    for node in 0..nodes - 1 {
-        let (first, last) = (node * stride, (node + 1) * stride);
+    for (node, ends) in kept.windows(2).enumerate() {
+        let (first, last) = (ends[0], ends[1]);
         let length = time[last] - time[first];
         for sample in first..=last {
             // The ends belong to two pieces, half to each.
@@ -62,9 +53,11 @@ fn projected(time: &[f64], values: &[f64], stride: usize) -> Vec<f64> {
     right
 }
 
-/// Mean over each kept interval: for an input that is held, what passes meanwhile stays the same.
-pub(super) fn interval_means(values: &[f64], stride: usize) -> Vec<f64> {
-    values.chunks(stride.max(1)).map(|interval| interval.iter().sum::<f64>() / interval.len() as f64).collect()
+/// Mean from each kept sample to the next: for an input that is held, what passes meanwhile stays the same.
+pub(super) fn interval_means(values: &[f64], kept: &[usize]) -> Vec<f64> {
+    let ends = kept.iter().skip(1).copied().chain([values.len()]);
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    kept.iter().zip(ends).map(|(&first, end)| mean(&values[first..end])).collect()
 }
 
 /// Solves a symmetric positive definite tridiagonal system in place (Thomas algorithm); `beside[i]` couples i and i + 1.
@@ -87,6 +80,10 @@ mod tests {
     const STEP: f64 = 0.001;
     const STRIDE: usize = 20;
 
+    fn every_twentieth(samples: usize) -> Vec<usize> {
+        (0..samples).step_by(STRIDE).collect()
+    }
+
     fn area(values: &[f64], step: f64) -> f64 {
         (values.iter().sum::<f64>() - (values[0] + values[values.len() - 1]) / 2.0) * step
     }
@@ -105,8 +102,8 @@ mod tests {
     fn lines_stay_as_they_are() {
         let time: Vec<f64> = (0..41).map(|k| k as f64 * 0.01).collect();
         let values: Vec<f64> = time.iter().map(|t| 3.0 - 2.0 * t).collect();
-        for (node, value) in nearest_lines(&time, &values, 5).into_iter().enumerate() {
-            assert!((value - values[node * 5]).abs() < 1e-12);
+        for (node, value) in nearest_lines(&time, &values, &every_twentieth(41)).into_iter().enumerate() {
+            assert!((value - values[node * STRIDE]).abs() < 1e-12);
         }
     }
 
@@ -118,9 +115,9 @@ mod tests {
             let values: Vec<f64> = time.iter().map(|t| (5.0 - (t - middle).abs() * 20.0).clamp(0.0, 1.0)).collect();
             let exact = area(&values, STEP);
             let coarse = |values: &[f64]| area(values, STEP * STRIDE as f64) - exact;
-            assert!(coarse(&projected(&time, &values, STRIDE)).abs() < 1e-12);
+            assert!(coarse(&projected(&time, &values, &every_twentieth(1001))).abs() < 1e-12);
 
-            let lines = nearest_lines(&time, &values, STRIDE);
+            let lines = nearest_lines(&time, &values, &every_twentieth(1001));
             let picked: Vec<f64> = values.iter().copied().step_by(STRIDE).collect();
             assert!(coarse(&lines).abs() < coarse(&picked).abs(), "{} {}", coarse(&lines), coarse(&picked));
             assert!(distance(&values, &lines) < distance(&values, &picked));
@@ -129,23 +126,26 @@ mod tests {
     }
 
     #[test]
-    fn jumps_are_missed_and_lines_are_not() {
-        let time: Vec<f64> = (0..1001).map(|k| k as f64 * STEP).collect();
-        let missed = |of: &dyn Fn(f64) -> f64, stride: usize| {
-            let values: Vec<f64> = time.iter().map(|&t| of(t)).collect();
-            missed_share(&time, &values, &nearest_lines(&time, &values, stride), stride)
-        };
-        assert!(missed(&|t| 1.0 - 2.0 * t, STRIDE) < 1e-12);
-        assert_eq!(missed(&|_| 3.0, STRIDE), 0.0);
-        let jump = |t: f64| f64::from(u8::from(t > 0.507));
-        // Some two samples of every twenty about the one jump in a second, by up to half of it.
-        assert!((0.03..0.1).contains(&missed(&jump, STRIDE)), "{}", missed(&jump, STRIDE));
-        assert!(missed(&jump, 1) < 1e-12);
+    fn where_all_samples_are_kept_all_values_are() {
+        let time: Vec<f64> = (0..101).map(|k| k as f64 * STEP).collect();
+        let values: Vec<f64> = time.iter().map(|t| f64::from(u8::from(*t > 0.0335))).collect();
+        let kept: Vec<usize> = (0..=20).step_by(STRIDE).chain(21..=60).chain([80, 100]).collect();
+        let lines = nearest_lines(&time, &values, &kept);
+        assert!(kept.iter().zip(&lines).all(|(&sample, line)| (values[sample] - line).abs() < 1e-12), "{lines:?}");
+    }
+
+    #[test]
+    fn a_corner_is_as_far_from_a_line_as_it_sticks_out() {
+        let time = [0.0, 0.1, 0.3, 0.4];
+        assert!(bend(&time, &[2.0, 2.1, 2.3, 2.4]) < 1e-12);
+        assert!((bend(&time, &[2.0, 2.1, 1.3, 2.4]) - 1.0).abs() < 1e-12);
+        assert_eq!(bend(&time[..1], &[3.0]), 0.0);
     }
 
     #[test]
     fn a_held_input_keeps_its_mean() {
         let values = [0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 4.0];
-        assert_eq!(interval_means(&values, 3), [1.0 / 3.0, 2.0 / 3.0, 4.0]);
+        assert_eq!(interval_means(&values, &[0, 3, 6]), [1.0 / 3.0, 2.0 / 3.0, 4.0]);
+        assert_eq!(interval_means(&values, &[0, 3, 4, 6]), [1.0 / 3.0, 1.0, 0.5, 4.0]);
     }
 }

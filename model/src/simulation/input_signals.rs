@@ -1,6 +1,6 @@
 //! The inputs of a simulation as functions of time.
 
-use super::coarse_inputs::{interval_means, missed_share, nearest_lines};
+use super::coarse_inputs::{bend, interval_means, nearest_lines};
 use super::imposed_motion::imposed_signals;
 use super::spool_estimate::spool_estimate;
 use crate::effects::Site;
@@ -28,6 +28,12 @@ const STRAIGHT_FORCE: f64 = 0.03;
 const STRAIGHT_PRESSURE: f64 = 200.0;
 /// The same for the pump's flow, m³/s: a few millionths of a small excavator's.
 const STRAIGHT_FLOW: f64 = 2e-9;
+
+/// Share of an opening's spread that a line may miss. Where two valves leave little of a pump's way to the tank a thousandth of an
+/// opening is a hundredth of a pressure.
+const MOST_MISSED: f64 = 5e-4;
+/// The same for a held opening, whose mean passes the same oil: jumps only.
+const MOST_MISSED_HELD: f64 = 0.1;
 
 /// Inputs of a model on the clock of a recording, without holes: gaps of single signals are bridged by straight lines.
 #[derive(Debug, Clone)]
@@ -114,15 +120,14 @@ impl InputSignals {
         })
     }
 
-    /// The inputs on every `stride`-th sample time: straight lines nearest to the full ones, means of held ones.
-    pub fn thinned(&self, stride: usize) -> Self {
-        let stride = stride.max(1);
-        let lines = |values: &[f64]| nearest_lines(&self.time, values, stride);
+    /// The inputs at the samples `kept`: straight lines nearest to the full ones, means of held ones.
+    pub fn at(&self, kept: &[usize]) -> Self {
+        let lines = |values: &[f64]| nearest_lines(&self.time, values, kept);
         let thin = |(interpolation, values): &(Interpolation, Vec<f64>)| match interpolation {
             Interpolation::Linear => (*interpolation, lines(values)),
-            Interpolation::Hold => (*interpolation, interval_means(values, stride)),
+            Interpolation::Hold => (*interpolation, interval_means(values, kept)),
         };
-        let time: Vec<f64> = self.time.iter().copied().step_by(stride).collect();
+        let time: Vec<f64> = kept.iter().map(|&sample| self.time[sample]).collect();
         let orifice_area: Vec<_> = self.orifice_area.iter().map(thin).collect();
         let orifice_rate = self
             .orifice_rate
@@ -146,14 +151,29 @@ impl InputSignals {
         }
     }
 
-    /// What the openings of `thinned`, which has every `stride`-th sample of these inputs, miss of these: root mean square as a
-    /// share of the opening's own spread, the largest of all cylinders. Held ones do not count: a mean misses nothing that
-    /// matters but where it changes.
-    pub fn missed_by(&self, thinned: &Self, stride: usize) -> f64 {
-        let both = self.orifice_area.iter().zip(&thinned.orifice_area);
-        both.filter(|((interpolation, _), _)| *interpolation == Interpolation::Linear)
-            .map(|((_, full), (_, lines))| missed_share(&self.time, full, lines, stride))
-            .fold(0.0, f64::max)
+    /// The samples that a simulation needs: every `stride`-th, and all between two of these where an opening departs from the
+    /// line between them by more than a share of its own spread.
+    pub fn needed_samples(&self, stride: usize) -> Vec<usize> {
+        let stride = stride.max(1);
+        let spreads: Vec<f64> = self.orifice_area.iter().map(|(_, values)| spread(values)).collect();
+        let is_bent = |first: usize, last: usize| {
+            self.orifice_area.iter().zip(&spreads).any(|((interpolation, values), spread)| {
+                let most = match interpolation {
+                    Interpolation::Linear => MOST_MISSED,
+                    Interpolation::Hold => MOST_MISSED_HELD,
+                };
+                bend(&self.time[first..=last], &values[first..=last]) > most * spread
+            })
+        };
+        let mut needed = vec![];
+        for first in (0..self.len()).step_by(stride) {
+            needed.push(first);
+            let last = first + stride;
+            if stride > 1 && last < self.len() && is_bent(first, last) {
+                needed.extend(first + 1..last);
+            }
+        }
+        needed
     }
 
     /// Number of samples.
@@ -245,6 +265,13 @@ impl InputSignals {
         inputs.tank_pressure = line(&self.tank_pressure);
         inputs.pump_flow = line(&self.pump_flow);
     }
+}
+
+/// Standard deviation.
+fn spread(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 fn changes_sign(values: &[f64]) -> bool {

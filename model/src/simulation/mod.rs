@@ -12,6 +12,7 @@ mod profile;
 mod rest;
 mod run;
 mod sensitivity;
+mod servo;
 mod spool_estimate;
 mod spool_memory;
 mod trajectory;
