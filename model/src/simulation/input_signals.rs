@@ -302,15 +302,16 @@ fn supply_constants(machine: &Machine) -> (f64, f64) {
 fn orifice_input(signals: &CylinderSignals, time: &[f64]) -> Option<(Interpolation, Vec<f64>)> {
     if is_measured(&signals.orifice_area) {
         return without_holes(time, &signals.orifice_area).map(|measured| {
-            let spool = spool_estimate(time, &measured, &signals.orifice_command);
+            let spool = spool_estimate(time, &measured, &command_or_closed(&signals.orifice_command));
             (Interpolation::Linear, spool)
         });
     }
-    // Before the first command the valve is taken to be closed: nobody has asked for anything.
-    is_measured(&signals.orifice_command).then(|| {
-        let values = signals.orifice_command.iter().map(|&area| if area.is_finite() { area } else { 0.0 }).collect();
-        (Interpolation::Hold, values)
-    })
+    is_measured(&signals.orifice_command).then(|| (Interpolation::Hold, command_or_closed(&signals.orifice_command)))
+}
+
+/// Commanded openings, m². Before the first command the valve is taken to be closed: nobody has asked for anything.
+fn command_or_closed(command: &[f64]) -> Vec<f64> {
+    command.iter().map(|&area| if area.is_finite() { area } else { 0.0 }).collect()
 }
 
 /// The signal with holes bridged by straight lines and held at the ends; `None` when nothing was measured.

@@ -13,6 +13,7 @@ mod rest;
 mod run;
 mod sensitivity;
 mod servo;
+mod servo_follower;
 mod spool_estimate;
 mod spool_memory;
 mod trajectory;

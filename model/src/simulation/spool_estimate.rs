@@ -1,10 +1,10 @@
 //! The best estimate of where a spool really was.
 
-use super::servo::servo_follower;
+use super::servo_follower::servo_follower;
 use super::spool_memory::remembered;
 use crate::recording::{denoised, denoised_towards_zero, noise_level, resolution};
 
-/// Spool position (m²) from its sensor and, where there is one, from the command that moved it.
+/// Spool position (m²) from its sensor and from the command that moved it, without holes; a command that never moves says nothing.
 ///
 /// A spool follows its command through a servo; a lag of first order with a delay, gain and offset, fitted to the
 /// recording, explains most of the motion without any noise. What it leaves is denoised and added back where it is beyond
@@ -17,7 +17,7 @@ pub(super) fn spool_estimate(time: &[f64], measured: &[f64], command: &[f64]) ->
 
 fn estimate(time: &[f64], measured: &[f64], command: &[f64]) -> Vec<f64> {
     let noise = noise_level(measured);
-    if time.len() < 3 || noise == 0.0 || !command.iter().all(|area| area.is_finite()) {
+    if time.len() < 3 || noise == 0.0 {
         return denoised(measured);
     }
     let Some(follower) = servo_follower(time, measured, command, noise) else { return denoised(measured) };

@@ -1,0 +1,168 @@
+//! The servo that a spool follows its command through, found in a recording.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::servo::{Between, Courses, Servo, misfit};
+
+/// Time constants that are tried, s: from faster than any sampling to a slow pilot stage.
+const LAGS: [f64; 10] = [0.001, 0.002, 0.004, 0.007, 0.012, 0.02, 0.035, 0.06, 0.1, 0.2];
+
+/// Samples that the servo is searched on; longer recordings are thinned, two numbers need no more for a start, and
+/// are polished on all samples.
+const SEARCH_SAMPLES: usize = 2000;
+
+/// The lagged, delayed, scaled and shifted command (m²) that is nearest to the measured spool, whose sensor's noise has
+/// the standard deviation `noise`, m². `None` where the command never moves.
+///
+/// What the sensor leaves in doubt is as simple as can be: the spool goes where it is told, and it was there before the
+/// recording began.
+pub(super) fn servo_follower(time: &[f64], measured: &[f64], command: &[f64], noise: f64) -> Option<Vec<f64>> {
+    let stride = (time.len() / SEARCH_SAMPLES).max(1);
+    let thin = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
+    let lines = best_servo(&thin(time), &thin(measured), &thin(command))?;
+    // A held command is the line between its samples half an interval later.
+    let interval = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
+    let held = Servo { delay: lines.delay - interval / 2.0, between: Between::Held, ..lines };
+    // A jump told by a message acts at once; a knob that was sampled ran on in between.
+    let (_, servo) = [lines, held]
+        .into_iter()
+        .filter_map(|servo| polished(time, measured, command, servo))
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(Courses::new(time, command, servo).simplest(measured, noise))
+}
+
+/// Gauss-Newton steps on all samples. What thinning leaves of the error in time shifts the opening of the whole recording, and
+/// nothing that comes after could tell: three steps take it down to what the sensor knows.
+const STEPS: usize = 3;
+
+/// The servo near `servo` that comes nearest to the measured spool, and how near.
+fn polished(time: &[f64], measured: &[f64], command: &[f64], servo: Servo) -> Option<(f64, Servo)> {
+    let nearest = |servo: Servo| Courses::new(time, command, servo).nearest(measured);
+    let (mut servo, mut here) = (servo, nearest(servo)?);
+    for _ in 0..STEPS {
+        // Changes by which the course changes visibly and still in proportion.
+        let (lag_change, delay_change) = (0.02 * servo.lag, 2e-4);
+        let by_lag = nearest(Servo { lag: servo.lag + lag_change, ..servo })?;
+        let by_delay = nearest(Servo { delay: servo.delay + delay_change, ..servo })?;
+        let (mut matrix, mut right) = (Matrix2::zeros(), Vector2::zeros());
+        for (((measured, here), by_lag), by_delay) in measured.iter().zip(&here).zip(&by_lag).zip(&by_delay) {
+            let slope = Vector2::new((by_lag - here) / lag_change, (by_delay - here) / delay_change);
+            matrix += slope * slope.transpose();
+            right += slope * (measured - here);
+        }
+        // Scaled to unit diagonal: areas of 1e-5 m² make the plain determinant vanish in rounding.
+        let scale = matrix.diagonal().map(|value: f64| 1.0 / value.sqrt());
+        if !scale.iter().all(|value| value.is_finite()) {
+            break;
+        }
+        let scaled = Matrix2::from_diagonal(&scale) * matrix * Matrix2::from_diagonal(&scale);
+        let Some(step) = scaled.lu().solve(&right.component_mul(&scale)) else { break };
+        let step = step.component_mul(&scale);
+        let lag = (servo.lag + step[0]).max(servo.lag / 2.0);
+        let better = Servo { lag, delay: servo.delay + step[1], ..servo };
+        let there = nearest(better)?;
+        if misfit(measured, &there) >= misfit(measured, &here) {
+            break;
+        }
+        (servo, here) = (better, there);
+    }
+    Some((misfit(measured, &here), servo))
+}
+
+fn best_servo(time: &[f64], measured: &[f64], command: &[f64]) -> Option<Servo> {
+    let mut best = (f64::INFINITY, 0.0, 0.0);
+    let consider = |lag: f64, delay: f64, best: &mut (f64, f64, f64)| {
+        let servo = Servo { lag, delay, between: Between::Lines };
+        let Some(nearest) = Courses::new(time, command, servo).nearest(measured) else { return };
+        let squares = misfit(measured, &nearest);
+        if squares < best.0 {
+            *best = (squares, lag, delay);
+        }
+    };
+    for lag in LAGS {
+        consider(lag, 0.0, &mut best);
+    }
+    // Coordinate search from the best of the grid; the misfit is smooth in both.
+    let (mut lag_factor, mut delay_step) = (1.3_f64, 0.004);
+    for _ in 0..24 {
+        let (before, lag, delay) = (best.0, best.1, best.2);
+        consider(lag * lag_factor, delay, &mut best);
+        consider(lag / lag_factor, delay, &mut best);
+        consider(best.1, delay + delay_step, &mut best);
+        consider(best.1, delay - delay_step, &mut best);
+        if best.0 >= before {
+            lag_factor = lag_factor.sqrt();
+            delay_step /= 2.0;
+        }
+    }
+    best.0.is_finite().then_some(Servo { lag: best.1, delay: best.2, between: Between::Lines })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, Normal};
+
+    use super::*;
+
+    /// Noise of a good spool sensor, m².
+    const NOISE: f64 = 2e-7;
+
+    /// A minute of a spool that begins `away` m² from where it was told, behind a servo of 12 ms: times, the command, where it was.
+    fn steered(away: f64) -> [Vec<f64>; 3] {
+        let time: Vec<f64> = (0..30_000).map(|k| 0.002 * f64::from(k)).collect();
+        let command: Vec<f64> =
+            time.iter().map(|t| 7e-5 * (1.3 * t).sin() + if t.rem_euclid(5.0) < 1.0 { 4e-5 } else { 0.0 }).collect();
+        let mut spool = vec![command[0] + away];
+        for pair in command.windows(2) {
+            let last = spool[spool.len() - 1];
+            spool.push(pair[0] + (last - pair[0]) * (-0.002_f64 / 0.012).exp());
+        }
+        [time, command, spool]
+    }
+
+    fn read(spool: &[f64], gain: f64, offset: f64) -> Vec<f64> {
+        let noise = Normal::new(0.0, NOISE).unwrap();
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        spool.iter().map(|area| gain * area + offset + noise.sample(&mut random)).collect()
+    }
+
+    fn largest_error(follower: &[f64], truth: impl Iterator<Item = f64>) -> f64 {
+        follower.iter().zip(truth).map(|(follower, truth)| (follower - truth).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_sensor_that_reads_what_was_told_has_neither_gain_nor_offset() {
+        let [time, command, spool] = steered(0.0);
+        let follower = servo_follower(&time, &read(&spool, 1.0, 0.0), &command, NOISE).unwrap();
+        // Rests are as the command has them, to the last digit but what the servo has not settled yet.
+        let resting = (0..time.len()).filter(|&k| (4.9..5.0).contains(&time[k].rem_euclid(5.0)));
+        let off = |k: usize| (follower[k] - spool[k]).abs();
+        assert!(resting.map(off).fold(0.0, f64::max) < 1e-9);
+        assert!(largest_error(&follower, spool.iter().copied()) < NOISE / 2.0);
+    }
+
+    #[test]
+    fn a_sensor_with_gain_and_offset_is_believed() {
+        let [time, command, spool] = steered(0.0);
+        let follower = servo_follower(&time, &read(&spool, 1.01, 3e-7), &command, NOISE).unwrap();
+        assert!(largest_error(&follower, spool.iter().map(|area| 1.01 * area + 3e-7)) < NOISE / 2.0);
+    }
+
+    #[test]
+    fn a_recording_may_begin_while_the_spool_moves() {
+        let [time, command, spool] = steered(-9e-5);
+        let follower = servo_follower(&time, &read(&spool, 1.0, 0.0), &command, NOISE).unwrap();
+        // Where it began is known from a dozen readings.
+        assert!(largest_error(&follower, spool.iter().copied()) < NOISE);
+        assert!(largest_error(&follower[100..], spool[100..].iter().copied()) < NOISE / 10.0);
+    }
+
+    #[test]
+    fn a_command_that_never_moves_has_no_follower() {
+        let [time, _, spool] = steered(0.0);
+        assert!(servo_follower(&time, &spool, &vec![0.0; time.len()], NOISE).is_none());
+    }
+}
