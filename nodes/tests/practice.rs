@@ -28,6 +28,11 @@ fn answers(shared: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(shared.join("practice/answers.json")).unwrap()).unwrap()
 }
 
+/// The right model leaves the sensors' noise and little else; p05, where a chamber touches the vapour limit, leaves most.
+fn assert_leaves_noise(loss: &Value) {
+    assert!(loss.as_f64().unwrap().abs() < 0.25, "{loss}");
+}
+
 /// The hidden effect is named first, alone, and named as missing.
 fn assert_found(case: &str) {
     let Some(shared) = shared() else { return };
@@ -40,6 +45,7 @@ fn assert_found(case: &str) {
     let (before, after) = (&first["validation_error_before"], &first["validation_error_after"]);
     println!("{case}: {wanted}, validation error {before} -> {after}");
     assert!(after.as_f64().unwrap() < 0.2 * before.as_f64().unwrap());
+    assert_leaves_noise(&diagnosis["together"][0]["loss_after"]);
 }
 
 #[test]
@@ -48,6 +54,8 @@ fn nothing_missing_is_adequate() {
     let diagnosis = diagnose(&shared.join("practice/p00"), "zx30u-arm");
     assert_eq!(diagnosis["verdict"], "adequate", "{diagnosis:#}");
     assert_eq!(diagnosis["candidates"].as_array().unwrap().len(), 0);
+    assert_eq!(diagnosis["adequate_by"], "noise");
+    assert_leaves_noise(&diagnosis["loss"]["nominal"]);
 }
 
 #[test]
@@ -108,7 +116,10 @@ fn both_of_two_effects_are_found_and_the_model_file_says_so() {
 #[ignore = "several minutes; tests/run --long"]
 fn two_joints_with_nothing_hidden_are_adequate() {
     let Some(shared) = shared() else { return };
-    assert_eq!(diagnose(&shared.join("practice/p09"), "zx30u")["verdict"], "adequate");
+    let diagnosis = diagnose(&shared.join("practice/p09"), "zx30u");
+    assert_eq!(diagnosis["verdict"], "adequate", "{diagnosis:#}");
+    assert_eq!(diagnosis["adequate_by"], "noise");
+    assert_leaves_noise(&diagnosis["loss"]["nominal"]);
 }
 
 #[test]

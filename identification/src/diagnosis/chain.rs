@@ -10,7 +10,7 @@ use excavator_model::recording::Recording;
 use super::own_windows::evaluate_in_known_windows;
 use super::race::{Race, Round};
 use super::starts::acts_in_a_window;
-use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, compare_losses, is_adequate};
+use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, adequacy, compare_losses};
 use crate::fit::{Fit, fit};
 use crate::recording_effects::refitted_with_recording_effects;
 
@@ -151,7 +151,7 @@ impl Chains<'_> {
 
     /// Whether a model is adequate, by its evaluation on the validation recordings.
     pub fn is_adequate(&self, evaluated: &Fit) -> bool {
-        is_adequate(evaluated, self.validation, self.settings)
+        adequacy(evaluated, self.validation, self.settings).is_some()
     }
 
     /// Whether nothing that could be named is left: the model is adequate, and its whole loss less than another effect would

@@ -3,12 +3,15 @@
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
+use super::adequacy::inputs_explain;
 use super::candidate::CandidateError;
 use super::chain::Chains;
-use super::input_floor::with_input_floor;
 use super::race::Round;
 use super::starts::within_bounds;
-use super::{Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, compare_losses, residual_map, unexplained};
+use super::{
+    Adequacy, Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, adequacy, compare_losses,
+    normalised_error, residual_map, unexplained,
+};
 use crate::fit::{Fit, FitError, evaluate, fit};
 use crate::recording_effects::refitted_with_recording_effects;
 use crate::regression::{RegressionError, WeakFormSettings, weak_form};
@@ -58,7 +61,9 @@ pub struct Diagnosis {
     pub map: Vec<Share>,
     /// What is left when nothing explains it.
     pub unexplained: Option<Unexplained>,
-    /// Whether inputs known at samples only leave as much open as the given model is off, and that is too much to call the
+    /// Why the given model is adequate, where it is.
+    pub adequacy: Option<Adequacy>,
+    /// Whether the readings of the inputs leave as much open as the given model is off, and that is too much to call the
     /// model adequate: the recordings are too coarse to tell.
     pub too_coarse: bool,
 }
@@ -95,17 +100,17 @@ pub fn diagnose(
     progress("regression for start values", 0.0);
     let mut nominal = fit_nominal(model, identification, settings)?;
     let mut attempts = 0;
-    let (nominal_validation, nominal_is_adequate, too_coarse, first_round) = loop {
+    let (nominal_validation, adequacy, too_coarse, first_round) = loop {
         let nominal_validation = evaluate(&nominal.model, validation, &settings.fit)?;
-        let alone = is_adequate(&nominal_validation, validation, settings);
+        let alone = adequacy(&nominal_validation, validation, settings);
         // For a model as it is given only; a name for what is missing asks for more.
-        let sampling_explains = !alone && sampling_explains(&nominal_validation, validation, settings);
-        let excused = sampling_explains && normalised_error(&nominal_validation, validation) <= settings.excused_error;
-        let nominal_is_adequate = alone || excused;
+        let inputs_explain = alone.is_none() && inputs_explain(&nominal_validation, validation, settings);
+        let excused = inputs_explain && normalised_error(&nominal_validation, validation) <= settings.excused_error;
+        let adequacy = alone.or(excused.then_some(Adequacy::Inputs));
         let chains = Chains {
             nominal: &nominal,
             nominal_validation: &nominal_validation,
-            nominal_is_adequate,
+            nominal_is_adequate: adequacy.is_some(),
             identification,
             validation,
             settings,
@@ -113,7 +118,7 @@ pub fn diagnose(
         let round = chains.round(&[], progress);
         match better_nominal(&nominal, &round, identification, settings) {
             Some(better) if attempts < MOST_NOMINALS => nominal = better,
-            _ => break (nominal_validation, nominal_is_adequate, sampling_explains && !excused, round),
+            _ => break (nominal_validation, adequacy, inputs_explain && !excused, round),
         }
         attempts += 1;
     };
@@ -122,14 +127,14 @@ pub fn diagnose(
     let chains = Chains {
         nominal: &nominal,
         nominal_validation: &nominal_validation,
-        nominal_is_adequate,
+        nominal_is_adequate: adequacy.is_some(),
         identification,
         validation,
         settings,
     };
     let (mut chain, first_round) = chains.best(first_round, progress)?;
     let mut explained = chains.explains(&chain);
-    if !explained && is_adequate(&nominal_validation, validation, settings) {
+    if !explained && matches!(adequacy, Some(Adequacy::Noise | Adequacy::SmallError)) {
         // A part of what little is left is no reason to doubt a model.
         chain.clear();
         explained = true;
@@ -167,6 +172,7 @@ pub fn diagnose(
         chain,
         map,
         unexplained,
+        adequacy,
         too_coarse,
     })
 }
@@ -254,49 +260,4 @@ pub(crate) fn fit_nominal(
         },
     };
     Ok(refitted_with_recording_effects(fitted, model.effects.len(), identification, &settings.fit))
-}
-
-/// Noise, as a part of its spread, up to which a signal is clear: noise alone is no large error of it.
-const CLEAR: f64 = 0.15;
-
-/// Sample interval, s, from which on sensors look noisier than they are.
-const COARSE: f64 = 0.03;
-
-/// Whether what is left is noise but for a few moments, or too small to act on.
-pub(super) fn is_adequate(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
-    let error = normalised_error(fit, recordings);
-    // At such rates second differences, which the sensors' noise is taken from, have motion in them.
-    let coarse = recordings.iter().any(|recording| recording.sample_interval() > COARSE);
-    let too_large =
-        mean_error(fit, recordings, CLEAR) > settings.largest_error || coarse && error > settings.excused_error;
-    (fit.typical_loss() <= settings.adequate_loss && !too_large) || error <= settings.adequate_error
-}
-
-/// Whether what is left is no larger than inputs known at samples only leave open, in every instrument: what spoils the
-/// pressures only is no excuse for the displacement.
-fn sampling_explains(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
-    with_input_floor(fit, recordings, &settings.fit).is_some_and(|raised| {
-        let worst = raised.typical_losses().into_iter().fold(f64::NEG_INFINITY, f64::max);
-        raised.typical_loss() <= settings.adequate_loss && worst <= settings.excused_loss
-    })
-}
-
-/// Mean over instruments of squared error over the signal's own variance; `NaN` when no signal varies.
-pub fn normalised_error(fit: &Fit, recordings: &[&Recording]) -> f64 {
-    mean_error(fit, recordings, f64::INFINITY)
-}
-
-/// The same over the instruments whose noise is at most this part of their signal's spread.
-fn mean_error(fit: &Fit, recordings: &[&Recording], most_noise: f64) -> f64 {
-    let errors: Vec<f64> = fit
-        .instruments
-        .iter()
-        .zip(&fit.errors)
-        .filter_map(|(instrument, error)| {
-            let signals = recordings.iter().filter_map(|recording| recording.signal(&instrument.name));
-            let spread = signals.map(crate::fit::standard_deviation).fold(0.0, f64::max);
-            (spread > 0.0 && instrument.noise <= most_noise * spread).then(|| (error / spread).powi(2))
-        })
-        .collect();
-    errors.iter().sum::<f64>() / errors.len() as f64
 }

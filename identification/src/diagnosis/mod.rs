@@ -1,5 +1,6 @@
 //! Which physical effect is missing: candidates, evidence, verdict.
 
+mod adequacy;
 mod candidate;
 mod chain;
 mod contribution;
@@ -18,12 +19,13 @@ mod starts;
 mod track;
 mod worst_stretch;
 
+use adequacy::adequacy;
+pub use adequacy::{Adequacy, normalised_error};
 pub(crate) use candidate::fit_addition;
 pub use candidate::{Candidate, CandidateError, Unpromising, additions};
 pub use contribution::{Contribution, ContributionBin, contribution};
 pub(crate) use diagnose::fit_nominal;
-use diagnose::is_adequate;
-pub use diagnose::{Diagnosis, DiagnosisError, Verdict, diagnose, normalised_error};
+pub use diagnose::{Diagnosis, DiagnosisError, Verdict, diagnose};
 pub use evidence::{Evidence, compare_losses};
 pub use inclusion::Inclusion;
 pub use residual_map::{Share, Unexplained, residual_map, unexplained};

@@ -128,7 +128,7 @@ impl Shared<'_, '_> {
                 }
             }
             let is_compared = recording.compared[index] && recording.recording.time[index] >= start + SETTLING;
-            if is_compared {
+            if is_compared || observer.looks_back() {
                 observer.observe(&recording.inputs, index, &state, Some(&sensitivity));
             }
             for (number, instrument) in self.instruments.iter().enumerate().filter(|_| is_compared) {

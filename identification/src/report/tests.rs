@@ -8,7 +8,7 @@ use excavator_model::effects::{self, Site};
 use excavator_model::recording::Recording;
 
 use super::{comparison_page, diagnosis_page, refinement_page, verdict_sentence};
-use crate::diagnosis::{Candidate, Diagnosis, Evidence, Inclusion, Share, Unexplained, Verdict};
+use crate::diagnosis::{Adequacy, Candidate, Diagnosis, Evidence, Inclusion, Share, Unexplained, Verdict};
 
 use crate::energy::{MissingPower, Regime};
 use crate::fit::Fit;
@@ -97,6 +97,7 @@ fn diagnosis(verdict: Verdict, candidates: Vec<Candidate>) -> Diagnosis {
         unpromising: Vec::new(),
         failed: Vec::new(),
         map: vec![share("arm.cap_continuity", 0.7), share("arm.motion", 0.3)],
+        adequacy: (verdict == Verdict::Adequate).then_some(Adequacy::Noise),
         too_coarse: false,
         unexplained: (verdict == Verdict::Unexplained).then(|| Unexplained {
             equation: "arm.motion".into(),

@@ -5,22 +5,27 @@ use excavator_model::{Model, site_name};
 
 use super::numbers::{percent, ratio};
 use super::words;
-use crate::diagnosis::{Candidate, Diagnosis, Verdict};
+use crate::diagnosis::{Adequacy, Candidate, Diagnosis, Verdict};
 
 /// What a diagnosis found, in one or two plain sentences. Effects that the recordings cannot tell apart are all named.
 pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
     let machine = &model.machine.name;
     let verdict = match diagnosis.verdict {
         Verdict::Adequate => format!(
-            "Nothing is missing in {machine} that these recordings can show: what is left of the error is noise, or too \
-             small to act on, or what inputs known at samples only leave open."
+            "Nothing is missing in {machine} that these recordings can show: what is left of the error is {}.",
+            match diagnosis.adequacy {
+                Some(Adequacy::SmallError) => "about a hundredth of each signal's own size, too small to act on",
+                Some(Adequacy::Inputs) =>
+                    "no more than the readings of the inputs leave open, by their noise and by what happens between samples",
+                Some(Adequacy::Noise) | None => "the noise of the sensors",
+            }
         ),
         Verdict::MissingEffect => missing(machine, diagnosis),
         Verdict::Unexplained => unexplained(machine, diagnosis),
     };
     let verdict = if diagnosis.too_coarse && diagnosis.verdict != Verdict::Adequate {
         format!(
-            "{verdict} Beware: where inputs were between samples leaves as much open; record command and opening faster \
+            "{verdict} Beware: the readings of the inputs leave as much open; record command and opening faster, or with less noise, \
              before acting on this."
         )
     } else {

@@ -106,6 +106,11 @@ impl<'m, 's> Observer<'m, 's> {
         self.past.clear();
     }
 
+    /// Whether an instrument is late: samples that nobody asks about have to be observed too.
+    pub fn looks_back(&self) -> bool {
+        self.instruments.iter().any(Instrument::has_delay)
+    }
+
     /// Takes the state at sample `index` of `signals`, and its sensitivity if derivatives are wanted. Samples of one
     /// trajectory come in order.
     pub fn observe(
@@ -119,7 +124,7 @@ impl<'m, 's> Observer<'m, 's> {
         if self.gradients.ncols() != columns {
             self.gradients = DMatrix::zeros(self.instruments.len(), columns);
         }
-        if self.any_delay() {
+        if self.looks_back() {
             self.remember(signals, index, state, sensitivity);
         }
         for (row, instrument) in self.instruments.iter().enumerate() {
@@ -152,10 +157,6 @@ impl<'m, 's> Observer<'m, 's> {
                 values[index] = *reading;
             }
         }
-    }
-
-    fn any_delay(&self) -> bool {
-        self.instruments.iter().any(Instrument::has_delay)
     }
 
     /// Adds a snapshot and drops those that no instrument looks back to.

@@ -81,14 +81,13 @@ impl Courses {
             matrix += part * part.transpose();
             right += part * (measured - fixed(settled));
         }
-        for number in 0..3 {
-            if !free[number] {
-                matrix[(number, number)] = 1.0;
-            } else if !(matrix[(number, number)] > 0.0) {
-                return None;
-            }
+        for number in (0..3).filter(|&number| !free[number]) {
+            matrix[(number, number)] = 1.0;
         }
         let scale = matrix.diagonal().map(|value: f64| 1.0 / value.sqrt());
+        if !scale.iter().all(|value| value.is_finite()) {
+            return None;
+        }
         let scaled = Matrix3::from_diagonal(&scale) * matrix * Matrix3::from_diagonal(&scale);
         let weights = scaled.cholesky()?.solve(&right.component_mul(&scale)).component_mul(&scale);
         let course = self.settled.iter().zip(&self.begin);

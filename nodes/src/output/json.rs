@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use excavator_identification::diagnosis::{Candidate, Diagnosis, normalised_error};
+use excavator_identification::diagnosis::{Adequacy, Candidate, Diagnosis, normalised_error};
 use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
 use excavator_identification::validation::{Comparison, Correlation};
@@ -196,6 +196,7 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
             "unit": rest.unit,
             "curve": rest.curve,
         })),
+        "adequate_by": diagnosis.adequacy.map(Adequacy::name),
         "too_coarse": diagnosis.too_coarse,
         "loss": {
             "nominal": finite(diagnosis.nominal_validation.loss()),
