@@ -50,10 +50,32 @@ pub(super) fn adequacy(fit: &Fit, recordings: &[&Recording], settings: &Diagnosi
 /// Whether what is left is no larger than the readings of the inputs leave open, in every instrument: what spoils the
 /// pressures only is no excuse for the displacement.
 pub(super) fn inputs_explain(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
+    with_input_floor(fit, recordings, &settings.fit).is_some_and(|raised| is_within_floor(&raised, settings))
+}
+
+/// The same for a fit with effects that a model without them is compared with: these must take away a share of what `nominal` is
+/// off beyond that.
+pub(super) fn inputs_explain_the_rest(
+    fit: &Fit,
+    nominal: &Fit,
+    recordings: &[&Recording],
+    settings: &DiagnosisSettings,
+) -> bool {
+    if normalised_error(fit, recordings) > settings.excused_error {
+        return false;
+    }
     with_input_floor(fit, recordings, &settings.fit).is_some_and(|raised| {
-        let worst = raised.typical_losses().into_iter().fold(f64::NEG_INFINITY, f64::max);
-        raised.typical_loss() <= settings.adequate_loss && worst <= settings.excused_loss
+        let nominal = Fit { instruments: raised.instruments.clone(), ..nominal.clone() };
+        let share = 1.0 - raised.loss() / nominal.loss();
+        nominal.loss() > settings.adequate_loss
+            && share >= settings.least_shared_share
+            && is_within_floor(&raised, settings)
     })
+}
+
+fn is_within_floor(raised: &Fit, settings: &DiagnosisSettings) -> bool {
+    let worst = raised.typical_losses().into_iter().fold(f64::NEG_INFINITY, f64::max);
+    raised.typical_loss() <= settings.adequate_loss && worst <= settings.excused_loss
 }
 
 /// Mean over instruments of squared error over the signal's own variance; `NaN` when no signal varies.

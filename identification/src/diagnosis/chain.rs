@@ -7,6 +7,7 @@
 use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
 
+use super::adequacy::inputs_explain_the_rest;
 use super::own_windows::evaluate_in_known_windows;
 use super::race::{Race, Round};
 use super::starts::acts_in_a_window;
@@ -84,18 +85,18 @@ impl Chains<'_> {
     }
 
     /// Whether a chain of effects explains the recordings: the model is adequate with them, or so much better and good
-    /// enough.
+    /// enough, or what it leaves is no more than the readings of the inputs leave open.
     pub fn explains(&self, chain: &[Candidate]) -> bool {
         let settings = self.settings;
         let Some(last) = chain.last().map(|last| &last.validation) else {
             return self.nominal_is_adequate;
         };
         let share = 1.0 - last.loss() / self.nominal_validation.loss();
-        if chain.len() > 1 && share < settings.least_shared_share {
-            return false;
-        }
-        share >= settings.least_explained_share && self.is_adequate(last)
-            || share >= settings.explained_share && last.typical_loss() <= settings.explained_loss
+        let least = if chain.len() > 1 { settings.least_shared_share } else { settings.least_explained_share };
+        let is_good_enough = self.is_adequate(last)
+            || share >= settings.explained_share && last.typical_loss() <= settings.explained_loss;
+        share >= least && is_good_enough
+            || inputs_explain_the_rest(last, self.nominal_validation, self.validation, settings)
     }
 
     fn contains(&self, chain: &[Candidate], other: &Candidate) -> bool {
