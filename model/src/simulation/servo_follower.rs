@@ -11,6 +11,9 @@ const LAGS: [f64; 10] = [0.001, 0.002, 0.004, 0.007, 0.012, 0.02, 0.035, 0.06, 0
 /// are polished on all samples.
 const SEARCH_SAMPLES: usize = 2000;
 
+/// Sample intervals below which a lag is none: nothing tells it from a delay, and a search for both would not end.
+const SHORTEST_LAG: f64 = 0.25;
+
 /// The lagged, delayed, scaled and shifted command (m²) that is nearest to the measured spool, whose sensor's noise has
 /// the standard deviation `noise`, m². `None` where the command never moves.
 ///
@@ -19,14 +22,15 @@ const SEARCH_SAMPLES: usize = 2000;
 pub(super) fn servo_follower(time: &[f64], measured: &[f64], command: &[f64], noise: f64) -> Option<Vec<f64>> {
     let stride = (time.len() / SEARCH_SAMPLES).max(1);
     let thin = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
-    let lines = best_servo(&thin(time), &thin(measured), &thin(command))?;
-    // A held command is the line between its samples half an interval later.
     let interval = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
+    let shortest_lag = SHORTEST_LAG * interval;
+    let lines = best_servo(&thin(time), &thin(measured), &thin(command), shortest_lag)?;
+    // A held command is the line between its samples half an interval later.
     let held = Servo { delay: lines.delay - interval / 2.0, between: Between::Held, ..lines };
     // A jump told by a message acts at once; a knob that was sampled ran on in between.
     let (_, servo) = [lines, held]
         .into_iter()
-        .filter_map(|servo| polished(time, measured, command, servo))
+        .filter_map(|servo| polished(time, measured, command, servo, shortest_lag))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(Courses::new(time, command, servo).simplest(measured, noise))
 }
@@ -36,7 +40,7 @@ pub(super) fn servo_follower(time: &[f64], measured: &[f64], command: &[f64], no
 const STEPS: usize = 3;
 
 /// The servo near `servo` that comes nearest to the measured spool, and how near.
-fn polished(time: &[f64], measured: &[f64], command: &[f64], servo: Servo) -> Option<(f64, Servo)> {
+fn polished(time: &[f64], measured: &[f64], command: &[f64], servo: Servo, shortest_lag: f64) -> Option<(f64, Servo)> {
     let nearest = |servo: Servo| Courses::new(time, command, servo).nearest(measured);
     let (mut servo, mut here) = (servo, nearest(servo)?);
     for _ in 0..STEPS {
@@ -56,22 +60,25 @@ fn polished(time: &[f64], measured: &[f64], command: &[f64], servo: Servo) -> Op
             break;
         }
         let scaled = Matrix2::from_diagonal(&scale) * matrix * Matrix2::from_diagonal(&scale);
-        let Some(step) = scaled.lu().solve(&right.component_mul(&scale)) else { break };
-        let step = step.component_mul(&scale);
-        let lag = (servo.lag + step[0]).max(servo.lag / 2.0);
-        let better = Servo { lag, delay: servo.delay + step[1], ..servo };
-        let there = nearest(better)?;
-        if misfit(measured, &there) >= misfit(measured, &here) {
-            break;
-        }
-        (servo, here) = (better, there);
+        let both = scaled.lu().solve(&right.component_mul(&scale)).map(|step| step.component_mul(&scale));
+        // Where a lag is as good as a delay there is no telling them apart: the delay alone.
+        let delay_alone = Vector2::new(0.0, right[1] / matrix[(1, 1)]);
+        let better = both.into_iter().chain([delay_alone]).find_map(|step| {
+            let lag = (servo.lag + step[0]).max(servo.lag / 2.0).max(shortest_lag);
+            let better = Servo { lag, delay: servo.delay + step[1], ..servo };
+            let there = nearest(better)?;
+            (misfit(measured, &there) < misfit(measured, &here)).then_some((better, there))
+        });
+        let Some(better) = better else { break };
+        (servo, here) = better;
     }
     Some((misfit(measured, &here), servo))
 }
 
-fn best_servo(time: &[f64], measured: &[f64], command: &[f64]) -> Option<Servo> {
+fn best_servo(time: &[f64], measured: &[f64], command: &[f64], shortest_lag: f64) -> Option<Servo> {
     let mut best = (f64::INFINITY, 0.0, 0.0);
     let consider = |lag: f64, delay: f64, best: &mut (f64, f64, f64)| {
+        let lag = lag.max(shortest_lag);
         let servo = Servo { lag, delay, between: Between::Lines };
         let Some(nearest) = Courses::new(time, command, servo).nearest(measured) else { return };
         let squares = misfit(measured, &nearest);
@@ -158,6 +165,21 @@ mod tests {
         // Where it began is known from a dozen readings.
         assert!(largest_error(&follower, spool.iter().copied()) < NOISE);
         assert!(largest_error(&follower[100..], spool[100..].iter().copied()) < NOISE / 10.0);
+    }
+
+    #[test]
+    fn without_a_servo_the_delay_is_found_to_a_fortieth_of_a_sample() {
+        let time: Vec<f64> = (0..7500).map(|k| 0.002 * f64::from(k)).collect();
+        let edge = |t: f64, at: f64| 0.5 * (1.0 + ((t.rem_euclid(5.0) - at) / 2e-2).tanh());
+        let area = |t: f64| 6e-5 * (edge(t, 1.0) - edge(t, 1.5) - edge(t, 2.2) + edge(t, 2.7));
+        let command: Vec<f64> = time.iter().map(|&t| area(t)).collect();
+        for lead in [4e-4, -3e-4] {
+            let spool: Vec<f64> = time.iter().map(|&t| area(t + lead)).collect();
+            let follower = servo_follower(&time, &read(&spool, 1.0, 0.0), &command, NOISE).unwrap();
+            // The steepest edge has 1.5e-3 m²/s.
+            let error = largest_error(&follower, spool.iter().copied());
+            assert!(error < 5e-5 * 1.5e-3, "{error:e}");
+        }
     }
 
     #[test]
