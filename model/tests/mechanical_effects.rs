@@ -138,7 +138,14 @@ fn friction_has_the_levels_it_says() {
         (with(&arm, "asymmetric_friction", 0, &[90.0]), with(&arm, "pressure_dependent_friction", 0, &[2e-4]));
     let mut state = common::at_rest(&System::new(&arm));
     (state[2], state[3]) = (1.5e6, 5e5);
-    for (velocity, of_direction, of_pressure) in [(0.1, -90.0, -400.0), (-0.1, 0.0, 400.0), (0.0, 0.0, 0.0)] {
+    let half = 0.5_f64.tanh();
+    for (velocity, of_direction, of_pressure) in [
+        (0.1, -90.0, -400.0),
+        (-0.1, 0.0, 400.0),
+        (0.0, 0.0, 0.0),
+        (5e-4, -90.0 * half, -400.0 * half),
+        (-5e-4, 0.0, 400.0 * half),
+    ] {
         state[1] = velocity / linkage.lever(state[0]);
         let inputs = Inputs::zero(1);
         let nominal = torque(&arm, &state, &inputs).1;

@@ -7,8 +7,8 @@ use crate::machine::Machine;
 
 /// Friction that differs by direction.
 ///
-/// The level of retraction is that of `coulomb_friction`. `s (1 + s)/2` is the step from 0 to 1 without a corner, and never
-/// pushes along: its sign is that of v at every speed.
+/// The level of retraction is that of `coulomb_friction`. Each direction has its level on one and the same curve of speed, so
+/// that a piston that creeps feels as much of its level as it does of `coulomb_friction`.
 pub struct AsymmetricFriction;
 
 static CARD: Card = Card {
@@ -16,7 +16,7 @@ static CARD: Card = Card {
     acts_on: ActsOn::Cylinder,
     family: Family::Candidate,
     summary: "The friction level of extension differs from that of retraction: lip seals, a bent rod, a wiper that bites one way.",
-    equation: "force -dFc s (1 + s)/2, s = sgn(v) rounded over 1 mm/s: dFc more against extension, nothing against retraction",
+    equation: "force -dFc max(s, 0), s = sgn(v) rounded over 1 mm/s: dFc more against extension, nothing against retraction",
     source: "textbook (e.g. Armstrong-Helouvry, Dupont, Canudas de Wit 1994)",
     shows: "Force error of one size while extending and another while retracting, at any speed.",
     experiment: "Slow strokes in both directions over the same range.",
@@ -46,7 +46,6 @@ impl Physics for AsymmetricFriction {
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
-        let sign = direction(now.pistons[cylinder].velocity);
-        rows.piston_force[cylinder] -= parameters[0] * sign * (sign + 1.0) * 0.5;
+        rows.piston_force[cylinder] -= parameters[0] * direction(now.pistons[cylinder].velocity).positive_part();
     }
 }
