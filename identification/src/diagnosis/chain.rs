@@ -95,8 +95,10 @@ impl Chains<'_> {
         let least = if chain.len() > 1 { settings.least_shared_share } else { settings.least_explained_share };
         let is_good_enough = self.is_adequate(last)
             || share >= settings.explained_share && last.typical_loss() <= settings.explained_loss;
+        // What readings leave open is no reason to name something in a model that lacks nothing.
         share >= least && is_good_enough
-            || inputs_explain_the_rest(last, self.nominal_validation, self.validation, settings)
+            || !self.nominal_is_adequate
+                && inputs_explain_the_rest(last, self.nominal_validation, self.validation, settings)
     }
 
     fn contains(&self, chain: &[Candidate], other: &Candidate) -> bool {

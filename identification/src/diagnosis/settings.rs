@@ -9,7 +9,7 @@ pub struct DiagnosisSettings {
     /// Fits of nominal and candidate models.
     pub fit: FitSettings,
     /// Least gain of validation loss that makes a candidate worth naming. An effect that lowers the mean squared error
-    /// by less than a fifth cannot be told from the small errors that every model has.
+    /// by less than a seventh cannot be told from the small errors that every model has.
     pub least_gain: f64,
     /// The same where the model is adequate already: an effect that acts in a few moments only can still halve its squared
     /// error. Where nothing is hidden no effect gains more than 0.02 on the recordings of three simulators, once instruments
@@ -28,9 +28,9 @@ pub struct DiagnosisSettings {
     /// Candidates whose loss is within this share of what the best explanation leaves are tied with it: an error of unknown
     /// origin that is larger than a lead may as well have made it.
     pub doubtful_lead: f64,
-    /// A model whose typical loss ([`crate::fit::Fit::typical_loss`]) is below this is adequate. 0.35 is 1.2 times the
-    /// sensors' noise; the right model of one joint comes to -0.1 to 0.2 on the recordings of three simulators, of two joints to
-    /// 0.8, which is what inputs known at samples only leave open.
+    /// A model whose typical loss ([`crate::fit::Fit::typical_loss`]) is below this is adequate. 0.2 is 1.1 times the
+    /// sensors' noise; the right model of one joint or two comes to -0.08 to 0.07 on the recordings of four simulators, and to 0.14
+    /// where the servo or the rate of the commands is another than the spool's estimate takes it to be.
     pub adequate_loss: f64,
     /// Or its normalised mean squared error, mean over signals, is below this: a hundredth of each signal's own size,
     /// which nobody would act on however quiet the sensors are.
@@ -38,7 +38,7 @@ pub struct DiagnosisSettings {
     /// A model whose normalised mean squared error on clear signals is above this is not adequate, however few moments it
     /// comes from: a sixth of each signal's own size is seen by anybody who looks at the plots.
     pub largest_error: f64,
-    /// What inputs known at samples only leave open excuses a given model up to this normalised mean squared error, a tenth of
+    /// What the readings of the inputs leave open excuses a model up to this normalised mean squared error, a tenth of
     /// each signal's own size. Above it the recordings are too coarse to say that nothing is missing: at 50 Hz the right
     /// model of p00 comes to 0.005, a crane joint with a dead zone that is not in the model to 0.02 at 100 Hz.
     pub excused_error: f64,
@@ -46,17 +46,18 @@ pub struct DiagnosisSettings {
     /// hides nothing, none is above -0.2; a droop of the engine and play in a pin leave one instrument or two at 1.0 to 1.4.
     pub excused_loss: f64,
     /// Effects that make the model adequate explain a recording only when they take away at least this share of the loss. A
-    /// model that was nearly adequate needs little for it: play in a pin was called a sensor's offset that took a fifth.
+    /// model that was nearly adequate needs little for it: play in a pin was called a sensor's offset that took a fifth, and a force on a
+    /// spool a loss in a hose that took half. Right ones take all of it but noise.
     pub least_explained_share: f64,
     /// And several effects that only together explain it, at least this share: what no catalogue has is taken away by two
     /// effects in turns that each resemble it a little (a force on the spool of a blind machine 68 %). Right pairs take 90 % and more.
     pub least_shared_share: f64,
     /// Effects that do not make it adequate explain it when they take away at least this share of the loss. The
-    /// right effects take away 80 % and more; in the blind benchmark effects that only resemble one that no catalogue
-    /// has took away 35 % at most.
+    /// right effects take away 80 % and more; effects that only resemble one that no catalogue has took away 68 % at most.
     pub explained_share: f64,
-    /// And only when the typical loss left is below this: seven times the noise variance. Whoever takes most of an error
-    /// away that large may still be the wrong one, as a share of it says nothing about what is left.
+    /// And only when the typical loss left is below this: three times the noise variance. Whoever takes most of an error
+    /// away that large may still be the wrong one, as a share of it says nothing about what is left. Right effects whose law is a little
+    /// another than the catalogue's leave 0.2 to 0.6.
     pub explained_loss: f64,
     /// Most effects added one after the other: \[B\] adds five to its preliminary model.
     pub most_effects: usize,
