@@ -188,12 +188,15 @@ impl Race<'_> {
         let start = best_start(&track.base.model, physics, site, &recordings, &self.settings.fit)?;
         let promised_gain = track.base.loss() - start.promise.loss_after;
         // Only from a start next to the base can the promise of one step be trusted.
-        if (start.promise.loss_before - track.start_loss).abs() < NEXT_TO_BASE && promised_gain < self.least_gain / 4.0
-        {
+        let is_trusted = (start.promise.loss_before - track.start_loss).abs() < NEXT_TO_BASE;
+        if is_trusted && promised_gain < self.least_gain / 4.0 {
             return Ok(Outcome::Unpromising(Unpromising { physics, place, promised_gain }));
         }
         let fit = fit_predicted(&start.model, start.promise, &recordings, &short(self.settings))?;
-        let gain = compare_losses(&track.base, &fit).gain;
+        let reached = compare_losses(&track.base, &fit).gain;
+        // Who is behind the model without the effect has had its steps refused, by one stretch that starts at rest perhaps, and
+        // would lose to a twin whose steps were not.
+        let gain = if reached < 0.0 && is_trusted && !fit.converged { promised_gain } else { reached };
         Ok(Outcome::Ran(Box::new(Runner { physics, site, place, fit, gain })))
     }
 
