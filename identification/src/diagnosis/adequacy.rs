@@ -53,11 +53,12 @@ pub(super) fn inputs_explain(fit: &Fit, recordings: &[&Recording], settings: &Di
     with_input_floor(fit, recordings, &settings.fit).is_some_and(|raised| is_within_floor(&raised, settings))
 }
 
-/// The same for a fit with effects that a model without them is compared with: these must take away a share of what `nominal` is
-/// off beyond that.
+/// The same for a fit with effects that a model without them is compared with: these must take away at least the share `least` of
+/// what `nominal` is off beyond that.
 pub(super) fn inputs_explain_the_rest(
     fit: &Fit,
     nominal: &Fit,
+    least: f64,
     recordings: &[&Recording],
     settings: &DiagnosisSettings,
 ) -> bool {
@@ -67,9 +68,7 @@ pub(super) fn inputs_explain_the_rest(
     with_input_floor(fit, recordings, &settings.fit).is_some_and(|raised| {
         let nominal = Fit { instruments: raised.instruments.clone(), ..nominal.clone() };
         let share = 1.0 - raised.loss() / nominal.loss();
-        nominal.loss() > settings.adequate_loss
-            && share >= settings.least_shared_share
-            && is_within_floor(&raised, settings)
+        nominal.loss() > settings.adequate_loss && share >= least && is_within_floor(&raised, settings)
     })
 }
 

@@ -93,12 +93,13 @@ impl Chains<'_> {
         };
         let share = 1.0 - last.loss() / self.nominal_validation.loss();
         let least = if chain.len() > 1 { settings.least_shared_share } else { settings.least_explained_share };
-        let is_good_enough = self.is_adequate(last)
-            || share >= settings.explained_share && last.typical_loss() <= settings.explained_loss;
-        // What readings leave open is no reason to name something in a model that lacks nothing.
-        share >= least && is_good_enough
+        if self.is_adequate(last) {
+            return share >= least;
+        }
+        share >= least.max(settings.explained_share) && last.typical_loss() <= settings.explained_loss
+            // What readings leave open is no reason to name something in a model that lacks nothing.
             || !self.nominal_is_adequate
-                && inputs_explain_the_rest(last, self.nominal_validation, self.validation, settings)
+                && inputs_explain_the_rest(last, self.nominal_validation, least, self.validation, settings)
     }
 
     fn contains(&self, chain: &[Candidate], other: &Candidate) -> bool {

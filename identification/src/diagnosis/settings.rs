@@ -50,7 +50,8 @@ pub struct DiagnosisSettings {
     /// spool a loss in a hose that took half. Right ones take all of it but noise.
     pub least_explained_share: f64,
     /// And several effects that only together explain it, at least this share: what no catalogue has is taken away by two
-    /// effects in turns that each resemble it a little (a force on the spool of a blind machine 68 %). Right pairs take 90 % and more.
+    /// effects in turns that each resemble it a little (a force on the spool of two blind machines 68 % and 82 %). Right pairs take 92 %
+    /// and more.
     pub least_shared_share: f64,
     /// Effects that do not make it adequate explain it when they take away at least this share of the loss. The
     /// right effects take away 80 % and more; effects that only resemble one that no catalogue has took away 68 % at most.
@@ -90,8 +91,8 @@ impl Default for DiagnosisSettings {
             largest_error: 0.03,
             excused_error: 0.01,
             excused_loss: 0.5,
-            least_explained_share: 0.65,
-            least_shared_share: 0.75,
+            least_explained_share: 0.75,
+            least_shared_share: 0.85,
             explained_share: 0.75,
             explained_loss: 1.0,
             most_effects: 5,
