@@ -193,10 +193,7 @@ impl Race<'_> {
             return Ok(Outcome::Unpromising(Unpromising { physics, place, promised_gain }));
         }
         let fit = fit_predicted(&start.model, start.promise, &recordings, &short(self.settings))?;
-        let reached = compare_losses(&track.base, &fit).gain;
-        // Who is behind the model without the effect has had its steps refused, by one stretch that starts at rest perhaps, and
-        // would lose to a twin whose steps were not.
-        let gain = if reached < 0.0 && is_trusted && !fit.converged { promised_gain } else { reached };
+        let gain = compare_losses(&track.base, &fit).gain;
         Ok(Outcome::Ran(Box::new(Runner { physics, site, place, fit, gain })))
     }
 

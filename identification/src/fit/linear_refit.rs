@@ -50,7 +50,7 @@ impl LinearRefit {
             instrument.noise = noise(instrument);
             *slot = instrument.noise;
         }
-        let raw = problem.sums_at(&model.parameter_values(), &problem.segmented)?;
+        let raw = problem.sums_at(&model.parameter_values(), &problem.segments)?;
         Ok(LinearRefit { raw, noise: problem.noise })
     }
 

@@ -12,6 +12,7 @@ mod profile;
 mod reading_rows;
 mod segments;
 mod settings;
+mod trial;
 mod typical_loss;
 mod watch;
 

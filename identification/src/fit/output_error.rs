@@ -15,6 +15,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::normal_equations::{RawSums, SegmentSums};
 use super::problem::Problem;
+use super::trial::loss_of;
 use super::{FitSettings, Instrument, Watch};
 
 /// Why a fit could not be done.
@@ -156,17 +157,9 @@ pub(super) fn run(
     let system = System::new(model);
     let problem = Problem::new(model, &system, recordings, settings, fitted)?;
     let Problem { fitted, scales, cards, noise, .. } = &problem;
-    let mut segmented = problem.segmented.clone();
+    let mut segments = problem.segments.clone();
     let values = model.parameter_values();
-    let loss_of = |sums: &[SegmentSums], weights: &[f64]| {
-        let squares: f64 = sums
-            .iter()
-            .flat_map(|segment| segment.squared_errors.iter().zip(weights))
-            .map(|(squared, weight)| squared / (weight * weight))
-            .sum();
-        squares + sums.iter().map(|segment| segment.prior_loss).sum::<f64>()
-    };
-    let raw = first.map_or_else(|| problem.sums_at(&values, &segmented), Ok)?;
+    let raw = first.map_or_else(|| problem.sums_at(&values, &segments), Ok)?;
     let mut weights = error_sizes(&raw, noise);
     let sums = problem.weighed(&raw, &weights);
     let loss = loss_of(&sums, &weights);
@@ -182,31 +175,23 @@ pub(super) fn run(
         let held = held_at_bounds(&current.sums, &current.values, fitted, cards);
         let Some(step) = parameter_step(&current.sums, &held, damping) else { break };
         let (trial_values, taken) = bounded_step(&current.values, &step, fitted, scales, cards);
-        let mut trial_segments = segmented.clone();
-        let mut sums = current.sums.iter();
-        for segment in trial_segments.iter_mut().flat_map(|recording| recording.segments.iter_mut()) {
-            let Some(segment_sums) = sums.next() else { break };
-            let change = segment_sums.state_step(&taken, damping);
+        let mut trial = segments.clone();
+        for (segment, sums) in trial.iter_mut().zip(&current.sums) {
+            let change = sums.state_step(&taken, damping);
             for (value, change) in segment.state.iter_mut().zip(change.iter()) {
                 *value += change;
             }
         }
-        let accepted = match problem.sums_at(&trial_values, &trial_segments) {
-            Ok(raw) => {
-                let loss = loss_of(&problem.weighed(&raw, &weights), &weights);
-                (loss.is_finite() && loss <= current.loss).then_some((raw, loss))
-            }
-            Err(_) => None,
-        };
-        let Some((raw, loss)) = accepted else {
+        let Some(reached) = problem.tried(&trial_values, trial, (&segments, &current.sums), &weights) else {
             damping = (damping * 10.0_f64).max(1e-3);
             if damping > 1e6 {
                 break;
             }
             continue;
         };
-        let improvement = (current.loss - loss) / current.loss.max(f64::MIN_POSITIVE);
-        segmented = trial_segments;
+        let improvement = (current.loss - reached.loss) / current.loss.max(f64::MIN_POSITIVE);
+        let raw = reached.raw;
+        segments = reached.segments;
         let new_weights = error_sizes(&raw, noise);
         let reweighting = new_weights.iter().zip(&weights).map(|(new, old)| (new / old).ln().abs()).fold(0.0, f64::max);
         let remaining = loss_per_reading(&new_weights, noise);

@@ -33,7 +33,7 @@ pub fn predict(model: &Model, recordings: &[&Recording], settings: &FitSettings)
     let system = System::new(model);
     let problem = Problem::new(model, &system, recordings, settings, model.unknown_parameters())?;
     let values = model.parameter_values();
-    let raw = problem.sums_at(&values, &problem.segmented)?;
+    let raw = problem.sums_at(&values, &problem.segments)?;
     let weights = error_sizes(&raw, &problem.noise);
     let loss_before = loss_per_reading(&weights, &problem.noise);
     let sums = problem.weighed(&raw, &weights);

@@ -8,16 +8,18 @@ use excavator_model::simulation::Tolerances;
 use rayon::prelude::*;
 
 use super::normal_equations::{BLOCK_DURATION, InitialStatePrior, RawSums, SegmentSums, Shared};
-use super::{FitError, FitSettings, Instrument, SegmentedRecording, instruments, scales};
+use super::{FitError, FitSettings, Instrument, Segment, SegmentedRecording, instruments, scales};
 
 /// A model, recordings, and which parameters are free.
 pub(super) struct Problem<'s, 'm> {
     system: &'s System<'m>,
     prior: InitialStatePrior,
-    /// States that the prior is centred on, by recording and segment.
-    anchors: Vec<Vec<Vec<f64>>>,
-    /// The recordings, each segment with the state that it was measured to start from.
-    pub segmented: Vec<SegmentedRecording>,
+    recordings: Vec<SegmentedRecording>,
+    /// Which of the recordings each segment is of.
+    owners: Vec<usize>,
+    /// Segments of all recordings in order, each with the state that it was measured to start from, which the prior is
+    /// centred on.
+    pub segments: Vec<Segment>,
     /// What is compared.
     pub instruments: Vec<Instrument>,
     /// Noise of each instrument, in its unit.
@@ -44,54 +46,69 @@ impl<'s, 'm> Problem<'s, 'm> {
         if instruments.is_empty() {
             return Err(FitError::NothingMeasured { machine: model.machine.name.clone() });
         }
-        let segmented = recordings
+        let recordings = recordings
             .iter()
             .map(|recording| SegmentedRecording::new(model, recording, settings.segment_duration, settings.sample_rate))
             .collect::<Result<Vec<_>, _>>()?;
-        if segmented.iter().all(|recording| recording.segments.is_empty()) {
+        let each = recordings.iter().enumerate();
+        let (owners, segments): (Vec<usize>, Vec<Segment>) = each
+            .flat_map(|(owner, recording)| recording.segments.iter().map(move |segment| (owner, segment.clone())))
+            .unzip();
+        if segments.is_empty() {
             return Err(FitError::TooShort);
         }
-        let anchors = segmented
-            .iter()
-            .map(|recording| recording.segments.iter().map(|segment| segment.state.clone()).collect())
-            .collect();
         let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card).collect();
         let scales = scales(model, &fitted);
         let noise = instruments.iter().map(|instrument| instrument.noise).collect();
         let prior = InitialStatePrior::of(system);
-        Ok(Problem { system, prior, anchors, segmented, instruments, noise, fitted, scales, cards })
+        Ok(Problem { system, prior, recordings, owners, segments, instruments, noise, fitted, scales, cards })
     }
 
-    /// Normal equations of every segment with these parameter values, each segment started from its state in
-    /// `segmented`.
+    /// Normal equations of every segment with these parameter values, each started from its state in `segments`.
     ///
     /// # Errors
     /// [`FitError::Simulation`] when a segment cannot be simulated.
-    pub fn sums_at(&self, values: &[f64], segmented: &[SegmentedRecording]) -> Result<Vec<RawSums>, FitError> {
+    pub fn sums_at(&self, values: &[f64], segments: &[Segment]) -> Result<Vec<RawSums>, FitError> {
+        self.each_at(values, segments).into_iter().collect()
+    }
+
+    /// [`Problem::sums_at`], segment by segment.
+    pub fn each_at(&self, values: &[f64], segments: &[Segment]) -> Vec<Result<RawSums, FitError>> {
+        let each = segments.par_iter().enumerate();
+        each.map(|(number, segment)| self.sums_of(values, number, segment, true)).collect()
+    }
+
+    /// Normal equations of segment `number`, started from the state of `segment`: of the parameters and that state, or of
+    /// the state alone.
+    ///
+    /// # Errors
+    /// [`FitError::Simulation`] when it cannot be simulated.
+    pub fn sums_of(
+        &self,
+        values: &[f64],
+        number: usize,
+        segment: &Segment,
+        with_parameters: bool,
+    ) -> Result<RawSums, FitError> {
+        let (fitted, scales): (&[usize], &[f64]) =
+            if with_parameters { (&self.fitted, &self.scales) } else { (&[], &[]) };
         let shared = Shared {
             system: self.system,
             parameters: values,
-            fitted: &self.fitted,
-            scales: &self.scales,
+            fitted,
+            scales,
             instruments: &self.instruments,
             prior: &self.prior,
             tolerances: Tolerances::default(),
         };
-        let jobs: Vec<(usize, usize)> = segmented
-            .iter()
-            .enumerate()
-            .flat_map(|(r, recording)| (0..recording.segments.len()).map(move |s| (r, s)))
-            .collect();
-        jobs.par_iter()
-            .map(|&(r, s)| Ok(shared.sums(&segmented[r], &segmented[r].segments[s], &self.anchors[r][s])?))
-            .collect()
+        Ok(shared.sums(&self.recordings[self.owners[number]], segment, &self.segments[number].state)?)
     }
 
     /// Recording and begin (s after its first sample) of each block of `sums`, which are of all segments in order.
     pub fn block_places(&self, sums: &[SegmentSums]) -> Vec<(usize, f64)> {
-        let segments = self.segmented.iter().enumerate().flat_map(|(number, recording)| {
-            let time = &recording.recording.time;
-            recording.segments.iter().map(move |segment| (number, time[segment.first] - time[0]))
+        let segments = self.owners.iter().zip(&self.segments).map(|(&owner, segment)| {
+            let time = &self.recordings[owner].recording.time;
+            (owner, time[segment.first] - time[0])
         });
         let blocks = segments.zip(sums).flat_map(|((recording, begin), sums)| {
             (0..sums.block_errors.len()).map(move |block| (recording, begin + block as f64 * BLOCK_DURATION))
