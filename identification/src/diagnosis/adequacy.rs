@@ -1,6 +1,6 @@
 //! Whether a model is as good as its recordings.
 
-use excavator_model::recording::Recording;
+use excavator_model::recording::{Recording, standard_deviation};
 
 use super::DiagnosisSettings;
 use super::input_floor::with_input_floor;
@@ -90,7 +90,7 @@ fn mean_error(fit: &Fit, recordings: &[&Recording], most_noise: f64) -> f64 {
         .zip(&fit.errors)
         .filter_map(|(instrument, error)| {
             let signals = recordings.iter().filter_map(|recording| recording.signal(&instrument.name));
-            let spread = signals.map(crate::fit::standard_deviation).fold(0.0, f64::max);
+            let spread = signals.map(standard_deviation).fold(0.0, f64::max);
             (spread > 0.0 && instrument.noise <= most_noise * spread).then(|| (error / spread).powi(2))
         })
         .collect();

@@ -231,13 +231,14 @@ impl Chains<'_> {
         }
     }
 
-    /// What competes for a place beside a model, which is `adequate` or not.
-    pub fn race_from<'c>(&'c self, base: &'c Fit, base_validation: &'c Fit, adequate: bool) -> Race<'c> {
+    /// What competes for a place beside a model, which is adequate or not.
+    pub fn race_from<'c>(&'c self, base: &'c Fit, base_validation: &'c Fit, base_is_adequate: bool) -> Race<'c> {
         let settings = self.settings;
-        let least_gain = if adequate { settings.least_gain_when_adequate } else { settings.least_gain };
+        let least_gain = if base_is_adequate { settings.least_gain_when_adequate } else { settings.least_gain };
         Race {
             base,
             base_validation,
+            base_is_adequate,
             identification: self.identification,
             validation: self.validation,
             least_gain,

@@ -17,7 +17,7 @@ use super::inclusion::inclusion;
 use super::own_windows::evaluate_in_own_windows;
 use super::starts::{acts_in_a_window, has_visited_thresholds};
 use super::track::{Track, short};
-use super::{Candidate, DiagnosisSettings, Inclusion, Unpromising, adequacy, compare_losses};
+use super::{Candidate, DiagnosisSettings, Inclusion, Unpromising, compare_losses};
 use crate::fit::{Fit, fit, fit_predicted};
 
 /// What became of all candidates.
@@ -69,6 +69,8 @@ pub(super) struct Race<'a> {
     pub identification: &'a [&'a Recording],
     /// Recordings that evidence is taken from.
     pub validation: &'a [&'a Recording],
+    /// Whether the model without them is adequate already.
+    pub base_is_adequate: bool,
     /// Fall of the loss that makes a candidate worth naming.
     pub least_gain: f64,
     /// Thresholds.
@@ -150,7 +152,7 @@ impl Race<'_> {
         let best = round.fitted.iter().filter(|candidate| candidate.accepted).map(|candidate| candidate.evidence.gain);
         let share = best.fold(0.0, f64::max) / self.base_validation.loss();
         match share {
-            _ if adequacy(self.base_validation, self.validation, self.settings).is_some() => 0,
+            _ if self.base_is_adequate => 0,
             share if share < LITTLE => usize::MAX,
             share if share < MOST => self.settings.further_finalists,
             _ => 0,

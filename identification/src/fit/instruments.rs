@@ -1,7 +1,7 @@
 //! What of a recording a simulation is compared with.
 
 use excavator_model::equations::{Channel, System};
-use excavator_model::recording::{Recording, is_measured, noise_level};
+use excavator_model::recording::{Recording, is_measured, noise_level, standard_deviation};
 
 /// One measured output of the model.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,15 +58,4 @@ fn unit(channel: Channel) -> &'static str {
         Channel::RodForce(_) => "N",
         Channel::CapPressure(_) | Channel::RodPressure(_) | Channel::PumpPressure => "Pa",
     }
-}
-
-/// Standard deviation of the finite values of a signal; 0 when there are none.
-pub fn standard_deviation(signal: &[f64]) -> f64 {
-    let finite = || signal.iter().filter(|value| value.is_finite());
-    let count = finite().count() as f64;
-    if count == 0.0 {
-        return 0.0;
-    }
-    let mean = finite().sum::<f64>() / count;
-    (finite().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }

@@ -16,7 +16,7 @@ mod trial;
 mod typical_loss;
 mod watch;
 
-pub use instruments::{Instrument, instruments, standard_deviation};
+pub use instruments::{Instrument, instruments};
 #[cfg(test)]
 pub(crate) use linear_refit::Remainder;
 pub(crate) use linear_refit::{LinearRefit, scales};

@@ -3,7 +3,7 @@
 use excavator_model::Model;
 use excavator_model::equations::System;
 use excavator_model::machine::Linkage;
-use excavator_model::recording::{Recording, noise_level};
+use excavator_model::recording::{Recording, noise_level, standard_deviation};
 use excavator_model::simulation::undistorted;
 use nalgebra::DVector;
 
@@ -12,7 +12,6 @@ use super::simulated::simulated;
 use super::weak_row::{SensorNoise, weak_row};
 use super::window::windows;
 use super::{RegressionError, WeakFormSettings, observe, observe_guided};
-use crate::fit::standard_deviation;
 
 /// One row, divided by what sensor noise puts into its residual.
 pub(super) struct Row {

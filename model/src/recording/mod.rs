@@ -5,12 +5,14 @@ mod denoise;
 mod error;
 mod interpolation;
 mod resolution;
+mod standard_deviation;
 
 pub use cylinder_signals::CylinderSignals;
 pub use denoise::{denoised, denoised_towards_zero, noise_level};
 pub use error::RecordingError;
 pub use interpolation::{cubic, linear, zero_order_hold};
 pub use resolution::resolution;
+pub use standard_deviation::standard_deviation;
 
 /// A recording of one machine: all signals sampled on one, possibly uneven, clock.
 ///

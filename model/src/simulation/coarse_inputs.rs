@@ -7,6 +7,9 @@
 /// lines pass the same oil. They are kept within what the input really was around each time, so that no valve that was
 /// closed opens to the other side; that costs half of what was won at a corner.
 pub(super) fn nearest_lines(time: &[f64], values: &[f64], kept: &[usize]) -> Vec<f64> {
+    if kept.len() == values.len() {
+        return values.to_vec();
+    }
     let mut lines = projected(time, values, kept);
     for (node, value) in lines.iter_mut().enumerate() {
         let (before, after) = (kept[node.saturating_sub(1)], kept.get(node + 1).map_or(values.len() - 1, |&next| next));

@@ -6,7 +6,7 @@ use super::spool_estimate::spool_estimate;
 use crate::effects::Site;
 use crate::equations::{ImposedState, Inputs};
 use crate::machine::{Machine, Supply};
-use crate::recording::{CylinderSignals, Recording, is_measured};
+use crate::recording::{CylinderSignals, Recording, is_measured, standard_deviation};
 use crate::{Model, SignalError};
 
 /// How an input runs between its samples.
@@ -155,7 +155,7 @@ impl InputSignals {
     /// line between them by more than a share of its own spread.
     pub fn needed_samples(&self, stride: usize) -> Vec<usize> {
         let stride = stride.max(1);
-        let spreads: Vec<f64> = self.orifice_area.iter().map(|(_, values)| spread(values)).collect();
+        let spreads: Vec<f64> = self.orifice_area.iter().map(|(_, values)| standard_deviation(values)).collect();
         let is_bent = |first: usize, last: usize| {
             self.orifice_area.iter().zip(&spreads).any(|((interpolation, values), spread)| {
                 let most = match interpolation {
@@ -265,13 +265,6 @@ impl InputSignals {
         inputs.tank_pressure = line(&self.tank_pressure);
         inputs.pump_flow = line(&self.pump_flow);
     }
-}
-
-/// Standard deviation.
-fn spread(values: &[f64]) -> f64 {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 fn changes_sign(values: &[f64]) -> bool {

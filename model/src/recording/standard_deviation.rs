@@ -1,0 +1,12 @@
+//! How far a signal spreads.
+
+/// Standard deviation of the finite values of a signal; 0 when there are none.
+pub fn standard_deviation(signal: &[f64]) -> f64 {
+    let finite = || signal.iter().filter(|value| value.is_finite());
+    let count = finite().count() as f64;
+    if count == 0.0 {
+        return 0.0;
+    }
+    let mean = finite().sum::<f64>() / count;
+    (finite().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
