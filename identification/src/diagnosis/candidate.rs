@@ -45,6 +45,13 @@ impl Candidate {
         own.iter().filter(|parameter| !parameter.known).count()
     }
 
+    /// Whether the recordings determine at least one of its own parameters.
+    pub(super) fn is_determined(&self) -> bool {
+        let own = self.fit.model.effects.last().map_or(0, |effect| effect.parameters.len());
+        let (all, undetermined) = (self.fit.model.parameters().count(), self.fit.undetermined());
+        self.fit.fitted.iter().any(|index| *index + own >= all && !undetermined.contains(index))
+    }
+
     /// The fitted model without the candidate's own effect, nothing fitted again.
     pub fn without_effect(&self) -> Model {
         let mut model = self.fit.model.clone();

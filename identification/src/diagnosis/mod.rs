@@ -1,6 +1,7 @@
 //! Which physical effect is missing: candidates, evidence, verdict.
 
 mod adequacy;
+mod both_sides;
 mod candidate;
 mod chain;
 mod contribution;

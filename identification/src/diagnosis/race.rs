@@ -11,11 +11,12 @@ use excavator_model::recording::Recording;
 use excavator_model::{addition_name, site_name};
 use rayon::prelude::*;
 
+use super::both_sides::has_seen_both_sides;
 use super::candidate::{CandidateError, best_start};
 use super::evidence::joint_significance;
 use super::inclusion::inclusion;
 use super::own_windows::evaluate_in_own_windows;
-use super::starts::{acts_in_a_window, has_visited_thresholds};
+use super::starts::acts_in_a_window;
 use super::track::{Track, short};
 use super::{Candidate, DiagnosisSettings, Inclusion, Unpromising, compare_losses};
 use crate::fit::{Fit, fit, fit_predicted};
@@ -140,6 +141,7 @@ impl Race<'_> {
         round.unpromising.sort_by(|a, b| b.promised_gain.total_cmp(&a.promised_gain));
         round.fitted.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
         mark_ties(&mut round.fitted, self.settings);
+        begin_with_determined(&mut round.fitted);
         let shares = inclusion(self.base_validation, &round.fitted, self.least_gain);
         for (candidate, share) in round.fitted.iter_mut().zip(shares) {
             candidate.inclusion = share;
@@ -211,7 +213,7 @@ impl Race<'_> {
             && fitted.gain >= self.least_gain / 2.0
             && evidence.significance >= self.settings.least_significance
             && joint_significance(evidence, fitted) >= self.settings.least_joint_significance
-            && has_visited_thresholds(&fit.model, self.identification);
+            && has_seen_both_sides(&fit.model, self.identification);
         Ok(Candidate {
             physics,
             site,
@@ -236,5 +238,18 @@ fn mark_ties(candidates: &mut [Candidate], settings: &DiagnosisSettings) {
         let least_lead = if first.parameter_count() < other.parameter_count() { 0.0 } else { settings.tie_gain };
         other.tied_with_first = lead.gain < least_lead || lead.significance < settings.tie_significance;
         first.tied_with_first |= other.tied_with_first;
+    }
+}
+
+/// A payload whose mass nobody can tell, on a level axis with an incline that nobody can tell, is a constant force: it stands
+/// behind what is tied with it and has a number.
+fn begin_with_determined(candidates: &mut [Candidate]) {
+    let Some(first) = candidates.iter().position(|candidate| candidate.tied_with_first) else { return };
+    if candidates[first].is_determined() {
+        return;
+    }
+    let is_other = |candidate: &Candidate| candidate.tied_with_first && candidate.is_determined();
+    if let Some(other) = candidates.iter().position(is_other) {
+        candidates[first..=other].rotate_right(1);
     }
 }

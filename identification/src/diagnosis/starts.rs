@@ -1,7 +1,7 @@
 //! Where the fit of a candidate effect starts.
 
 use excavator_model::Model;
-use excavator_model::effects::{Effect, Kind, ParameterCard, Site, Start};
+use excavator_model::effects::{Effect, Kind, Site, Start};
 use excavator_model::machine::Machine;
 use excavator_model::recording::Recording;
 
@@ -52,20 +52,6 @@ pub(super) fn within_bounds(mut model: Model) -> Model {
 /// Whether an effect acts in a window of time, which belongs to one recording and says nothing about another.
 pub(super) fn acts_in_a_window(physics: &dyn Effect, machine: &Machine, site: Site) -> bool {
     physics.parameters(machine, site).iter().any(|card| card.start.is_a_time())
-}
-
-/// Quantile of the pump pressure below which a threshold has not been seen from both sides.
-const VISITED: f64 = 0.02;
-
-/// Whether the recordings have been on both sides of each threshold in pump pressure of the model's last effect. A relief valve
-/// that is open at all pressures is a leak of the pump under another name.
-pub(super) fn has_visited_thresholds(model: &Model, recordings: &[&Recording]) -> bool {
-    let own = model.effects.last().map_or(&[][..], |effect| &effect.parameters);
-    let is_threshold = |card: &ParameterCard| matches!(card.start, Start::PumpPressureQuantiles(_));
-    own.iter().filter(|parameter| is_threshold(parameter.card)).all(|parameter| {
-        let lowest = pump_pressure(recordings, VISITED);
-        lowest.is_nan() || parameter.value > lowest
-    })
 }
 
 /// Windows of time that are tried as starts.
@@ -128,7 +114,7 @@ fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     starts
 }
 
-fn pump_pressure(recordings: &[&Recording], level: f64) -> f64 {
+pub(super) fn pump_pressure(recordings: &[&Recording], level: f64) -> f64 {
     let mut values: Vec<f64> = recordings
         .iter()
         .flat_map(|recording| recording.pump_pressure.iter().copied())

@@ -1,0 +1,94 @@
+//! Whether recordings have seen an effect come and go, which acts only beyond a threshold or in a window of time.
+
+use excavator_model::effects::Start;
+use excavator_model::recording::Recording;
+use excavator_model::{Model, ModelEffect};
+
+use super::starts::pump_pressure;
+
+/// Quantile of the pump pressure below which a threshold has not been seen from both sides.
+const VISITED: f64 = 0.02;
+
+/// Part of the recordings that a window may fill and still be one.
+const MOST_OF_THE_TIME: f64 = 0.8;
+
+/// Whether the recordings have been on both sides of where the model's last effect begins to act. A relief valve that is open
+/// at all pressures is a leak of the pump under another name, a contact that never ends a constant force.
+pub(super) fn has_seen_both_sides(model: &Model, recordings: &[&Recording]) -> bool {
+    let Some(last) = model.effects.last() else { return true };
+    let mut thresholds =
+        last.parameters.iter().filter(|parameter| matches!(parameter.card.start, Start::PumpPressureQuantiles(_)));
+    let lowest = pump_pressure(recordings, VISITED);
+    let is_visited = lowest.is_nan() || thresholds.all(|threshold| threshold.value > lowest);
+    is_visited && share_inside(last, recordings).is_none_or(|share| share <= MOST_OF_THE_TIME)
+}
+
+/// Part of the time of the recordings that lies inside the effect's window; `None` for an effect without one.
+fn share_inside(effect: &ModelEffect, recordings: &[&Recording]) -> Option<f64> {
+    let value = |is: fn(&Start) -> bool| {
+        effect.parameters.iter().find(|parameter| is(&parameter.card.start)).map(|parameter| parameter.value)
+    };
+    let begin = value(|start| matches!(start, Start::WorstStretchBegin))?;
+    let end = begin + value(|start| matches!(start, Start::WorstStretchDuration))?;
+    let inside: f64 =
+        recordings.iter().map(|recording| (end.min(recording.duration()) - begin.max(0.0)).max(0.0)).sum();
+    let all: f64 = recordings.iter().map(|recording| recording.duration()).sum();
+    Some(inside / all)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use excavator_model::document::built_in;
+    use excavator_model::effects::{Site, find};
+
+    use super::*;
+
+    fn with(effect: &str, values: &[f64]) -> Model {
+        let effect = find(effect).unwrap();
+        let site = if effect.card().name == "relief_valve" { Site::PumpLine } else { Site::Cylinder(0) };
+        let mut model = built_in("zx30u-arm").unwrap().with_effect(effect, site).unwrap();
+        for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
+            parameter.value = *value;
+        }
+        model
+    }
+
+    /// 20 s, the pump pressure from 50 to 150 bar.
+    fn recording() -> Recording {
+        let time: Vec<f64> = (0..201).map(|index| f64::from(index) * 0.1).collect();
+        let mut recording = Recording::unmeasured("bag", time, &["arm"]);
+        recording.pump_pressure = recording.time.iter().map(|t| 5e6 + 5e5 * t).collect();
+        recording
+    }
+
+    #[test]
+    fn a_contact_has_to_begin_or_end() {
+        let recording = recording();
+        let seen = |begin, duration| {
+            has_seen_both_sides(&with("external_contact", &[begin, duration, 100.0]), &[&recording, &recording])
+        };
+        assert!(seen(5.0, 4.0));
+        assert!(seen(12.0, 100.0), "it begins");
+        assert!(!seen(0.2, 25.0));
+        assert!(!seen(0.0, 17.0));
+    }
+
+    #[test]
+    fn a_relief_valve_has_to_have_been_closed() {
+        let recording = recording();
+        let relief = |pressure: f64| {
+            let mut model = with("relief_valve", &[]);
+            for parameter in &mut model.effects.last_mut().unwrap().parameters {
+                if matches!(parameter.card.start, Start::PumpPressureQuantiles(_)) {
+                    parameter.value = pressure;
+                }
+            }
+            has_seen_both_sides(&model, &[&recording])
+        };
+        assert!(relief(1.2e7));
+        assert!(!relief(4e6));
+        let unmeasured = Recording::unmeasured("bag", recording.time.clone(), &["arm"]);
+        assert!(has_seen_both_sides(&with("relief_valve", &[]), &[&unmeasured]), "nothing is known against it");
+    }
+}
