@@ -136,18 +136,23 @@ impl ModelEffect {
         let parameters = physics
             .parameters(machine, site)
             .iter()
-            .map(|card| Parameter {
-                card,
-                value: match card.start {
+            .map(|card| {
+                // What acts in a window of time only where somebody looks for one acts always until then.
+                let always = card.start.is_a_time().then(|| physics.value_where_left_out(card.name)).flatten();
+                let first = match card.start {
                     effects::Start::At(values) => values.first().copied().unwrap_or(card.typical),
                     effects::Start::PumpPressureQuantiles(_)
                     | effects::Start::WorstStretchBegin
                     | effects::Start::WorstStretchDuration => card.typical,
-                },
-                known: false,
-                standard_error: None,
-                margin_95: None,
-                source: String::new(),
+                };
+                Parameter {
+                    card,
+                    value: always.unwrap_or(first),
+                    known: always.is_some(),
+                    standard_error: None,
+                    margin_95: None,
+                    source: String::new(),
+                }
             })
             .collect();
         Ok(ModelEffect { physics, site, parameters })
@@ -156,6 +161,14 @@ impl ModelEffect {
     /// Name in the catalogue.
     pub fn name(&self) -> &'static str {
         self.physics.card().name
+    }
+
+    /// Whether it acts from the beginning to the end of every recording, not in a window of time.
+    pub fn acts_always(&self) -> bool {
+        self.parameters
+            .iter()
+            .filter(|parameter| parameter.card.start.is_a_time())
+            .all(|time| self.physics.value_where_left_out(time.card.name) == Some(time.value))
     }
 
     /// Whether this is the effect of that name at that site.

@@ -154,7 +154,9 @@ fn powers_add_up_to_the_rate_of_the_storage() {
             let along: Vec<Dual> =
                 state.iter().zip(&rates).map(|(&value, &rate)| constant(value) + variable(0.0, 0) * rate).collect();
             let parameters: Vec<Dual> = parameters.iter().map(|&value| constant(value)).collect();
-            let book = ledger(&system, &parameters, &along, &lift(&inputs));
+            let mut now = lift(&inputs);
+            now.time += variable(0.0, 0);
+            let book = ledger(&system, &parameters, &along, &now);
 
             let size: f64 = book.pump_power.re.abs()
                 + book.rod_force_power.re.abs()

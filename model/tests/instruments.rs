@@ -240,7 +240,8 @@ fn every_start_shows_in_reports() {
             let model = base.with_effect(physics, site).unwrap();
             let shown = shown(&model, &recording);
             let effect: &ModelEffect = model.effects.last().unwrap();
-            for (parameter, shown) in effect.parameters.iter().zip(shown) {
+            // Times that a search does not begin with are those of what acts always.
+            for (parameter, shown) in effect.parameters.iter().zip(shown).filter(|(parameter, _)| !parameter.known) {
                 let label = common::label(&model, model.effects.len() - 1);
                 println!("{label} {}: {shown:.1e}", parameter.card.name);
                 assert!(shown > 0.05, "{label} {}: {shown:e} times the noise", parameter.card.name);

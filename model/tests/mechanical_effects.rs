@@ -7,6 +7,7 @@ use common::Random;
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
+use excavator_model::energy::ledger;
 use excavator_model::equations::{Inputs, System};
 
 fn with(base: &Model, effect: &str, cylinder: usize, values: &[f64]) -> Model {
@@ -103,6 +104,41 @@ fn a_contact_lasts_as_long_as_it_says() {
         }
     }
     assert!((impulse - 480.0).abs() < 0.1, "{impulse} N m s");
+}
+
+/// A load is carried as long as it says, and the energy that it has then comes with it.
+#[test]
+fn a_load_is_picked_up_and_put_down() {
+    let arm = built_in("zx30u-arm").unwrap();
+    let always = with(&arm, "payload", 0, &[80.0, 1.8]);
+    let carried = with(&arm, "payload", 0, &[80.0, 1.8, 3.0, 1.2]);
+    let system = System::new(&carried);
+    let mut state = common::at_rest(&system);
+    state[1] = 0.4;
+    let mut inputs = Inputs::zero(1);
+    let at = |model: &Model, inputs: &Inputs<f64>| rates(model, &state, inputs);
+    for (time, same) in [(2.5, &arm), (3.5, &always), (4.5, &arm)] {
+        inputs.time = time;
+        for (found, wanted) in at(&carried, &inputs).iter().zip(at(same, &inputs)) {
+            assert!((found - wanted).abs() <= 1e-7 * wanted.abs() + 1e-9, "{time} s: {found} {wanted}");
+        }
+    }
+    let stored = |model: &Model| ledger(&System::new(model), &model.parameter_values(), &state, &inputs).stored();
+    let wanted = stored(&always) - stored(&arm);
+    // Held where it is while it is picked up, then while it is put down.
+    for (first, sign) in [(2.5, 1.0), (3.7, -1.0)] {
+        let brought: f64 = (0..10_000)
+            .map(|step| {
+                let mut inputs = Inputs::zero(1);
+                inputs.time = first + f64::from(step) * 1e-4;
+                let book = ledger(&system, &carried.parameter_values(), &state, &inputs);
+                let effect = book.effects.iter().find(|effect| effect.effect == "payload").unwrap();
+                assert!(!effect.stores);
+                effect.mechanical * 1e-4
+            })
+            .sum();
+        assert!((brought - sign * wanted).abs() < 1e-6 * wanted.abs(), "{brought} J, {wanted} J");
+    }
 }
 
 /// A cushion brakes on the way in, by speed and depth, and nowhere else.

@@ -50,7 +50,7 @@ impl Rival {
     fn with(model: &Model, physics: &'static dyn Effect, site: Site) -> Result<Rival, DesignError> {
         let mut extended = model.with_effect(physics, site)?;
         if let Some(added) = extended.effects.last_mut() {
-            for parameter in &mut added.parameters {
+            for parameter in added.parameters.iter_mut().filter(|parameter| !parameter.known) {
                 parameter.value = parameter.card.typical.clamp(parameter.card.minimum, parameter.card.maximum);
             }
         }

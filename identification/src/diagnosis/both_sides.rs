@@ -9,8 +9,8 @@ use super::starts::pump_pressure;
 /// Quantile of the pump pressure below which a threshold has not been seen from both sides.
 const VISITED: f64 = 0.02;
 
-/// Part of the recordings that a window may fill and still be one.
-const MOST_OF_THE_TIME: f64 = 0.8;
+/// Part of the recordings that a window may fill and still be one: of 40 s, 2 s are outside.
+const MOST_OF_THE_TIME: f64 = 0.95;
 
 /// Whether the recordings have been on both sides of where the model's last effect begins to act. A relief valve that is open
 /// at all pressures is a leak of the pump under another name, a contact that never ends a constant force.
@@ -23,8 +23,12 @@ pub(super) fn has_seen_both_sides(model: &Model, recordings: &[&Recording]) -> b
     is_visited && share_inside(last, recordings).is_none_or(|share| share <= MOST_OF_THE_TIME)
 }
 
-/// Part of the time of the recordings that lies inside the effect's window; `None` for an effect without one.
+/// Part of the time of the recordings that lies inside the effect's window; `None` for an effect without one, or that acts
+/// always.
 fn share_inside(effect: &ModelEffect, recordings: &[&Recording]) -> Option<f64> {
+    if effect.acts_always() {
+        return None;
+    }
     let value = |is: fn(&Start) -> bool| {
         effect.parameters.iter().find(|parameter| is(&parameter.card.start)).map(|parameter| parameter.value)
     };
@@ -70,8 +74,18 @@ mod tests {
         };
         assert!(seen(5.0, 4.0));
         assert!(seen(12.0, 100.0), "it begins");
+        assert!(seen(2.0, 100.0));
         assert!(!seen(0.2, 25.0));
-        assert!(!seen(0.0, 17.0));
+        assert!(!seen(-1.0, 20.5));
+    }
+
+    #[test]
+    fn a_load_may_be_there_always() {
+        let recording = recording();
+        let always = with("payload", &[50.0, 2.0]);
+        assert!(has_seen_both_sides(&always, &[&recording]));
+        assert!(has_seen_both_sides(&with("payload", &[50.0, 2.0, 7.0, 1e9]), &[&recording]));
+        assert!(!has_seen_both_sides(&with("payload", &[50.0, 2.0, 0.2, 1e9]), &[&recording]), "is there always");
     }
 
     #[test]

@@ -8,7 +8,6 @@ use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelEffect};
 
 use super::candidate::{CandidateError, best_start};
-use super::starts::acts_in_a_window;
 use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, fit_predicted};
 
 /// `model` on `recordings`, nothing fitted but the windows of its effects. Where these are says `known`, the model of an
@@ -22,7 +21,7 @@ pub(super) fn evaluate_in_own_windows(
     recordings: &[&Recording],
     settings: &FitSettings,
 ) -> Result<Fit, CandidateError> {
-    let is_new = |last: &&ModelEffect| !known.has(last.name(), last.site) && has_window(model, last);
+    let is_new = |last: &&ModelEffect| !known.has(last.name(), last.site) && has_window(last);
     let Some(added) = model.effects.last().filter(is_new) else {
         return Ok(evaluate_in_known_windows(model, known, recordings, settings)?);
     };
@@ -46,20 +45,23 @@ pub(super) fn evaluate_in_known_windows(
     if has_windows { fit(&model, recordings, settings) } else { evaluate(&model, recordings, settings) }
 }
 
-/// `model` with the windows of `known`, nothing but these free; and whether there are any.
+/// `model` with the windows of `known`, nothing but these effects free; and whether there are any.
 fn in_windows_of(model: &Model, known: &Model) -> (Model, bool) {
     let mut in_windows = model.clone();
     in_windows.parameters_mut().for_each(|parameter| parameter.known = true);
     let mut any = false;
-    for effect in in_windows.effects.iter_mut().filter(|effect| has_window(model, effect)) {
-        let Some(same) = known.effect(effect.name(), effect.site) else { continue };
+    for (effect, fitted) in in_windows.effects.iter_mut().zip(&model.effects) {
+        let Some(same) = known.effect(effect.name(), effect.site).filter(|same| has_window(fitted) && has_window(same))
+        else {
+            continue;
+        };
         any = true;
         effect.parameters.clone_from(&same.parameters);
-        effect.parameters.iter_mut().for_each(|parameter| parameter.known = false);
     }
     (in_windows, any)
 }
 
-fn has_window(model: &Model, effect: &ModelEffect) -> bool {
-    acts_in_a_window(effect.physics, &model.machine, effect.site)
+/// Whether the effect acts in a window that was looked for.
+fn has_window(effect: &ModelEffect) -> bool {
+    effect.parameters.iter().any(|parameter| parameter.card.start.is_a_time() && !parameter.known)
 }

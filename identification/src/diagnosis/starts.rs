@@ -18,18 +18,27 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let thinned: Vec<&Recording> = thinned.iter().collect();
     let quick =
         WeakFormSettings { rounds: 1, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
-    let regressed = plain
-        .iter()
-        .filter_map(|start| weak_form(&with_times(start.clone(), true), &thinned, &quick).ok())
-        .map(|regression| with_times(within_bounds(regression.model), false));
+    let regressed = plain.iter().filter_map(|start| {
+        let regression = weak_form(&with_times_held(start), &thinned, &quick).ok()?;
+        Some(with_times_as_in(start, within_bounds(regression.model)))
+    });
     regressed.chain(plain.iter().cloned()).collect()
 }
 
-/// The model with the times of its last effect `held` or free. A regression sees an edge in a few windows only, and its one
-/// step from there can be years long.
-fn with_times(mut model: Model, held: bool) -> Model {
+/// The model with the times of its last effect held. A regression sees an edge in a few windows only, and its one step from
+/// there can be years long.
+fn with_times_held(model: &Model) -> Model {
+    let mut held = model.clone();
+    let last = held.effects.last_mut().into_iter().flat_map(|effect| &mut effect.parameters);
+    last.filter(|parameter| parameter.card.start.is_a_time()).for_each(|parameter| parameter.known = true);
+    held
+}
+
+/// `model` with the times of its last effect held or free as those of `start` are.
+fn with_times_as_in(start: &Model, mut model: Model) -> Model {
     let last = model.effects.last_mut().into_iter().flat_map(|effect| &mut effect.parameters);
-    last.filter(|parameter| parameter.card.start.is_a_time()).for_each(|parameter| parameter.known = held);
+    let same = start.effects.last().into_iter().flat_map(|effect| &effect.parameters);
+    last.zip(same).for_each(|(parameter, same)| parameter.known = same.known);
     model
 }
 
@@ -49,7 +58,7 @@ pub(super) fn within_bounds(mut model: Model) -> Model {
     model
 }
 
-/// Whether an effect acts in a window of time, which belongs to one recording and says nothing about another.
+/// Whether an effect can act in a window of time, which belongs to one recording and says nothing about another.
 pub(super) fn acts_in_a_window(physics: &dyn Effect, machine: &Machine, site: Site) -> bool {
     physics.parameters(machine, site).iter().any(|card| card.start.is_a_time())
 }
@@ -57,25 +66,46 @@ pub(super) fn acts_in_a_window(physics: &dyn Effect, machine: &Machine, site: Si
 /// Windows of time that are tried as starts.
 const WINDOWS: usize = 2;
 
-/// The model with the last effect in each of the stretches of time in which the model without it fails most.
+/// The model with the last effect in each of the stretches of time in which the model without it fails most. One that may act
+/// always, as a load may, also does so; and it begins where the worst stretch ends, or ends where that begins: what is there all
+/// the time but for a stretch makes the model without it fail in that stretch.
 fn windows(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let mut without = model.clone();
     let Some(last) = without.effects.pop() else { return Vec::new() };
+    let always = last.acts_always();
     let stretches = worst_stretches(&without, last.site, recordings, WINDOWS);
-    stretches
-        .into_iter()
-        .map(|stretch| {
-            let mut start = model.clone();
-            for parameter in start.effects.iter_mut().rev().take(1).flat_map(|effect| &mut effect.parameters) {
-                match parameter.card.start {
-                    Start::WorstStretchBegin => parameter.value = stretch.begin,
-                    Start::WorstStretchDuration => parameter.value = stretch.duration,
-                    Start::At(_) | Start::PumpPressureQuantiles(_) => {}
-                }
+    let mut windows: Vec<Model> =
+        stretches.iter().map(|stretch| in_window(model, Some(stretch.begin), Some(stretch.duration))).collect();
+    if always {
+        windows.push(model.clone());
+        windows.extend(stretches.first().map(|worst| in_window(model, Some(worst.begin + worst.duration), None)));
+        windows.extend(stretches.first().map(|worst| in_window(model, None, Some(worst.begin))));
+    }
+    windows
+}
+
+/// The model with the last effect from `begin` on, for `duration` (s); what is not given stays as it is and is not looked for.
+fn in_window(model: &Model, begin: Option<f64>, duration: Option<f64>) -> Model {
+    let mut start = model.clone();
+    let mut first = 0.0;
+    for parameter in start.effects.iter_mut().rev().take(1).flat_map(|effect| &mut effect.parameters) {
+        let wanted = match parameter.card.start {
+            Start::WorstStretchBegin => {
+                first = begin.unwrap_or(parameter.value);
+                begin
             }
-            start
-        })
-        .collect()
+            // What is there from before the beginning lasts longer by that.
+            Start::WorstStretchDuration => {
+                duration.map(|duration| if begin.is_some() { duration } else { duration - first })
+            }
+            Start::At(_) | Start::PumpPressureQuantiles(_) => continue,
+        };
+        if let Some(value) = wanted {
+            parameter.value = value;
+            parameter.known = false;
+        }
+    }
+    start
 }
 
 fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {

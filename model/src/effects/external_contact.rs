@@ -2,7 +2,7 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::equations::smooth::rounded_step;
+use crate::equations::smooth::window;
 use crate::machine::{Machine, Mechanism};
 
 /// Something outside pushes for a while.
@@ -93,12 +93,6 @@ impl Physics for ExternalContact {
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
-        let since = now.time - parameters[0];
-        let window = rounded_step(since / EDGE) * rounded_step((parameters[1] - since) / EDGE);
-        rows.torque[cylinder] += parameters[2] * window;
+        rows.torque[cylinder] += parameters[2] * window(now.time, parameters[0], parameters[1]);
     }
 }
-
-/// Time over which the contact comes and goes, s: several steps of an integrator, and longer than a recorder's interval,
-/// so that a fit sees where the edges are.
-const EDGE: f64 = 0.03;

@@ -3,24 +3,26 @@
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::equations::planar_chain::{absolute_angle, add_first_moment, add_inertia, add_weight};
+use crate::equations::smooth::window;
 use crate::machine::{Machine, Mechanism};
 
 /// A mass that the link carries.
 ///
 /// Machines do not know the distance of their tips, only that of their pins, so it is a parameter: known where somebody
-/// has measured it.
+/// has measured it. A load that is there all the time hides in the inertia and the gravity of its link, where these are
+/// unknown; one that is picked up or put down does not. Picked up or put down it takes its energy along.
 pub struct Payload;
 
 static CARD: Card = Card {
     name: "payload",
     acts_on: ActsOn::Cylinder,
     family: Family::Candidate,
-    summary: "Added mass at the tip: inertia and weight grow together, by mass times distance squared and mass times distance.",
-    equation: "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; link of a chain: the same with the known lengths; linear load: M += m, Fg += m g i",
+    summary: "Added mass at the tip, always or while it is carried: inertia and weight grow together, by mass times distance squared and mass times distance.",
+    equation: "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; link of a chain: the same with the known lengths; linear load: M += m, Fg += m g i; m times w(t), w = s(t - t0) s(t0 + d - t), s(x) = 1/(1 + exp(-2 x/e)), e = 30 ms",
     source: "practice; point mass in [A] Eq. 1",
-    shows: "Static pressure difference and force at reversals both larger than the unloaded machine's, in a fixed ratio. To be told from inertia and gravity only where these are known.",
-    experiment: "The same manoeuvre with the bucket empty and full.",
-    energy: "Stores kinetic energy m |velocity|^2 / 2 and potential energy m g height.",
+    shows: "Static pressure difference and force at reversals both larger than the unloaded machine's, in a fixed ratio, from one moment on. Always there, it is to be told from inertia and gravity only where these are known.",
+    experiment: "One recording with the bucket empty at first and filled then.",
+    energy: "Stores kinetic energy m |velocity|^2 / 2 and potential energy m g height, brought along when it is picked up.",
 };
 
 const MASS: ParameterCard = ParameterCard {
@@ -47,7 +49,37 @@ const DISTANCE: ParameterCard = ParameterCard {
     start: Start::At(&[1.5]),
 };
 
-static LINK: &[ParameterCard] = &[MASS, DISTANCE];
+const START: ParameterCard = ParameterCard {
+    name: "payload_start",
+    symbol: "t0",
+    unit: "s",
+    meaning: "time after the first sample at which it is picked up, -1 where it is there from the beginning",
+    kind: Kind::Shape,
+    minimum: BEFORE,
+    maximum: FOREVER,
+    typical: 5.0,
+    start: Start::WorstStretchBegin,
+};
+
+const DURATION: ParameterCard = ParameterCard {
+    name: "payload_duration",
+    symbol: "d",
+    unit: "s",
+    meaning: "how long it is carried, 1e9 where it is never put down",
+    kind: Kind::Shape,
+    minimum: 0.02,
+    maximum: FOREVER,
+    typical: 5.0,
+    start: Start::WorstStretchDuration,
+};
+
+/// A time before every recording, s; later than that by more than a window takes to open.
+const BEFORE: f64 = -1.0;
+
+/// Longer than any recording, s.
+const FOREVER: f64 = 1e9;
+
+static LINK: &[ParameterCard] = &[MASS, DISTANCE, START, DURATION];
 
 static SECOND_OF_TWO: &[ParameterCard] = &[
     MASS,
@@ -63,6 +95,8 @@ static SECOND_OF_TWO: &[ParameterCard] = &[
         typical: 2.5,
         start: Start::At(&[2.5]),
     },
+    START,
+    DURATION,
 ];
 
 static LOAD: &[ParameterCard] = &[
@@ -78,6 +112,8 @@ static LOAD: &[ParameterCard] = &[
         typical: 0.5,
         start: Start::At(&[0.0]),
     },
+    START,
+    DURATION,
 ];
 
 impl Physics for Payload {
@@ -93,10 +129,18 @@ impl Physics for Payload {
         }
     }
 
+    fn value_where_left_out(&self, parameter: &str) -> Option<f64> {
+        match parameter {
+            "payload_start" => Some(BEFORE),
+            "payload_duration" => Some(FOREVER),
+            _ => None,
+        }
+    }
+
     /// `-m g` times the height that the mass loses, zero with all links level.
     fn potential<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>) -> Option<T> {
         let Site::Cylinder(cylinder) = site else { return None };
-        let weight = parameters[0] * now.machine.gravity;
+        let weight = carried(parameters, now) * now.machine.gravity;
         let joint = now.pistons[cylinder].joint;
         Some(match (&now.machine.mechanism, cylinder) {
             (Mechanism::LinearLoad, _) => weight * parameters[1] * joint,
@@ -116,7 +160,8 @@ impl Physics for Payload {
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
-        let (mass, weight) = (parameters[0], parameters[0] * now.machine.gravity);
+        let mass = carried(parameters, now);
+        let weight = mass * now.machine.gravity;
         let joint = now.pistons[cylinder].joint;
         match (&now.machine.mechanism, cylinder) {
             (Mechanism::LinearLoad, _) => {
@@ -133,6 +178,14 @@ impl Physics for Payload {
                 rows.torque[cylinder] -= weight * parameters[1] * (joint + base_angle).sin();
             }
         }
+    }
+}
+
+/// The mass that is carried at this instant.
+fn carried<T: Scalar>(parameters: &[T], now: &Situation<T>) -> T {
+    match parameters {
+        [mass, .., begin, duration] => *mass * window(now.time, *begin, *duration),
+        _ => T::from(0.0),
     }
 }
 

@@ -26,7 +26,8 @@ pub struct EffectPower<T = f64> {
     pub site: Site,
     /// The part of the machine that it belongs to.
     pub acts_on: ActsOn,
-    /// Whether the effect stores energy: its torque is in the storage, not in `mechanical`.
+    /// Whether all that the effect does is to store energy: its torque is in the storage, not in `mechanical`. A load that is
+    /// picked up brings its energy along, so it does more.
     pub stores: bool,
     /// Torque times joint rate plus piston force times velocity.
     pub mechanical: T,

@@ -35,6 +35,16 @@ pub fn rounded_step<T: Scalar>(ratio: T) -> T {
     ((ratio * -2.0).exp() + 1.0).recip()
 }
 
+/// One from `begin` on for `duration`, zero before and after (all s), rounded over [`EDGE`].
+pub fn window<T: Scalar>(time: T, begin: T, duration: T) -> T {
+    let since = time - begin;
+    rounded_step(since / EDGE) * rounded_step((duration - since) / EDGE)
+}
+
+/// Time over which a window opens and closes, s: several steps of an integrator, and longer than a recorder's interval, so that
+/// a fit sees where the edges are.
+const EDGE: f64 = 0.03;
+
 /// Ratio beyond which the hyperbolic tangent is one to the last digit of a double.
 const FULL_SLIP: f64 = 20.0;
 

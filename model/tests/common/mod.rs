@@ -82,8 +82,8 @@ pub fn with_typical(model: &Model, physics: &'static dyn Effect, site: Site) -> 
     for parameter in &mut model.effects.last_mut().unwrap().parameters {
         parameter.value = match parameter.card.name {
             // Within the second or less that tests simulate.
-            "contact_start" => 0.1,
-            "contact_duration" => 0.3,
+            "contact_start" | "payload_start" => 0.1,
+            "contact_duration" | "payload_duration" => 0.3,
             _ => parameter.card.typical,
         };
     }
