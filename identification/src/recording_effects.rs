@@ -16,6 +16,9 @@ const MOST_OF_A_SAMPLE: f64 = 0.65;
 /// Or this, s, where recordings are fast: a controller's cycle of a millisecond, and a little. Nobody orders a valve for that.
 const MOST_AT_ONCE: f64 = 1.3e-3;
 
+/// Most that a spool sensor's zero is off, as a part of the largest opening: the accuracy of an ordinary transducer.
+const MOST_OF_THE_OPENING: f64 = 5e-3;
+
 /// What `estimate` makes of a model with those of these effects that `recordings` show; `plain` is what it made of the model
 /// without them, and is returned where they show none or nothing can be made of them. They are put `behind` so many effects
 /// of the model, so that a candidate stays its last. `model_of` is the model in a result, with standard errors.
@@ -26,8 +29,6 @@ pub fn with_recording_effects<R>(
     model_of: impl Fn(&R) -> &Model,
     estimate: impl Fn(&Model) -> Option<R>,
 ) -> R {
-    let interval = recordings.iter().map(|recording| recording.sample_interval()).fold(0.0, f64::max);
-    let most = (MOST_OF_A_SAMPLE * interval).max(MOST_AT_ONCE);
     let mut added = shown_by(model_of(&plain), recordings);
     while !added.is_empty() {
         let mut model = model_of(&plain).clone();
@@ -36,7 +37,7 @@ pub fn with_recording_effects<R>(
         model.effects.splice(behind..behind, effects);
         let Some(extended) = estimate(&model) else { break };
         let before = added.len();
-        added.retain(|&(physics, site)| is_seen(model_of(&extended), physics, site, most));
+        added.retain(|&(physics, site)| is_seen(model_of(&extended), physics, site, recordings));
         if added.len() == before {
             return extended;
         }
@@ -74,12 +75,29 @@ fn shown_by(model: &Model, recordings: &[&Recording]) -> Vec<(&'static dyn Effec
         .collect()
 }
 
-/// Whether all parameters of an effect, times in s, differ from nothing and are no more than `most`.
-fn is_seen(model: &Model, physics: &dyn Effect, site: Site, most: f64) -> bool {
+/// Whether all parameters of an effect differ from nothing and are no more than recordings are off.
+fn is_seen(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Recording]) -> bool {
     model.effect(physics.card().name, site).is_some_and(|effect| {
         effect.parameters.iter().all(|parameter| {
             let least = LEAST_SIGNIFICANCE * parameter.standard_error.unwrap_or(f64::INFINITY);
+            let most =
+                if parameter.card.unit == "s" { latest(recordings) } else { largest_zero(model, site, recordings) };
             parameter.value.abs() >= least && parameter.value.abs() <= most
         })
     })
+}
+
+/// Most that instruments are read apart, s.
+fn latest(recordings: &[&Recording]) -> f64 {
+    let interval = recordings.iter().map(|recording| recording.sample_interval()).fold(0.0, f64::max);
+    (MOST_OF_A_SAMPLE * interval).max(MOST_AT_ONCE)
+}
+
+/// Most that the zero of the spool sensor at `site` is off, m².
+fn largest_zero(model: &Model, site: Site, recordings: &[&Recording]) -> f64 {
+    let Site::Cylinder(index) = site else { return 0.0 };
+    let name = &model.machine.cylinders[index].name;
+    let openings = recordings.iter().filter_map(|recording| recording.cylinder(name).ok());
+    let areas = openings.flat_map(|signals| &signals.orifice_area).filter(|area| area.is_finite());
+    MOST_OF_THE_OPENING * areas.fold(0.0, |largest: f64, area| largest.max(area.abs()))
 }

@@ -57,31 +57,41 @@ impl Chains<'_> {
             _ => chain,
         };
         let everywhere = self.everywhere(&accepted, &chain, progress)?;
-        Ok((everywhere.unwrap_or(chain), round))
+        let (Some(last), Some(reached)) = (chain.last(), everywhere.last()) else { return Ok((chain, round)) };
+        let lead = compare_losses(&last.validation, &reached.validation);
+        let settings = self.settings;
+        if lead.gain >= settings.tie_gain && lead.significance >= settings.tie_significance {
+            return Ok((everywhere, round));
+        }
+        let behind = compare_losses(&reached.validation, &last.validation);
+        let is_behind = behind.gain >= settings.tie_gain && behind.significance >= settings.tie_significance;
+        if chain.len() == 1 && !is_behind && self.explains(&everywhere) {
+            // All sensors late is as good as a valve that is: nobody can tell from outside.
+            let alike = [&chain[0], &everywhere[0]].map(|link| (link.name(), link.site));
+            let round = Round { fitted: with_ties(round.fitted, &alike), ..round };
+            return Ok((chain, round));
+        }
+        Ok((chain, round))
     }
 
     /// One effect at several places (late pressures at a cylinder and at the pump) is one cause, but a chain that begins
     /// with the best single place may begin with something else that reaches all of them. The chain of such an effect,
-    /// where it leaves less than `chain` does.
+    /// where it has no more kinds of effects than `chain`; empty where there is none.
     fn everywhere(
         &self,
         accepted: &[&Candidate],
         chain: &[Candidate],
         progress: &(dyn Fn(&str, f64) + Sync),
-    ) -> Result<Option<Vec<Candidate>>, DiagnosisError> {
+    ) -> Result<Vec<Candidate>, DiagnosisError> {
         let at_another_place = |one: &Candidate| {
             accepted.iter().any(|other| other.name() == one.name() && other.place != one.place)
                 && !chain.iter().any(|link| link.name() == one.name())
         };
-        let Some(first) = accepted.iter().find(|candidate| at_another_place(candidate)) else { return Ok(None) };
+        let Some(first) = accepted.iter().find(|candidate| at_another_place(candidate)) else { return Ok(Vec::new()) };
         let other = self.grow((*first).clone(), progress)?;
-        let (Some(last), Some(reached)) = (chain.last(), other.last()) else { return Ok(None) };
         let places = other.iter().filter(|link| link.name() == first.name()).count();
         let kinds = other.len() + 1 - places;
-        let lead = compare_losses(&last.validation, &reached.validation);
-        let settings = self.settings;
-        let better = lead.gain >= settings.tie_gain && lead.significance >= settings.tie_significance;
-        Ok((places > 1 && kinds <= chain.len() && better).then_some(other))
+        Ok(if places > 1 && kinds <= chain.len() { other } else { Vec::new() })
     }
 
     /// Whether a chain of effects explains the recordings: the model is adequate with them, or so much better and good
@@ -245,4 +255,12 @@ impl Chains<'_> {
             settings,
         }
     }
+}
+
+/// `candidates`, those of these names and sites marked as tied.
+fn with_ties(mut candidates: Vec<Candidate>, tied: &[(&str, Site)]) -> Vec<Candidate> {
+    for candidate in &mut candidates {
+        candidate.tied_with_first |= tied.contains(&(candidate.name(), candidate.site));
+    }
+    candidates
 }

@@ -18,11 +18,16 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let thinned: Vec<&Recording> = thinned.iter().collect();
     let quick =
         WeakFormSettings { rounds: 1, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
-    let regressed = plain.iter().filter_map(|start| {
+    let regressed = |start: &Model| {
         let regression = weak_form(&with_times_held(start), &thinned, &quick).ok()?;
         Some(with_times_as_in(start, within_bounds(regression.model)))
-    });
-    regressed.chain(plain.iter().cloned()).collect()
+    };
+    let last = model.effects.last();
+    if last.is_some_and(|last| acts_in_a_window(last.physics, &model.machine, last.site)) {
+        // There are many windows, and how strong something is follows from when it is.
+        return plain.into_iter().map(|start| regressed(&start).unwrap_or(start)).collect();
+    }
+    plain.iter().filter_map(regressed).chain(plain.iter().cloned()).collect()
 }
 
 /// The model with the times of its last effect held. A regression sees an edge in a few windows only, and its one step from
@@ -66,47 +71,56 @@ pub(super) fn acts_in_a_window(physics: &dyn Effect, machine: &Machine, site: Si
 /// Windows of time that are tried as starts.
 const WINDOWS: usize = 2;
 
-/// The model with the last effect in each of the stretches of time in which the model without it fails most. One that may act
-/// always, as a load may, also does so; and it begins where the worst stretch ends, or ends where that begins: what is there all
-/// the time but for a stretch makes the model without it fail in that stretch.
+/// The model with the last effect in windows of time in which it may have acted. What is there all the time but for a stretch
+/// makes the model without it fail in that stretch, its weight being in the gravity that was fitted: so it may be a stretch in which
+/// that model fails most, all that comes before or after, or what lies between two of them; or always, for what may be that.
 fn windows(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let mut without = model.clone();
     let Some(last) = without.effects.pop() else { return Vec::new() };
-    let always = last.acts_always();
-    let stretches = worst_stretches(&without, last.site, recordings, WINDOWS);
+    let stretches: Vec<(f64, f64)> = worst_stretches(&without, last.site, recordings, WINDOWS)
+        .into_iter()
+        .map(|stretch| (stretch.begin, stretch.begin + stretch.duration))
+        .collect();
     let mut windows: Vec<Model> =
-        stretches.iter().map(|stretch| in_window(model, Some(stretch.begin), Some(stretch.duration))).collect();
-    if always {
+        stretches.iter().map(|&(begin, end)| in_window(model, Some(begin), Some(end))).collect();
+    if let Some(&(begin, end)) = stretches.first() {
+        windows.push(in_window(model, Some(end), None));
+        windows.push(in_window(model, None, Some(begin)));
+    }
+    if let [one, other] = stretches[..] {
+        let (end, begin) = (one.1.min(other.1), one.0.max(other.0));
+        windows.push(in_window(model, Some(end), Some(begin)));
+    }
+    if last.acts_always() {
         windows.push(model.clone());
-        windows.extend(stretches.first().map(|worst| in_window(model, Some(worst.begin + worst.duration), None)));
-        windows.extend(stretches.first().map(|worst| in_window(model, None, Some(worst.begin))));
     }
     windows
 }
 
-/// The model with the last effect from `begin` on, for `duration` (s); what is not given stays as it is and is not looked for.
-fn in_window(model: &Model, begin: Option<f64>, duration: Option<f64>) -> Model {
+/// The model with the last effect from `begin` to `end`, s; an edge that is not given lies outside every recording and is not
+/// looked for.
+fn in_window(model: &Model, begin: Option<f64>, end: Option<f64>) -> Model {
     let mut start = model.clone();
     let mut first = 0.0;
     for parameter in start.effects.iter_mut().rev().take(1).flat_map(|effect| &mut effect.parameters) {
-        let wanted = match parameter.card.start {
+        match parameter.card.start {
             Start::WorstStretchBegin => {
-                first = begin.unwrap_or(parameter.value);
-                begin
+                parameter.value = begin.unwrap_or(parameter.card.minimum);
+                parameter.known = begin.is_none();
+                first = parameter.value;
             }
-            // What is there from before the beginning lasts longer by that.
             Start::WorstStretchDuration => {
-                duration.map(|duration| if begin.is_some() { duration } else { duration - first })
+                parameter.value = end.map_or(parameter.card.maximum, |end| (end - first).max(SHORTEST));
+                parameter.known = end.is_none();
             }
-            Start::At(_) | Start::PumpPressureQuantiles(_) => continue,
-        };
-        if let Some(value) = wanted {
-            parameter.value = value;
-            parameter.known = false;
+            Start::At(_) | Start::PumpPressureQuantiles(_) => {}
         }
     }
     start
 }
+
+/// Shortest window that a search begins with, s.
+const SHORTEST: f64 = 0.2;
 
 fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let Some(last) = model.effects.last() else { return vec![model.clone()] };

@@ -283,6 +283,13 @@ fn a_spool_that_is_read_early_is_told_once_it_is_known() {
         sentence.contains("The spool sensor is not read together") && sentence.contains("0.45 ms after"),
         "{sentence}"
     );
+    let offset = effects::find("spool_sensor_offset").unwrap();
+    found.nominal.model = known.with_effect(offset, Site::Cylinder(0)).unwrap();
+    found.nominal.model.effects.last_mut().unwrap().parameters[0].value = 7e-8;
+    let both = verdict_sentence(&model(), &found);
+    assert!(both.contains("0.45 ms after") && both.contains("does not read zero where its valve is closed"), "{both}");
+    assert!(both.contains("+0.07 mm2"), "{both}");
+    found.nominal.model = known.clone();
     // Whoever says so in the model needs no telling.
     assert!(!verdict_sentence(&known, &found).contains("spool sensor"));
 }

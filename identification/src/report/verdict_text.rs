@@ -1,7 +1,7 @@
 //! The verdict in plain sentences.
 
 use excavator_model::effects::Family;
-use excavator_model::{Model, site_name};
+use excavator_model::{Model, ModelEffect, site_name};
 
 use super::numbers::{percent, ratio};
 use super::words;
@@ -51,25 +51,36 @@ fn read_apart(given: &Model, diagnosis: &Diagnosis) -> String {
         .effects
         .iter()
         .filter(|effect| effect.physics.card().family == Family::Recording && !given.has(effect.name(), effect.site));
-    let found: Vec<String> = found
-        .filter_map(|effect| {
-            let milliseconds = 1e3 * effect.parameters.first()?.value;
-            let when = if milliseconds > 0.0 { "before" } else { "after" };
+    let (times, zeros): (Vec<_>, Vec<_>) = found.partition(|effect| effect.name() == "spool_sensor_lead");
+    let told = |effects: Vec<&ModelEffect>, say: fn(f64) -> String| -> Vec<String> {
+        let one = |effect: &ModelEffect| {
             let place = site_name(&last.machine, effect.site);
-            Some(format!("that of the {place} {:.2} ms {when}", milliseconds.abs()))
-        })
-        .collect();
-    match found.len() {
-        0 => String::new(),
-        1 => format!(
-            " The spool sensor is not read together with the other instruments ({}); this is taken into account.",
-            found[0]
+            Some(format!("that of the {place} {}", say(effect.parameters.first()?.value)))
+        };
+        effects.into_iter().filter_map(one).collect()
+    };
+    let when = |time: f64| format!("{:.2} ms {}", 1e3 * time.abs(), if time > 0.0 { "before" } else { "after" });
+    let zero = |area: f64| format!("{:+.2} mm2", 1e6 * area);
+    let mut text = String::new();
+    for (found, what) in [
+        (
+            told(times, when),
+            ["is not read together with the other instruments", "are not read together with the other instruments"],
         ),
-        _ => format!(
-            " The spool sensors are not read together with the other instruments ({}); this is taken into account.",
-            words::list(&found, "and")
+        (
+            told(zeros, zero),
+            ["does not read zero where its valve is closed", "do not read zero where their valves are closed"],
         ),
+    ] {
+        text += &match found.len() {
+            0 => String::new(),
+            1 => format!(" The spool sensor {} ({}); this is taken into account.", what[0], found[0]),
+            _ => {
+                format!(" The spool sensors {} ({}); this is taken into account.", what[1], words::list(&found, "and"))
+            }
+        };
     }
+    text
 }
 
 fn names_of(model: &Model, parameters: &[usize]) -> Vec<String> {

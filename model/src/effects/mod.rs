@@ -41,6 +41,7 @@ mod pump_leakage;
 mod relief_valve;
 mod sensor_delay;
 mod spool_sensor_lead;
+mod spool_sensor_offset;
 mod stribeck_friction;
 mod valve_dead_zone;
 mod valve_directional_gain;
@@ -71,6 +72,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &end_stop::EndStop,
     &cavitation::Cavitation,
     &spool_sensor_lead::SpoolSensorLead,
+    &spool_sensor_offset::SpoolSensorOffset,
     &pressure_compensation::PressureCompensation,
     &valve_dead_zone::ValveDeadZone,
     &valve_directional_gain::ValveDirectionalGain,

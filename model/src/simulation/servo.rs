@@ -11,13 +11,15 @@ pub(super) enum Between {
     Held,
 }
 
-/// A lag of first order with a delay.
+/// A lag of first order with a delay, its rate limited.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Servo {
     /// Time constant, s.
     pub lag: f64,
     /// Time after which it is told, s; negative where the recording has the command late.
     pub delay: f64,
+    /// Most that the opening changes, m²/s; infinite where nothing limits it.
+    pub rate: f64,
     /// What it is told between the samples of the command.
     pub between: Between,
 }
@@ -39,6 +41,7 @@ impl Courses {
     /// Of `command`, m², at the times `time`, s.
     pub fn new(time: &[f64], command: &[f64], servo: Servo) -> Self {
         let settled = match servo.between {
+            _ if servo.rate.is_finite() => behind_limited(time, command, servo),
             Between::Lines => behind_lines(time, command, servo),
             Between::Held => behind_steps(time, command, servo),
         };
@@ -103,17 +106,48 @@ pub(super) fn misfit(measured: &[f64], follower: &[f64]) -> f64 {
     measured.iter().zip(follower).map(|(measured, follower)| (measured - follower).powi(2)).sum()
 }
 
-/// Straight lines between commands behind the servo, exactly integrated.
-fn behind_lines(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
-    let Servo { lag, delay, .. } = servo;
+/// The command at times asked for one after the other: straight lines between its samples, or held until the next one.
+fn course_of<'s>(time: &'s [f64], command: &'s [f64], between: Between) -> impl FnMut(f64) -> f64 + 's {
     let mut position = 0;
-    let mut delayed = |at: f64| {
+    move |at: f64| {
         while position + 2 < time.len() && time[position + 1] < at {
             position += 1;
         }
         let fraction = ((at - time[position]) / (time[position + 1] - time[position])).clamp(0.0, 1.0);
+        let fraction = if between == Between::Held { fraction.floor() } else { fraction };
         command[position] + fraction * (command[position + 1] - command[position])
-    };
+    }
+}
+
+/// Parts of a sample interval in which a servo at its limit stays there or leaves it.
+const PARTS: usize = 4;
+
+/// The command behind a servo whose rate is limited: in each part of an interval at its limit, or following a straight line.
+fn behind_limited(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
+    let Servo { lag, delay, rate, between } = servo;
+    let mut delayed = course_of(time, command, between);
+    let mut from = delayed(time[0] - delay);
+    let mut state = from;
+    let mut spool = vec![state];
+    for pair in time.windows(2) {
+        let step = (pair[1] - pair[0]) / PARTS as f64;
+        let decay = (-step / lag).exp();
+        for part in 1..=PARTS {
+            let to = delayed(pair[0] + step * part as f64 - delay);
+            let slope = (to - from) / step;
+            let free = to - slope * lag + (state - from + slope * lag) * decay;
+            state += (free - state).clamp(-rate * step, rate * step);
+            from = to;
+        }
+        spool.push(state);
+    }
+    spool
+}
+
+/// Straight lines between commands behind the servo, exactly integrated.
+fn behind_lines(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
+    let Servo { lag, delay, between, .. } = servo;
+    let mut delayed = course_of(time, command, between);
     let mut from = delayed(time[0] - delay);
     let mut state = from;
     let mut spool = Vec::with_capacity(time.len());

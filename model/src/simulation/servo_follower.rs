@@ -1,6 +1,6 @@
 //! The servo that a spool follows its command through, found in a recording.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector};
 
 use super::servo::{Between, Courses, Servo, misfit};
 
@@ -32,40 +32,84 @@ pub(super) fn servo_follower(time: &[f64], measured: &[f64], command: &[f64], no
         .into_iter()
         .filter_map(|servo| polished(time, measured, command, servo, shortest_lag))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(Courses::new(time, command, servo).simplest(measured, noise))
+    let limited = limited(time, measured, command, servo, shortest_lag, noise);
+    Some(Courses::new(time, command, limited.unwrap_or(servo)).simplest(measured, noise))
+}
+
+/// Rates that are tried, as parts of the fastest that the spool would change behind a servo without a limit.
+const RATES: [f64; 6] = [0.9, 0.75, 0.6, 0.45, 0.3, 0.2];
+
+/// Standard deviations of the sensor's noise that a limit of the rate has to explain, all its readings together.
+const DOUBT: f64 = 5.0;
+
+/// The servo with a limited rate, where the sensor shows one. A follower without it runs ahead on every fast move, and how a
+/// valve closes, which decides where the load stops, comes out by a part of the sensor's noise wrong.
+fn limited(
+    time: &[f64],
+    measured: &[f64],
+    command: &[f64],
+    servo: Servo,
+    shortest_lag: f64,
+    noise: f64,
+) -> Option<Servo> {
+    let free = Courses::new(time, command, servo).nearest(measured)?;
+    let unlimited = misfit(measured, &free);
+    let rate = |(t, u): (&[f64], &[f64])| ((u[1] - u[0]) / (t[1] - t[0])).abs();
+    let fastest = time.windows(2).zip(free.windows(2)).map(rate).fold(0.0, f64::max);
+    let start = RATES
+        .iter()
+        .map(|part| Servo { rate: part * fastest, ..servo })
+        .filter_map(|limited| {
+            Some((misfit(measured, &Courses::new(time, command, limited).nearest(measured)?), limited))
+        })
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|(reached, _)| *reached < unlimited)?;
+    let (reached, limited) = polished(time, measured, command, start.1, shortest_lag)?;
+    (unlimited - reached > (DOUBT * noise).powi(2)).then_some(limited)
 }
 
 /// Gauss-Newton steps on all samples. What thinning leaves of the error in time shifts the opening of the whole recording, and
 /// nothing that comes after could tell: three steps take it down to what the sensor knows.
 const STEPS: usize = 3;
 
+/// The same for a limited rate, whose start is a guess: lag and delay have made up for it as far as they could.
+const STEPS_LIMITED: usize = 10;
+
 /// The servo near `servo` that comes nearest to the measured spool, and how near.
 fn polished(time: &[f64], measured: &[f64], command: &[f64], servo: Servo, shortest_lag: f64) -> Option<(f64, Servo)> {
     let nearest = |servo: Servo| Courses::new(time, command, servo).nearest(measured);
     let (mut servo, mut here) = (servo, nearest(servo)?);
-    for _ in 0..STEPS {
+    let steps = if servo.rate.is_finite() { STEPS_LIMITED } else { STEPS };
+    for _ in 0..steps {
         // Changes by which the course changes visibly and still in proportion.
-        let (lag_change, delay_change) = (0.02 * servo.lag, 2e-4);
-        let by_lag = nearest(Servo { lag: servo.lag + lag_change, ..servo })?;
-        let by_delay = nearest(Servo { delay: servo.delay + delay_change, ..servo })?;
-        let (mut matrix, mut right) = (Matrix2::zeros(), Vector2::zeros());
-        for (((measured, here), by_lag), by_delay) in measured.iter().zip(&here).zip(&by_lag).zip(&by_delay) {
-            let slope = Vector2::new((by_lag - here) / lag_change, (by_delay - here) / delay_change);
-            matrix += slope * slope.transpose();
-            right += slope * (measured - here);
+        let (lag_change, delay_change, rate_change) = (0.02 * servo.lag, 2e-4, 0.02 * servo.rate);
+        let mut slopes = vec![
+            slope(&here, &nearest(Servo { lag: servo.lag + lag_change, ..servo })?, lag_change),
+            slope(&here, &nearest(Servo { delay: servo.delay + delay_change, ..servo })?, delay_change),
+        ];
+        if servo.rate.is_finite() {
+            slopes.push(slope(&here, &nearest(Servo { rate: servo.rate + rate_change, ..servo })?, rate_change));
         }
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let rest: Vec<f64> = measured.iter().zip(&here).map(|(measured, here)| measured - here).collect();
+        let right = DVector::from_iterator(slopes.len(), slopes.iter().map(|slope| product(slope, &rest)));
+        let matrix = DMatrix::from_fn(slopes.len(), slopes.len(), |row, column| product(&slopes[row], &slopes[column]));
         // Scaled to unit diagonal: areas of 1e-5 m² make the plain determinant vanish in rounding.
         let scale = matrix.diagonal().map(|value: f64| 1.0 / value.sqrt());
         if !scale.iter().all(|value| value.is_finite()) {
             break;
         }
-        let scaled = Matrix2::from_diagonal(&scale) * matrix * Matrix2::from_diagonal(&scale);
-        let both = scaled.lu().solve(&right.component_mul(&scale)).map(|step| step.component_mul(&scale));
+        let scaled = DMatrix::from_diagonal(&scale) * &matrix * DMatrix::from_diagonal(&scale);
+        let all = scaled.lu().solve(&right.component_mul(&scale)).map(|step| step.component_mul(&scale));
         // Where a lag is as good as a delay there is no telling them apart: the delay alone.
-        let delay_alone = Vector2::new(0.0, right[1] / matrix[(1, 1)]);
-        let better = both.into_iter().chain([delay_alone]).find_map(|step| {
+        let mut delay_alone = DVector::zeros(slopes.len());
+        delay_alone[1] = right[1] / matrix[(1, 1)];
+        let shorter = |step: &DVector<f64>| [1.0, 0.5, 0.25].map(|part| step * part);
+        let tried = all.iter().flat_map(shorter).chain([delay_alone]);
+        let better = tried.into_iter().find_map(|step| {
             let lag = (servo.lag + step[0]).max(servo.lag / 2.0).max(shortest_lag);
-            let better = Servo { lag, delay: servo.delay + step[1], ..servo };
+            let rate = step.get(2).map_or(servo.rate, |step| (servo.rate + step).max(servo.rate / 2.0));
+            let better = Servo { lag, delay: servo.delay + step[1], rate, ..servo };
             let there = nearest(better)?;
             (misfit(measured, &there) < misfit(measured, &here)).then_some((better, there))
         });
@@ -75,11 +119,16 @@ fn polished(time: &[f64], measured: &[f64], command: &[f64], servo: Servo, short
     Some((misfit(measured, &here), servo))
 }
 
+/// Change of a course per unit of what changed by `change`.
+fn slope(here: &[f64], there: &[f64], change: f64) -> Vec<f64> {
+    here.iter().zip(there).map(|(here, there)| (there - here) / change).collect()
+}
+
 fn best_servo(time: &[f64], measured: &[f64], command: &[f64], shortest_lag: f64) -> Option<Servo> {
     let mut best = (f64::INFINITY, 0.0, 0.0);
     let consider = |lag: f64, delay: f64, best: &mut (f64, f64, f64)| {
         let lag = lag.max(shortest_lag);
-        let servo = Servo { lag, delay, between: Between::Lines };
+        let servo = Servo { lag, delay, rate: f64::INFINITY, between: Between::Lines };
         let Some(nearest) = Courses::new(time, command, servo).nearest(measured) else { return };
         let squares = misfit(measured, &nearest);
         if squares < best.0 {
@@ -102,7 +151,7 @@ fn best_servo(time: &[f64], measured: &[f64], command: &[f64], shortest_lag: f64
             delay_step /= 2.0;
         }
     }
-    best.0.is_finite().then_some(Servo { lag: best.1, delay: best.2, between: Between::Lines })
+    best.0.is_finite().then_some(Servo { lag: best.1, delay: best.2, rate: f64::INFINITY, between: Between::Lines })
 }
 
 #[cfg(test)]
@@ -180,6 +229,28 @@ mod tests {
             let error = largest_error(&follower, spool.iter().copied());
             assert!(error < 5e-5 * 1.5e-3, "{error:e}");
         }
+    }
+
+    #[test]
+    fn a_limited_rate_is_found() {
+        let [time, command, _] = steered(0.0);
+        let (lag, rate) = (0.012, 1.1e-3);
+        let mut spool = vec![command[0]];
+        for pair in command.windows(2) {
+            // A tenth of a millisecond at a time, along the line from one command to the next.
+            let last = spool[spool.len() - 1];
+            spool.push((0..20).fold(last, |now, part| {
+                let told = pair[0] + (pair[1] - pair[0]) * (f64::from(part) + 0.5) / 20.0;
+                now + 1e-4 * ((told - now) / lag).clamp(-rate, rate)
+            }));
+        }
+        let follower = servo_follower(&time, &read(&spool, 1.0, 0.0), &command, NOISE).unwrap();
+        // Unlimited it would run ahead by 1e-5 m² on the way.
+        let error = largest_error(&follower, spool.iter().copied());
+        assert!(error < NOISE / 2.0, "{error:e}");
+        let resting = (0..time.len()).filter(|&k| (4.9..5.0).contains(&time[k].rem_euclid(5.0)));
+        let off = |k: usize| (follower[k] - spool[k]).abs();
+        assert!(resting.map(off).fold(0.0, f64::max) < 5e-9);
     }
 
     #[test]

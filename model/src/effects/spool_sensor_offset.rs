@@ -1,0 +1,52 @@
+//! A spool sensor that does not read zero where the valve closes.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use crate::machine::Machine;
+
+/// A spool sensor that does not read zero where the valve closes, by a part of its noise or of its converter's step.
+///
+/// No reading shows it; the oil does. Where two nearly closed edges share a pump's flow, or a nearly open valve leaves a bypass
+/// next to nothing, a thousandth of the opening is more pressure than a pressure sensor's noise, and looks like a dead zone.
+pub struct SpoolSensorOffset;
+
+static CARD: Card = Card {
+    name: "spool_sensor_offset",
+    acts_on: ActsOn::Valve,
+    family: Family::Recording,
+    summary: "The spool's sensor reads a little more or less than the opening, everywhere the same.",
+    equation: "u(t) = reading(t) - u0",
+    source: "practice (zero of a position transducer)",
+    shows: "A closed valve that seems to pass oil to one side, and to need a little more opening on the other; a dead zone far below the sensor's noise.",
+    experiment: "Hold a load with the valve closed, then meter slowly to both sides.",
+    energy: "None: it acts on the instrument.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "spool_offset",
+    symbol: "u0",
+    unit: "m2",
+    meaning: "what the sensor reads where the valve is closed",
+    kind: Kind::Shape,
+    minimum: -1e-5,
+    maximum: 1e-5,
+    typical: 1e-7,
+    start: Start::At(&[0.0]),
+}];
+
+impl Physics for SpoolSensorOffset {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn reads_course(&self) -> bool {
+        true
+    }
+
+    fn read<T: Scalar>(&self, parameters: &[T], reading: T, _course: [T; 2]) -> T {
+        reading - parameters[0]
+    }
+}
