@@ -4,7 +4,7 @@ use excavator_model::effects::{self, Effect, Site};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelError};
 
-use super::starts::starts;
+use super::starts::{half_open, starts};
 use super::{Evidence, Inclusion};
 use crate::fit::{Fit, FitError, FitSettings, Prediction, fit_predicted, predict};
 
@@ -136,14 +136,19 @@ pub(super) fn best_start(
     let extended = model.with_effect(physics, site)?;
     let mut best: Option<PromisingStart> = None;
     let mut failure = None;
-    for start in starts(&extended, recordings) {
-        match predict(&start, recordings, settings) {
-            Ok(promise) if best.as_ref().is_none_or(|best| promise.loss_after < best.promise.loss_after) => {
-                best = Some(PromisingStart { model: start, promise });
-            }
-            Ok(_) => {}
-            Err(error) => failure = Some(error),
+    let mut try_one = |start: Model, best: &mut Option<PromisingStart>| match predict(&start, recordings, settings) {
+        Ok(promise) if best.as_ref().is_none_or(|best| promise.loss_after < best.promise.loss_after) => {
+            *best = Some(PromisingStart { model: start, promise });
         }
+        Ok(_) => {}
+        Err(error) => failure = Some(error),
+    };
+    for start in starts(&extended, recordings) {
+        try_one(start, &mut best);
+    }
+    let half_open = best.as_ref().map_or_else(Vec::new, |best| half_open(&best.model));
+    for start in half_open {
+        try_one(start, &mut best);
     }
     match (best, failure) {
         (Some(best), _) => Ok(best),
