@@ -1,0 +1,65 @@
+//! A load that is picked up in the middle of a recording is named; one that is always there is a heavier arm.
+#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+
+mod common;
+
+use common::{measure, off_the_data_sheet, with};
+use excavator_identification::diagnosis::{Adequacy, Diagnosis, DiagnosisSettings, Verdict, diagnose};
+use excavator_model::document::built_in;
+use excavator_model::effects::Site;
+use excavator_model::recording::Recording;
+use excavator_model::simulation::{Tolerances, simulate_from_rest};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+const RATE: f64 = 500.0;
+
+/// Mass, kg, and its distance from the joint, m.
+const LOAD: [f64; 2] = [60.0, 1.7];
+
+/// The arm with a load on it from `begin` (s) on.
+fn recorded(begin: f64, tempo: f64, duration: f64) -> Recording {
+    let arm = off_the_data_sheet("zx30u-arm", 0.1);
+    let machine = with(&arm, "payload", Site::Cylinder(0), &[LOAD[0], LOAD[1], begin, 1e9]);
+    let time: Vec<f64> = (0..(duration * RATE) as usize).map(|index| index as f64 / RATE).collect();
+    let mut recording = Recording::unmeasured("loaded", time, &["arm"]);
+    recording.tank_pressure.fill(6e5);
+    recording.pump_flow.fill(3.8e-4);
+    let area = |t: f64| 6e-5 * (tempo * t).sin() + 4e-5 * (2.7 * tempo * t).sin();
+    recording.cylinders[0].orifice_area = recording.time.iter().map(|&t| area(t)).collect();
+    let mut seen = simulate_from_rest(&machine, &recording, &[0.05], Tolerances::default().scaled(0.05)).unwrap();
+    seen.cylinders[0].orifice_command = recording.cylinders[0].orifice_area.clone();
+    measure(&mut ChaCha8Rng::seed_from_u64((begin + 5.0) as u64), &mut seen);
+    seen
+}
+
+fn diagnosed(begins: [f64; 2]) -> Diagnosis {
+    let (identification, validation) = (recorded(begins[0], 2.9, 24.0), recorded(begins[1], 3.4, 14.0));
+    let model = built_in("zx30u-arm").unwrap();
+    diagnose(&model, &[&identification], &[&validation], &DiagnosisSettings::default(), &|_, _| {}).unwrap()
+}
+
+#[test]
+fn a_load_that_is_picked_up_is_named() {
+    let found = diagnosed([9.3, 5.6]);
+    let names: Vec<&str> = found.chain.iter().map(|link| link.name()).collect();
+    assert_eq!((found.verdict, &names[..]), (Verdict::MissingEffect, &["payload"][..]));
+    let link = &found.chain[0];
+    assert!(!link.tied_with_first);
+    assert!(link.validation.loss() < 0.1, "{}", link.validation.loss());
+    for (parameter, wanted, margin) in
+        [("arm.payload_mass", LOAD[0], 1.0), ("arm.payload_distance", LOAD[1], 0.03), ("arm.payload_start", 9.3, 0.05)]
+    {
+        let value = link.fit.model.value_of(parameter).unwrap();
+        assert!((value - wanted).abs() < margin, "{parameter} = {value}, not {wanted}");
+    }
+}
+
+#[test]
+fn a_load_that_is_always_there_is_a_heavier_arm() {
+    let found = diagnosed([-1.0, -1.0]);
+    assert_eq!((found.verdict, found.adequacy), (Verdict::Adequate, Some(Adequacy::Noise)));
+    let inertia = found.nominal.model.value_of("arm.inertia").unwrap();
+    let wanted = off_the_data_sheet("zx30u-arm", 0.1).value_of("arm.inertia").unwrap() + LOAD[0] * LOAD[1] * LOAD[1];
+    assert!((inertia / wanted - 1.0).abs() < 0.01, "{inertia} {wanted}");
+}
