@@ -35,7 +35,7 @@ pub fn rounded_step<T: Scalar>(ratio: T) -> T {
     ((ratio * -2.0).exp() + 1.0).recip()
 }
 
-/// One from `begin` on for `duration`, zero before and after (all s), rounded over [`EDGE`].
+/// One from `begin` on for `duration`, zero before and after (all s), its edges rounded over 30 ms.
 pub fn window<T: Scalar>(time: T, begin: T, duration: T) -> T {
     let since = time - begin;
     rounded_step(since / EDGE) * rounded_step((duration - since) / EDGE)
