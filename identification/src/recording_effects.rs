@@ -16,6 +16,9 @@ const MOST_OF_A_SAMPLE: f64 = 0.65;
 /// Or this, s, where recordings are fast: a controller's cycle of a millisecond, and a little. Nobody orders a valve for that.
 const MOST_AT_ONCE: f64 = 1.3e-3;
 
+/// And this, s, where the spool's sensor is late: it has a filter, and no candidate could be taken for that.
+const MOST_BEHIND: f64 = 5e-3;
+
 /// Most that a spool sensor's zero is off, as a part of the largest opening: the accuracy of an ordinary transducer.
 const MOST_OF_THE_OPENING: f64 = 5e-3;
 
@@ -80,8 +83,11 @@ fn is_seen(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Recor
     model.effect(physics.card().name, site).is_some_and(|effect| {
         effect.parameters.iter().all(|parameter| {
             let least = LEAST_SIGNIFICANCE * parameter.standard_error.unwrap_or(f64::INFINITY);
-            let most =
-                if parameter.card.unit == "s" { latest(recordings) } else { largest_zero(model, site, recordings) };
+            let most = match parameter.card.unit {
+                "s" if parameter.value < 0.0 => latest(recordings).max(MOST_BEHIND),
+                "s" => latest(recordings),
+                _ => largest_zero(model, site, recordings),
+            };
             parameter.value.abs() >= least && parameter.value.abs() <= most
         })
     })
