@@ -24,13 +24,15 @@ const MOST_OF_THE_OPENING: f64 = 5e-3;
 
 /// What `estimate` makes of a model with those of these effects that `recordings` show; `plain` is what it made of the model
 /// without them, and is returned where they show none or nothing can be made of them. They are put `behind` so many effects
-/// of the model, so that a candidate stays its last. `model_of` is the model in a result, with standard errors.
+/// of the model, so that a candidate stays its last. `model_of` is the model in a result, with standard errors; `is_all` tells
+/// whether nothing is left that something else could explain.
 pub fn with_recording_effects<R>(
     plain: R,
     behind: usize,
     recordings: &[&Recording],
     model_of: impl Fn(&R) -> &Model,
     estimate: impl Fn(&Model) -> Option<R>,
+    is_all: impl Fn(&R) -> bool,
 ) -> R {
     let mut added = shown_by(model_of(&plain), recordings);
     while !added.is_empty() {
@@ -42,11 +44,23 @@ pub fn with_recording_effects<R>(
         let before = added.len();
         added.retain(|&(physics, site)| is_seen(model_of(&extended), physics, site, recordings));
         if added.len() == before {
-            return extended;
+            if is_all(&extended) || !added.iter().any(|(physics, _)| looks_like_more(*physics)) {
+                return extended;
+            }
+            added.retain(|(physics, _)| !looks_like_more(*physics));
         }
     }
     plain
 }
+
+/// Whether what a valve lacks looks much like the effect: a play shifts the opening by half of itself, most of the time to one side.
+/// Fitted along where something is missing, a shifted zero would take half of that away and hide it.
+fn looks_like_more(physics: &dyn Effect) -> bool {
+    physics.card().name == "spool_sensor_offset"
+}
+
+/// Typical loss of a fit up to which nothing is left but noise, as for [`crate::diagnosis::DiagnosisSettings::adequate_loss`].
+const NOISE: f64 = 0.2;
 
 /// [`with_recording_effects`] of a fit, by the same fit.
 pub(crate) fn refitted_with_recording_effects(
@@ -56,7 +70,8 @@ pub(crate) fn refitted_with_recording_effects(
     settings: &FitSettings,
 ) -> Fit {
     let anew = |model: &Model| fit(model, recordings, settings).ok();
-    with_recording_effects(fitted, behind, recordings, |fitted| &fitted.model, anew)
+    let is_all = |fitted: &Fit| fitted.typical_loss() <= NOISE;
+    with_recording_effects(fitted, behind, recordings, |fitted| &fitted.model, anew, is_all)
 }
 
 /// Effects of recordings that the model has not and that `recordings` can show.

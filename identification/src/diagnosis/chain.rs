@@ -8,7 +8,7 @@ use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
 
 use super::adequacy::inputs_explain_the_rest;
-use super::own_windows::evaluate_in_known_windows;
+use super::own_windows::{evaluate_in_known_windows, has_window};
 use super::race::{Race, Round};
 use super::starts::acts_in_a_window;
 use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, adequacy, compare_losses};
@@ -101,7 +101,7 @@ impl Chains<'_> {
         let Some(last) = chain.last().map(|last| &last.validation) else {
             return self.nominal_is_adequate;
         };
-        let share = 1.0 - last.loss() / self.nominal_validation.loss();
+        let share = (1.0 - last.loss() / self.nominal_validation.loss()).min(self.share_where_fitted(chain));
         let least = if chain.len() > 1 { settings.least_shared_share } else { settings.least_explained_share };
         if self.is_adequate(last) {
             return share >= least;
@@ -110,6 +110,15 @@ impl Chains<'_> {
             // What readings leave open is no reason to name something in a model that lacks nothing.
             || !self.nominal_is_adequate
                 && inputs_explain_the_rest(last, self.nominal_validation, least, self.validation, settings)
+    }
+
+    /// What a chain takes away of the loss on the identification recordings, where it has windows of time: on the validation recordings
+    /// these are fitted too, and what they take away there is no prediction.
+    fn share_where_fitted(&self, chain: &[Candidate]) -> f64 {
+        let Some(last) = chain.last().filter(|last| last.fit.model.effects.iter().any(has_window)) else {
+            return f64::INFINITY;
+        };
+        1.0 - last.fit.loss() / self.nominal.loss()
     }
 
     fn contains(&self, chain: &[Candidate], other: &Candidate) -> bool {

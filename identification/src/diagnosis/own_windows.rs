@@ -62,6 +62,6 @@ fn in_windows_of(model: &Model, known: &Model) -> (Model, bool) {
 }
 
 /// Whether the effect acts in a window that was looked for.
-fn has_window(effect: &ModelEffect) -> bool {
+pub(super) fn has_window(effect: &ModelEffect) -> bool {
     effect.parameters.iter().any(|parameter| parameter.card.start.is_a_time() && !parameter.known)
 }

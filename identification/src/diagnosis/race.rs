@@ -15,10 +15,10 @@ use super::both_sides::has_seen_both_sides;
 use super::candidate::{CandidateError, best_start};
 use super::evidence::joint_significance;
 use super::inclusion::inclusion;
-use super::own_windows::evaluate_in_own_windows;
+use super::own_windows::{evaluate_in_own_windows, has_window};
 use super::starts::acts_in_a_window;
 use super::track::{Track, short};
-use super::{Candidate, DiagnosisSettings, Inclusion, Unpromising, compare_losses};
+use super::{Candidate, DiagnosisSettings, Evidence, Inclusion, Unpromising, compare_losses};
 use crate::fit::{Fit, fit, fit_predicted};
 
 /// What became of all candidates.
@@ -207,8 +207,14 @@ impl Race<'_> {
         let Runner { physics, site, place, fit: start, .. } = runner;
         let fit = fit(&start.model, self.identification, settings)?;
         let validation = evaluate_in_own_windows(&fit.model, &self.base_validation.model, self.validation, settings)?;
-        let evidence = compare_losses(self.base_validation, &validation);
         let fitted = compare_losses(self.base, &fit);
+        let evidence = compare_losses(self.base_validation, &validation);
+        // What has a window of its own in each recording is fitted to each: neither says more than the other.
+        let evidence = if fit.model.effects.last().is_some_and(has_window) && fitted.gain < evidence.gain {
+            Evidence { gain: fitted.gain, significance: fitted.significance.min(evidence.significance) }
+        } else {
+            evidence
+        };
         let accepted = evidence.gain >= self.least_gain
             && fitted.gain >= self.least_gain / 2.0
             && evidence.significance >= self.settings.least_significance

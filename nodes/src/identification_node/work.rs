@@ -75,7 +75,7 @@ pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &dyn Fn(&str, 
     let timing = part("identifying with the sensors' timing", 0.45, 0.45);
     let anew = |model: &Model| weak_form_watched(model, &recordings, &settings, &timing).ok();
     let mut identified =
-        with_recording_effects(plain, wanted.effects.len(), &recordings, |solved| &solved.model, anew).model;
+        with_recording_effects(plain, wanted.effects.len(), &recordings, |solved| &solved.model, anew, |_| false).model;
     if !goal.effects.is_empty() {
         // Effects that were added start far from their values, and some enter nonlinearly: outputs are fitted too.
         let fitting = part("fitting outputs", 0.5, 0.7);

@@ -127,7 +127,7 @@ fn in_weak_form(model: &Model, recordings: &[&Recording]) -> Result<Regression, 
     let estimate = |model: &Model| weak_form(model, recordings, &WeakFormSettings::default());
     let plain = estimate(model)?;
     let anew = |model: &Model| estimate(model).ok();
-    Ok(with_recording_effects(plain, model.effects.len(), recordings, |solved| &solved.model, anew))
+    Ok(with_recording_effects(plain, model.effects.len(), recordings, |solved| &solved.model, anew, |_| false))
 }
 
 fn profiles_json(result: &Identified) -> Value {
