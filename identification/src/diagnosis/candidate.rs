@@ -4,6 +4,7 @@ use excavator_model::effects::{self, Effect, Site};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelError};
 
+use super::own_windows::has_window;
 use super::starts::{half_open, starts};
 use super::{Evidence, Inclusion};
 use crate::fit::{Fit, FitError, FitSettings, Prediction, fit_predicted, predict};
@@ -57,6 +58,15 @@ impl Candidate {
         let mut model = self.fit.model.clone();
         // A candidate is added after everything that the model had.
         model.effects.pop();
+        model
+    }
+
+    /// The fitted model, what acts in a window of time in that of the validation recordings.
+    pub(super) fn model_on_validation(&self) -> Model {
+        let mut model = self.fit.model.clone();
+        if model.effects.iter().any(has_window) {
+            model.set_parameter_values(&self.validation.model.parameter_values());
+        }
         model
     }
 

@@ -49,7 +49,10 @@ const LEAST_SHARE: f64 = 0.2;
 /// # Errors
 /// [`RegressionError`] when the recordings lack inputs.
 pub fn contribution(candidate: &Candidate, recordings: &[&Recording]) -> Result<Option<Contribution>, RegressionError> {
-    let (with, without) = (&candidate.fit.model, candidate.without_effect());
+    let with = &candidate.model_on_validation();
+    let mut without = with.clone();
+    // A candidate is added after everything that the model had.
+    without.effects.pop();
     let with: BTreeMap<_, f64> =
         points(with, recordings)?.into_iter().map(|point| ((point.kind, point.place), point.residual)).collect();
     let pairs: Vec<(Point, f64)> = points(&without, recordings)?
