@@ -3,16 +3,11 @@
 
 mod common;
 
-use common::{measure, off_the_data_sheet, with};
+use common::{off_the_data_sheet, steered, with};
 use excavator_identification::diagnosis::{Adequacy, Diagnosis, DiagnosisSettings, Verdict, diagnose};
 use excavator_model::document::built_in;
 use excavator_model::effects::Site;
 use excavator_model::recording::Recording;
-use excavator_model::simulation::{Tolerances, simulate_from_rest};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-
-const RATE: f64 = 500.0;
 
 /// Mass, kg, and its distance from the joint, m.
 const LOAD: [f64; 2] = [60.0, 1.7];
@@ -21,16 +16,7 @@ const LOAD: [f64; 2] = [60.0, 1.7];
 fn recorded(begin: f64, tempo: f64, duration: f64) -> Recording {
     let arm = off_the_data_sheet("zx30u-arm", 0.1);
     let machine = with(&arm, "payload", Site::Cylinder(0), &[LOAD[0], LOAD[1], begin, 1e9]);
-    let time: Vec<f64> = (0..(duration * RATE) as usize).map(|index| index as f64 / RATE).collect();
-    let mut recording = Recording::unmeasured("loaded", time, &["arm"]);
-    recording.tank_pressure.fill(6e5);
-    recording.pump_flow.fill(3.8e-4);
-    let area = |t: f64| 6e-5 * (tempo * t).sin() + 4e-5 * (2.7 * tempo * t).sin();
-    recording.cylinders[0].orifice_area = recording.time.iter().map(|&t| area(t)).collect();
-    let mut seen = simulate_from_rest(&machine, &recording, &[0.05], Tolerances::default().scaled(0.05)).unwrap();
-    seen.cylinders[0].orifice_command = recording.cylinders[0].orifice_area.clone();
-    measure(&mut ChaCha8Rng::seed_from_u64((begin + 5.0) as u64), &mut seen);
-    seen
+    steered(&machine, tempo, duration, (begin + 5.0) as u64)
 }
 
 fn diagnosed(begins: [f64; 2]) -> Diagnosis {

@@ -6,6 +6,7 @@ use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -18,6 +19,21 @@ pub fn swing(model: &Model) -> Recording {
     let area = |t: &f64| 5e-5 * (3.1 * t).sin() + 3e-5 * (7.3 * t).sin();
     recording.cylinders[0].orifice_area = recording.time.iter().map(area).collect();
     simulate_from_rest(model, &recording, &[0.1], Tolerances::default().scaled(0.05)).unwrap()
+}
+
+/// The arm of `machine` steered by two sines, whose frequencies grow with `tempo` (rad/s), for `duration` s, as good instruments
+/// see it at 500 Hz.
+pub fn steered(machine: &Model, tempo: f64, duration: f64, seed: u64) -> Recording {
+    let time: Vec<f64> = (0..(duration * 500.0) as usize).map(|index| index as f64 / 500.0).collect();
+    let mut recording = Recording::unmeasured("steered", time, &["arm"]);
+    recording.tank_pressure.fill(6e5);
+    recording.pump_flow.fill(3.8e-4);
+    let area = |t: f64| 6e-5 * (tempo * t).sin() + 4e-5 * (2.7 * tempo * t).sin();
+    recording.cylinders[0].orifice_area = recording.time.iter().map(|&t| area(t)).collect();
+    let mut seen = simulate_from_rest(machine, &recording, &[0.05], Tolerances::default().scaled(0.05)).unwrap();
+    seen.cylinders[0].orifice_command = recording.cylinders[0].orifice_area.clone();
+    measure(&mut ChaCha8Rng::seed_from_u64(seed), &mut seen);
+    seen
 }
 
 /// A built-in machine whose unknown parameters are up to `spread` of their size away from the ones of its model.
