@@ -163,6 +163,12 @@ impl ModelEffect {
         self.physics.card().name
     }
 
+    /// What says when it begins and how long it lasts, s, for an effect that can act in a window of time.
+    pub fn window(&self) -> Option<(&Parameter, &Parameter)> {
+        let time = |start| self.parameters.iter().find(|parameter| parameter.card.start == start);
+        Some((time(effects::Start::WorstStretchBegin)?, time(effects::Start::WorstStretchDuration)?))
+    }
+
     /// Whether it acts from the beginning to the end of every recording, not in a window of time.
     pub fn acts_always(&self) -> bool {
         self.parameters

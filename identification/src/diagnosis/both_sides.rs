@@ -29,11 +29,8 @@ fn share_inside(effect: &ModelEffect, recordings: &[&Recording]) -> Option<f64> 
     if effect.acts_always() {
         return None;
     }
-    let value = |is: fn(&Start) -> bool| {
-        effect.parameters.iter().find(|parameter| is(&parameter.card.start)).map(|parameter| parameter.value)
-    };
-    let begin = value(|start| matches!(start, Start::WorstStretchBegin))?;
-    let end = begin + value(|start| matches!(start, Start::WorstStretchDuration))?;
+    let (begin, duration) = effect.window().map(|(begin, duration)| (begin.value, duration.value))?;
+    let end = begin + duration;
     let inside: f64 =
         recordings.iter().map(|recording| (end.min(recording.duration()) - begin.max(0.0)).max(0.0)).sum();
     let all: f64 = recordings.iter().map(|recording| recording.duration()).sum();

@@ -100,15 +100,10 @@ fn windows(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
 /// The model with the window of its last effect open to either side. A load that was not put down but lay still for a while looks
 /// like one that was, and a fit moves an edge no further than to where it is seen.
 pub(super) fn half_open(model: &Model) -> Vec<Model> {
-    let Some(last) = model.effects.last() else { return Vec::new() };
-    let time = |is: fn(&Start) -> bool| {
-        last.parameters.iter().find(|time| is(&time.card.start)).map(|time| (time.value, !time.known))
-    };
-    let begin = time(|start| matches!(start, Start::WorstStretchBegin));
-    let duration = time(|start| matches!(start, Start::WorstStretchDuration));
-    match (begin, duration) {
-        (Some((begin, true)), Some((duration, true))) => {
-            vec![in_window(model, Some(begin), None), in_window(model, None, Some(begin + duration))]
+    match model.effects.last().and_then(|last| last.window()) {
+        Some((begin, duration)) if !begin.known && !duration.known => {
+            let end = begin.value + duration.value;
+            vec![in_window(model, Some(begin.value), None), in_window(model, None, Some(end))]
         }
         _ => Vec::new(),
     }
