@@ -66,7 +66,8 @@ pub fn record(
     let [length, pressure, area] = RANGES;
     let late = sensors.pressure_delay;
     let displacement = Truth::late(&truth.displacement, sensors.displacement_delay);
-    let displacement = seen(displacement, sensors.displacement_offset, DISPLACEMENT_NOISE, length);
+    let displacement = displacement.into_iter().map(|value| sensors.displacement(value)).collect();
+    let displacement = seen(displacement, 0.0, DISPLACEMENT_NOISE, length);
     let cap = seen(Truth::late(&truth.cap, late), sensors.cap_offset, PRESSURE_NOISE, pressure);
     let rod = seen(Truth::late(&truth.rod, late), sensors.rod_offset, PRESSURE_NOISE, pressure);
     let pump = seen(Truth::late(&truth.pump, late), sensors.pump_offset, PRESSURE_NOISE, pressure);

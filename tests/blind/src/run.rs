@@ -51,7 +51,7 @@ pub enum Lever<'a> {
 pub fn run(plant: &Plant, lever: Lever<'_>, displacement: f64) -> Result<Truth, Diverged> {
     let mut state = plant.at_rest(displacement);
     let plant =
-        Plant { boom_holding_torque: plant.boom_gravity(std::f64::consts::FRAC_PI_3, state.values[0]), ..*plant };
+        Plant { boom_holding_torque: plant.boom_gravity(0.0, std::f64::consts::FRAC_PI_3, state.values[0]), ..*plant };
     let samples = (plant.duration * RATE).round() as usize;
     let steps = (1.0 / (RATE * POINTS as f64 * STEP)).round() as usize;
     let delay = plant.effects.valve.lag.map_or(0.0, |lag| lag.delay);

@@ -158,7 +158,7 @@ pub fn score(case: &Case, evidence: &Evidence) -> Result<Score, ScoreError> {
     let tied = diagnosis.candidates.iter().filter(|candidate| candidate.tied_with_first);
     let tied: Vec<&'static str> = tied.map(|candidate| candidate.name()).collect();
     let chain: Vec<&'static str> = diagnosis.chain.iter().map(|candidate| candidate.name()).collect();
-    let hidden: Vec<&'static str> = case.hidden.iter().map(|kind| kind.name).collect();
+    let hidden: Vec<&'static str> = case.hidden.iter().map(|kind| kind.answer).collect();
     let visible = case.hidden.iter().all(|kind| kind.identifiable);
     let sort = if visible { case.sort } else { Sort::Nothing };
     let (last, last_validation) = last_fit(&diagnosis);
@@ -245,7 +245,7 @@ fn coefficient_error(case: &Case, diagnosis: &Diagnosis) -> Option<f64> {
         .last()
         .into_iter()
         .chain(&diagnosis.candidates)
-        .filter(|candidate| case.hidden.iter().any(|kind| kind.name == candidate.name()))
+        .filter(|candidate| case.hidden.iter().any(|kind| kind.answer == candidate.name()))
         .map(|candidate| &candidate.fit.model)
         .collect();
     let error = |(name, truth): (&str, f64)| {

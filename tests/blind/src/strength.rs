@@ -55,8 +55,9 @@ impl Change {
     /// Of a run against a plant without effects under the same commands.
     pub fn between(with: &Truth, sensors: &Sensors, without: &Truth) -> Self {
         let late = sensors.pressure_delay;
+        let measured: Vec<f64> = with.displacement.iter().map(|value| sensors.displacement(*value)).collect();
         let pairs = [
-            (&with.displacement, &without.displacement, sensors.displacement_delay, sensors.displacement_offset),
+            (&measured, &without.displacement, sensors.displacement_delay, 0.0),
             (&with.velocity, &without.velocity, 0.0, 0.0),
             (&with.cap, &without.cap, late, sensors.cap_offset),
             (&with.rod, &without.rod, late, sensors.rod_offset),

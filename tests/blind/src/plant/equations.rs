@@ -48,9 +48,9 @@ pub struct Plant {
 pub struct Flows {
     /// Opening of the metering edges, m².
     pub opening: f64,
-    /// Through the valve into the cap side, metering edges and valve leakage.
+    /// Through the valve block into the cap side: metering edges, valve leakage, secondary valves.
     pub cap: f64,
-    /// Through the valve into the rod side.
+    /// Through the valve block into the rod side.
     pub rod: f64,
     /// From the pump line into the valve section.
     pub drawn: f64,
@@ -117,8 +117,9 @@ impl Plant {
     pub fn at_rest(&self, displacement: f64) -> State {
         let joint = Geometry::joint(displacement);
         let lever = Geometry::at(joint).lever;
-        let moment = self.base.gravity_moment + self.effects.load.gravity_moment();
-        let force = moment * GRAVITY * (BOOM_ANGLE + joint).sin() / lever;
+        let moment = self.base.gravity_moment + self.effects.load.gravity_moment(0.0, self.duration);
+        let held = moment * GRAVITY * (BOOM_ANGLE + joint).sin() - self.effects.foreign.spring(joint);
+        let force = held / lever;
         // The lighter loaded chamber stands 0.2 MPa above tank, as after a slow stroke.
         let floor = TANK_PRESSURE + 2e5;
         let cap = ((force + ROD_AREA * floor) / CAP_AREA).max(floor);
@@ -133,9 +134,9 @@ impl Plant {
         State { values, played: 0.0 }
     }
 
-    /// Gravity torque on the boom's joint, N m.
-    pub fn boom_gravity(&self, boom: f64, joint: f64) -> f64 {
-        let moment = self.base.gravity_moment + self.effects.load.gravity_moment();
+    /// Gravity torque on the boom's joint, N m, at a time in s.
+    pub fn boom_gravity(&self, time: f64, boom: f64, joint: f64) -> f64 {
+        let moment = self.base.gravity_moment + self.effects.load.gravity_moment(time, self.duration);
         GRAVITY * (BOOM_GRAVITY_MOMENT * boom.sin() + moment * (boom + joint).sin())
     }
 
@@ -150,25 +151,27 @@ impl Plant {
         let valve = &self.effects.valve;
         let mut opening = valve.opening(played);
         let inlet = if opening > 0.0 { cap } else { rod };
+        let filter = |gain: f64| self.effects.foreign.before_filter(gain);
         let relief = 1.0 - self.effects.foreign.flow_force * (pump - inlet).abs() / 1e6;
-        opening *= relief.max(0.2);
+        opening *= relief.max(0.2) * self.effects.foreign.gain_factor(time, self.duration);
         let (mut into_cap, mut into_rod, mut drawn);
         if opening >= 0.0 {
             drawn = valve.checked(valve.behind_hose(self.base.flow_gain_cap * opening) * root(pump - cap));
             into_cap = drawn;
-            into_rod = -valve.behind_hose(self.base.flow_gain_rod * opening) * root(rod - TANK_PRESSURE);
+            into_rod = -filter(valve.behind_hose(self.base.flow_gain_rod * opening)) * root(rod - TANK_PRESSURE);
         } else {
             let gain_cap = self.base.flow_gain_cap * (1.0 + valve.directional_cap);
             let gain_rod = self.base.flow_gain_rod * (1.0 + valve.directional_rod);
             drawn = valve.checked(valve.behind_hose(gain_rod * -opening) * root(pump - rod));
             into_rod = drawn;
-            into_cap = valve.behind_hose(gain_cap * opening) * root(cap - TANK_PRESSURE);
+            into_cap = filter(valve.behind_hose(gain_cap * opening)) * root(cap - TANK_PRESSURE);
         }
         let [pump_cap, cap_tank, pump_rod, rod_tank] = valve.leakage;
         let (leak_cap, leak_rod) = (pump_cap * (pump - cap), pump_rod * (pump - rod));
         drawn += leak_cap + leak_rod;
         into_cap += leak_cap - cap_tank * (cap - TANK_PRESSURE);
         into_rod += leak_rod - rod_tank * (rod - TANK_PRESSURE);
+        into_cap -= self.effects.foreign.port_relief(cap);
         let travel = (played.abs() - self.effects.pump.bypass_overlap).max(0.0);
         let open_centre = (MAXIMUM_OPENING - travel).max(0.0);
         let droop = 1.0 - self.effects.foreign.engine_droop * state.values[12];
@@ -236,10 +239,11 @@ impl Plant {
         } else {
             force
         };
-        let inertia = self.base.inertia + self.effects.load.inertia();
-        let moment = self.base.gravity_moment + self.effects.load.gravity_moment();
+        let inertia = self.base.inertia + self.effects.load.inertia(time, self.duration);
+        let moment = self.base.gravity_moment + self.effects.load.gravity_moment(time, self.duration);
         let boom = BOOM_ANGLE + deflection;
-        let torque = geometry.lever * on_arm - moment * GRAVITY * (boom + joint).sin();
+        let torque =
+            geometry.lever * on_arm - moment * GRAVITY * (boom + joint).sin() + self.effects.foreign.spring(joint);
         rates[0] = joint_rate;
         if self.effects.foreign.boom_compliance > 0.0 {
             let stiffness = 1.0 / self.effects.foreign.boom_compliance;
@@ -249,7 +253,7 @@ impl Plant {
             let (m11, m12) = (BOOM_INERTIA + 2.0 * COUPLING * cosine, inertia + COUPLING * cosine);
             let holding = self.boom_holding_torque - stiffness * deflection - damping * deflection_rate;
             let turning = COUPLING * sine * (2.0 * deflection_rate + joint_rate) * joint_rate;
-            let on_boom = holding - self.boom_gravity(boom, joint) + turning;
+            let on_boom = holding - self.boom_gravity(time, boom, joint) + turning;
             let on_joint = torque - COUPLING * sine * deflection_rate * deflection_rate;
             let determinant = m11 * inertia - m12 * m12;
             rates[8] = deflection_rate;

@@ -42,6 +42,18 @@ pub struct Foreign {
     pub pin_play: f64,
     /// Share of the opening that flow forces take per MPa of pressure drop.
     pub flow_force: f64,
+    /// Gain of a secondary relief valve from the cap side to tank, m³/(s Pa).
+    pub port_relief_gain: f64,
+    /// Its cracking pressure, Pa.
+    pub port_relief_pressure: f64,
+    /// Resistance of a clogged filter in the return line, s² Pa/m⁶: drop over the square of the flow.
+    pub return_resistance: f64,
+    /// Stiffness of a balance spring at the joint, N m/rad.
+    pub spring_stiffness: f64,
+    /// Joint angle at which it is slack, rad.
+    pub spring_angle: f64,
+    /// Share by which all flow gains of the valve grow over a recording.
+    pub gain_drift: f64,
 }
 
 impl Foreign {
@@ -65,6 +77,26 @@ impl Foreign {
     /// Factor on viscous damping at a time of a recording, both s; the warm oil arrives within 0.5 s.
     pub fn damping_factor(&self, time: f64, duration: f64) -> f64 {
         1.0 - self.viscosity_step * ((time - self.viscosity_time * duration) / 0.5).clamp(0.0, 1.0)
+    }
+
+    /// Flow through the secondary relief valve at the cap side, m³/s.
+    pub fn port_relief(&self, cap: f64) -> f64 {
+        self.port_relief_gain * (cap - self.port_relief_pressure).max(0.0)
+    }
+
+    /// Gain of a metering edge and the return filter in series, both m³/(s sqrt(Pa)): their drops add up.
+    pub fn before_filter(&self, gain: f64) -> f64 {
+        gain / (1.0 + self.return_resistance * gain * gain).sqrt()
+    }
+
+    /// Torque of the balance spring on the arm, N m, at a joint angle in rad.
+    pub fn spring(&self, joint: f64) -> f64 {
+        -self.spring_stiffness * (joint - self.spring_angle)
+    }
+
+    /// Factor on the flow gains of the valve at a time of a recording, both s.
+    pub fn gain_factor(&self, time: f64, duration: f64) -> f64 {
+        if self.gain_drift == 0.0 { 1.0 } else { 1.0 + self.gain_drift * time / duration }
     }
 
     /// Force of the pin on the arm, N, for a lead of the piston over the arm (m) and its rate (m/s); never pulls back.

@@ -3,9 +3,11 @@
 //! Every hidden effect is a set of numbers that are zero in a plant without it. One file per part of the machine.
 
 mod base;
+mod catalogue_kinds;
 mod equations;
 mod extras;
 mod foreign;
+mod foreign_kinds;
 mod friction;
 mod geometry;
 mod integrator;
@@ -17,13 +19,15 @@ mod sensors;
 mod valve;
 
 pub use base::Base;
+pub use catalogue_kinds::CATALOGUE;
 pub use equations::{Flows, Forces, Plant, STATES, State};
 pub use extras::Extras;
 pub use foreign::Foreign;
+pub use foreign_kinds::FOREIGN;
 pub use friction::Friction;
 pub use geometry::{Geometry, MAXIMUM_OPENING, PUMP_FLOW, STROKE, TANK_PRESSURE};
 pub use integrator::{STEP, step};
-pub use kinds::{CATALOGUE, FOREIGN, Kind, Shape, kind};
+pub use kinds::{Kind, Shape};
 pub use load::Load;
 pub use oil::Oil;
 pub use pump::Pump;
@@ -47,4 +51,9 @@ pub struct Effects {
     pub sensors: Sensors,
     /// In nobody's catalogue.
     pub foreign: Foreign,
+}
+
+/// The kind of this name.
+pub fn kind(name: &str) -> Option<&'static Kind> {
+    CATALOGUE.iter().chain(FOREIGN).find(|kind| kind.name == name)
 }
