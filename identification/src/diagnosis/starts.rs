@@ -18,29 +18,27 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let thinned: Vec<&Recording> = thinned.iter().collect();
     let quick =
         WeakFormSettings { rounds: 1, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
-    let regressed = |start: &Model| {
-        let regression = weak_form(&with_times_held(start), &thinned, &quick).ok()?;
-        Some(with_times_as_in(start, within_bounds(regression.model)))
-    };
+    let regressed = |start: &Model| Some(within_bounds(weak_form(start, &thinned, &quick).ok()?.model));
     let last = model.effects.last();
     if last.is_some_and(|last| acts_in_a_window(last.physics, &model.machine, last.site)) {
         // There are many windows, and how strong something is follows from when it is.
-        return plain.into_iter().map(|start| regressed(&start).unwrap_or(start)).collect();
+        let with_strength = |start: &Model| Some(with_shape_of(start, regressed(&with_shape_held(start))?));
+        return plain.into_iter().map(|start| with_strength(&start).unwrap_or(start)).collect();
     }
     plain.iter().filter_map(regressed).chain(plain.iter().cloned()).collect()
 }
 
-/// The model with the times of its last effect held. A regression sees an edge in a few windows only, and its one step from
-/// there can be years long.
-fn with_times_held(model: &Model) -> Model {
+/// The model with everything of its last effect held but how strong it is. A regression sees an edge in a few windows only, and
+/// its one step from there can be years long; a light load it moves to where it weighs nothing, from where no fit returns.
+fn with_shape_held(model: &Model) -> Model {
     let mut held = model.clone();
     let last = held.effects.last_mut().into_iter().flat_map(|effect| &mut effect.parameters);
-    last.filter(|parameter| parameter.card.start.is_a_time()).for_each(|parameter| parameter.known = true);
+    last.filter(|parameter| parameter.card.kind == Kind::Shape).for_each(|parameter| parameter.known = true);
     held
 }
 
-/// `model` with the times of its last effect held or free as those of `start` are.
-fn with_times_as_in(start: &Model, mut model: Model) -> Model {
+/// `model` with the parameters of its last effect held or free as those of `start` are.
+fn with_shape_of(start: &Model, mut model: Model) -> Model {
     let last = model.effects.last_mut().into_iter().flat_map(|effect| &mut effect.parameters);
     let same = start.effects.last().into_iter().flat_map(|effect| &effect.parameters);
     last.zip(same).for_each(|(parameter, same)| parameter.known = same.known);

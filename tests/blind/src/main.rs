@@ -1,5 +1,6 @@
 //! `blind`: draws cases, asks the diagnosis, prints how it did.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -131,6 +132,11 @@ fn fits(sort: Sort, kind: &Kind) -> bool {
     }
 }
 
+/// Prints a line; false where nobody reads any more.
+fn say(line: &str) -> bool {
+    writeln!(std::io::stdout(), "{line}").is_ok()
+}
+
 fn judge_all(words: &Words, wish: &Wish, profile: Option<&Profile>) -> ExitCode {
     let mut judged: Vec<Judged> = Vec::new();
     for number in words.first..words.first.saturating_add(words.cases) {
@@ -141,8 +147,11 @@ fn judge_all(words: &Words, wish: &Wish, profile: Option<&Profile>) -> ExitCode 
         let evidence = match make(&mut case, words.noise, words.spool_lead) {
             Ok(evidence) => evidence,
             Err(error) => {
-                println!("{number:>4}  no recording: {} {}: {error}", case.secret(), case.strength.name());
+                let line = format!("{number:>4}  no recording: {} {}: {error}", case.secret(), case.strength.name());
                 judged.push((case, Err(error.to_string())));
+                if !say(&line) {
+                    return ExitCode::SUCCESS;
+                }
                 continue;
             }
         };
@@ -155,22 +164,27 @@ fn judge_all(words: &Words, wish: &Wish, profile: Option<&Profile>) -> ExitCode 
         if words.only_draw {
             let [identification, validation] = evidence.change.map(|change| 100.0 * change.share());
             let (secret, strength, truth) = (case.secret(), case.strength.name(), case.truth());
-            println!("{number:>4}  {secret} {strength}: changes {identification:.2}/{validation:.2} %, {truth:?}");
+            let line =
+                format!("{number:>4}  {secret} {strength}: changes {identification:.2}/{validation:.2} %, {truth:?}");
+            if !say(&line) {
+                return ExitCode::SUCCESS;
+            }
             continue;
         }
-        match score(&case, &evidence) {
-            Ok(score) => {
-                println!("{}", line(&case, &evidence, &score));
-                judged.push((case, Ok(score)));
-            }
+        let (line, result) = match score(&case, &evidence) {
+            Ok(score) => (line(&case, &evidence, &score), Ok(score)),
             Err(error) => {
-                println!("{number:>4}  no score: {} {}: {error}", case.secret(), case.strength.name());
-                judged.push((case, Err(error.to_string())));
+                let line = format!("{number:>4}  no score: {} {}: {error}", case.secret(), case.strength.name());
+                (line, Err(error.to_string()))
             }
+        };
+        judged.push((case, result));
+        if !say(&line) {
+            return ExitCode::SUCCESS;
         }
     }
     if !words.only_draw {
-        println!("\n{}", summary(&judged));
+        say(&format!("\n{}", summary(&judged)));
     }
     ExitCode::SUCCESS
 }
