@@ -11,7 +11,7 @@ use excavator_model::recording::Recording;
 use excavator_model::{addition_name, site_name};
 use rayon::prelude::*;
 
-use super::both_sides::has_seen_both_sides;
+use super::both_sides::{fills, has_seen_both_sides};
 use super::candidate::{CandidateError, best_start};
 use super::evidence::joint_significance;
 use super::inclusion::inclusion;
@@ -141,6 +141,7 @@ impl Race<'_> {
         }));
         round.unpromising.sort_by(|a, b| b.promised_gain.total_cmp(&a.promised_gain));
         round.fitted.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
+        self.doubt_what_a_constant_force_explains_better(&mut round.fitted);
         mark_ties(&mut round.fitted, self.settings);
         begin_with_determined(&mut round.fitted);
         let shares = inclusion(self.base_validation, &round.fitted, self.least_gain);
@@ -187,6 +188,25 @@ impl Race<'_> {
                 Ok(candidate) => round.fitted.push(candidate),
                 Err(error) => round.failed.push((name, error)),
             }
+        }
+    }
+
+    /// A contact that fills the recordings is a constant force, which no catalogue has: it cannot be named, and what it is better
+    /// than beyond doubt, in both recordings, is not what is missing. A spring at the joint looks like a displacement sensor that is
+    /// off, until compared with this.
+    fn doubt_what_a_constant_force_explains_better(&self, candidates: &mut [Candidate]) {
+        let constant = candidates.iter().find(|candidate| {
+            fills(&candidate.fit.model, self.identification) && fills(&candidate.validation.model, self.validation)
+        });
+        let Some((fit, validation)) = constant.map(|constant| (constant.fit.clone(), constant.validation.clone()))
+        else {
+            return;
+        };
+        let is_ahead =
+            |lead: Evidence| lead.gain >= self.settings.tie_gain && lead.significance >= self.settings.tie_significance;
+        for candidate in candidates.iter_mut().filter(|candidate| candidate.accepted) {
+            candidate.accepted = !is_ahead(compare_losses(&candidate.fit, &fit))
+                || !is_ahead(compare_losses(&candidate.validation, &validation));
         }
     }
 
