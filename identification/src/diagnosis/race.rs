@@ -250,6 +250,7 @@ impl Race<'_> {
             && evidence.significance >= self.settings.least_significance
             && joint_significance(evidence, fitted) >= self.settings.least_joint_significance
             && has_seen_both_sides(&fit.model, self.identification);
+        let is_constant = fills(&fit.model, self.identification) && fills(&validation.model, self.validation);
         Ok(Candidate {
             physics,
             site,
@@ -261,6 +262,7 @@ impl Race<'_> {
             identification_gain: fitted.gain,
             accepted,
             tied_with_first: false,
+            is_constant,
         })
     }
 }

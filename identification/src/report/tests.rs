@@ -77,6 +77,7 @@ fn candidate(name: &str, gain: f64, accepted: bool, tied: bool) -> Candidate {
         identification_gain: gain,
         accepted,
         tied_with_first: tied,
+        is_constant: false,
     }
 }
 
@@ -225,6 +226,11 @@ fn verdicts_name_effect_and_place_and_admit_ties() {
     let left = sentence(&diagnosis(Verdict::Unexplained, vec![]));
     assert!(left.contains("none of the effects in the catalogue"), "{left}");
     assert!(left.contains("force balance of the arm does not close") && left.contains("piston position"), "{left}");
+    assert!(!left.contains("constant torque"), "{left}");
+    let mut spring = diagnosis(Verdict::Unexplained, vec![]);
+    spring.rejected.push(Candidate { is_constant: true, ..candidate("external_contact", 20.0, false, false) });
+    let left = sentence(&spring);
+    assert!(left.contains("A constant torque of") && left.contains("at the arm would make"), "{left}");
 }
 
 fn missing() -> MissingPower {

@@ -3,7 +3,7 @@
 use excavator_model::effects::Family;
 use excavator_model::{Model, ModelEffect, site_name};
 
-use super::numbers::{percent, ratio};
+use super::numbers::{percent, ratio, significant};
 use super::words;
 use crate::diagnosis::{Adequacy, Candidate, Diagnosis, Verdict};
 
@@ -141,7 +141,30 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
             words::list(&helpful, "and")
         );
     }
-    text
+    text + &constant_force(diagnosis)
+}
+
+/// A force that is always there and explains most of the error, more than any effect that can be named, with a space before it.
+fn constant_force(diagnosis: &Diagnosis) -> String {
+    let gain = |candidate: &Candidate| candidate.evidence.gain;
+    let most = diagnosis.nominal_validation.loss() / 2.0;
+    let least = diagnosis.candidates.iter().map(gain).fold(most, f64::max);
+    let Some(constant) = diagnosis.rejected.iter().find(|other| other.is_constant && gain(other) > least) else {
+        return String::new();
+    };
+    let own = constant.fit.model.effects.last().map_or(&[][..], |effect| &effect.parameters);
+    let Some(force) = own.iter().find(|parameter| matches!(parameter.card.unit, "N" | "N m")) else {
+        return String::new();
+    };
+    format!(
+        " A constant {} of {} {} at the {} would make the squared error {} times smaller: look for a spring, a hose that pulls or a sensor that \
+         reads wrong.",
+        if force.card.unit == "N" { "force" } else { "torque" },
+        significant(force.value, 3),
+        force.card.unit,
+        constant.place,
+        ratio(gain(constant).exp())
+    )
 }
 
 /// The first candidate and those tied with it.

@@ -1,0 +1,31 @@
+//! Machines that were called by a wrong name once, or by none, asked again.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use excavator_blind::cases::{Case, Wish};
+use excavator_blind::plant::kind;
+use excavator_blind::scoring::{Outcome, Score, make, score};
+use excavator_blind::strength::Strength;
+use excavator_identification::diagnosis::Verdict;
+
+fn asked(number: u64, effect: &str, strength: Strength) -> Score {
+    let wish = Wish { effects: vec![kind(effect).unwrap()], strength: Some(strength), ..Wish::default() };
+    let mut case = Case::draw(5, number, &wish);
+    let evidence = make(&mut case, 1.0, 0.0).unwrap();
+    let score = score(&case, &evidence).unwrap();
+    println!("{effect}: {} {:?}, losses {:.2?}", score.verdict.name(), score.chain, score.losses);
+    score
+}
+
+/// Slack far from where the arm works, a spring is nearly a constant torque; so is gravity at a wrong angle.
+#[test]
+fn a_spring_is_no_displacement_sensor_that_is_off() {
+    let score = asked(0, "balance_spring", Strength::Medium);
+    assert_eq!(score.verdict, Verdict::Unexplained);
+}
+
+/// Three kilograms, which a force from outside imitates to 87 % of the loss.
+#[test]
+fn a_light_load_is_no_contact() {
+    let score = asked(1, "picked_up_payload", Strength::Weak);
+    assert_eq!((score.outcome, score.chain.as_slice()), (Outcome::Right, &["payload"][..]));
+}
