@@ -34,7 +34,6 @@ fn shown(name: &'static str, values: &[f64], found: &[f64]) -> Option<Contributi
         identification_gain: 1.0,
         accepted: true,
         tied_with_first: false,
-        is_constant: false,
     };
     contribution(&candidate, &[&recording]).unwrap()
 }

@@ -20,13 +20,7 @@ pub(super) fn has_seen_both_sides(model: &Model, recordings: &[&Recording]) -> b
         last.parameters.iter().filter(|parameter| matches!(parameter.card.start, Start::PumpPressureQuantiles(_)));
     let lowest = pump_pressure(recordings, VISITED);
     let is_visited = lowest.is_nan() || thresholds.all(|threshold| threshold.value > lowest);
-    is_visited && !fills(model, recordings)
-}
-
-/// Whether the window of the model's last effect is as good as the whole of the recordings.
-pub(super) fn fills(model: &Model, recordings: &[&Recording]) -> bool {
-    let share = model.effects.last().and_then(|last| share_inside(last, recordings));
-    share.is_some_and(|share| share > MOST_OF_THE_TIME)
+    is_visited && share_inside(last, recordings).is_none_or(|share| share <= MOST_OF_THE_TIME)
 }
 
 /// Part of the time of the recordings that lies inside the effect's window; `None` for an effect without one, or that acts

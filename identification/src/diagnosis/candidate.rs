@@ -32,8 +32,6 @@ pub struct Candidate {
     pub accepted: bool,
     /// Whether another candidate explains the recordings as well.
     pub tied_with_first: bool,
-    /// Whether it acts all the time, though it may come and go: under another name that is a constant force.
-    pub is_constant: bool,
 }
 
 impl Candidate {

@@ -6,6 +6,7 @@ use excavator_model::recording::Recording;
 use super::adequacy::inputs_explain;
 use super::candidate::CandidateError;
 use super::chain::Chains;
+use super::construction::BuiltOtherwise;
 use super::race::Round;
 use super::starts::within_bounds;
 use super::{
@@ -61,6 +62,8 @@ pub struct Diagnosis {
     pub map: Vec<Share>,
     /// What is left when nothing explains it.
     pub unexplained: Option<Unexplained>,
+    /// What explains the recordings where no candidate does, if the machine is built so: nothing that a diagnosis names.
+    pub construction: Option<Candidate>,
     /// Why the given model is adequate, where it is.
     pub adequacy: Option<Adequacy>,
     /// Whether the readings of the inputs leave as much open as the given model is off, and that is too much to call the
@@ -134,6 +137,15 @@ pub fn diagnose(
     };
     let (mut chain, first_round) = chains.best(first_round, progress)?;
     let mut explained = chains.explains(&chain);
+    let mut built = BuiltOtherwise::default();
+    if explained && !chain.is_empty() {
+        progress("what else could be built so", 0.95);
+        built = chains.built_otherwise(&chain);
+        if !built.ahead.is_empty() {
+            chain.clear();
+            explained = false;
+        }
+    }
     if !explained && matches!(adequacy, Some(Adequacy::Noise | Adequacy::SmallError)) {
         // A part of what little is left is no reason to doubt a model.
         chain.clear();
@@ -148,13 +160,19 @@ pub fn diagnose(
         mark_doubtful_leads(&mut candidates, &chain, settings.doubtful_lead * last.validation.loss());
         chain = chains.settle_ties(chain, &mut candidates, progress)?;
     }
+    if let Some(first) = candidates.first_mut().filter(|_| explained && !chain.is_empty() && !built.level.is_empty()) {
+        first.tied_with_first = true;
+        candidates.extend(built.level.into_iter().map(|other| Candidate { tied_with_first: true, ..other }));
+    }
     let verdict = match (chain.is_empty(), explained) {
         (true, true) => Verdict::Adequate,
         (false, true) => Verdict::MissingEffect,
         (_, false) => Verdict::Unexplained,
     };
+    let mut construction = None;
     let unexplained = if verdict == Verdict::Unexplained {
         progress("what is left", 0.97);
+        construction = built.ahead.into_iter().next().or_else(|| chains.built_as_nothing_named());
         let model = chain.last().map_or(&nominal.model, |last| &last.fit.model);
         unexplained(model, validation)?
     } else {
@@ -172,6 +190,7 @@ pub fn diagnose(
         chain,
         map,
         unexplained,
+        construction,
         adequacy,
         too_coarse,
     })

@@ -4,6 +4,7 @@ mod adequacy;
 mod both_sides;
 mod candidate;
 mod chain;
+mod construction;
 mod contribution;
 mod diagnose;
 mod evidence;

@@ -11,7 +11,7 @@ use excavator_model::recording::Recording;
 use excavator_model::{addition_name, site_name};
 use rayon::prelude::*;
 
-use super::both_sides::{fills, has_seen_both_sides};
+use super::both_sides::has_seen_both_sides;
 use super::candidate::{CandidateError, best_start};
 use super::evidence::joint_significance;
 use super::inclusion::inclusion;
@@ -141,7 +141,6 @@ impl Race<'_> {
         }));
         round.unpromising.sort_by(|a, b| b.promised_gain.total_cmp(&a.promised_gain));
         round.fitted.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
-        self.doubt_what_a_constant_force_explains_better(&mut round.fitted);
         mark_ties(&mut round.fitted, self.settings);
         begin_with_determined(&mut round.fitted);
         let shares = inclusion(self.base_validation, &round.fitted, self.least_gain);
@@ -191,25 +190,6 @@ impl Race<'_> {
         }
     }
 
-    /// A contact that fills the recordings is a constant force, which no catalogue has: it cannot be named, and what it is better
-    /// than beyond doubt, in both recordings, is not what is missing. A spring at the joint looks like a displacement sensor that is
-    /// off, until compared with this.
-    fn doubt_what_a_constant_force_explains_better(&self, candidates: &mut [Candidate]) {
-        let constant = candidates.iter().find(|candidate| {
-            fills(&candidate.fit.model, self.identification) && fills(&candidate.validation.model, self.validation)
-        });
-        let Some((fit, validation)) = constant.map(|constant| (constant.fit.clone(), constant.validation.clone()))
-        else {
-            return;
-        };
-        let is_ahead =
-            |lead: Evidence| lead.gain >= self.settings.tie_gain && lead.significance >= self.settings.tie_significance;
-        for candidate in candidates.iter_mut().filter(|candidate| candidate.accepted) {
-            candidate.accepted = !is_ahead(compare_losses(&candidate.fit, &fit))
-                || !is_ahead(compare_losses(&candidate.validation, &validation));
-        }
-    }
-
     /// A few steps from the start that promises most.
     fn heat(
         &self,
@@ -250,7 +230,6 @@ impl Race<'_> {
             && evidence.significance >= self.settings.least_significance
             && joint_significance(evidence, fitted) >= self.settings.least_joint_significance
             && has_seen_both_sides(&fit.model, self.identification);
-        let is_constant = fills(&fit.model, self.identification) && fills(&validation.model, self.validation);
         Ok(Candidate {
             physics,
             site,
@@ -262,7 +241,6 @@ impl Race<'_> {
             identification_gain: fitted.gain,
             accepted,
             tied_with_first: false,
-            is_constant,
         })
     }
 }

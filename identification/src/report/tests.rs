@@ -77,7 +77,6 @@ fn candidate(name: &str, gain: f64, accepted: bool, tied: bool) -> Candidate {
         identification_gain: gain,
         accepted,
         tied_with_first: tied,
-        is_constant: false,
     }
 }
 
@@ -98,6 +97,7 @@ fn diagnosis(verdict: Verdict, candidates: Vec<Candidate>) -> Diagnosis {
         unpromising: Vec::new(),
         failed: Vec::new(),
         map: vec![share("arm.cap_continuity", 0.7), share("arm.motion", 0.3)],
+        construction: None,
         adequacy: (verdict == Verdict::Adequate).then_some(Adequacy::Noise),
         too_coarse: false,
         unexplained: (verdict == Verdict::Unexplained).then(|| Unexplained {
@@ -226,11 +226,15 @@ fn verdicts_name_effect_and_place_and_admit_ties() {
     let left = sentence(&diagnosis(Verdict::Unexplained, vec![]));
     assert!(left.contains("none of the effects in the catalogue"), "{left}");
     assert!(left.contains("force balance of the arm does not close") && left.contains("piston position"), "{left}");
-    assert!(!left.contains("constant torque"), "{left}");
+    assert!(!left.contains("by hand"), "{left}");
     let mut spring = diagnosis(Verdict::Unexplained, vec![]);
-    spring.rejected.push(Candidate { is_constant: true, ..candidate("external_contact", 20.0, false, false) });
+    spring.construction = Some(candidate("joint_spring", 2.0, true, false));
     let left = sentence(&spring);
-    assert!(left.contains("A constant torque of") && left.contains("at the arm would make"), "{left}");
+    assert!(
+        left.contains("With a joint spring at the arm cylinder the squared error would become 7.39 times smaller"),
+        "{left}"
+    );
+    assert!(left.ends_with("add joint_spring@arm by hand."), "{left}");
 }
 
 fn missing() -> MissingPower {
@@ -294,7 +298,7 @@ fn a_spool_that_is_read_early_is_told_once_it_is_known() {
     found.nominal.model.effects.last_mut().unwrap().parameters[0].value = 7e-8;
     let both = verdict_sentence(&model(), &found);
     assert!(both.contains("0.45 ms after") && both.contains("does not read zero where its valve is closed"), "{both}");
-    assert!(both.contains("+0.07 mm2"), "{both}");
+    assert!(both.contains("+0.070 mm2"), "{both}");
     found.nominal.model = known.clone();
     // Whoever says so in the model needs no telling.
     assert!(!verdict_sentence(&known, &found).contains("spool sensor"));

@@ -60,7 +60,7 @@ fn read_apart(given: &Model, diagnosis: &Diagnosis) -> String {
         effects.into_iter().filter_map(one).collect()
     };
     let when = |time: f64| format!("{:.2} ms {}", 1e3 * time.abs(), if time > 0.0 { "before" } else { "after" });
-    let zero = |area: f64| format!("{:+.2} mm2", 1e6 * area);
+    let zero = |area: f64| format!("{}{} mm2", if area > 0.0 { "+" } else { "" }, significant(1e6 * area, 2));
     let mut text = String::new();
     for (found, what) in [
         (
@@ -141,30 +141,21 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
             words::list(&helpful, "and")
         );
     }
-    text + &constant_force(diagnosis)
+    text + &construction(diagnosis)
 }
 
-/// A force that is always there and explains most of the error, more than any effect that can be named, with a space before it.
-fn constant_force(diagnosis: &Diagnosis) -> String {
-    let gain = |candidate: &Candidate| candidate.evidence.gain;
-    let most = diagnosis.nominal_validation.loss() / 2.0;
-    let least = diagnosis.candidates.iter().map(gain).fold(most, f64::max);
-    let Some(constant) = diagnosis.rejected.iter().find(|other| other.is_constant && gain(other) > least) else {
-        return String::new();
-    };
-    let own = constant.fit.model.effects.last().map_or(&[][..], |effect| &effect.parameters);
-    let Some(force) = own.iter().find(|parameter| matches!(parameter.card.unit, "N" | "N m")) else {
-        return String::new();
-    };
-    format!(
-        " A constant {} of {} {} at the {} would make the squared error {} times smaller: look for a spring, a hose that pulls or a sensor that \
-         reads wrong.",
-        if force.card.unit == "N" { "force" } else { "torque" },
-        significant(force.value, 3),
-        force.card.unit,
-        constant.place,
-        ratio(gain(constant).exp())
-    )
+/// What explains the recordings if the machine is built so, with a space before it.
+fn construction(diagnosis: &Diagnosis) -> String {
+    diagnosis.construction.as_ref().map_or(String::new(), |built| {
+        format!(
+            " With a {} the squared error would become {} times smaller. How a machine is built no diagnosis says: if this one has \
+             that, add {}@{} by hand.",
+            place_of(built),
+            ratio(built.evidence.gain.exp()),
+            built.name(),
+            built.place
+        )
+    })
 }
 
 /// The first candidate and those tied with it.

@@ -27,6 +27,7 @@ mod hose_loss;
 mod hose_pressure_loss;
 mod inertia;
 mod internal_leakage;
+mod joint_spring;
 mod load_check_valve;
 mod make_up_valve;
 mod oil_compressibility;
@@ -74,6 +75,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &spool_sensor_lead::SpoolSensorLead,
     &spool_sensor_offset::SpoolSensorOffset,
     &pressure_compensation::PressureCompensation,
+    &joint_spring::JointSpring,
     &valve_dead_zone::ValveDeadZone,
     &valve_directional_gain::ValveDirectionalGain,
     &valve_gain_curve::ValveGainCurve,

@@ -196,6 +196,7 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
             "unit": rest.unit,
             "curve": rest.curve,
         })),
+        "construction": diagnosis.construction.as_ref().map(|built| candidate_json(built, before, validation, None)),
         "adequate_by": diagnosis.adequacy.map(Adequacy::name),
         "too_coarse": diagnosis.too_coarse,
         "loss": {

@@ -1,0 +1,90 @@
+//! A spring at the joint.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::machine::{Machine, Mechanism};
+
+/// A spring at the joint.
+///
+/// Anybody sees whether a machine has one. It is no candidate of a diagnosis: a little of it looks like gravity at another angle, which is
+/// a displacement sensor that is off. But what it explains better than a candidate does not get that candidate's name. Add it by
+/// hand, as `joint_spring@arm`, and compare.
+pub struct JointSpring;
+
+static CARD: Card = Card {
+    name: "joint_spring",
+    acts_on: ActsOn::Cylinder,
+    family: Family::Construction,
+    summary: "A balance spring, a gas strut, or hoses and cables that are stiff: a torque on the joint that falls as its angle grows.",
+    equation: "torque tau0 - k (q - qm), qm the angle at mid-stroke; linear load: force F0 - k s",
+    source: "textbook (spring); [A] Eq. 1 for where it acts",
+    shows: "Static pressure difference that changes with position otherwise than gravity does.",
+    experiment: "Slow strokes from end to end, in both directions.",
+    energy: "Stores k (q - qm)^2 / 2 - tau0 (q - qm).",
+};
+
+const STIFFNESS: ParameterCard = ParameterCard {
+    name: "spring_stiffness",
+    symbol: "k",
+    unit: "N m/rad",
+    meaning: "stiffness of the spring; below zero where it pushes away from the middle",
+    kind: Kind::Linear,
+    minimum: -1e6,
+    maximum: 1e6,
+    typical: 300.0,
+    start: Start::At(&[0.0]),
+};
+
+const TORQUE: ParameterCard = ParameterCard {
+    name: "spring_torque",
+    symbol: "tau0",
+    unit: "N m",
+    meaning: "its torque at mid-stroke, + = in the direction of growing angle",
+    kind: Kind::Linear,
+    minimum: -1e6,
+    maximum: 1e6,
+    typical: 100.0,
+    start: Start::At(&[0.0]),
+};
+
+static LINK: &[ParameterCard] = &[STIFFNESS, TORQUE];
+
+static LOAD: &[ParameterCard] = &[
+    ParameterCard { unit: "N/m", typical: 1000.0, ..STIFFNESS },
+    ParameterCard {
+        name: "spring_force",
+        symbol: "F0",
+        unit: "N",
+        meaning: "its force at mid-stroke, + = pushes the rod out",
+        ..TORQUE
+    },
+];
+
+impl Physics for JointSpring {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        match machine.mechanism {
+            Mechanism::LinearLoad => LOAD,
+            Mechanism::SingleLink { .. } | Mechanism::TwoLink | Mechanism::PlanarChain { .. } => LINK,
+        }
+    }
+
+    fn potential<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>) -> Option<T> {
+        let Site::Cylinder(cylinder) = site else { return None };
+        let away = from_middle(cylinder, now);
+        Some(parameters[0] * away * away * 0.5 - parameters[1] * away)
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        rows.torque[cylinder] += parameters[1] - parameters[0] * from_middle(cylinder, now);
+    }
+}
+
+/// Joint coordinate from where it is at mid-stroke, rad or m.
+fn from_middle<T: Scalar>(cylinder: usize, now: &Situation<T>) -> T {
+    now.pistons[cylinder].joint - now.machine.cylinders[cylinder].linkage.joint(0.0)
+}
