@@ -177,6 +177,12 @@ impl ModelEffect {
             .all(|time| self.physics.value_where_left_out(time.card.name) == Some(time.value))
     }
 
+    /// Whether it is large enough to say anything about a machine.
+    pub fn is_worth_a_name(&self) -> bool {
+        let values: Vec<f64> = self.parameters.iter().map(|parameter| parameter.value).collect();
+        self.physics.is_worth_a_name(&values)
+    }
+
     /// Whether this is the effect of that name at that site.
     pub fn is(&self, name: &str, site: Site) -> bool {
         self.name() == name && self.site == site

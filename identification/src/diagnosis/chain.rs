@@ -104,10 +104,7 @@ impl Chains<'_> {
         let share = (1.0 - last.loss() / self.nominal_validation.loss()).min(self.share_where_fitted(chain));
         let least = if chain.len() > 1 { settings.least_shared_share } else { settings.least_explained_share };
         if self.is_adequate(last) {
-            // What acts in a few moments only leaves the others as they were.
-            let before = self.nominal_validation.typical_loss();
-            let typical = if before > settings.adequate_loss { 1.0 - last.typical_loss() / before } else { 1.0 };
-            return share >= least && typical >= settings.least_typical_share;
+            return share >= least;
         }
         share >= least.max(settings.explained_share) && last.typical_loss() <= settings.explained_loss
             // What readings leave open is no reason to name something in a model that lacks nothing.

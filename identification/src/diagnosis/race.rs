@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
-use excavator_model::{addition_name, site_name};
+use excavator_model::{ModelEffect, addition_name, site_name};
 use rayon::prelude::*;
 
 use super::both_sides::has_seen_both_sides;
@@ -229,6 +229,7 @@ impl Race<'_> {
             && fitted.gain >= self.least_gain / 2.0
             && evidence.significance >= self.settings.least_significance
             && joint_significance(evidence, fitted) >= self.settings.least_joint_significance
+            && fit.model.effects.last().is_some_and(ModelEffect::is_worth_a_name)
             && has_seen_both_sides(&fit.model, self.identification);
         Ok(Candidate {
             physics,

@@ -53,9 +53,6 @@ pub struct DiagnosisSettings {
     /// effects in turns that each resemble it a little (a force on the spool of two blind machines 68 % and 82 %). Right pairs take 92 %
     /// and more.
     pub least_shared_share: f64,
-    /// The same of the typical loss, which leaves out the moments in which an effect that jumps is hard to meet. Of 138 right names on
-    /// blind machines the least took 90 %; a linkage worn by 1.6 mm, called 0.7 % of the spool's scale, 84 %.
-    pub least_typical_share: f64,
     /// Effects that do not make it adequate explain it when they take away at least this share of the loss. The
     /// right effects take away 80 % and more; effects that only resemble one that no catalogue has took away 68 % at most.
     pub explained_share: f64,
@@ -96,7 +93,6 @@ impl Default for DiagnosisSettings {
             excused_loss: 0.5,
             least_explained_share: 0.75,
             least_shared_share: 0.85,
-            least_typical_share: 0.87,
             explained_share: 0.75,
             explained_loss: 1.0,
             most_effects: 5,

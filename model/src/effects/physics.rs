@@ -18,6 +18,12 @@ pub trait Physics: Sync {
         None
     }
 
+    /// Whether an effect of this size says anything about a machine: one that is within the accuracy of good instruments is no
+    /// answer to what is missing, however well it takes up an error.
+    fn is_worth_a_name(&self, _parameters: &[f64]) -> bool {
+        true
+    }
+
     /// Number of states that it adds to the model.
     fn states(&self) -> usize {
         0
@@ -69,6 +75,7 @@ pub trait Effect: Sync {
     fn card(&self) -> &'static Card;
     fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard];
     fn value_where_left_out(&self, parameter: &str) -> Option<f64>;
+    fn is_worth_a_name(&self, parameters: &[f64]) -> bool;
     fn states(&self) -> usize;
     fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> f64;
     fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual;
@@ -96,6 +103,9 @@ impl<P: Physics> Effect for P {
     }
     fn value_where_left_out(&self, parameter: &str) -> Option<f64> {
         Physics::value_where_left_out(self, parameter)
+    }
+    fn is_worth_a_name(&self, parameters: &[f64]) -> bool {
+        Physics::is_worth_a_name(self, parameters)
     }
     fn states(&self) -> usize {
         Physics::states(self)
