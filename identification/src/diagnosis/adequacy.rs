@@ -44,7 +44,8 @@ pub(super) fn adequacy(fit: &Fit, recordings: &[&Recording], settings: &Diagnosi
     if fit.typical_loss() <= settings.adequate_loss && !too_large {
         return Some(Adequacy::Noise);
     }
-    (error <= settings.adequate_error).then_some(Adequacy::SmallError)
+    let is_small = error <= settings.adequate_error && fit.typical_loss() <= settings.small_error_loss;
+    (is_small || error <= settings.negligible_error).then_some(Adequacy::SmallError)
 }
 
 /// Whether what is left is no larger than the readings of the inputs leave open, in every instrument: what spoils the

@@ -33,8 +33,14 @@ pub struct DiagnosisSettings {
     /// where the servo or the rate of the commands is another than the spool's estimate takes it to be.
     pub adequate_loss: f64,
     /// Or its normalised mean squared error, mean over signals, is below this: a hundredth of each signal's own size,
-    /// which nobody would act on however quiet the sensors are.
+    /// which nobody would act on.
     pub adequate_error: f64,
+    /// Unless its typical loss is above this, 1.6 times the sensors' noise: ordinary imperfections (friction of another sharpness, a servo of second order)
+    /// leave 0.75 at most on machines of other simulators that hide nothing; one spool that takes 2 % of the other's opening leaves 1.6, with an error of
+    /// 1.2e-4.
+    pub small_error_loss: f64,
+    /// Below this normalised error, half a hundredth of each signal, sensors may be as quiet as they like.
+    pub negligible_error: f64,
     /// A model whose normalised mean squared error on clear signals is above this is not adequate, however few moments it
     /// comes from: a sixth of each signal's own size is seen by anybody who looks at the plots.
     pub largest_error: f64,
@@ -88,6 +94,8 @@ impl Default for DiagnosisSettings {
             doubtful_lead: 0.7,
             adequate_loss: 0.2,
             adequate_error: 1.5e-4,
+            small_error_loss: 1.0,
+            negligible_error: 2.5e-5,
             largest_error: 0.03,
             excused_error: 0.01,
             excused_loss: 0.5,
