@@ -32,16 +32,16 @@ enum Standing {
 pub(super) struct BuiltOtherwise {
     /// In place of a link they explain more.
     pub ahead: Vec<Candidate>,
-    /// In place of a link they explain as much.
+    /// In place of the first link they explain as much.
     pub level: Vec<Candidate>,
 }
 
 impl Chains<'_> {
-    /// Effects of construction that explain as much in place of a link of `chain`, at its site, or more.
+    /// Effects of construction that explain more in place of a link of `chain`, at its site, or as much in that of the first.
     pub fn built_otherwise(&self, chain: &[Candidate]) -> BuiltOtherwise {
         let mut found = BuiltOtherwise::default();
         let Some(last) = chain.last() else { return found };
-        for link in chain {
+        for (number, link) in chain.iter().enumerate() {
             let mut without = last.fit.model.clone();
             without.effects.retain(|effect| !effect.is(link.name(), link.site));
             for (physics, site) in constructions(&without).filter(|(_, site)| *site == link.site) {
@@ -52,8 +52,9 @@ impl Chains<'_> {
                 };
                 match self.standing(&other, last) {
                     Standing::Ahead => found.ahead.push(other),
-                    Standing::Level => found.level.push(other),
-                    Standing::Behind => {}
+                    // Ties are told of the first of a chain.
+                    Standing::Level if number == 0 => found.level.push(other),
+                    Standing::Level | Standing::Behind => {}
                 }
             }
         }
