@@ -126,12 +126,17 @@ fn effects_that_need_oil_do_not_go_where_there_is_none() {
 
 /// What good sensors may be off by is no answer to what is missing; anything larger is, as is every effect that has no such limit.
 #[test]
-fn a_scale_within_the_accuracy_of_sensors_is_no_name() {
+fn sizes_that_say_nothing_are_no_name() {
     let site = Site::Cylinder(0);
     let mut model = common::machines()[0].with_effect(find("opening_scale").unwrap(), site).unwrap();
     for (scale, worth) in [(0.0067, false), (-0.0067, false), (0.02, true), (-0.02, true)] {
         model.effects.last_mut().unwrap().parameters[0].value = scale;
         assert_eq!(model.effects.last().unwrap().is_worth_a_name(), worth, "{scale}");
+    }
+    let mut stribeck = common::machines()[0].with_effect(find("stribeck_friction").unwrap(), site).unwrap();
+    for (speed, worth) in [(0.001, false), (0.01, true)] {
+        stribeck.effects.last_mut().unwrap().parameters[1].value = speed;
+        assert_eq!(stribeck.effects.last().unwrap().is_worth_a_name(), worth, "{speed} m/s");
     }
     let small = common::machines()[0].with_effect(find("valve_dead_zone").unwrap(), site).unwrap();
     assert!(small.effects.last().unwrap().is_worth_a_name());

@@ -45,6 +45,10 @@ static PARAMETERS: &[ParameterCard] = &[
     },
 ];
 
+/// Stribeck speed in m/s below which the curve is that of how sharply friction turns round, which below 1 mm/s is the model's own choice: a
+/// machine that turns otherwise and hides nothing came out at 1.0 mm/s. Seals have 5 to 20 mm/s.
+const SLOWEST: f64 = 3e-3;
+
 impl Physics for StribeckFriction {
     fn card(&self) -> &'static Card {
         &CARD
@@ -52,6 +56,10 @@ impl Physics for StribeckFriction {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn is_worth_a_name(&self, parameters: &[f64]) -> bool {
+        parameters.get(1).is_some_and(|speed| *speed >= SLOWEST)
     }
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
