@@ -136,6 +136,7 @@ pub fn diagnose(
         settings,
     };
     let (mut chain, first_round) = chains.best(first_round, progress)?;
+    let Round { mut fitted, unpromising, failed } = first_round;
     let mut explained = chains.explains(&chain);
     let mut built = BuiltOtherwise::default();
     if explained && !chain.is_empty() {
@@ -144,6 +145,8 @@ pub fn diagnose(
         if !built.ahead.is_empty() {
             chain.clear();
             explained = false;
+            // What is behind it is no evidence of anything else.
+            fitted.iter_mut().for_each(|candidate| candidate.accepted = false);
         }
     }
     if !explained && matches!(adequacy, Some(Adequacy::Noise | Adequacy::SmallError)) {
@@ -151,7 +154,6 @@ pub fn diagnose(
         chain.clear();
         explained = true;
     }
-    let Round { fitted, unpromising, failed } = first_round;
     let (mut candidates, rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);
     if let Some(first) = chain.first() {
         put_first(first, &mut candidates);
