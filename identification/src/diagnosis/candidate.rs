@@ -1,12 +1,12 @@
 //! Effects that a model may be missing, and their fits.
 
-use excavator_model::effects::{self, Effect, Site};
+use excavator_model::effects::{CATALOGUE, Effect, Family, Site};
 use excavator_model::recording::Recording;
-use excavator_model::{Model, ModelError};
+use excavator_model::{Model, ModelError, site_name};
 
 use super::own_windows::has_window;
 use super::starts::{half_open, starts};
-use super::{Evidence, Inclusion};
+use super::{Evidence, Inclusion, compare_losses};
 use crate::fit::{Fit, FitError, FitSettings, Prediction, fit_predicted, predict};
 
 /// A candidate that was tried.
@@ -35,6 +35,23 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// `physics` at `site`, the last effect of a model, fitted to the identification recordings and evaluated on the validation
+    /// recordings, against `base`, the same of a model to compare it with. Not accepted yet, inclusion not counted.
+    pub(super) fn new(physics: &'static dyn Effect, site: Site, [fit, validation]: [Fit; 2], base: [&Fit; 2]) -> Self {
+        Self {
+            physics,
+            site,
+            place: site_name(&fit.model.machine, site).to_string(),
+            evidence: compare_losses(base[1], &validation),
+            identification_gain: compare_losses(base[0], &fit).gain,
+            fit,
+            validation,
+            inclusion: Inclusion::default(),
+            accepted: false,
+            tied_with_first: false,
+        }
+    }
+
     /// Name in the catalogue.
     pub fn name(&self) -> &'static str {
         self.physics.card().name
@@ -90,10 +107,15 @@ pub struct Unpromising {
 /// Every candidate effect, and every loss of the nominal model, at every place of the machine where it can act and is not
 /// yet.
 pub fn additions(model: &Model) -> Vec<(&'static dyn Effect, Site)> {
-    effects::CATALOGUE
+    free_effects(model, |family| family.is_candidate())
+}
+
+/// Every effect of the families `wanted` at every place of the machine where it can act and is not yet.
+pub(super) fn free_effects(model: &Model, wanted: impl Fn(Family) -> bool) -> Vec<(&'static dyn Effect, Site)> {
+    CATALOGUE
         .iter()
         .copied()
-        .filter(|effect| effect.card().family.is_candidate())
+        .filter(|effect| wanted(effect.card().family))
         .flat_map(|effect| model.free_sites(effect).into_iter().map(move |site| (effect, site)))
         .collect()
 }

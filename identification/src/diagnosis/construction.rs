@@ -4,14 +4,14 @@
 //! explains better than a candidate does not get that candidate's name, and what it explains as well is a tie.
 
 use excavator_model::Model;
-use excavator_model::effects::{CATALOGUE, Effect, Family, Site};
+use excavator_model::effects::{Effect, Family, Site};
 
-use super::candidate::{CandidateError, best_start};
+use super::candidate::{CandidateError, best_start, free_effects};
 use super::chain::Chains;
 use super::evidence::joint_significance;
 use super::own_windows::evaluate_in_known_windows;
-use super::{Candidate, Inclusion, compare_losses};
-use crate::fit::{Fit, fit_predicted};
+use super::{Candidate, compare_losses};
+use crate::fit::fit_predicted;
 
 /// Loss above that of a model with a candidate, from which on an effect of construction is not worth a fit in its place.
 const FAR: f64 = 0.5;
@@ -44,7 +44,7 @@ impl Chains<'_> {
         for (number, link) in chain.iter().enumerate() {
             let mut without = last.fit.model.clone();
             without.effects.retain(|effect| !effect.is(link.name(), link.site));
-            for (physics, site) in constructions(&without).filter(|(_, site)| *site == link.site) {
+            for (physics, site) in constructions(&without).into_iter().filter(|(_, site)| *site == link.site) {
                 let worst = last.fit.loss() + FAR;
                 let Ok(Some(other)) = self.with_construction(&without, physics, site, worst, &last.validation.model)
                 else {
@@ -71,6 +71,7 @@ impl Chains<'_> {
                 && other.evidence.significance >= settings.least_significance
         };
         constructions(model)
+            .into_iter()
             .filter_map(|(physics, site)| {
                 let worst = (1.0 - least) * self.nominal.loss() + FAR;
                 self.with_construction(model, physics, site, worst, &self.nominal_validation.model).ok()?
@@ -96,23 +97,13 @@ impl Chains<'_> {
         }
         let fit = fit_predicted(&start.model, start.promise, self.identification, settings)?;
         let validation = evaluate_in_known_windows(&fit.model, known, self.validation, settings)?;
-        Ok(Some(Candidate {
-            physics,
-            site,
-            place: excavator_model::site_name(&model.machine, site).to_string(),
-            evidence: compare_losses(self.nominal_validation, &validation),
-            identification_gain: compare_losses(self.nominal, &fit).gain,
-            fit,
-            validation,
-            inclusion: Inclusion::default(),
-            accepted: true,
-            tied_with_first: false,
-        }))
+        let candidate = Candidate::new(physics, site, [fit, validation], [self.nominal, self.nominal_validation]);
+        Ok(Some(candidate))
     }
 
     fn standing(&self, other: &Candidate, last: &Candidate) -> Standing {
-        let lead = |named: &Fit, other: &Fit| compare_losses(named, other);
-        let (fitted, validated) = (lead(&last.fit, &other.fit), lead(&last.validation, &other.validation));
+        let fitted = compare_losses(&last.fit, &other.fit);
+        let validated = compare_losses(&last.validation, &other.validation);
         let significance = joint_significance(fitted, validated);
         let doubt = self.settings.tie_significance;
         if fitted.gain > 0.0 && validated.gain > 0.0 && significance >= doubt {
@@ -126,10 +117,6 @@ impl Chains<'_> {
 }
 
 /// Every effect of construction at every place where it can act and is not yet.
-fn constructions(model: &Model) -> impl Iterator<Item = (&'static dyn Effect, Site)> {
-    CATALOGUE
-        .iter()
-        .copied()
-        .filter(|effect| effect.card().family == Family::Construction)
-        .flat_map(|effect| model.free_sites(effect).into_iter().map(move |site| (effect, site)))
+fn constructions(model: &Model) -> Vec<(&'static dyn Effect, Site)> {
+    free_effects(model, |family| family == Family::Construction)
 }

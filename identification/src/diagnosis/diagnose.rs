@@ -136,25 +136,15 @@ pub fn diagnose(
         settings,
     };
     let (mut chain, first_round) = chains.best(first_round, progress)?;
-    let Round { mut fitted, unpromising, failed } = first_round;
+    let Round { fitted, unpromising, failed } = first_round;
     let mut explained = chains.explains(&chain);
-    let mut built = BuiltOtherwise::default();
-    if explained && !chain.is_empty() {
-        progress("what else could be built so", 0.95);
-        built = chains.built_otherwise(&chain);
-        if !built.ahead.is_empty() {
-            chain.clear();
-            explained = false;
-            // What is behind it is no evidence of anything else.
-            fitted.iter_mut().for_each(|candidate| candidate.accepted = false);
-        }
-    }
-    if !explained && matches!(adequacy, Some(Adequacy::Noise | Adequacy::SmallError)) {
-        // A part of what little is left is no reason to doubt a model.
+    // A part of what little is left is no reason to doubt a model.
+    let is_beyond_doubt = matches!(adequacy, Some(Adequacy::Noise | Adequacy::SmallError));
+    if !explained && is_beyond_doubt {
         chain.clear();
         explained = true;
     }
-    let (mut candidates, rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);
+    let (mut candidates, mut rejected): (Vec<_>, Vec<_>) = fitted.into_iter().partition(|candidate| candidate.accepted);
     if let Some(first) = chain.first() {
         put_first(first, &mut candidates);
     }
@@ -162,9 +152,21 @@ pub fn diagnose(
         mark_doubtful_leads(&mut candidates, &chain, settings.doubtful_lead * last.validation.loss());
         chain = chains.settle_ties(chain, &mut candidates, progress)?;
     }
-    if let Some(first) = candidates.first_mut().filter(|_| explained && !chain.is_empty() && !built.level.is_empty()) {
+    let mut built = BuiltOtherwise::default();
+    if explained && !chain.is_empty() {
+        progress("what else could be built so", 0.96);
+        built = chains.built_otherwise(&chain);
+    }
+    if !built.ahead.is_empty() {
+        chain.clear();
+        explained = is_beyond_doubt;
+        // What is behind it is no evidence of anything else.
+        let behind = candidates.drain(..).map(|other| Candidate { accepted: false, tied_with_first: false, ..other });
+        rejected.splice(0..0, behind);
+    } else if let Some(first) = candidates.first_mut().filter(|_| !built.level.is_empty()) {
         first.tied_with_first = true;
-        candidates.extend(built.level.into_iter().map(|other| Candidate { tied_with_first: true, ..other }));
+        let level = built.level.iter().cloned();
+        candidates.extend(level.map(|other| Candidate { accepted: true, tied_with_first: true, ..other }));
     }
     let verdict = match (chain.is_empty(), explained) {
         (true, true) => Verdict::Adequate,

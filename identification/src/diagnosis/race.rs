@@ -18,7 +18,7 @@ use super::inclusion::inclusion;
 use super::own_windows::{evaluate_in_own_windows, has_window};
 use super::starts::acts_in_a_window;
 use super::track::{Track, short};
-use super::{Candidate, DiagnosisSettings, Evidence, Inclusion, Unpromising, compare_losses};
+use super::{Candidate, DiagnosisSettings, Evidence, Unpromising, compare_losses};
 use crate::fit::{Fit, fit, fit_predicted};
 
 /// What became of all candidates.
@@ -214,35 +214,24 @@ impl Race<'_> {
     /// A candidate fitted to the end, with its evidence.
     fn judged(&self, runner: Runner) -> Result<Candidate, CandidateError> {
         let settings = &self.settings.fit;
-        let Runner { physics, site, place, fit: start, .. } = runner;
+        let Runner { physics, site, fit: start, .. } = runner;
         let fit = fit(&start.model, self.identification, settings)?;
         let validation = evaluate_in_own_windows(&fit.model, &self.base_validation.model, self.validation, settings)?;
         let fitted = compare_losses(self.base, &fit);
-        let evidence = compare_losses(self.base_validation, &validation);
+        let mut candidate = Candidate::new(physics, site, [fit, validation], [self.base, self.base_validation]);
         // What has a window of its own in each recording is fitted to each: neither says more than the other.
-        let evidence = if fit.model.effects.last().is_some_and(has_window) && fitted.gain < evidence.gain {
-            Evidence { gain: fitted.gain, significance: fitted.significance.min(evidence.significance) }
-        } else {
-            evidence
-        };
-        let accepted = evidence.gain >= self.least_gain
+        let (model, evidence) = (&candidate.fit.model, &mut candidate.evidence);
+        if model.effects.last().is_some_and(has_window) && fitted.gain < evidence.gain {
+            let significance = fitted.significance.min(evidence.significance);
+            *evidence = Evidence { gain: fitted.gain, significance };
+        }
+        candidate.accepted = evidence.gain >= self.least_gain
             && fitted.gain >= self.least_gain / 2.0
             && evidence.significance >= self.settings.least_significance
-            && joint_significance(evidence, fitted) >= self.settings.least_joint_significance
-            && fit.model.effects.last().is_some_and(ModelEffect::is_worth_a_name)
-            && has_seen_both_sides(&fit.model, self.identification);
-        Ok(Candidate {
-            physics,
-            site,
-            place,
-            fit,
-            validation,
-            evidence,
-            inclusion: Inclusion::default(),
-            identification_gain: fitted.gain,
-            accepted,
-            tied_with_first: false,
-        })
+            && joint_significance(*evidence, fitted) >= self.settings.least_joint_significance
+            && model.effects.last().is_some_and(ModelEffect::is_worth_a_name)
+            && has_seen_both_sides(model, self.identification);
+        Ok(candidate)
     }
 }
 

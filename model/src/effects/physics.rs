@@ -18,8 +18,8 @@ pub trait Physics: Sync {
         None
     }
 
-    /// Whether an effect of this size says anything about a machine: one that is within the accuracy of good instruments is no
-    /// answer to what is missing, however well it takes up an error.
+    /// Whether an effect of this size says anything about a machine. One that is within the accuracy of good instruments, or whose
+    /// shape lies where nothing moves, is no answer to what is missing, however well it takes up an error.
     fn is_worth_a_name(&self, _parameters: &[f64]) -> bool {
         true
     }

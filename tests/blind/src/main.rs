@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, ValueEnum};
 use excavator_blind::cases::{Case, Sort, Wish};
 use excavator_blind::plant::{CATALOGUE, FOREIGN, Kind, kind};
-use excavator_blind::scoring::{make, score};
+use excavator_blind::scoring::{Score, make, score};
 use excavator_blind::storing::store;
 use excavator_blind::strength::Strength;
 use excavator_blind::table::{Judged, line, summary};
@@ -144,41 +144,14 @@ fn judge_all(words: &Words, wish: &Wish, profile: Option<&Profile>) -> ExitCode 
         if let Some(profile) = profile {
             case.follow(profile);
         }
-        let evidence = match make(&mut case, words.noise, words.spool_lead) {
-            Ok(evidence) => evidence,
-            Err(error) => {
-                let line = format!("{number:>4}  no recording: {} {}: {error}", case.secret(), case.strength.name());
-                judged.push((case, Err(error.to_string())));
-                if !say(&line) {
-                    return ExitCode::SUCCESS;
-                }
-                continue;
+        let (line, result) = match judge(words, &mut case) {
+            Ok(answer) => answer,
+            Err(reason) => {
+                eprintln!("{reason}");
+                return ExitCode::FAILURE;
             }
         };
-        if let Some(folder) = &words.write
-            && let Err(error) = store(folder, &case, &evidence)
-        {
-            eprintln!("{error}");
-            return ExitCode::FAILURE;
-        }
-        if words.only_draw {
-            let [identification, validation] = evidence.change.map(|change| 100.0 * change.share());
-            let (secret, strength, truth) = (case.secret(), case.strength.name(), case.truth());
-            let line =
-                format!("{number:>4}  {secret} {strength}: changes {identification:.2}/{validation:.2} %, {truth:?}");
-            if !say(&line) {
-                return ExitCode::SUCCESS;
-            }
-            continue;
-        }
-        let (line, result) = match score(&case, &evidence) {
-            Ok(score) => (line(&case, &evidence, &score), Ok(score)),
-            Err(error) => {
-                let line = format!("{number:>4}  no score: {} {}: {error}", case.secret(), case.strength.name());
-                (line, Err(error.to_string()))
-            }
-        };
-        judged.push((case, result));
+        judged.extend(result.map(|result| (case, result)));
         if !say(&line) {
             return ExitCode::SUCCESS;
         }
@@ -187,4 +160,32 @@ fn judge_all(words: &Words, wish: &Wish, profile: Option<&Profile>) -> ExitCode 
         say(&format!("\n{}", summary(&judged)));
     }
     ExitCode::SUCCESS
+}
+
+/// Line and result of a case, no result where it is only drawn.
+///
+/// # Errors
+/// In words, where the case cannot be stored.
+fn judge(words: &Words, case: &mut Case) -> Result<(String, Option<Result<Score, String>>), String> {
+    let (number, secret, strength) = (case.number, case.secret(), case.strength.name());
+    let failed =
+        |what: &str, error: String| (format!("{number:>4}  {what}: {secret} {strength}: {error}"), Some(Err(error)));
+    let evidence = match make(case, words.noise, words.spool_lead) {
+        Ok(evidence) => evidence,
+        Err(error) => return Ok(failed("no recording", error.to_string())),
+    };
+    if let Some(folder) = &words.write {
+        store(folder, case, &evidence).map_err(|error| error.to_string())?;
+    }
+    if words.only_draw {
+        let [identification, validation] = evidence.change.map(|change| 100.0 * change.share());
+        let truth = case.truth();
+        let line =
+            format!("{number:>4}  {secret} {strength}: changes {identification:.2}/{validation:.2} %, {truth:?}");
+        return Ok((line, None));
+    }
+    Ok(match score(case, &evidence) {
+        Ok(score) => (line(case, &evidence, &score), Some(Ok(score))),
+        Err(error) => failed("no score", error.to_string()),
+    })
 }
