@@ -1,6 +1,6 @@
 //! Parameters with units and standard errors.
 
-use excavator_model::effects::Site;
+use excavator_model::effects::{Site, Start};
 use excavator_model::{Model, ModelEffect, Parameter, site_name};
 use maud::{Markup, html};
 
@@ -49,7 +49,7 @@ fn table(model: &Model, effects: &[&ModelEffect], added: Option<&[String]>) -> M
                                     @if added.contains(&format!("{}@{place}", effect.name())) { " " span.chip.also { "added" } }
                                 } }
                             }
-                            (cells(place, parameter, relative))
+                            (cells(effect, place, parameter, relative))
                         }
                     }
                 } }
@@ -61,9 +61,17 @@ fn table(model: &Model, effects: &[&ModelEffect], added: Option<&[String]>) -> M
     }
 }
 
-fn cells(place: &str, parameter: &Parameter, relative: Option<f64>) -> Markup {
-    let unit = units::of_parameter(parameter.card.unit);
+fn cells(effect: &ModelEffect, place: &str, parameter: &Parameter, relative: Option<f64>) -> Markup {
+    // A window of time is read along the recording, a time constant is short.
+    let is_a_time = parameter.card.start.is_a_time();
+    let unit = if is_a_time { units::SECOND } else { units::of_parameter(parameter.card.unit) };
     let error = parameter.standard_error.filter(|_| !parameter.known).unwrap_or(f64::NAN);
+    let value = if is_a_time && effect.physics.value_where_left_out(parameter.card.name) == Some(parameter.value) {
+        let is_begin = parameter.card.start == Start::WorstStretchBegin;
+        if is_begin { "from the beginning" } else { "to the end" }.to_string()
+    } else {
+        with_error(parameter.value * unit.factor, error * unit.factor)
+    };
     let relative = match relative {
         Some(relative) if relative < 10.0 => percent(relative),
         Some(_) => "> 1000 %".to_string(),
@@ -72,7 +80,7 @@ fn cells(place: &str, parameter: &Parameter, relative: Option<f64>) -> Markup {
     html! {
         td { code { (place) "." (parameter.card.name) } }
         td { (parameter.card.symbol) }
-        td.n { (with_error(parameter.value * unit.factor, error * unit.factor)) }
+        td.n { (value) }
         td.unit { (unit.symbol) }
         td.n { (relative) }
         td.meaning { (parameter.card.meaning) }
