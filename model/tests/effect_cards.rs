@@ -45,7 +45,9 @@ fn every_effect_of_the_contract_that_is_listed_acts_somewhere() {
         });
         assert!(somewhere, "{}", effect.card().name);
     }
-    for family in [Family::Base, Family::Recording, Family::Construction, Family::Loss, Family::Candidate] {
+    for family in
+        [Family::Base, Family::Recording, Family::Rounding, Family::Construction, Family::Loss, Family::Candidate]
+    {
         assert!(CATALOGUE.iter().any(|effect| effect.card().family == family), "{family:?}");
     }
 }

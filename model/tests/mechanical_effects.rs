@@ -196,3 +196,22 @@ fn friction_has_the_levels_it_says() {
     let vacuum = torque(&pressed, &state, &inputs).1 - torque(&arm, &state, &inputs).1;
     assert_eq!(vacuum, 0.0, "a chamber under vacuum presses no seal");
 }
+
+/// All friction of a piston turns round over the speed that is given, and over 1 mm/s where none is; nothing else does.
+#[test]
+fn friction_turns_round_as_it_is_told() {
+    let arm = built_in("zx30u-arm").unwrap();
+    let rubbed = with(&with(&arm, "asymmetric_friction", 0, &[90.0]), "pressure_dependent_friction", 0, &[2e-4]);
+    let wider = with(&rubbed, "friction_reversal", 0, &[4e-3]);
+    let mut state = common::at_rest(&System::new(&arm));
+    (state[2], state[3]) = (1.5e6, 5e5);
+    let viscous = arm.value_of("arm.viscous_damping").unwrap();
+    let mut force = |model: &Model, velocity: f64| {
+        state[1] = velocity / arm.machine.cylinders[0].linkage.lever(state[0]);
+        torque(model, &state, &Inputs::zero(1)).1 + viscous * velocity
+    };
+    for velocity in [1e-4, -5e-4, 1e-3, -2e-2, 0.3] {
+        let (narrow, wide) = (force(&rubbed, velocity), force(&wider, 4.0 * velocity));
+        assert!((narrow - wide).abs() < 1e-9 * narrow.abs(), "{velocity} m/s: {narrow} N and {wide} N");
+    }
+}

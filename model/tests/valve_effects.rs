@@ -6,7 +6,7 @@ mod common;
 use common::Random;
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{ActsOn, CATALOGUE, Site, find};
+use excavator_model::effects::{ActsOn, CATALOGUE, Card, Family, Site, find};
 use excavator_model::equations::{Inputs, Rows, Situation, System};
 use excavator_model::simulation::{InputSignals, Integrator, Tolerances};
 
@@ -140,12 +140,16 @@ fn an_overlapped_bypass_closes_later() {
     }
 }
 
-/// Spools, openings and what else is adjusted on the way of the oil are asked of effects of valves and of the pump line
-/// alone: no other effect may have something to say there that nobody hears.
+fn has_a_say(card: &Card) -> bool {
+    matches!(card.acts_on, ActsOn::Valve | ActsOn::PumpLine) || card.family == Family::Rounding
+}
+
+/// Spools, openings and what else is adjusted are asked of effects of valves and of the pump line alone, and of those that round a
+/// corner: no other effect may have something to say there that nobody hears.
 #[test]
 fn only_valves_and_pump_line_have_a_say_in_the_way_of_oil() {
     for model in common::machines() {
-        for effect in CATALOGUE.iter().filter(|e| !matches!(e.card().acts_on, ActsOn::Valve | ActsOn::PumpLine)) {
+        for effect in CATALOGUE.iter().filter(|effect| !has_a_say(effect.card())) {
             let name = effect.card().name;
             for site in (0..model.machine.cylinders.len()).map(Site::Cylinder).chain([Site::PumpLine]) {
                 let typical: Vec<f64> =

@@ -13,7 +13,7 @@ use super::race::{Race, Round};
 use super::starts::acts_in_a_window;
 use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, adequacy, compare_losses};
 use crate::fit::{Fit, fit};
-use crate::recording_effects::refitted_with_recording_effects;
+use crate::fitted_along::refitted_with_effects_along;
 
 /// A gain below this part of the best one's is no other way to begin.
 const OTHER_WAY: f64 = 0.5;
@@ -134,7 +134,7 @@ impl Chains<'_> {
         first: Candidate,
         progress: &(dyn Fn(&str, f64) + Sync),
     ) -> Result<Vec<Candidate>, DiagnosisError> {
-        let mut chain = vec![self.with_recording_effects(first)?];
+        let mut chain = vec![self.with_effects_along(first)?];
         // Each detour costs a link that is taken out again.
         for _ in 0..2 * self.settings.most_effects {
             let next = if chain.last().is_some_and(|last| self.leaves_little(last))
@@ -145,7 +145,7 @@ impl Chains<'_> {
                 self.round(&chain, progress).fitted.into_iter().find(|candidate| candidate.accepted)
             };
             let complete = next.is_none();
-            chain.extend(next.map(|next| self.with_recording_effects(next)).transpose()?);
+            chain.extend(next.map(|next| self.with_effects_along(next)).transpose()?);
             match self.without_superfluous(&chain, progress)? {
                 Some(shorter) => chain = shorter,
                 None if complete => break,
@@ -159,12 +159,12 @@ impl Chains<'_> {
 
     /// A link with what the recordings show of how they were made once it is there: without it that was hidden under what
     /// was missing.
-    fn with_recording_effects(&self, mut link: Candidate) -> Result<Candidate, DiagnosisError> {
+    fn with_effects_along(&self, mut link: Candidate) -> Result<Candidate, DiagnosisError> {
         if acts_in_a_window(link.physics, &link.fit.model.machine, link.site) {
             return Ok(link);
         }
         let (given, behind) = (link.fit.model.effects.len(), link.fit.model.effects.len() - 1);
-        link.fit = refitted_with_recording_effects(link.fit, behind, self.identification, &self.settings.fit);
+        link.fit = refitted_with_effects_along(link.fit, behind, self.identification, &self.settings.fit);
         if link.fit.model.effects.len() > given {
             let known = &link.validation.model;
             link.validation = evaluate_in_known_windows(&link.fit.model, known, self.validation, &self.settings.fit)?;
@@ -229,7 +229,7 @@ impl Chains<'_> {
             // Without the other it cannot even be begun with: then that was needed after all.
             let Some(next) = round.fitted.into_iter().next() else { return Ok(None) };
             wanted.retain(|&(physics, site)| (physics.card().name, site) != (next.name(), next.site));
-            rebuilt.push(self.with_recording_effects(next)?);
+            rebuilt.push(self.with_effects_along(next)?);
         }
         Ok(Some(rebuilt))
     }

@@ -14,7 +14,7 @@ use super::{
     normalised_error, residual_map, unexplained,
 };
 use crate::fit::{Fit, FitError, evaluate, fit};
-use crate::recording_effects::refitted_with_recording_effects;
+use crate::fitted_along::refitted_with_effects_along;
 use crate::regression::{RegressionError, WeakFormSettings, weak_form};
 
 /// What is to be thought of a model.
@@ -282,5 +282,5 @@ pub(crate) fn fit_nominal(
             (_, second) => second?,
         },
     };
-    Ok(refitted_with_recording_effects(fitted, model.effects.len(), identification, &settings.fit))
+    Ok(refitted_with_effects_along(fitted, model.effects.len(), identification, &settings.fit))
 }

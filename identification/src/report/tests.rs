@@ -281,7 +281,7 @@ fn diagnosis_shows_evidence_cards_and_what_is_left() {
 }
 
 #[test]
-fn a_spool_that_is_read_early_is_told_once_it_is_known() {
+fn what_is_fitted_along_is_told_once_it_is_known() {
     let mut found = diagnosis(Verdict::Adequate, vec![]);
     assert!(!verdict_sentence(&model(), &found).contains("spool sensor"));
     let lead = effects::find("spool_sensor_lead").unwrap();
@@ -299,6 +299,14 @@ fn a_spool_that_is_read_early_is_told_once_it_is_known() {
     let both = verdict_sentence(&model(), &found);
     assert!(both.contains("0.45 ms after") && both.contains("does not read zero where its valve is closed"), "{both}");
     assert!(both.contains("+0.070 mm2"), "{both}");
+    let reversal = effects::find("friction_reversal").unwrap();
+    found.nominal.model = known.with_effect(reversal, Site::Cylinder(0)).unwrap();
+    found.nominal.model.effects.last_mut().unwrap().parameters[0].value = 2.14e-3;
+    let sentence = verdict_sentence(&model(), &found);
+    assert!(
+        sentence.contains("Friction turns round over another speed") && sentence.contains("2.1 mm/s"),
+        "{sentence}"
+    );
     found.nominal.model = known.clone();
     // Whoever says so in the model needs no telling.
     assert!(!verdict_sentence(&known, &found).contains("spool sensor"));

@@ -1,7 +1,6 @@
 //! The verdict in plain sentences.
 
-use excavator_model::effects::Family;
-use excavator_model::{Model, ModelEffect, site_name};
+use excavator_model::{Model, site_name};
 
 use super::numbers::{percent, ratio, significant};
 use super::words;
@@ -31,7 +30,7 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
     } else {
         verdict
     };
-    let verdict = format!("{verdict}{}", read_apart(model, diagnosis));
+    let verdict = format!("{verdict}{}", fitted_along(model, diagnosis));
     let (undetermined, fitted) = (diagnosis.nominal.undetermined(), diagnosis.nominal.fitted.len());
     if 2 * undetermined.len() <= fitted {
         return verdict;
@@ -44,43 +43,59 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
     )
 }
 
-/// What was found of how the recordings were made, with a space before it; nothing where that is nothing.
-fn read_apart(given: &Model, diagnosis: &Diagnosis) -> String {
+/// What is said of an effect that was fitted along.
+struct Telling {
+    effect: &'static str,
+    /// Of one, and of several.
+    sentences: [&'static str; 2],
+    /// Of its parameter, behind "that of the arm".
+    value: fn(f64) -> String,
+}
+
+const TELLINGS: [Telling; 3] = [
+    Telling {
+        effect: "spool_sensor_lead",
+        sentences: [
+            "The spool sensor is not read together with the other instruments",
+            "The spool sensors are not read together with the other instruments",
+        ],
+        value: |time| format!("{:.2} ms {}", 1e3 * time.abs(), if time > 0.0 { "before" } else { "after" }),
+    },
+    Telling {
+        effect: "spool_sensor_offset",
+        sentences: [
+            "The spool sensor does not read zero where its valve is closed",
+            "The spool sensors do not read zero where their valves are closed",
+        ],
+        value: |area| format!("{}{} mm2", if area > 0.0 { "+" } else { "" }, significant(1e6 * area, 2)),
+    },
+    Telling {
+        effect: "friction_reversal",
+        sentences: [
+            "Friction turns round over another speed than the usual 1 mm/s",
+            "Friction turns round over other speeds than the usual 1 mm/s",
+        ],
+        value: |speed| format!("over {} mm/s", significant(1e3 * speed, 2)),
+    },
+];
+
+/// What was fitted along, with a space before it; nothing where that is nothing.
+fn fitted_along(given: &Model, diagnosis: &Diagnosis) -> String {
     let last = diagnosis.chain.last().map_or(&diagnosis.nominal.model, |link| &link.fit.model);
-    let found = last
-        .effects
-        .iter()
-        .filter(|effect| effect.physics.card().family == Family::Recording && !given.has(effect.name(), effect.site));
-    let (times, zeros): (Vec<_>, Vec<_>) = found.partition(|effect| effect.name() == "spool_sensor_lead");
-    let told = |effects: Vec<&ModelEffect>, say: fn(f64) -> String| -> Vec<String> {
-        let one = |effect: &ModelEffect| {
-            let place = site_name(&last.machine, effect.site);
-            Some(format!("that of the {place} {}", say(effect.parameters.first()?.value)))
-        };
-        effects.into_iter().filter_map(one).collect()
+    let told = |telling: &Telling| {
+        let found = last.effects.iter().filter(|effect| effect.name() == telling.effect);
+        let found: Vec<String> = found
+            .filter(|effect| !given.has(effect.name(), effect.site))
+            .filter_map(|effect| {
+                let place = site_name(&last.machine, effect.site);
+                Some(format!("that of the {place} {}", (telling.value)(effect.parameters.first()?.value)))
+            })
+            .collect();
+        let sentence = telling.sentences[usize::from(found.len() > 1)];
+        let values = words::list(&found, "and");
+        if found.is_empty() { String::new() } else { format!(" {sentence} ({values}); this is taken into account.") }
     };
-    let when = |time: f64| format!("{:.2} ms {}", 1e3 * time.abs(), if time > 0.0 { "before" } else { "after" });
-    let zero = |area: f64| format!("{}{} mm2", if area > 0.0 { "+" } else { "" }, significant(1e6 * area, 2));
-    let mut text = String::new();
-    for (found, what) in [
-        (
-            told(times, when),
-            ["is not read together with the other instruments", "are not read together with the other instruments"],
-        ),
-        (
-            told(zeros, zero),
-            ["does not read zero where its valve is closed", "do not read zero where their valves are closed"],
-        ),
-    ] {
-        text += &match found.len() {
-            0 => String::new(),
-            1 => format!(" The spool sensor {} ({}); this is taken into account.", what[0], found[0]),
-            _ => {
-                format!(" The spool sensors {} ({}); this is taken into account.", what[1], words::list(&found, "and"))
-            }
-        };
-    }
-    text
+    TELLINGS.iter().map(told).collect()
 }
 
 fn names_of(model: &Model, parameters: &[usize]) -> Vec<String> {

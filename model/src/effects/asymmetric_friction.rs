@@ -2,7 +2,6 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::equations::smooth::direction;
 use crate::machine::Machine;
 
 /// Friction that differs by direction.
@@ -46,6 +45,6 @@ impl Physics for AsymmetricFriction {
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
-        rows.piston_force[cylinder] -= parameters[0] * direction(now.pistons[cylinder].velocity).positive_part();
+        rows.piston_force[cylinder] -= parameters[0] * now.pistons[cylinder].direction().positive_part();
     }
 }

@@ -29,6 +29,8 @@ pub enum Family {
     Base,
     /// How recordings are made, not how the machine works: fitted along where the recordings show it, never a candidate.
     Recording,
+    /// How widely the equations round a corner, which no machine knows: fitted along where the recordings show it, never a candidate.
+    Rounding,
     /// How a machine is built, which its data sheet says: added by hand, never a candidate.
     Construction,
     /// A loss that the nominal model of \[A\] has, and a candidate where another model leaves it out.

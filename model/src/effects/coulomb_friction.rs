@@ -2,7 +2,6 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::equations::smooth::direction;
 use crate::machine::Machine;
 
 /// Coulomb friction of the piston.
@@ -45,6 +44,6 @@ impl Physics for CoulombFriction {
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
-        rows.piston_force[cylinder] -= parameters[0] * direction(piston.velocity);
+        rows.piston_force[cylinder] -= parameters[0] * piston.direction();
     }
 }

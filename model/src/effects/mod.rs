@@ -22,6 +22,7 @@ mod entrained_air;
 mod external_contact;
 mod external_leakage;
 mod force_offset;
+mod friction_reversal;
 mod gravity;
 mod hose_loss;
 mod hose_pressure_loss;
@@ -74,6 +75,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &cavitation::Cavitation,
     &spool_sensor_lead::SpoolSensorLead,
     &spool_sensor_offset::SpoolSensorOffset,
+    &friction_reversal::FrictionReversal,
     &pressure_compensation::PressureCompensation,
     &joint_spring::JointSpring,
     &valve_dead_zone::ValveDeadZone,

@@ -52,7 +52,7 @@ pub trait Physics: Sync {
     }
 
     /// Adjusts what the valve's other effects see: the closing of the bypass, the share of flow back to the pump. Asked
-    /// of effects of valves and of the pump line, after all openings are known.
+    /// of effects of valves and of the pump line, after all openings are known, and of those that round a corner.
     fn adjust<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &mut Situation<T>) {}
 
     /// Adds to what instruments make of what they measure, for an effect that acts on them and not on the machine.

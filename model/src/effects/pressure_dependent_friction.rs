@@ -2,7 +2,6 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::equations::smooth::direction;
 use crate::machine::Machine;
 
 /// Friction of seals that pressure pushes against the wall.
@@ -45,6 +44,6 @@ impl Physics for PressureDependentFriction {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
         let pressing = piston.cap_pressure.positive_part() + piston.rod_pressure.positive_part();
-        rows.piston_force[cylinder] -= parameters[0] * pressing * direction(piston.velocity);
+        rows.piston_force[cylinder] -= parameters[0] * pressing * piston.direction();
     }
 }

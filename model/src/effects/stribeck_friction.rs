@@ -2,7 +2,6 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::equations::smooth::direction;
 use crate::machine::Machine;
 
 /// Stribeck friction.
@@ -67,6 +66,6 @@ impl Physics for StribeckFriction {
         let piston = &now.pistons[cylinder];
         let relative = piston.velocity / parameters[1];
         let level = parameters[0] * (-(relative * relative)).exp();
-        rows.piston_force[cylinder] -= level * direction(piston.velocity);
+        rows.piston_force[cylinder] -= level * piston.direction();
     }
 }

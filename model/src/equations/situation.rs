@@ -1,6 +1,6 @@
 //! Everything an effect may look at.
 
-use super::smooth::{at_most, orifice_root};
+use super::smooth::{SLIP_SPEED, at_most, orifice_root, rounded_sign};
 use crate::machine::{Chambers, Machine};
 use crate::scalar::Scalar;
 
@@ -37,12 +37,19 @@ pub struct Piston<T> {
     pub compensator_margin: Option<T>,
     /// Pressure loss per square of the flow in each hose between valve and chamber, Pa s²/m⁶; `None` without.
     pub hose_resistance: Option<T>,
+    /// Speed over which friction turns round, m/s.
+    pub reversal_speed: T,
     /// Force that drives a cylinder without chambers, N: measured on the rod, and with the pressures' where the motion is
     /// imposed.
     pub rod_force: T,
 }
 
 impl<T: Scalar> Piston<T> {
+    /// `sgn(v)`, as far as friction knows it.
+    pub fn direction(&self) -> T {
+        rounded_sign(self.velocity / self.reversal_speed)
+    }
+
     /// Gain of an edge (m³/(s sqrt(Pa))) in series with its hose.
     pub fn with_hose(&self, gain: T) -> T {
         self.hose_resistance.map_or(gain, |resistance| gain / (resistance * gain * gain + 1.0).sqrt())
@@ -93,6 +100,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             backflow: T::from(1.0),
             compensator_margin: None,
             hose_resistance: None,
+            reversal_speed: T::from(SLIP_SPEED),
             rod_force: zero,
         };
         Situation {

@@ -10,11 +10,6 @@ pub const SLIP_SPEED: f64 = 1.0e-3;
 /// (about 10) puts the transition of a 1e-4 m² opening between 1 kPa and 10 kPa for mineral oil.
 pub const LAMINAR_PRESSURE: f64 = 2.0e3;
 
-/// `sgn(v)`, rounded over [`SLIP_SPEED`]: `tanh(v / SLIP_SPEED)`.
-pub fn direction<T: Scalar>(velocity: T) -> T {
-    rounded_sign(velocity / SLIP_SPEED)
-}
-
 /// The hyperbolic tangent: a sign that is rounded over one.
 ///
 /// Written with one exponential and cut off where it has reached one: `num_dual` takes the hyperbolic sine and cosine

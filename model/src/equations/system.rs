@@ -1,8 +1,9 @@
 //! The equations of motion of a model, for any number type.
 
+use super::smooth::SLIP_SPEED;
 use super::{Inputs, Instruments, Layout, Rows, Situation};
 use crate::Model;
-use crate::effects::{ActsOn, Number, Site};
+use crate::effects::{ActsOn, Family, Number, Site};
 use crate::machine::Supply;
 
 /// A model's equations of motion `dx/dt = f(x, inputs, parameters)`.
@@ -11,8 +12,8 @@ pub struct System<'m> {
     model: &'m Model,
     layout: Layout,
     parameter_ranges: Vec<(usize, usize)>,
-    /// Effects of valves and of the pump line: no other has a say in spools, openings and bypass.
-    on_the_way_of_oil: Vec<usize>,
+    /// Effects of valves and of the pump line, which alone have a say in spools, openings and bypass, and those that round corners.
+    adjusting: Vec<usize>,
     /// Effects that look at how the input changes.
     readers_of_course: Vec<usize>,
     own_instruments: Instruments<f64>,
@@ -42,8 +43,11 @@ impl<'m> System<'m> {
                 range
             })
             .collect();
-        let on_the_way_of_oil = (0..model.effects.len())
-            .filter(|&number| matches!(model.effects[number].physics.card().acts_on, ActsOn::Valve | ActsOn::PumpLine))
+        let adjusting = (0..model.effects.len())
+            .filter(|&number| {
+                let card = model.effects[number].physics.card();
+                matches!(card.acts_on, ActsOn::Valve | ActsOn::PumpLine) || card.family == Family::Rounding
+            })
             .collect();
         let readers_of_course =
             (0..model.effects.len()).filter(|&number| model.effects[number].physics.reads_course()).collect();
@@ -52,7 +56,7 @@ impl<'m> System<'m> {
             model,
             layout: Layout::of(model),
             parameter_ranges,
-            on_the_way_of_oil,
+            adjusting,
             readers_of_course,
             own_instruments,
         };
@@ -178,7 +182,7 @@ impl<'m> System<'m> {
         state: &[T],
         rates: &mut [T],
     ) {
-        for &number in &self.on_the_way_of_oil {
+        for &number in &self.adjusting {
             let effect = &self.model.effects[number];
             let Site::Cylinder(index) = effect.site else { continue };
             let (first, last) = self.parameter_ranges[number];
@@ -195,8 +199,9 @@ impl<'m> System<'m> {
             piston.backflow = T::from(1.0);
             piston.compensator_margin = None;
             piston.hose_resistance = None;
+            piston.reversal_speed = T::from(SLIP_SPEED);
         }
-        for &number in &self.on_the_way_of_oil {
+        for &number in &self.adjusting {
             let effect = &self.model.effects[number];
             let (first, last) = self.parameter_ranges[number];
             let own = &parameters[first..last];

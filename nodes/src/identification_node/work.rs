@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use excavator_identification::fit::{FitError, FitSettings, fit_watched};
-use excavator_identification::recording_effects::with_recording_effects;
+use excavator_identification::fitted_along::{IN_REGRESSION, with_effects_along};
 use excavator_identification::regression::{RegressionError, WeakFormSettings, weak_form_watched};
 use excavator_identification::validation::compare;
 use excavator_model::document::{parse, to_text};
@@ -74,8 +74,16 @@ pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &dyn Fn(&str, 
     let plain = weak_form_watched(&wanted, &recordings, &settings, &part("identifying", 0.3, 0.45))?;
     let timing = part("identifying with the sensors' timing", 0.45, 0.45);
     let anew = |model: &Model| weak_form_watched(model, &recordings, &settings, &timing).ok();
-    let mut identified =
-        with_recording_effects(plain, wanted.effects.len(), &recordings, |solved| &solved.model, anew, |_| false).model;
+    let mut identified = with_effects_along(
+        plain,
+        IN_REGRESSION,
+        wanted.effects.len(),
+        &recordings,
+        |solved| &solved.model,
+        anew,
+        |_| false,
+    )
+    .model;
     if !goal.effects.is_empty() {
         // Effects that were added start far from their values, and some enter nonlinearly: outputs are fitted too.
         let fitting = part("fitting outputs", 0.5, 0.7);

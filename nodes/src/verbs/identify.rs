@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use excavator_identification::fit::{FitSettings, ProfileInterval, fit, profile};
-use excavator_identification::recording_effects::with_recording_effects;
+use excavator_identification::fitted_along::{IN_REGRESSION, with_effects_along};
 use excavator_identification::regression::{
     ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form,
 };
@@ -127,7 +127,15 @@ fn in_weak_form(model: &Model, recordings: &[&Recording]) -> Result<Regression, 
     let estimate = |model: &Model| weak_form(model, recordings, &WeakFormSettings::default());
     let plain = estimate(model)?;
     let anew = |model: &Model| estimate(model).ok();
-    Ok(with_recording_effects(plain, model.effects.len(), recordings, |solved| &solved.model, anew, |_| false))
+    Ok(with_effects_along(
+        plain,
+        IN_REGRESSION,
+        model.effects.len(),
+        recordings,
+        |solved| &solved.model,
+        anew,
+        |_| false,
+    ))
 }
 
 fn profiles_json(result: &Identified) -> Value {

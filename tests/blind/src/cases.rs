@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::manoeuvres::Manoeuvre;
-use crate::plant::{Base, CATALOGUE, Effects, Extras, FOREIGN, Kind, Plant, Shape};
+use crate::plant::{Base, CATALOGUE, Effects, Extras, FOREIGN, Kind, Plant, Reversal, Shape};
 use crate::strength::{Strength, size};
 
 /// What sort of secret a case has.
@@ -76,7 +76,7 @@ impl Case {
         let bare = Plant {
             base,
             effects: Effects::default(),
-            extras: if wish.without_extras { Extras::none() } else { Extras::usual() },
+            extras: if wish.without_extras { Extras::none() } else { extras_of(seed, number) },
             blind_spool: hidden.iter().any(|kind| kind.name == "valve_lag"),
             duration: 0.0,
             boom_holding_torque: 0.0,
@@ -121,6 +121,14 @@ impl Case {
         let all = self.hidden.iter().flat_map(|kind| (kind.truth)(&self.plant.effects));
         all.filter(|(_, value)| *value != 0.0).collect()
     }
+}
+
+/// The usual extras, with a friction that turns round as that of no other machine. From numbers of its own: the rest of a case is
+/// the same with and without.
+fn extras_of(seed: u64, number: u64) -> Extras {
+    let mut generator = ChaCha8Rng::seed_from_u64(!seed);
+    generator.set_stream(number);
+    Extras { reversal: Reversal::draw(&mut generator), ..Extras::usual() }
 }
 
 /// Half of the cases hide one effect, the rest is shared evenly; one sort where the wish says so.

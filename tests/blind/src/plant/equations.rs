@@ -1,7 +1,7 @@
 //! Equations of motion of the plant, \[A\] Eq. 1-3 with the errata of `docs/physics.md`, in plain `f64`.
 
 use super::foreign::{BOOM_GRAVITY_MOMENT, BOOM_INERTIA, COUPLING, ENGINE_TIME, PISTON_MASS};
-use super::friction::{direction, end_stop};
+use super::friction::end_stop;
 use super::geometry::{
     BOOM_ANGLE, CAP_AREA, GRAVITY, Geometry, MAXIMUM_OPENING, PUMP_FLOW, PUMP_VOLUME, ROD_AREA, TANK_PRESSURE,
     VAPOUR_PRESSURE, cap_volume, rod_volume,
@@ -204,10 +204,11 @@ impl Plant {
             * self.extras.damping_factor(time)
             * foreign.damping_factor(time, self.duration)
             * velocity;
-        let dry = (self.base.coulomb_friction + foreign.bump(displacement)) * direction(velocity);
+        let direction = self.extras.reversal.direction(velocity);
+        let dry = (self.base.coulomb_friction + foreign.bump(displacement)) * direction;
         Forces {
             pressure: CAP_AREA * cap - ROD_AREA * rod,
-            friction: -viscous - dry + self.effects.friction.force(displacement, velocity, cap, rod),
+            friction: -viscous - dry + self.effects.friction.force(displacement, velocity, direction, [cap, rod]),
             outside: end_stop(displacement, velocity) + self.effects.load.contact(time, self.duration),
         }
     }

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use super::Reversal;
+
 /// Sizes of the unmodelled extras; chosen so that each moves a signal by no more than a few times its noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extras {
@@ -17,6 +19,8 @@ pub struct Extras {
     pub temperature: f64,
     /// Its rise, K/s.
     pub warming: f64,
+    /// How friction turns round.
+    pub reversal: Reversal,
 }
 
 impl Extras {
@@ -29,6 +33,7 @@ impl Extras {
             hose_compliance: 0.0,
             temperature: 27.0,
             warming: 0.0,
+            reversal: Reversal::usual(),
         }
     }
 
@@ -43,6 +48,7 @@ impl Extras {
             hose_compliance: 1e-5 / 4e8,
             temperature: 27.0,
             warming: 0.4 / 38.0,
+            reversal: Reversal::usual(),
         }
     }
 

@@ -1,9 +1,10 @@
 //! Forces between piston, barrel and rod, and effects on them.
 
+use rand::seq::IndexedRandom;
+use rand::{Rng, RngExt};
+
 use super::geometry::STROKE;
 
-/// Speed over which the sign of the velocity changes, m/s.
-const SLIP_SPEED: f64 = 1e-3;
 /// Stiffness of the cylinder's ends, N/m: 0.1 mm under full pump pressure.
 const END_STIFFNESS: f64 = 5e7;
 /// Damping factor of the ends, s/m.
@@ -30,14 +31,59 @@ pub struct Friction {
     pub cushion_damping: f64,
 }
 
-/// `sgn(v)`, smooth over 1 mm/s.
-pub fn direction(velocity: f64) -> f64 {
-    (velocity / SLIP_SPEED).tanh()
+/// How friction turns round where the piston does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reversal {
+    /// Speed over which the sign of the velocity changes, m/s.
+    pub speed: f64,
+    /// How it does.
+    pub law: ReversalLaw,
+}
+
+/// How a sign changes, every one with slope one at zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ReversalLaw {
+    /// Hyperbolic tangent, as the model's.
+    Tangent,
+    /// `x / sqrt(1 + x^2)`, which arrives late.
+    Root,
+    /// Straight, with corners.
+    Straight,
+}
+
+impl Reversal {
+    /// As the model's.
+    pub fn usual() -> Self {
+        Reversal { speed: 1e-3, law: ReversalLaw::Tangent }
+    }
+
+    /// A machine's own: half to five times as wide as the model's, by one of three laws.
+    pub fn draw(generator: &mut impl Rng) -> Self {
+        let laws = [ReversalLaw::Tangent, ReversalLaw::Root, ReversalLaw::Straight];
+        let speed = 0.5e-3 * 10.0_f64.powf(generator.random::<f64>());
+        Reversal { speed, law: laws.choose(generator).copied().unwrap_or(ReversalLaw::Tangent) }
+    }
+
+    /// `sgn(v)`.
+    pub fn direction(&self, velocity: f64) -> f64 {
+        let ratio = velocity / self.speed;
+        match self.law {
+            ReversalLaw::Tangent => ratio.tanh(),
+            ReversalLaw::Root => ratio / ratio.hypot(1.0),
+            ReversalLaw::Straight => ratio.clamp(-1.0, 1.0),
+        }
+    }
 }
 
 impl Friction {
-    /// Force of all the effects on the piston, N, + = extends.
-    pub fn force(&self, displacement: f64, velocity: f64, cap_pressure: f64, rod_pressure: f64) -> f64 {
+    /// Force of all the effects on the piston, N, + = extends; `direction` is that of the motion, rounded.
+    pub fn force(
+        &self,
+        displacement: f64,
+        velocity: f64,
+        direction: f64,
+        [cap_pressure, rod_pressure]: [f64; 2],
+    ) -> f64 {
         let mut level = if velocity > 0.0 { self.extra_extending } else { self.extra_retracting };
         if self.stribeck_force > 0.0 {
             let relative = velocity / self.stribeck_speed;
@@ -46,7 +92,7 @@ impl Friction {
         level += self.pressure_coefficient * (cap_pressure.max(0.0) + rod_pressure.max(0.0));
         let mut force = -self.hose_loss * velocity * velocity.abs();
         if level > 0.0 {
-            force -= level * direction(velocity);
+            force -= level * direction;
         }
         force + self.cushion(displacement, velocity)
     }

@@ -24,7 +24,7 @@ pub use equations::{Flows, Forces, Plant, STATES, State};
 pub use extras::Extras;
 pub use foreign::Foreign;
 pub use foreign_kinds::FOREIGN;
-pub use friction::Friction;
+pub use friction::{Friction, Reversal, ReversalLaw};
 pub use geometry::{Geometry, MAXIMUM_OPENING, PUMP_FLOW, STROKE, TANK_PRESSURE};
 pub use integrator::{STEP, step};
 pub use kinds::{Kind, Shape};

@@ -1,10 +1,17 @@
-//! Effects of how recordings are made, which are fitted along and never named as missing.
+//! Effects that are fitted along where recordings show them, and never named as missing: how the recordings were made, and how
+//! widely a corner of the equations is rounded.
 
-use excavator_model::effects::{CATALOGUE, Effect, Family, Site};
+use excavator_model::effects::{CATALOGUE, Effect, Family, Site, Start};
 use excavator_model::recording::{Recording, is_measured};
-use excavator_model::{Model, ModelEffect};
+use excavator_model::{Model, ModelEffect, Parameter};
 
 use crate::fit::{Fit, FitSettings, fit};
+
+/// Families of these effects that a regression can estimate. Smoothed velocities turn round slower than the piston.
+pub const IN_REGRESSION: &[Family] = &[Family::Recording];
+
+/// Those that a fit of simulated outputs can.
+const IN_FITS: &[Family] = &[Family::Recording, Family::Rounding];
 
 /// Standard errors by which such an effect must differ from nothing. A model without it is the simpler one.
 const LEAST_SIGNIFICANCE: f64 = 3.0;
@@ -22,19 +29,24 @@ const MOST_BEHIND: f64 = 5e-3;
 /// Most that a spool sensor's zero is off, as a part of the largest opening: the accuracy of an ordinary transducer.
 const MOST_OF_THE_OPENING: f64 = 5e-3;
 
-/// What `estimate` makes of a model with those of these effects that `recordings` show; `plain` is what it made of the model
+/// Speeds (m/s) over which friction can turn round and be no more than rounded otherwise. Sharper ones nobody can see; of more than
+/// 6 mm/s, as seals have them at their slowest, it is a friction with a shape of its own.
+const REVERSAL_SPEEDS: std::ops::RangeInclusive<f64> = 2e-4..=6e-3;
+
+/// What `estimate` makes of a model with those effects of the `families` that `recordings` show; `plain` is what it made of the model
 /// without them, and is returned where they show none or nothing can be made of them. They are put `behind` so many effects
 /// of the model, so that a candidate stays its last. `model_of` is the model in a result, with standard errors; `is_all` tells
 /// whether nothing is left that something else could explain.
-pub fn with_recording_effects<R>(
+pub fn with_effects_along<R>(
     plain: R,
+    families: &[Family],
     behind: usize,
     recordings: &[&Recording],
     model_of: impl Fn(&R) -> &Model,
     estimate: impl Fn(&Model) -> Option<R>,
     is_all: impl Fn(&R) -> bool,
 ) -> R {
-    let mut added = shown_by(model_of(&plain), recordings);
+    let mut added = shown_by(model_of(&plain), families, recordings);
     while !added.is_empty() {
         let mut model = model_of(&plain).clone();
         let effects = added.iter().filter_map(|&(physics, site)| ModelEffect::new(physics, &model.machine, site).ok());
@@ -62,8 +74,8 @@ fn looks_like_more(physics: &dyn Effect) -> bool {
 /// Typical loss of a fit up to which nothing is left but noise, as for [`crate::diagnosis::DiagnosisSettings::adequate_loss`].
 const NOISE: f64 = 0.2;
 
-/// [`with_recording_effects`] of a fit, by the same fit.
-pub(crate) fn refitted_with_recording_effects(
+/// [`with_effects_along`] of a fit, by the same fit.
+pub(crate) fn refitted_with_effects_along(
     fitted: Fit,
     behind: usize,
     recordings: &[&Recording],
@@ -71,11 +83,11 @@ pub(crate) fn refitted_with_recording_effects(
 ) -> Fit {
     let anew = |model: &Model| fit(model, recordings, settings).ok();
     let is_all = |fitted: &Fit| fitted.typical_loss() <= NOISE;
-    with_recording_effects(fitted, behind, recordings, |fitted| &fitted.model, anew, is_all)
+    with_effects_along(fitted, IN_FITS, behind, recordings, |fitted| &fitted.model, anew, is_all)
 }
 
-/// Effects of recordings that the model has not and that `recordings` can show.
-fn shown_by(model: &Model, recordings: &[&Recording]) -> Vec<(&'static dyn Effect, Site)> {
+/// Effects of the `families` that the model has not and that `recordings` can show.
+fn shown_by(model: &Model, families: &[Family], recordings: &[&Recording]) -> Vec<(&'static dyn Effect, Site)> {
     // Only a measured opening can be read at another time than the rest; a command acts when it is given.
     let measures_spool = |site: &Site| match *site {
         Site::Cylinder(index) => recordings.iter().all(|recording| {
@@ -87,25 +99,37 @@ fn shown_by(model: &Model, recordings: &[&Recording]) -> Vec<(&'static dyn Effec
     CATALOGUE
         .iter()
         .copied()
-        .filter(|physics| physics.card().family == Family::Recording)
+        .filter(|physics| families.contains(&physics.card().family))
         .flat_map(|physics| model.free_sites(physics).into_iter().map(move |site| (physics, site)))
-        .filter(|(_, site)| measures_spool(site))
+        .filter(|(physics, site)| match physics.card().family {
+            Family::Rounding => model.has("coulomb_friction", *site),
+            _ => measures_spool(site),
+        })
         .collect()
 }
 
-/// Whether all parameters of an effect differ from nothing and are no more than recordings are off.
+/// Whether all parameters of an effect differ from nothing, and by no more than recordings are off or corners are rounded.
 fn is_seen(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Recording]) -> bool {
     model.effect(physics.card().name, site).is_some_and(|effect| {
         effect.parameters.iter().all(|parameter| {
             let least = LEAST_SIGNIFICANCE * parameter.standard_error.unwrap_or(f64::INFINITY);
-            let most = match parameter.card.unit {
-                "s" if parameter.value < 0.0 => latest(recordings).max(MOST_BEHIND),
-                "s" => latest(recordings),
-                _ => largest_zero(model, site, recordings),
+            let is_plausible = match parameter.card.unit {
+                "s" if parameter.value < 0.0 => -parameter.value <= latest(recordings).max(MOST_BEHIND),
+                "s" => parameter.value <= latest(recordings),
+                "m/s" => REVERSAL_SPEEDS.contains(&parameter.value),
+                _ => parameter.value.abs() <= largest_zero(model, site, recordings),
             };
-            parameter.value.abs() >= least && parameter.value.abs() <= most
+            is_plausible && (parameter.value - nothing(parameter)).abs() >= least
         })
     })
+}
+
+/// Value of a parameter with which its effect changes nothing: that from which it is searched.
+fn nothing(parameter: &Parameter) -> f64 {
+    match parameter.card.start {
+        Start::At([start, ..]) => *start,
+        _ => 0.0,
+    }
 }
 
 /// Most that instruments are read apart, s.
