@@ -30,7 +30,7 @@ fn a_light_load_is_no_contact() {
     assert_eq!((score.outcome, score.chain.as_slice()), (Outcome::Right, &["payload"][..]));
 }
 
-/// Friction that turns round over 4 mm/s and arrives late looked like a little Stribeck friction.
+/// Friction that turns round over 4 mm/s and arrives late: `unexplained` with a loss of 0.70 where the model insists on 1 mm/s.
 #[test]
 fn how_friction_turns_round_is_no_effect() {
     let mut case = Case::draw(5, 2, &Wish { sort: Some(Sort::Nothing), ..Wish::default() });
@@ -40,6 +40,6 @@ fn how_friction_turns_round_is_no_effect() {
     println!("nothing: {} {:?}, losses {:.2?}", score.verdict.name(), score.gains, score.losses);
     assert_eq!(score.outcome, Outcome::Right);
     let friction = score.estimates.iter().find(|estimate| estimate.name == "arm.coulomb_friction").unwrap();
-    // 10 % too low at half that width where the model insists on 1 mm/s.
-    assert!(friction.relative_error.abs() < 0.03, "{friction:?}");
+    // What of it arrives late is viscous to the model's own law.
+    assert!(friction.relative_error.abs() < 0.06, "{friction:?}");
 }
