@@ -1,7 +1,7 @@
 //! Effects that are fitted along where recordings show them, and never named as missing: how the recordings were made, and how
 //! widely a corner of the equations is rounded.
 
-use excavator_model::effects::{CATALOGUE, Effect, Family, Site, Start};
+use excavator_model::effects::{ActsOn, CATALOGUE, Effect, Family, Site, Start};
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::{Model, ModelEffect, Parameter};
 
@@ -32,6 +32,9 @@ const MOST_OF_THE_OPENING: f64 = 5e-3;
 /// Speeds (m/s) over which friction can turn round and be no more than rounded otherwise. Sharper ones nobody can see; of more than
 /// 6 mm/s, as seals have them at their slowest, it is a friction with a shape of its own.
 const REVERSAL_SPEEDS: std::ops::RangeInclusive<f64> = 2e-4..=6e-3;
+
+/// Pressure drops (Pa) at which the flow through a valve can turn turbulent: a slot of 0.1 mm in cold oil reaches 3 bar.
+const TRANSITIONS: std::ops::RangeInclusive<f64> = 2e2..=3e5;
 
 /// What `estimate` makes of a model with those effects of the `families` that `recordings` show; `plain` is what it made of the model
 /// without them, and is returned where they show none or nothing can be made of them. They are put `behind` so many effects
@@ -102,10 +105,16 @@ fn shown_by(model: &Model, families: &[Family], recordings: &[&Recording]) -> Ve
         .filter(|physics| families.contains(&physics.card().family))
         .flat_map(|physics| model.free_sites(physics).into_iter().map(move |site| (physics, site)))
         .filter(|(physics, site)| match physics.card().family {
-            Family::Rounding => model.has("coulomb_friction", *site),
+            Family::Rounding => rounds_something(*physics, *site, model),
             _ => measures_spool(site),
         })
         .collect()
+}
+
+/// Whether the model has what an effect rounds.
+fn rounds_something(physics: &dyn Effect, site: Site, model: &Model) -> bool {
+    let rounded = if physics.card().acts_on == ActsOn::Valve { "orifice_flow" } else { "coulomb_friction" };
+    model.has(rounded, site)
 }
 
 /// Whether all parameters of an effect differ from nothing, and by no more than recordings are off or corners are rounded.
@@ -117,6 +126,7 @@ fn is_seen(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Recor
                 "s" if parameter.value < 0.0 => -parameter.value <= latest(recordings).max(MOST_BEHIND),
                 "s" => parameter.value <= latest(recordings),
                 "m/s" => REVERSAL_SPEEDS.contains(&parameter.value),
+                "Pa" => TRANSITIONS.contains(&parameter.value),
                 _ => parameter.value.abs() <= largest_zero(model, site, recordings),
             };
             is_plausible && (parameter.value - nothing(parameter)).abs() >= least

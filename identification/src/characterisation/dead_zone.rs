@@ -1,6 +1,6 @@
 //! Dead zone and hysteresis of the valve from flow over root of the pressure drop: \[B\] IV-B.
 
-use excavator_model::equations::smooth::orifice_root;
+use excavator_model::equations::smooth::{LAMINAR_PRESSURE, orifice_root};
 
 use super::edge::Edge;
 use super::estimate::Estimate;
@@ -142,7 +142,7 @@ fn run(track: &Track, edge: Edge, sweep: Sweep) -> Option<Run> {
     let samples: Vec<(f64, f64, f64)> = (sweep.first..=sweep.last)
         .filter_map(|index| {
             let (flow, drop) = track.through(edge, index);
-            let normalised = flow / orifice_root(drop);
+            let normalised = flow / orifice_root(drop, LAMINAR_PRESSURE);
             let usable = drop > LEAST_DROP && normalised.is_finite();
             usable.then(|| (sign * track.smooth_opening[index], normalised, track.opening_rate[index].abs()))
         })

@@ -1,6 +1,6 @@
 //! Gains of the metering edges from steady stretches: \[B\] Eq. 7-11.
 
-use excavator_model::equations::smooth::orifice_root;
+use excavator_model::equations::smooth::{LAMINAR_PRESSURE, orifice_root};
 
 use super::dead_zone::{DeadZone, LEAST_DROP};
 use super::edge::Edge;
@@ -124,7 +124,7 @@ fn point(track: &Track, stretch: &Steady, edge: Edge, begins: Option<Estimate>) 
     if drop < LEAST_DROP || !flow.value.is_finite() {
         return None;
     }
-    let root = orifice_root(drop);
+    let root = orifice_root(drop, LAMINAR_PRESSURE);
     let opening = stretch.opening.value.abs();
     let gain_from = |open: f64| {
         let value = flow.value / (open * root);

@@ -4,6 +4,7 @@
 //! better than either. So links that are no longer needed once others are there are taken out again, and when the first
 //! way leads nowhere, the runner-up is tried as a first step too.
 
+use excavator_model::Model;
 use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
 
@@ -12,7 +13,7 @@ use super::own_windows::{evaluate_in_known_windows, has_window};
 use super::race::{Race, Round};
 use super::starts::acts_in_a_window;
 use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, adequacy, compare_losses};
-use crate::fit::{Fit, fit};
+use crate::fit::{Fit, FitError, fit};
 use crate::fitted_along::refitted_with_effects_along;
 
 /// A gain below this part of the best one's is no other way to begin.
@@ -181,6 +182,22 @@ impl Chains<'_> {
     /// have to take away.
     fn leaves_little(&self, last: &Candidate) -> bool {
         self.is_adequate(&last.validation) && last.validation.loss() < self.settings.least_gain_when_adequate
+    }
+
+    /// The model of a chain that ends with `last` without one of its links, fitted.
+    ///
+    /// # Errors
+    /// [`FitError`].
+    pub fn without_link(&self, last: &Candidate, link: &Candidate) -> Result<Fit, FitError> {
+        let mut without = last.fit.model.clone();
+        without.effects.retain(|effect| !effect.is(link.name(), link.site));
+        let names = |model: &Model| -> Vec<(&str, Site)> {
+            model.effects.iter().map(|effect| (effect.name(), effect.site)).collect()
+        };
+        if names(&without) == names(&self.nominal.model) {
+            return Ok(self.nominal.clone());
+        }
+        fit(&without, self.identification, &self.settings.fit)
     }
 
     /// The chain without the link whose removal costs least, if that is less than would have let it in.

@@ -13,7 +13,8 @@ use super::own_windows::evaluate_in_known_windows;
 use super::{Candidate, compare_losses};
 use crate::fit::fit_predicted;
 
-/// Loss above that of a model with a candidate, from which on an effect of construction is not worth a fit in its place.
+/// Loss above that of a model with a candidate, from which on an effect of construction is not worth a fit in its place; or half of
+/// what the candidate explains, where that is more: a first step does not promise all.
 const FAR: f64 = 0.5;
 
 /// How a model that is built otherwise compares with a chain of candidates.
@@ -42,11 +43,11 @@ impl Chains<'_> {
         let mut found = BuiltOtherwise::default();
         let Some(last) = chain.last() else { return found };
         for (number, link) in chain.iter().enumerate() {
-            let mut without = last.fit.model.clone();
-            without.effects.retain(|effect| !effect.is(link.name(), link.site));
-            for (physics, site) in constructions(&without).into_iter().filter(|(_, site)| *site == link.site) {
-                let worst = last.fit.loss() + FAR;
-                let Ok(Some(other)) = self.with_construction(&without, physics, site, worst, &last.validation.model)
+            let Ok(without) = self.without_link(last, link) else { continue };
+            let worst = last.fit.loss() + FAR.max(0.5 * (without.loss() - last.fit.loss()));
+            let model = &without.model;
+            for (physics, site) in constructions(model).into_iter().filter(|(_, site)| *site == link.site) {
+                let Ok(Some(other)) = self.with_construction(model, physics, site, worst, &last.validation.model)
                 else {
                     continue;
                 };

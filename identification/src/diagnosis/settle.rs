@@ -7,7 +7,6 @@
 use super::chain::Chains;
 use super::own_windows::evaluate_in_known_windows;
 use super::{Candidate, DiagnosisError};
-use crate::fit::fit;
 
 impl Chains<'_> {
     /// Compares the first of `candidates` with all that are tied with it beside the other links of `chain`: marks those that
@@ -31,9 +30,7 @@ impl Chains<'_> {
         if others.is_empty() || rivals.len() < 2 {
             return Ok(chain);
         }
-        let mut without = last.fit.model.clone();
-        without.effects.retain(|effect| !effect.is(first.name(), first.site));
-        let Ok(base) = fit(&without, self.identification, &self.settings.fit) else { return Ok(chain) };
+        let Ok(base) = self.without_link(last, first) else { return Ok(chain) };
         let known = &last.validation.model;
         let base_validation = evaluate_in_known_windows(&base.model, known, self.validation, &self.settings.fit)?;
         let race = self.race_from(&base, &base_validation, self.is_adequate(&base_validation));

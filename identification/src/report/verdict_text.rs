@@ -52,7 +52,7 @@ struct Telling {
     value: fn(f64) -> String,
 }
 
-const TELLINGS: [Telling; 3] = [
+const TELLINGS: [Telling; 4] = [
     Telling {
         effect: "spool_sensor_lead",
         sentences: [
@@ -76,6 +76,14 @@ const TELLINGS: [Telling; 3] = [
             "Friction turns round over other speeds than the usual 1 mm/s",
         ],
         value: |speed| format!("over {} mm/s", significant(1e3 * speed, 2)),
+    },
+    Telling {
+        effect: "orifice_transition",
+        sentences: [
+            "The valve's flow turns turbulent at another pressure drop than the usual 2 kPa",
+            "The valves' flows turn turbulent at other pressure drops than the usual 2 kPa",
+        ],
+        value: |drop| format!("at {} kPa", significant(1e-3 * drop, 2)),
     },
 ];
 

@@ -35,6 +35,7 @@ mod oil_compressibility;
 mod open_centre_bypass;
 mod opening_scale;
 mod orifice_flow;
+mod orifice_transition;
 mod payload;
 mod pressure_compensation;
 mod pressure_dependent_friction;
@@ -76,6 +77,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &spool_sensor_lead::SpoolSensorLead,
     &spool_sensor_offset::SpoolSensorOffset,
     &friction_reversal::FrictionReversal,
+    &orifice_transition::OrificeTransition,
     &pressure_compensation::PressureCompensation,
     &joint_spring::JointSpring,
     &valve_dead_zone::ValveDeadZone,

@@ -2,7 +2,7 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::equations::smooth::orifice_root;
+use crate::equations::smooth::{LAMINAR_PRESSURE, orifice_root};
 use crate::machine::Machine;
 
 /// Open-centre bypass from pump to tank.
@@ -45,7 +45,8 @@ impl Physics for OpenCentreBypass {
 
     fn contribute<T: Scalar>(&self, _site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let section = bypass_section(now);
-        rows.pump_flow -= parameters[0] * section * orifice_root(now.pump_pressure - now.tank_pressure);
+        rows.pump_flow -=
+            parameters[0] * section * orifice_root(now.pump_pressure - now.tank_pressure, T::from(LAMINAR_PRESSURE));
     }
 }
 

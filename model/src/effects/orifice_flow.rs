@@ -2,7 +2,6 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::equations::smooth::orifice_root;
 use crate::machine::Machine;
 
 /// Turbulent flow through the metering edges of the valve.
@@ -66,11 +65,11 @@ impl Physics for OrificeFlow {
         if piston.opening.value() >= 0.0 {
             let drawn = cap_gain * piston.drawn_root(pump - piston.cap_pressure);
             rows.cap_flow[cylinder] += drawn;
-            rows.rod_flow[cylinder] -= rod_gain * orifice_root(piston.rod_pressure - tank);
+            rows.rod_flow[cylinder] -= rod_gain * piston.root(piston.rod_pressure - tank);
             rows.pump_flow -= drawn;
         } else {
             let drawn = -rod_gain * piston.drawn_root(pump - piston.rod_pressure);
-            rows.cap_flow[cylinder] += cap_gain * orifice_root(piston.cap_pressure - tank);
+            rows.cap_flow[cylinder] += cap_gain * piston.root(piston.cap_pressure - tank);
             rows.rod_flow[cylinder] += drawn;
             rows.pump_flow -= drawn;
         }

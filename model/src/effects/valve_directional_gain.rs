@@ -2,7 +2,6 @@
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
-use crate::equations::smooth::orifice_root;
 use crate::machine::Machine;
 
 /// A valve that meters differently in the two directions.
@@ -65,7 +64,7 @@ impl Physics for ValveDirectionalGain {
         }
         let drawn = -parameters[1] * piston.opening * piston.drawn_root(now.pump_pressure - piston.rod_pressure);
         rows.cap_flow[cylinder] +=
-            parameters[0] * piston.opening * orifice_root(piston.cap_pressure - now.tank_pressure);
+            parameters[0] * piston.opening * piston.root(piston.cap_pressure - now.tank_pressure);
         rows.rod_flow[cylinder] += drawn;
         rows.pump_flow -= drawn;
     }

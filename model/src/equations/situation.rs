@@ -1,6 +1,6 @@
 //! Everything an effect may look at.
 
-use super::smooth::{SLIP_SPEED, at_most, orifice_root, rounded_sign};
+use super::smooth::{LAMINAR_PRESSURE, SLIP_SPEED, at_most, orifice_root, rounded_sign};
 use crate::machine::{Chambers, Machine};
 use crate::scalar::Scalar;
 
@@ -39,6 +39,8 @@ pub struct Piston<T> {
     pub hose_resistance: Option<T>,
     /// Speed over which friction turns round, m/s.
     pub reversal_speed: T,
+    /// Pressure drop below which the flow of the valve's edges is laminar, Pa.
+    pub transition_pressure: T,
     /// Force that drives a cylinder without chambers, N: measured on the rod, and with the pressures' where the motion is
     /// imposed.
     pub rod_force: T,
@@ -55,10 +57,15 @@ impl<T: Scalar> Piston<T> {
         self.hose_resistance.map_or(gain, |resistance| gain / (resistance * gain * gain + 1.0).sqrt())
     }
 
+    /// `phi` of a pressure drop (Pa) over one of the valve's edges.
+    pub fn root(&self, pressure_drop: T) -> T {
+        orifice_root(pressure_drop, self.transition_pressure)
+    }
+
     /// `phi` of the pressure drop (Pa) from pump to chamber over a metering edge, as far as a compensator leaves it and flow
     /// may run back.
     pub fn drawn_root(&self, pressure_drop: T) -> T {
-        let root = orifice_root(self.compensator_margin.map_or(pressure_drop, |margin| at_most(pressure_drop, margin)));
+        let root = self.root(self.compensator_margin.map_or(pressure_drop, |margin| at_most(pressure_drop, margin)));
         if pressure_drop.value() < 0.0 { root * self.backflow } else { root }
     }
 }
@@ -101,6 +108,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             compensator_margin: None,
             hose_resistance: None,
             reversal_speed: T::from(SLIP_SPEED),
+            transition_pressure: T::from(LAMINAR_PRESSURE),
             rod_force: zero,
         };
         Situation {

@@ -43,11 +43,11 @@ const EDGE: f64 = 0.03;
 /// Ratio beyond which the hyperbolic tangent is one to the last digit of a double.
 const FULL_SLIP: f64 = 20.0;
 
-/// `sgn(x) sqrt|x|` of a pressure drop in Pa, made linear below [`LAMINAR_PRESSURE`]: `x / (x² + d²)^(1/4)`.
+/// `sgn(x) sqrt|x|` of a pressure drop in Pa, made linear below a transition pressure d (Pa): `x / (x² + d²)^(1/4)`.
 ///
 /// \[A\] prints only the root; the sign lets flow reverse when the supply is below the chamber.
-pub fn orifice_root<T: Scalar>(pressure_drop: T) -> T {
-    let squared = pressure_drop * pressure_drop + LAMINAR_PRESSURE * LAMINAR_PRESSURE;
+pub fn orifice_root<T: Scalar>(pressure_drop: T, transition: T) -> T {
+    let squared = pressure_drop * pressure_drop + transition * transition;
     pressure_drop / squared.sqrt().sqrt()
 }
 

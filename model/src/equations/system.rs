@@ -1,6 +1,6 @@
 //! The equations of motion of a model, for any number type.
 
-use super::smooth::SLIP_SPEED;
+use super::smooth::{LAMINAR_PRESSURE, SLIP_SPEED};
 use super::{Inputs, Instruments, Layout, Rows, Situation};
 use crate::Model;
 use crate::effects::{ActsOn, Family, Number, Site};
@@ -200,6 +200,7 @@ impl<'m> System<'m> {
             piston.compensator_margin = None;
             piston.hose_resistance = None;
             piston.reversal_speed = T::from(SLIP_SPEED);
+            piston.transition_pressure = T::from(LAMINAR_PRESSURE);
         }
         for &number in &self.adjusting {
             let effect = &self.model.effects[number];

@@ -1,0 +1,52 @@
+//! Where the flow through an orifice begins to be turbulent.
+
+use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use crate::equations::Situation;
+use crate::equations::smooth::LAMINAR_PRESSURE;
+use crate::machine::Machine;
+
+/// Where the flow through the valve's orifices begins to be turbulent.
+///
+/// The root law has an infinite slope at zero, no orifice has: at a small pressure drop the flow is laminar and goes with the drop
+/// itself. The equations round the root over 2 kPa. Where narrow slots and cold oil (or another simulator) do so over tens of
+/// kilopascals, a chamber that is nearly at tank pressure or nearly at pump pressure fills slower than the root says.
+pub struct OrificeTransition;
+
+static CARD: Card = Card {
+    name: "orifice_transition",
+    acts_on: ActsOn::Valve,
+    family: Family::Rounding,
+    summary: "The flow of the valve's edges turns turbulent at another pressure drop than the 2 kPa of the equations.",
+    equation: "phi(dp) = dp / (dp^2 + pl^2)^(1/4) at the four edges",
+    source: "convention ([A] prints the root); critical Reynolds number of an orifice, textbook (Merritt 1967)",
+    shows: "Flow over sqrt(dp) that falls where the pressure drop is small; a return chamber near tank pressure whose pressure is too low.",
+    experiment: "Slow strokes with small openings, the return line nearly without pressure.",
+    energy: "None of its own: it rounds the metering loss.",
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: "transition_pressure",
+    symbol: "pl",
+    unit: "Pa",
+    meaning: "pressure drop below which the flow is laminar",
+    kind: Kind::Shape,
+    minimum: 1e2,
+    maximum: 4e5,
+    typical: LAMINAR_PRESSURE,
+    start: Start::At(&[LAMINAR_PRESSURE]),
+}];
+
+impl Physics for OrificeTransition {
+    fn card(&self) -> &'static Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        PARAMETERS
+    }
+
+    fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        now.pistons[cylinder].transition_pressure = parameters[0];
+    }
+}
