@@ -1,11 +1,14 @@
 //! Effects that are fitted along where recordings show them, and never named as missing: how the recordings were made, and how
 //! widely a corner of the equations is rounded.
 
+use std::cell::Cell;
+use std::ops::ControlFlow;
+
 use excavator_model::effects::{ActsOn, CATALOGUE, Effect, Family, Site, Start};
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::{Model, ModelEffect, Parameter};
 
-use crate::fit::{Fit, FitSettings, fit};
+use crate::fit::{Fit, FitError, FitSettings, Watch, fit_watched};
 
 /// Families of these effects that a regression can estimate. Smoothed velocities turn round slower than the piston.
 pub const IN_REGRESSION: &[Family] = &[Family::Recording];
@@ -77,6 +80,27 @@ fn looks_like_more(physics: &dyn Effect) -> bool {
 /// Typical loss of a fit up to which nothing is left but noise, as for [`crate::diagnosis::DiagnosisSettings::adequate_loss`].
 const NOISE: f64 = 0.2;
 
+/// A fit of simulated outputs ([`crate::fit::fit`]), with those effects along that the recordings show. `watch` is told before each
+/// step and may end the fit.
+///
+/// # Errors
+/// [`FitError`]; not [`FitError::Stopped`] where the fit without them was done already.
+pub fn fit_with_effects_along(
+    model: &Model,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+    watch: Watch<'_>,
+) -> Result<Fit, FitError> {
+    let plain = fit_watched(model, recordings, settings, &|done| watch(0.5 * done))?;
+    // There may be more than one fit with them; what is done never becomes less.
+    let furthest = Cell::new(0.5_f64);
+    let onward = |done: f64| {
+        furthest.set(furthest.get().max(0.5 + 0.5 * done));
+        watch(furthest.get())
+    };
+    Ok(refitted(plain, model.effects.len(), recordings, settings, &onward))
+}
+
 /// [`with_effects_along`] of a fit, by the same fit.
 pub(crate) fn refitted_with_effects_along(
     fitted: Fit,
@@ -84,7 +108,11 @@ pub(crate) fn refitted_with_effects_along(
     recordings: &[&Recording],
     settings: &FitSettings,
 ) -> Fit {
-    let anew = |model: &Model| fit(model, recordings, settings).ok();
+    refitted(fitted, behind, recordings, settings, &|_| ControlFlow::Continue(()))
+}
+
+fn refitted(fitted: Fit, behind: usize, recordings: &[&Recording], settings: &FitSettings, watch: Watch<'_>) -> Fit {
+    let anew = |model: &Model| fit_watched(model, recordings, settings, watch).ok();
     let is_all = |fitted: &Fit| fitted.typical_loss() <= NOISE;
     with_effects_along(fitted, IN_FITS, behind, recordings, |fitted| &fitted.model, anew, is_all)
 }

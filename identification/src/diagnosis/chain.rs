@@ -10,7 +10,7 @@ use excavator_model::recording::Recording;
 
 use super::adequacy::inputs_explain_the_rest;
 use super::own_windows::{evaluate_in_known_windows, has_window};
-use super::race::{Race, Round};
+use super::race::{CLEAN, Race, Round};
 use super::starts::acts_in_a_window;
 use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, adequacy, compare_losses};
 use crate::fit::{Fit, FitError, fit};
@@ -78,15 +78,23 @@ impl Chains<'_> {
     /// One effect at several places (late pressures at a cylinder and at the pump) is one cause, but a chain that begins
     /// with the best single place may begin with something else that reaches all of them. The chain of such an effect,
     /// where it has no more kinds of effects than `chain`; empty where there is none.
+    ///
+    /// Where `chain` does not leave nothing but noise, places count too at which the effect gains nothing before it acts at the
+    /// first: a pump pressure that is late, while all else is late as well, is no more than a valve that lags.
     fn everywhere(
         &self,
         accepted: &[&Candidate],
         chain: &[Candidate],
         progress: &(dyn Fn(&str, f64) + Sync),
     ) -> Result<Vec<Candidate>, DiagnosisError> {
+        let is_clean = chain.last().is_none_or(|last| last.validation.loss() <= CLEAN);
+        let least = accepted.first().map_or(0.0, |first| OTHER_WAY * first.evidence.gain);
         let at_another_place = |one: &Candidate| {
-            accepted.iter().any(|other| other.name() == one.name() && other.place != one.place)
-                && !chain.iter().any(|link| link.name() == one.name())
+            let is_seen_there = accepted.iter().any(|other| other.name() == one.name() && other.place != one.place);
+            let may_be_there = || {
+                !is_clean && one.evidence.gain >= least && self.nominal.model.free_sites(one.physics).len() > 1
+            };
+            !chain.iter().any(|link| link.name() == one.name()) && (is_seen_there || may_be_there())
         };
         let Some(first) = accepted.iter().find(|candidate| at_another_place(candidate)) else { return Ok(Vec::new()) };
         let other = self.grow((*first).clone(), progress)?;

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use excavator_identification::fit::{FitError, FitSettings, fit_watched};
-use excavator_identification::fitted_along::{IN_REGRESSION, with_effects_along};
+use excavator_identification::fit::{FitError, FitSettings};
+use excavator_identification::fitted_along::{IN_REGRESSION, fit_with_effects_along, with_effects_along};
 use excavator_identification::regression::{RegressionError, WeakFormSettings, weak_form_watched};
 use excavator_identification::validation::compare;
 use excavator_model::document::{parse, to_text};
@@ -87,7 +87,7 @@ pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &dyn Fn(&str, 
     if !goal.effects.is_empty() {
         // Effects that were added start far from their values, and some enter nonlinearly: outputs are fitted too.
         let fitting = part("fitting outputs", 0.5, 0.7);
-        identified = fit_watched(&identified, &recordings, &FitSettings::default(), &fitting)?.model;
+        identified = fit_with_effects_along(&identified, &recordings, &FitSettings::default(), &fitting)?.model;
     }
     let (mut signals, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
     for (index, recording) in recordings.iter().enumerate() {

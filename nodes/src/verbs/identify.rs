@@ -1,9 +1,10 @@
 //! `excavator identify`
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
-use excavator_identification::fit::{FitSettings, ProfileInterval, fit, profile};
-use excavator_identification::fitted_along::{IN_REGRESSION, with_effects_along};
+use excavator_identification::fit::{FitSettings, ProfileInterval, profile};
+use excavator_identification::fitted_along::{IN_REGRESSION, fit_with_effects_along, with_effects_along};
 use excavator_identification::regression::{
     ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form,
 };
@@ -110,7 +111,7 @@ fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<
     };
     if method == Method::OutputError {
         let settings = FitSettings { sample_rate: f64::INFINITY, ..FitSettings::default() };
-        let fitted = fit(&result.model, recordings, &settings)?;
+        let fitted = fit_with_effects_along(&result.model, recordings, &settings, &|_| ControlFlow::Continue(()))?;
         result.profiles = fitted
             .undetermined()
             .into_iter()
