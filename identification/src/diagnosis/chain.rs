@@ -5,12 +5,12 @@
 //! way leads nowhere, the runner-up is tried as a first step too.
 
 use excavator_model::Model;
-use excavator_model::effects::{Effect, Site};
+use excavator_model::effects::{ActsOn, Effect, Site};
 use excavator_model::recording::Recording;
 
 use super::adequacy::inputs_explain_the_rest;
 use super::own_windows::{evaluate_in_known_windows, has_window};
-use super::race::{CLEAN, Race, Round};
+use super::race::{Race, Round};
 use super::starts::acts_in_a_window;
 use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, adequacy, compare_losses};
 use crate::fit::{Fit, FitError, fit};
@@ -78,29 +78,33 @@ impl Chains<'_> {
     /// One effect at several places (late pressures at a cylinder and at the pump) is one cause, but a chain that begins
     /// with the best single place may begin with something else that reaches all of them. The chain of such an effect,
     /// where it has no more kinds of effects than `chain`; empty where there is none.
-    ///
-    /// Where `chain` does not leave nothing but noise, places count too at which the effect gains nothing before it acts at the
-    /// first: a pump pressure that is late, while all else is late as well, is no more than a valve that lags.
     fn everywhere(
         &self,
         accepted: &[&Candidate],
         chain: &[Candidate],
         progress: &(dyn Fn(&str, f64) + Sync),
     ) -> Result<Vec<Candidate>, DiagnosisError> {
-        let is_clean = chain.last().is_none_or(|last| last.validation.loss() <= CLEAN);
+        let others = || accepted.iter().filter(|one| !chain.iter().any(|link| link.name() == one.name()));
+        let at_another_place =
+            |one: &Candidate| accepted.iter().any(|other| other.name() == one.name() && other.place != one.place);
+        if let Some(first) = others().find(|candidate| at_another_place(candidate)) {
+            let other = self.grow((*first).clone(), progress)?;
+            let places = other.iter().filter(|link| link.name() == first.name()).count();
+            let kinds = other.len() + 1 - places;
+            return Ok(if places > 1 && kinds <= chain.len() { other } else { Vec::new() });
+        }
+        // An instrument's fault at the pump may gain nothing before those at the cylinder are there: a pump pressure that is late,
+        // while all else is late as well, is no more than a valve that lags.
         let least = accepted.first().map_or(0.0, |first| OTHER_WAY * first.evidence.gain);
-        let at_another_place = |one: &Candidate| {
-            let is_seen_there = accepted.iter().any(|other| other.name() == one.name() && other.place != one.place);
-            let may_be_there = || {
-                !is_clean && one.evidence.gain >= least && self.nominal.model.free_sites(one.physics).len() > 1
-            };
-            !chain.iter().any(|link| link.name() == one.name()) && (is_seen_there || may_be_there())
-        };
-        let Some(first) = accepted.iter().find(|candidate| at_another_place(candidate)) else { return Ok(Vec::new()) };
-        let other = self.grow((*first).clone(), progress)?;
-        let places = other.iter().filter(|link| link.name() == first.name()).count();
-        let kinds = other.len() + 1 - places;
-        Ok(if places > 1 && kinds <= chain.len() { other } else { Vec::new() })
+        let shared = |one: &Candidate| one.evidence.gain >= least && one.physics.card().acts_on == ActsOn::CylinderOrPumpLine;
+        let Some(first) = others().find(|candidate| shared(candidate)) else { return Ok(Vec::new()) };
+        let begun = [self.with_effects_along((*first).clone())?];
+        let free = self.nominal.model.free_sites(first.physics).into_iter().filter(|site| *site != first.site);
+        let wanted: Vec<_> = free.map(|site| (first.physics, site)).collect();
+        if wanted.is_empty() {
+            return Ok(Vec::new());
+        }
+        Ok(self.rebuilt(&begun, wanted, progress)?.unwrap_or_default())
     }
 
     /// Whether a chain of effects explains the recordings: the model is adequate with them, or so much better and good

@@ -1,7 +1,7 @@
 //! How a machine may be built, against what the candidates say.
 //!
 //! Whether a joint has a spring or a valve a compensator anybody can see, so no diagnosis names them. But what such an effect
-//! explains better than a candidate does not get that candidate's name, and what it explains as well is a tie.
+//! explains better than a candidate does not get that candidate's name, and neither does what it explains as well.
 
 use excavator_model::Model;
 use excavator_model::effects::{Effect, Family, Site};

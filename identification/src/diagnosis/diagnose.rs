@@ -158,8 +158,6 @@ pub fn diagnose(
         built = chains.built_otherwise(&chain);
     }
     if !built.ahead.is_empty() {
-        chain.clear();
-        explained = is_beyond_doubt;
         // What is behind it is no evidence of anything else.
         let behind = candidates.drain(..).map(|other| Candidate { accepted: false, tied_with_first: false, ..other });
         rejected.splice(0..0, behind);
@@ -167,6 +165,11 @@ pub fn diagnose(
         first.tied_with_first = true;
         let level = built.level.iter().cloned();
         candidates.extend(level.map(|other| Candidate { accepted: true, tied_with_first: true, ..other }));
+    }
+    if !built.ahead.is_empty() || !built.level.is_empty() {
+        // A name would be an even chance, and the other half of it is none of those that are named.
+        chain.clear();
+        explained = is_beyond_doubt;
     }
     let verdict = match (chain.is_empty(), explained) {
         (true, true) => Verdict::Adequate,
@@ -176,7 +179,7 @@ pub fn diagnose(
     let mut construction = None;
     let unexplained = if verdict == Verdict::Unexplained {
         progress("what is left", 0.97);
-        construction = built.ahead.into_iter().next().or_else(|| chains.built_as_nothing_named());
+        construction = built.ahead.into_iter().chain(built.level).next().or_else(|| chains.built_as_nothing_named());
         let model = chain.last().map_or(&nominal.model, |last| &last.fit.model);
         unexplained(model, validation)?
     } else {

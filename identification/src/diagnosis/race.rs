@@ -62,7 +62,7 @@ const MOST: f64 = 0.8;
 
 /// What right effects leave at most where nothing but noise is left. A twin of theirs can take more than [`MOST`] and leaves more
 /// than this: a contact force took 87 % of what a load of 3 kg had brought, and left 0.18.
-pub(super) const CLEAN: f64 = 0.1;
+const CLEAN: f64 = 0.1;
 
 /// What candidates are measured against and on.
 pub(super) struct Race<'a> {

@@ -1,5 +1,6 @@
 //! The verdict in plain sentences.
 
+use excavator_model::effects::Family;
 use excavator_model::{Model, site_name};
 
 use super::numbers::{percent, ratio, significant};
@@ -140,7 +141,13 @@ const LEAST_SHARE: f64 = 0.1;
 
 fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
     let helpful: Vec<String> = diagnosis.chain.iter().map(place_of).collect();
-    let mut text = if helpful.is_empty() {
+    let level = level_with_construction(diagnosis);
+    let mut text = if !level.is_empty() {
+        format!(
+            "Something is missing in {machine}, and these recordings cannot tell {} from how the machine is built",
+            words::list(&level, "and")
+        )
+    } else if helpful.is_empty() {
         format!("Something is missing in {machine}, and it is none of the effects in the catalogue")
     } else {
         format!("Something is missing in {machine} that no effect in the catalogue explains wholly")
@@ -165,6 +172,19 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
         );
     }
     text + &construction(diagnosis)
+}
+
+/// Candidates that explain as much as a machine that is built otherwise.
+fn level_with_construction(diagnosis: &Diagnosis) -> Vec<String> {
+    let Some(built) = &diagnosis.construction else { return Vec::new() };
+    let tied = diagnosis.candidates.iter().filter(|candidate| candidate.tied_with_first);
+    let (construction, level): (Vec<_>, Vec<_>) =
+        tied.partition(|candidate| candidate.physics.card().family == Family::Construction);
+    if construction.iter().any(|candidate| candidate.is_same_addition(built)) {
+        level.into_iter().map(place_of).collect()
+    } else {
+        Vec::new()
+    }
 }
 
 /// What explains the recordings if the machine is built so, with a space before it.
