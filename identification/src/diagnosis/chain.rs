@@ -17,7 +17,7 @@ use crate::fit::{Fit, FitError, fit};
 use crate::fitted_along::refitted_with_effects_along;
 
 /// A gain below this part of the best one's is no other way to begin.
-const OTHER_WAY: f64 = 0.5;
+pub(super) const OTHER_WAY: f64 = 0.5;
 
 /// What chains grow from and are judged on.
 pub(super) struct Chains<'a> {

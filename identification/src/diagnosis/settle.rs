@@ -1,16 +1,17 @@
 //! Ties that more than one effect leaves, asked again once all of them are known.
 //!
-//! Where two effects are missing, what is tied with the first of them was compared while the second still spoiled the picture:
-//! a valve's leakage looks like its play while a sensor is off as well. With everything else in the model most of such ties
-//! are none.
+//! Where two effects are missing, the first of them was compared with others while the second still spoiled the picture: a
+//! valve's leakage looks like its play while a sensor is off as well, and a pump that leaks beside a valve with a dead zone like a
+//! relief valve. With everything else in the model most ties are none, and some leads are ties.
 
-use super::chain::Chains;
+use super::chain::{Chains, OTHER_WAY};
 use super::own_windows::evaluate_in_known_windows;
 use super::{Candidate, DiagnosisError};
 
 impl Chains<'_> {
-    /// Compares the first of `candidates` with all that are tied with it beside the other links of `chain`: marks those that
-    /// still are, and begins the chain with the best of them. `candidates` begin with the chain's first link, before and after.
+    /// Compares the first of `candidates` with all that are tied with it, or gained half as much, beside the other links of `chain`:
+    /// marks those that are tied there, and begins the chain with the best of them. `candidates` begin with the chain's first link,
+    /// before and after.
     ///
     /// # Errors
     /// [`DiagnosisError`] when a model cannot be evaluated.
@@ -22,9 +23,11 @@ impl Chains<'_> {
     ) -> Result<Vec<Candidate>, DiagnosisError> {
         let (Some((first, others)), Some(last)) = (chain.split_first(), chain.last()) else { return Ok(chain) };
         let is_other = |candidate: &Candidate| others.iter().any(|link| link.is_same_addition(candidate));
+        let least = OTHER_WAY * candidates.first().map_or(0.0, |first| first.evidence.gain);
         let rivals: Vec<_> = candidates
             .iter()
-            .filter(|candidate| candidate.tied_with_first && !is_other(candidate))
+            .filter(|candidate| candidate.tied_with_first || candidate.evidence.gain >= least)
+            .filter(|candidate| !is_other(candidate))
             .map(|candidate| (candidate.physics, candidate.site))
             .collect();
         if others.is_empty() || rivals.len() < 2 {
