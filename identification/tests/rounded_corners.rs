@@ -61,7 +61,12 @@ fn a_slow_reversal_is_found_and_bends_no_friction_force() {
     let found = along.value_of("arm.reversal_speed").expect("the reversal is part of the fit");
     assert!((found / 3e-3 - 1.0).abs() < 0.1, "{found:e} m/s, should be 3e-3 m/s");
     let (with, without) = (error_of_the_friction(&along, &truth), error_of_the_friction(&plain, &truth));
-    assert!(with < 0.01 && without > 5.0 * with, "friction {:.2} % off, {:.2} % without", 100.0 * with, 100.0 * without);
+    assert!(
+        with < 0.01 && without > 5.0 * with,
+        "friction {:.2} % off, {:.2} % without",
+        100.0 * with,
+        100.0 * without
+    );
     let told = told.into_inner();
     assert!(told.windows(2).all(|pair| pair[0] <= pair[1]) && told.iter().all(|done| *done <= 1.0), "{told:?}");
 }

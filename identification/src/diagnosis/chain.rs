@@ -96,7 +96,8 @@ impl Chains<'_> {
         // An instrument's fault at the pump may gain nothing before those at the cylinder are there: a pump pressure that is late,
         // while all else is late as well, is no more than a valve that lags.
         let least = accepted.first().map_or(0.0, |first| OTHER_WAY * first.evidence.gain);
-        let shared = |one: &Candidate| one.evidence.gain >= least && one.physics.card().acts_on == ActsOn::CylinderOrPumpLine;
+        let shared =
+            |one: &Candidate| one.evidence.gain >= least && one.physics.card().acts_on == ActsOn::CylinderOrPumpLine;
         let Some(first) = others().find(|candidate| shared(candidate)) else { return Ok(Vec::new()) };
         let begun = [self.with_effects_along((*first).clone())?];
         let free = self.nominal.model.free_sites(first.physics).into_iter().filter(|site| *site != first.site);
