@@ -19,6 +19,10 @@ use crate::fitted_along::refitted_with_effects_along;
 /// A gain below this part of the best one's is no other way to begin.
 pub(super) const OTHER_WAY: f64 = 0.5;
 
+/// What an effect at one of several places must gain, as a part of the best candidate's gain, to be tried at all of them. Late
+/// sensors at one place take half to two thirds of what a lag of the valve takes, where all sensors are late.
+const EVERYWHERE: f64 = 0.25;
+
 /// What chains grow from and are judged on.
 pub(super) struct Chains<'a> {
     /// The model without additions, fitted.
@@ -84,28 +88,21 @@ impl Chains<'_> {
         chain: &[Candidate],
         progress: &(dyn Fn(&str, f64) + Sync),
     ) -> Result<Vec<Candidate>, DiagnosisError> {
-        let others = || accepted.iter().filter(|one| !chain.iter().any(|link| link.name() == one.name()));
-        let at_another_place =
-            |one: &Candidate| accepted.iter().any(|other| other.name() == one.name() && other.place != one.place);
-        if let Some(first) = others().find(|candidate| at_another_place(candidate)) {
-            let other = self.grow((*first).clone(), progress)?;
-            let places = other.iter().filter(|link| link.name() == first.name()).count();
-            let kinds = other.len() + 1 - places;
-            return Ok(if places > 1 && kinds <= chain.len() { other } else { Vec::new() });
-        }
-        // An instrument's fault at the pump may gain nothing before those at the cylinder are there: a pump pressure that is late,
-        // while all else is late as well, is no more than a valve that lags.
-        let least = accepted.first().map_or(0.0, |first| OTHER_WAY * first.evidence.gain);
-        let shared =
-            |one: &Candidate| one.evidence.gain >= least && one.physics.card().acts_on == ActsOn::CylinderOrPumpLine;
-        let Some(first) = others().find(|candidate| shared(candidate)) else { return Ok(Vec::new()) };
-        let begun = [self.with_effects_along((*first).clone())?];
-        let free = self.nominal.model.free_sites(first.physics).into_iter().filter(|site| *site != first.site);
-        let wanted: Vec<_> = free.map(|site| (first.physics, site)).collect();
-        if wanted.is_empty() {
-            return Ok(Vec::new());
-        }
-        Ok(self.rebuilt(&begun, wanted, progress)?.unwrap_or_default())
+        let least = EVERYWHERE * accepted.first().map_or(0.0, |first| first.evidence.gain);
+        let is_shared = |one: &Candidate| {
+            // A pump pressure that is late may gain nothing before late pressures at the cylinder are there.
+            one.physics.card().acts_on == ActsOn::CylinderOrPumpLine
+                || accepted.iter().any(|other| other.name() == one.name() && other.place != one.place)
+        };
+        let is_in_chain = |name: &str| chain.iter().any(|link| link.name() == name);
+        let first =
+            accepted.iter().find(|one| one.evidence.gain >= least && is_shared(one) && !is_in_chain(one.name()));
+        let Some(first) = first else { return Ok(Vec::new()) };
+        let wanted = |physics: &dyn Effect| physics.card().name == first.name() || is_in_chain(physics.card().name);
+        let other = self.grow_among((*first).clone(), &wanted, progress)?;
+        let places = other.iter().filter(|link| link.name() == first.name()).count();
+        let kinds = other.len() + 1 - places;
+        Ok(if places > 1 && kinds <= chain.len() { other } else { Vec::new() })
     }
 
     /// Whether a chain of effects explains the recordings: the model is adequate with them, or so much better and good
@@ -148,6 +145,16 @@ impl Chains<'_> {
         first: Candidate,
         progress: &(dyn Fn(&str, f64) + Sync),
     ) -> Result<Vec<Candidate>, DiagnosisError> {
+        self.grow_among(first, &|_| true, progress)
+    }
+
+    /// [`Chains::grow`] of effects that are `wanted`.
+    fn grow_among(
+        &self,
+        first: Candidate,
+        wanted: &dyn Fn(&dyn Effect) -> bool,
+        progress: &(dyn Fn(&str, f64) + Sync),
+    ) -> Result<Vec<Candidate>, DiagnosisError> {
         let mut chain = vec![self.with_effects_along(first)?];
         // Each detour costs a link that is taken out again.
         for _ in 0..2 * self.settings.most_effects {
@@ -156,7 +163,7 @@ impl Chains<'_> {
             {
                 None
             } else {
-                self.round(&chain, progress).fitted.into_iter().find(|candidate| candidate.accepted)
+                self.round(&chain, wanted, progress).fitted.into_iter().find(|candidate| candidate.accepted)
             };
             let complete = next.is_none();
             chain.extend(next.map(|next| self.with_effects_along(next)).transpose()?);
@@ -264,12 +271,19 @@ impl Chains<'_> {
         Ok(Some(rebuilt))
     }
 
-    /// All additions to a chain.
-    pub fn round(&self, chain: &[Candidate], progress: &(dyn Fn(&str, f64) + Sync)) -> Round {
+    /// All additions to a chain of effects that are `wanted`.
+    pub fn round(
+        &self,
+        chain: &[Candidate],
+        wanted: &dyn Fn(&dyn Effect) -> bool,
+        progress: &(dyn Fn(&str, f64) + Sync),
+    ) -> Round {
         let race = self.race(chain);
         let start = 0.15 + 0.8 * chain.len() as f64 / (self.settings.most_effects + 1) as f64;
         let span = 0.8 / (self.settings.most_effects + 1) as f64;
-        race.run(&additions(&race.base.model), &|what, fraction| progress(what, start + span * fraction))
+        let mut additions = additions(&race.base.model);
+        additions.retain(|(physics, _)| wanted(*physics));
+        race.run(&additions, &|what, fraction| progress(what, start + span * fraction))
     }
 
     /// What competes for the next link.

@@ -118,7 +118,7 @@ pub fn diagnose(
             validation,
             settings,
         };
-        let round = chains.round(&[], progress);
+        let round = chains.round(&[], &|_| true, progress);
         match better_nominal(&nominal, &round, identification, settings) {
             Some(better) if attempts < MOST_NOMINALS => nominal = better,
             _ => break (nominal_validation, adequacy, inputs_explain && !excused, round),
