@@ -71,6 +71,13 @@ pub struct Diagnosis {
     pub too_coarse: bool,
 }
 
+impl Diagnosis {
+    /// Number of effects that were tried; none where the given model leaves nothing but noise.
+    pub fn tried(&self) -> usize {
+        self.candidates.len() + self.rejected.len() + self.unpromising.len() + self.failed.len()
+    }
+}
+
 /// Why there is no verdict.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DiagnosisError {
@@ -118,7 +125,8 @@ pub fn diagnose(
             validation,
             settings,
         };
-        let round = chains.round(&[], &|_| true, progress);
+        let is_clean = adequacy.is_some() && nominal.loss().max(nominal_validation.loss()) <= NOTHING_LEFT;
+        let round = if is_clean { Round::default() } else { chains.round(&[], &|_| true, progress) };
         match better_nominal(&nominal, &round, identification, settings) {
             Some(better) if attempts < MOST_NOMINALS => nominal = better,
             _ => break (nominal_validation, adequacy, inputs_explain && !excused, round),
@@ -202,6 +210,11 @@ pub fn diagnose(
         too_coarse,
     })
 }
+
+/// Loss of an adequate model up to which no effect is tried: with a gain that would make it a name
+/// ([`DiagnosisSettings::least_gain_when_adequate`]) it would have to leave three quarters of the sensors' noise. Right models
+/// leave -0.06 at least on 112 blind machines that hide nothing, and 0.05 at most on nine tenths of them.
+const NOTHING_LEFT: f64 = 0.05;
 
 /// Times that a better nominal fit begins the diagnosis anew.
 const MOST_NOMINALS: usize = 2;

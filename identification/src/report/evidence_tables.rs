@@ -4,6 +4,7 @@ use excavator_model::recording::Recording;
 use maud::{Markup, html};
 
 use super::numbers::{percent, significant};
+use super::verdict_text::NONE_TRIED;
 use super::words;
 use crate::diagnosis::{Candidate, Diagnosis, Share, normalised_error};
 use crate::fit::Fit;
@@ -29,6 +30,9 @@ pub(super) fn evidence(diagnosis: &Diagnosis, comparisons: &[Comparison]) -> Mar
         .collect();
     let rejected: Vec<(&Candidate, &str, &str)> =
         diagnosis.rejected.iter().map(|candidate| (candidate, "none", "no evidence")).collect();
+    if diagnosis.tried() == 0 {
+        return html! { p { (NONE_TRIED) } };
+    }
     html! {
         @if rows.is_empty() { p { "None of the " (rejected.len() + diagnosis.unpromising.len()) " effects tried lowers the error by enough, and surely enough, to be named." } }
         @else { (table(&rows, before, &recordings)) }

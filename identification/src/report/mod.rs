@@ -42,4 +42,4 @@ pub use comparison_page::comparison_page;
 pub use diagnosis_page::diagnosis_page;
 pub use energy_page::energy_page;
 pub use refinement_page::refinement_page;
-pub use verdict_text::verdict_sentence;
+pub use verdict_text::{NONE_TRIED, verdict_sentence};

@@ -44,6 +44,10 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
     )
 }
 
+/// What is said where no effect was tried.
+pub const NONE_TRIED: &str =
+    "The model leaves nothing but the sensors' noise: there was nothing for an effect to explain, so none was tried.";
+
 /// What is said of an effect that was fitted along.
 struct Telling {
     effect: &'static str,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, Unpromising, diagnose};
 use excavator_identification::energy::{EnergySettings, MissingPower, analyse, missing_power};
-use excavator_identification::report::{diagnosis_page, verdict_sentence};
+use excavator_identification::report::{NONE_TRIED, diagnosis_page, verdict_sentence};
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, addition_name};
@@ -67,7 +67,11 @@ const LEAST_SHARE: f64 = 0.05;
 /// Prints a diagnosis for people.
 pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
     print(&verdict_sentence(model, diagnosis));
-    print(&candidate_table(diagnosis, validation).to_string());
+    if diagnosis.tried() == 0 {
+        print(NONE_TRIED);
+    } else {
+        print(&candidate_table(diagnosis, validation).to_string());
+    }
     if !diagnosis.unpromising.is_empty() {
         let same = |effect: &Unpromising| {
             diagnosis.unpromising.iter().filter(|other| other.physics.card().name == effect.physics.card().name).count()
