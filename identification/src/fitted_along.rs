@@ -36,8 +36,14 @@ const MOST_OF_THE_OPENING: f64 = 5e-3;
 /// 6 mm/s, as seals have them at their slowest, it is a friction with a shape of its own.
 const REVERSAL_SPEEDS: std::ops::RangeInclusive<f64> = 2e-4..=6e-3;
 
+/// Shapes of the corner that friction turns: from below `x / (1 + |x|)`, at minus four, to what no fit can tell from a straight line.
+const CORNERS: std::ops::RangeInclusive<f64> = -6.0..=15.0;
+
 /// Pressure drops (Pa) at which the flow through a valve can turn turbulent: a slot of 0.1 mm in cold oil reaches 3 bar.
 const TRANSITIONS: std::ops::RangeInclusive<f64> = 2e2..=3e5;
+
+/// Part of a convention by which a machine must differ from it, or nobody can tell the two apart.
+const LEAST_DIFFERENCE: f64 = 0.1;
 
 /// What `estimate` makes of a model with those effects of the `families` that `recordings` show; `plain` is what it made of the model
 /// without them, and is returned where they show none or nothing can be made of them. They are put `behind` so many effects
@@ -154,9 +160,12 @@ fn is_seen(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Recor
                 "s" if parameter.value < 0.0 => -parameter.value <= latest(recordings).max(MOST_BEHIND),
                 "s" => parameter.value <= latest(recordings),
                 "m/s" => REVERSAL_SPEEDS.contains(&parameter.value),
+                "-" => CORNERS.contains(&parameter.value),
                 "Pa" => TRANSITIONS.contains(&parameter.value),
                 _ => parameter.value.abs() <= largest_zero(model, site, recordings),
             };
+            // A shift or a lead starts from zero, of which any part is none.
+            let least = least.max(LEAST_DIFFERENCE * nothing(parameter));
             is_plausible && (parameter.value - nothing(parameter)).abs() >= least
         })
     })

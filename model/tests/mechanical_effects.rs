@@ -215,3 +215,33 @@ fn friction_turns_round_as_it_is_told() {
         assert!((narrow - wide).abs() < 1e-9 * narrow.abs(), "{velocity} m/s: {narrow} N and {wide} N");
     }
 }
+
+/// The corner is as sharp as it is told: at minus one the law is `x / sqrt(1 + x²)`, at zero what it is without, at four a straight
+/// line to a fifteenth.
+#[test]
+fn friction_turns_the_corner_that_it_is_told() {
+    let arm = built_in("zx30u-arm").unwrap();
+    let mut state = common::at_rest(&System::new(&arm));
+    let viscous = arm.value_of("arm.viscous_damping").unwrap();
+    let coulomb = arm.value_of("arm.coulomb_friction").unwrap();
+    let mut share = |sharpness: Option<f64>, speed: f64| {
+        let mut model = with(&arm, "friction_reversal", 0, &[2e-3]);
+        if let Some(sharpness) = sharpness {
+            model = with(&model, "friction_corner", 0, &[sharpness]);
+        }
+        let still = torque(&model, &state, &Inputs::zero(1)).1;
+        state[1] = 2e-3 * speed / arm.machine.cylinders[0].linkage.lever(state[0]);
+        let moving = torque(&model, &state, &Inputs::zero(1)).1;
+        state[1] = 0.0;
+        (still - moving - viscous * 2e-3 * speed) / coulomb
+    };
+    for speed in [-40.0, -3.0, -0.3, 1e-4, 0.5, 0.9, 2.0, 500.0_f64] {
+        let near = |found: f64, wanted: f64, off: f64| {
+            assert!((found - wanted).abs() < off, "at {speed}: {found}, should be {wanted}");
+        };
+        near(share(Some(0.0), speed), share(None, speed), 1e-9);
+        near(share(Some(1e-7), speed), share(Some(-1e-7), speed), 1e-4);
+        near(share(Some(-1.0), speed), speed / speed.hypot(1.0), 1e-7);
+        near(share(Some(4.0), speed), (1.03 * speed).clamp(-1.0, 1.0), 1.0 / 15.0);
+    }
+}

@@ -239,7 +239,7 @@ fn verdicts_name_effect_and_place_and_admit_ties() {
         vec![candidate("displacement_sensor_offset", 2.0, true, true), candidate("joint_spring", 2.0, true, true)];
     let level = sentence(&spring);
     assert!(
-        level.contains("cannot tell displacement sensor offset at the arm cylinder from how the machine is built"),
+        level.contains("whether that is displacement sensor offset at the arm cylinder or how the machine is built"),
         "{level}"
     );
     assert!(level.ends_with("add joint_spring@arm by hand."), "{level}");

@@ -57,7 +57,7 @@ struct Telling {
     value: fn(f64) -> String,
 }
 
-const TELLINGS: [Telling; 4] = [
+const TELLINGS: [Telling; 5] = [
     Telling {
         effect: "spool_sensor_lead",
         sentences: [
@@ -81,6 +81,14 @@ const TELLINGS: [Telling; 4] = [
             "Friction turns round over other speeds than the usual 1 mm/s",
         ],
         value: |speed| format!("over {} mm/s", significant(1e3 * speed, 2)),
+    },
+    Telling {
+        effect: "friction_corner",
+        sentences: [
+            "Friction turns another corner than the usual one",
+            "Friction turns other corners than the usual one",
+        ],
+        value: |sharpness| if sharpness > 0.0 { "a sharper one".into() } else { "a softer one".into() },
     },
     Telling {
         effect: "orifice_transition",
@@ -148,8 +156,8 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
     let level = level_with_construction(diagnosis);
     let mut text = if !level.is_empty() {
         format!(
-            "Something is missing in {machine}, and these recordings cannot tell {} from how the machine is built",
-            words::list(&level, "and")
+            "Something is missing in {machine}, and these recordings cannot tell whether that is {} or how the machine is built",
+            words::list(&level, "or")
         )
     } else if helpful.is_empty() {
         format!("Something is missing in {machine}, and it is none of the effects in the catalogue")

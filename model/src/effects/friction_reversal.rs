@@ -17,7 +17,7 @@ static CARD: Card = Card {
     acts_on: ActsOn::Cylinder,
     family: Family::Rounding,
     summary: "The friction of a piston turns round over another speed than the 1 mm/s of the equations.",
-    equation: "sgn(v) = tanh(v/vr) in all friction of the piston",
+    equation: "sgn(v) = tanh(v/vr) in all friction of the piston, or along another curve of v/vr with friction_corner",
     source: "convention (the papers print sgn(v)); width of presliding, textbook",
     shows: "A short error of the motion at every reversal, of the same shape each time.",
     experiment: "Slow reversals, and holds with the valve nearly closed.",

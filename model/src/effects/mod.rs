@@ -22,6 +22,7 @@ mod entrained_air;
 mod external_contact;
 mod external_leakage;
 mod force_offset;
+mod friction_corner;
 mod friction_reversal;
 mod gravity;
 mod hose_loss;
@@ -77,6 +78,7 @@ pub static CATALOGUE: &[&dyn Effect] = &[
     &spool_sensor_lead::SpoolSensorLead,
     &spool_sensor_offset::SpoolSensorOffset,
     &friction_reversal::FrictionReversal,
+    &friction_corner::FrictionCorner,
     &orifice_transition::OrificeTransition,
     &pressure_compensation::PressureCompensation,
     &joint_spring::JointSpring,

@@ -1,6 +1,6 @@
 //! Everything an effect may look at.
 
-use super::smooth::{LAMINAR_PRESSURE, SLIP_SPEED, at_most, orifice_root, rounded_sign};
+use super::smooth::{LAMINAR_PRESSURE, SLIP_SPEED, at_most, orifice_root, rounded_sign, sign_with_corner};
 use crate::machine::{Chambers, Machine};
 use crate::scalar::Scalar;
 
@@ -39,6 +39,8 @@ pub struct Piston<T> {
     pub hose_resistance: Option<T>,
     /// Speed over which friction turns round, m/s.
     pub reversal_speed: T,
+    /// How sharp a corner it turns ([`sign_with_corner`]); `None` for the hyperbolic tangent's.
+    pub corner_sharpness: Option<T>,
     /// Pressure drop below which the flow of the valve's edges is laminar, Pa.
     pub transition_pressure: T,
     /// Force that drives a cylinder without chambers, N: measured on the rod, and with the pressures' where the motion is
@@ -49,7 +51,8 @@ pub struct Piston<T> {
 impl<T: Scalar> Piston<T> {
     /// `sgn(v)`, as far as friction knows it.
     pub fn direction(&self) -> T {
-        rounded_sign(self.velocity / self.reversal_speed)
+        let ratio = self.velocity / self.reversal_speed;
+        self.corner_sharpness.map_or_else(|| rounded_sign(ratio), |sharpness| sign_with_corner(ratio, sharpness))
     }
 
     /// Gain of an edge (m³/(s sqrt(Pa))) in series with its hose.
@@ -108,6 +111,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             compensator_margin: None,
             hose_resistance: None,
             reversal_speed: T::from(SLIP_SPEED),
+            corner_sharpness: None,
             transition_pressure: T::from(LAMINAR_PRESSURE),
             rod_force: zero,
         };

@@ -22,6 +22,31 @@ pub fn rounded_sign<T: Scalar>(ratio: T) -> T {
     excess / (excess + 2.0)
 }
 
+/// A sign that is rounded over one with a corner of another shape: [`rounded_sign`] of a ratio x that is bent to
+/// `sinh(sqrt(q) x) / sqrt(q)`, for a sharpness q below zero `asinh(sqrt(-q) x) / sqrt(-q)`; both are `x + q x³/6` where x is small.
+///
+/// Minus four is nearly `x / (1 + |x|)`, minus one exactly `x / sqrt(1 + x²)`, zero the hyperbolic tangent, four nearly a straight line
+/// that is cut off at one.
+pub fn sign_with_corner<T: Scalar>(ratio: T, sharpness: T) -> T {
+    let (x, q) = (ratio.value(), sharpness.value());
+    if (q * x * x).abs() < NEARLY_STRAIGHT {
+        let cubed = ratio * ratio * ratio;
+        return rounded_sign(ratio + sharpness * cubed / 6.0);
+    }
+    if q < 0.0 {
+        let root = (-sharpness).sqrt();
+        return rounded_sign((ratio * root).asinh() / root);
+    }
+    if x.abs() > FULL_SLIP {
+        return T::from(x.signum());
+    }
+    let root = sharpness.sqrt();
+    rounded_sign((ratio * root).sinh() / root)
+}
+
+/// Bends below which the next term, at most `3 q² x⁴ / 40` of the ratio, is beyond the last digit that matters.
+const NEARLY_STRAIGHT: f64 = 1e-5;
+
 /// A step from zero to one that is rounded over one: `(1 + tanh(ratio)) / 2`, without cancellation where it is small.
 pub fn rounded_step<T: Scalar>(ratio: T) -> T {
     if ratio.value().abs() > FULL_SLIP {

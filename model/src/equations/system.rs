@@ -200,6 +200,7 @@ impl<'m> System<'m> {
             piston.compensator_margin = None;
             piston.hose_resistance = None;
             piston.reversal_speed = T::from(SLIP_SPEED);
+            piston.corner_sharpness = None;
             piston.transition_pressure = T::from(LAMINAR_PRESSURE);
         }
         for &number in &self.adjusting {
