@@ -70,6 +70,24 @@ fn directional_gains_are_other_gains_for_retraction() {
     }
 }
 
+/// Over a small drop x the edges pass `x / (x² + d²)^(1/4)`, d what is told.
+#[test]
+fn edges_turn_turbulent_where_they_are_told() {
+    let nominal = built_in("zx30u-arm").unwrap();
+    let later = arm_with("orifice_transition", CYLINDER, &[5e4]);
+    let gain = nominal.value_of("arm.flow_gain_rod").unwrap();
+    for (mut state, mut inputs) in situations(23) {
+        inputs.orifice_area[0] = inputs.orifice_area[0].abs();
+        for drop in [-1e5, -3e3, 0.0, 500.0, 2e4, 1e6_f64] {
+            state[3] = inputs.tank_pressure + drop;
+            let [before, after] = [&nominal, &later].map(|model| rows(model, &state, &inputs).rod_flow[0]);
+            let root = |transition: f64| drop / drop.hypot(transition).sqrt();
+            let wanted = -gain * inputs.orifice_area[0] * (root(5e4) - root(2e3));
+            assert!((after - before - wanted).abs() < 1e-9 * (gain * inputs.orifice_area[0] * 1e3), "{drop} Pa");
+        }
+    }
+}
+
 /// Of the pressure drop the hose takes R q² and the edge what it takes for this flow alone.
 #[test]
 fn hose_and_edge_share_the_pressure_drop() {

@@ -45,6 +45,10 @@ impl Chains<'_> {
             // What comes after it is looked for anew: what was second beside another need not be second beside this one.
             let alone = candidates.iter().find(|candidate| candidate.is_same_addition(best)).cloned();
             let Some(alone) = alone else { return Ok(chain) };
+            // Whatever becomes of it, the first does not stand alone.
+            for candidate in candidates.iter_mut() {
+                candidate.tied_with_first |= candidate.is_same_addition(best) || candidate.is_same_addition(first);
+            }
             let grown = self.grow(alone, progress)?;
             let is_better = grown.last().is_some_and(|other| other.validation.loss() < last.validation.loss());
             if !is_better || !self.explains(&grown) || grown.first().is_none_or(|link| !link.is_same_addition(best)) {

@@ -4,7 +4,7 @@
 
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{self, Site};
+use excavator_model::effects::{self, Family, Site};
 use excavator_model::recording::Recording;
 
 use super::{comparison_page, diagnosis_page, refinement_page, verdict_sentence};
@@ -315,6 +315,18 @@ fn what_is_fitted_along_is_told_once_it_is_known() {
         sentence.contains("Friction turns round over another speed") && sentence.contains("2.1 mm/s"),
         "{sentence}"
     );
+    let corner = effects::find("friction_corner").unwrap();
+    found.nominal.model = known.with_effect(corner, Site::Cylinder(0)).unwrap();
+    found.nominal.model.effects.last_mut().unwrap().parameters[0].value = -1.2;
+    let sentence = verdict_sentence(&model(), &found);
+    assert!(sentence.contains("turns another corner than the usual one (that of the arm a softer one)"), "{sentence}");
+    let plain = built_in("zx30u-arm").unwrap();
+    let is_along = |family| matches!(family, Family::Recording | Family::Rounding);
+    for physics in effects::CATALOGUE.iter().copied().filter(|physics| is_along(physics.card().family)) {
+        found.nominal.model = plain.with_effect(physics, Site::Cylinder(0)).unwrap();
+        let sentence = verdict_sentence(&plain, &found);
+        assert!(sentence.contains("taken into account"), "{}: {sentence}", physics.card().name);
+    }
     found.nominal.model = known.clone();
     // Whoever says so in the model needs no telling.
     assert!(!verdict_sentence(&known, &found).contains("spool sensor"));

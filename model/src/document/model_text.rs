@@ -103,7 +103,7 @@ fn fill_parameters(name: &str, text: &EffectText, effect: &mut ModelEffect) -> R
                 expected: card.unit,
             });
         }
-        let divides = card.kind == Kind::Reciprocal;
+        let divides = card.kind == Kind::Reciprocal || card.kind == Kind::Shape && card.minimum > 0.0;
         if !given.value.is_finite() || (divides && given.value <= 0.0) {
             return Err(DocumentError::Impossible {
                 name: name.to_string(),

@@ -15,7 +15,7 @@ static CARD: Card = Card {
     acts_on: ActsOn::Cylinder,
     family: Family::Candidate,
     summary: "The friction level of extension differs from that of retraction: lip seals, a bent rod, a wiper that bites one way.",
-    equation: "force -dFc max(s, 0), s = sgn(v) rounded over 1 mm/s: dFc more against extension, nothing against retraction",
+    equation: "force -dFc max(s, 0), s = sgn(v) rounded (friction_reversal): dFc more against extension, nothing against retraction",
     source: "textbook (e.g. Armstrong-Helouvry, Dupont, Canudas de Wit 1994)",
     shows: "Force error of one size while extending and another while retracting, at any speed.",
     experiment: "Slow strokes in both directions over the same range.",

@@ -12,7 +12,7 @@ static CARD: Card = Card {
     acts_on: ActsOn::Cylinder,
     family: Family::Loss,
     summary: "Friction force of constant size against the motion.",
-    equation: "force -Fc sgn(v), the sign rounded over 1 mm/s",
+    equation: "force -Fc sgn(v), the sign rounded (friction_reversal)",
     source: "[A] Eq. 1. Eq. 11 of [A] prints its power with G22 squared, which has the wrong unit; -Fc |v| \
         follows from Eq. 1.",
     shows: "Force step at each reversal.",

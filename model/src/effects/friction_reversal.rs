@@ -32,7 +32,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     kind: Kind::Shape,
     minimum: 1e-4,
     maximum: 2e-2,
-    typical: SLIP_SPEED,
+    typical: 3e-3,
     start: Start::At(&[SLIP_SPEED]),
 }];
 

@@ -32,7 +32,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     kind: Kind::Shape,
     minimum: 1e2,
     maximum: 4e5,
-    typical: LAMINAR_PRESSURE,
+    typical: 2e4,
     start: Start::At(&[LAMINAR_PRESSURE]),
 }];
 

@@ -12,7 +12,7 @@ static CARD: Card = Card {
     acts_on: ActsOn::Cylinder,
     family: Family::Candidate,
     summary: "Friction grows with the pressures in the chambers.",
-    equation: "force -mu (max(0, p+) + max(0, p-)) sgn(v), the sign rounded over 1 mm/s; a chamber under vacuum pushes no seal",
+    equation: "force -mu (max(0, p+) + max(0, p-)) sgn(v), the sign rounded (friction_reversal); a chamber under vacuum pushes no seal",
     source: "textbook (e.g. Merritt, Watton)",
     shows: "Force step at each reversal is larger under load than without; Coulomb friction identified at two pressure levels differs.",
     experiment: "Slow reversals with and without load, or at two counter-pressures.",

@@ -12,7 +12,7 @@ static CARD: Card = Card {
     acts_on: ActsOn::Cylinder,
     family: Family::Candidate,
     summary: "Extra friction near standstill that fades as the seal floats up on its oil film.",
-    equation: "force -Fs exp(-(v/vs)^2) sgn(v), the sign rounded over 1 mm/s",
+    equation: "force -Fs exp(-(v/vs)^2) sgn(v), the sign rounded (friction_reversal)",
     source: "textbook (e.g. Armstrong-Helouvry, Dupont, Canudas de Wit 1994)",
     shows: "Friction force against speed: the upturn near zero.",
     experiment: "Very slow strokes with reversals.",

@@ -25,7 +25,7 @@ pub fn rounded_sign<T: Scalar>(ratio: T) -> T {
 /// A sign that is rounded over one with a corner of another shape: [`rounded_sign`] of a ratio x that is bent to
 /// `sinh(sqrt(q) x) / sqrt(q)`, for a sharpness q below zero `asinh(sqrt(-q) x) / sqrt(-q)`; both are `x + q x³/6` where x is small.
 ///
-/// Minus four is nearly `x / (1 + |x|)`, minus one exactly `x / sqrt(1 + x²)`, zero the hyperbolic tangent, four nearly a straight line
+/// Minus one is `x / sqrt(1 + x²)`, zero the hyperbolic tangent, four nearly a straight line
 /// that is cut off at one.
 pub fn sign_with_corner<T: Scalar>(ratio: T, sharpness: T) -> T {
     let (x, q) = (ratio.value(), sharpness.value());
@@ -93,3 +93,30 @@ pub fn at_most<T: Scalar>(pressure_drop: T, margin: T) -> T {
 
 /// Ratio of drop to margin beyond which a double sees no difference to the margin.
 const FULLY_COMPENSATED: f64 = 100.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::{derivative, variable};
+
+    /// On every branch, and where one meets the next.
+    #[test]
+    fn corners_have_the_slopes_that_they_say() {
+        for sharpness in [-4.0, -1.0, -1e-6, 0.0, 1e-6, 1.0, 15.0] {
+            for ratio in [-30.0, -2.0, -0.9, -1e-3, 0.0, 0.4, 3.1, 19.0] {
+                let found = sign_with_corner(variable(ratio, 0), variable(sharpness, 1));
+                let step = 1e-5;
+                let by_ratio = sign_with_corner(ratio + step, sharpness) - sign_with_corner(ratio - step, sharpness);
+                let by_sharpness =
+                    sign_with_corner(ratio, sharpness + step) - sign_with_corner(ratio, sharpness - step);
+                for (direction, difference) in [by_ratio, by_sharpness].into_iter().enumerate() {
+                    let (slope, wanted) = (derivative(&found, direction), difference / (2.0 * step));
+                    assert!(
+                        (slope - wanted).abs() < 1e-4,
+                        "{slope} is not {wanted} at ratio {ratio}, sharpness {sharpness}"
+                    );
+                }
+            }
+        }
+    }
+}
