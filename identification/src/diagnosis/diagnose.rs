@@ -176,8 +176,9 @@ pub fn diagnose(
     }
     if !built.ahead.is_empty() || !built.level.is_empty() {
         // A name would be an even chance, and the other half of it is none of those that are named.
+        // Little as a model may leave that is adequate else, it is seen, and by more than chance.
         chain.clear();
-        explained = is_beyond_doubt;
+        explained = false;
     }
     let verdict = match (chain.is_empty(), explained) {
         (true, true) => Verdict::Adequate,
