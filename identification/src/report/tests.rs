@@ -223,6 +223,15 @@ fn verdicts_name_effect_and_place_and_admit_ties() {
     );
     assert!(sentence(&tied).contains("valve dead zone at the arm valve section or relief valve at the pump line: these recordings cannot tell the two apart"));
     assert!(sentence(&diagnosis(Verdict::Adequate, vec![])).starts_with("Nothing is missing"));
+    let mut in_moments = diagnosis(Verdict::Adequate, vec![]);
+    for (worst, is_told) in [(1e3, true), (1.2, false)] {
+        // Noise of 0.1 mm in all of 40 blocks but one.
+        let squares = |block: usize| if block == 7 { worst * 1e-7 } else { 1e-7 };
+        let blocks: Vec<Vec<(f64, usize)>> = (0..40).map(|block| vec![(squares(block), 10)]).collect();
+        let total: f64 = blocks.iter().map(|block| block[0].0).sum();
+        in_moments.nominal_validation = Fit { block_errors: blocks, ..fit_of(&model(), (total / 400.0).sqrt()) };
+        assert_eq!(sentence(&in_moments).contains("but for a few moments"), is_told, "{}", sentence(&in_moments));
+    }
     let left = sentence(&diagnosis(Verdict::Unexplained, vec![]));
     assert!(left.contains("none of the effects in the catalogue"), "{left}");
     assert!(left.contains("force balance of the arm does not close") && left.contains("piston position"), "{left}");

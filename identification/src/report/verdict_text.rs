@@ -6,6 +6,7 @@ use excavator_model::{Model, site_name};
 use super::numbers::{percent, ratio, significant};
 use super::words;
 use crate::diagnosis::{Adequacy, Candidate, Diagnosis, Verdict};
+use crate::fit::Fit;
 
 /// What a diagnosis found, in one or two plain sentences. Effects that the recordings cannot tell apart are all named.
 pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
@@ -17,6 +18,9 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
                 Some(Adequacy::SmallError) => "about a hundredth of each signal's own size, too small to act on",
                 Some(Adequacy::Inputs) =>
                     "no more than the readings of the inputs leave open, by their noise and by what happens between samples",
+                Some(Adequacy::Noise) if is_off_in_moments(&diagnosis.nominal_validation) =>
+                    "the noise of the sensors, but for a few moments in which the model is off; record more of these to learn what \
+                     happens then",
                 Some(Adequacy::Noise) | None => "the noise of the sensors",
             }
         ),
@@ -42,6 +46,14 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
         undetermined.len(),
         names_of(&diagnosis.nominal.model, &undetermined).join(", ")
     )
+}
+
+/// Loss beyond that of the typical moments from which on a twentieth of the recordings is worth a word: half as much squared error
+/// again as the sensors' noise, all of it there.
+const IN_MOMENTS: f64 = 0.4;
+
+fn is_off_in_moments(fit: &Fit) -> bool {
+    fit.loss() - fit.typical_loss() > IN_MOMENTS
 }
 
 /// What is said where no effect was tried.
