@@ -137,6 +137,14 @@ pub(crate) fn refitted_with_effects_along(
     refitted(fitted, behind, recordings, settings, &|_| ControlFlow::Continue(()))
 }
 
+/// Effects of `fitted` that were fitted along, since `given` has them not: with their places, in the order of `fitted`.
+pub fn found_along<'a>(given: &'a Model, fitted: &'a Model) -> impl Iterator<Item = &'a ModelEffect> {
+    fitted
+        .effects
+        .iter()
+        .filter(|effect| IN_FITS.contains(&effect.physics.card().family) && !given.has(effect.name(), effect.site))
+}
+
 fn refitted(fitted: Fit, behind: usize, recordings: &[&Recording], settings: &FitSettings, watch: Watch<'_>) -> Fit {
     let anew = |model: &Model| fit_watched(model, recordings, settings, watch).ok();
     let is_all = |fitted: &Fit| fitted.typical_loss() <= NOISE;
@@ -178,11 +186,22 @@ fn rounds_something(physics: &dyn Effect, site: Site, model: &Model) -> bool {
     frictions.flat_map(|friction| friction.parameters.first()).any(|level| level.value > 0.0)
 }
 
+/// Whether all parameters of an effect that was fitted along still differ from nothing. It may have stood in for what was missing.
+pub fn still_shows(effect: &ModelEffect) -> bool {
+    effect.parameters.iter().all(differs)
+}
+
+/// By more than its own uncertainty, and enough for anybody to tell.
+fn differs(parameter: &Parameter) -> bool {
+    let least = LEAST_SIGNIFICANCE * parameter.standard_error.unwrap_or(f64::INFINITY);
+    // A shift or a lead starts from zero, of which any part is none.
+    (parameter.value - nothing(parameter)).abs() >= least.max(LEAST_DIFFERENCE * nothing(parameter))
+}
+
 /// Whether all parameters of an effect differ from nothing, and by no more than recordings are off or corners are rounded.
 fn is_seen(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Recording]) -> bool {
     model.effect(physics.card().name, site).is_some_and(|effect| {
         effect.parameters.iter().all(|parameter| {
-            let least = LEAST_SIGNIFICANCE * parameter.standard_error.unwrap_or(f64::INFINITY);
             let is_plausible = match parameter.card.unit {
                 "s" if parameter.value < 0.0 => -parameter.value <= latest(recordings).max(MOST_BEHIND),
                 "s" => parameter.value <= latest(recordings),
@@ -191,9 +210,7 @@ fn is_seen(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Recor
                 "Pa" => TRANSITIONS.contains(&parameter.value),
                 _ => parameter.value.abs() <= largest_zero(model, site, recordings),
             };
-            // A shift or a lead starts from zero, of which any part is none.
-            let least = least.max(LEAST_DIFFERENCE * nothing(parameter));
-            is_plausible && (parameter.value - nothing(parameter)).abs() >= least
+            is_plausible && differs(parameter)
         })
     })
 }

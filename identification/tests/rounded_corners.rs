@@ -8,8 +8,10 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use common::{measure, off_the_data_sheet};
+use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::fit::{FitSettings, fit};
-use excavator_identification::fitted_along::fit_with_effects_along;
+use excavator_identification::fitted_along::{fit_with_effects_along, still_shows};
+use excavator_identification::refinement::{Additions, refine};
 use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
 use excavator_model::recording::Recording;
@@ -79,4 +81,23 @@ fn a_friction_as_the_equations_have_it_needs_no_other_reversal() {
     let found = fit_with_effects_along(&given, &[&recording], &FitSettings::default(), &watch).unwrap().model;
     let names = |model: &Model| model.effects.iter().map(ModelEffect::name).collect::<Vec<_>>();
     assert_eq!(names(&found), names(&given));
+}
+
+/// A friction that a person adds brings its corner along, and the history of the model says so.
+#[test]
+fn an_added_friction_turns_round_as_the_machine_does() {
+    let recording = recorded(&machine(3e-3));
+    let mut given = built_in("zx30u-arm").unwrap();
+    given.effects.retain(|effect| effect.name() != "coulomb_friction");
+    let additions = Additions::Named(given.parse_addition("coulomb_friction").unwrap());
+    let settings = DiagnosisSettings::default();
+    let refined =
+        refine(&given, &[&recording], &[&recording], &additions, &settings, "2000-01-01T00:00:00Z", &|_, _| {})
+            .unwrap();
+    let found = refined.model.value_of("arm.reversal_speed").expect("the reversal is part of the fit");
+    assert!((found / 3e-3 - 1.0).abs() < 0.1, "{found:e} m/s, should be 3e-3 m/s");
+    let history: Vec<&str> = refined.model.history.iter().map(|entry| entry.what.as_str()).collect();
+    assert_eq!(history.last(), Some(&"added coulomb_friction@arm; fitted along: friction_reversal@arm"));
+    let reversal = refined.model.effect("friction_reversal", Site::Cylinder(0)).unwrap();
+    assert!(still_shows(reversal));
 }

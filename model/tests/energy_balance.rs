@@ -133,7 +133,7 @@ fn the_arm_has_the_energies_of_the_paper() {
         close("pump", book.pump_power, bp * (pump / bp).exp_m1() * inputs.pump_flow);
         for name in ["inertia", "gravity", "oil_compressibility"] {
             let effect = power(&book, name);
-            assert!(effect.stores && effect.total() == 0.0, "{effect:?}");
+            assert!(!effect.has_power && effect.total() == 0.0, "{effect:?}");
         }
     }
 }

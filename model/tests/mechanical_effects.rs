@@ -133,7 +133,7 @@ fn a_load_is_picked_up_and_put_down() {
                 inputs.time = first + f64::from(step) * 1e-4;
                 let book = ledger(&system, &carried.parameter_values(), &state, &inputs);
                 let effect = book.effects.iter().find(|effect| effect.effect == "payload").unwrap();
-                assert!(!effect.stores);
+                assert!(effect.has_power);
                 effect.mechanical * 1e-4
             })
             .sum();

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use excavator_identification::design::Sensors;
+use excavator_model::{Model, ModelError};
 use serde::Deserialize;
 
 use crate::error::VerbError;
@@ -23,6 +24,12 @@ struct Candidate {
 }
 
 #[derive(Debug, Deserialize)]
+struct Along {
+    effect: String,
+    cylinder: String,
+}
+
+#[derive(Debug, Deserialize)]
 struct Instrument {
     name: String,
     noise: Option<f64>,
@@ -38,6 +45,8 @@ struct Text {
     refitted: Vec<Value>,
     #[serde(default)]
     instruments: Vec<Instrument>,
+    #[serde(default)]
+    fitted_along: Vec<Along>,
 }
 
 /// A diagnosis as far as a design needs it: rivals by name (`EFFECT@PLACE`, `none`) with the values of all parameters that
@@ -50,6 +59,7 @@ pub struct DiagnosisFile {
     named: Vec<String>,
     fitted: Vec<(String, Vec<(String, f64)>)>,
     noise: Vec<(String, f64)>,
+    fitted_along: Vec<String>,
 }
 
 impl DiagnosisFile {
@@ -71,6 +81,7 @@ impl DiagnosisFile {
             tied: text.candidates.iter().filter(|candidate| candidate.tied_with_first).map(name).collect(),
             named: text.candidates.iter().map(name).collect(),
             fitted,
+            fitted_along: text.fitted_along.iter().map(|one| format!("{}@{}", one.effect, one.cylinder)).collect(),
             noise: text.instruments.into_iter().filter_map(|one| Some((one.name, one.noise?))).collect(),
         })
     }
@@ -98,6 +109,22 @@ impl DiagnosisFile {
     /// Contract names and values of the parameters fitted with this rival; empty where there are none.
     pub fn values(&self, rival: &str) -> &[(String, f64)] {
         self.fitted.iter().find(|(name, _)| name == rival).map_or(&[], |(_, values)| values)
+    }
+
+    /// `model` with the effects that were fitted along: rivals whose values come from the diagnosis have them too.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the model has no such place.
+    pub fn with_fitted_along(&self, model: &Model) -> Result<Model, ModelError> {
+        let mut extended = model.clone();
+        for name in &self.fitted_along {
+            for (physics, site) in model.parse_addition(name)? {
+                if !model.has(physics.card().name, site) {
+                    extended = extended.with_effect(physics, site)?;
+                }
+            }
+        }
+        Ok(extended)
     }
 
     /// Replaces the usual sensors by those of the diagnosis, where it tells them.

@@ -5,9 +5,10 @@ use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelError, site_name};
 
 use super::own_windows::has_window;
-use super::starts::{half_open, starts};
+use super::starts::{acts_in_a_window, half_open, starts};
 use super::{Evidence, Inclusion, compare_losses};
 use crate::fit::{Fit, FitError, FitSettings, Prediction, fit_predicted, predict};
+use crate::fitted_along::refitted_with_effects_along;
 
 /// A candidate that was tried.
 #[derive(Debug, Clone)]
@@ -144,6 +145,18 @@ pub(crate) fn fit_addition(
 ) -> Result<Fit, CandidateError> {
     let start = best_start(model, physics, site, recordings, settings)?;
     Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
+}
+
+/// What [`fit_addition`] or a race made of a model whose last effect is an addition, with what the recordings show beside it of how
+/// they were made: without it that was hidden under what was missing. An effect that acts in a window of time keeps its place.
+pub(crate) fn addition_with_effects_along(fitted: Fit, recordings: &[&Recording], settings: &FitSettings) -> Fit {
+    let model = &fitted.model;
+    let Some(last) = model.effects.last() else { return fitted };
+    if acts_in_a_window(last.physics, &model.machine, last.site) {
+        return fitted;
+    }
+    let behind = model.effects.len() - 1;
+    refitted_with_effects_along(fitted, behind, recordings, settings)
 }
 
 /// A start of a candidate's fit.

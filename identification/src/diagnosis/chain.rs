@@ -9,12 +9,12 @@ use excavator_model::effects::{ActsOn, Effect, Site};
 use excavator_model::recording::Recording;
 
 use super::adequacy::inputs_explain_the_rest;
+use super::candidate::addition_with_effects_along;
 use super::own_windows::{evaluate_in_known_windows, has_window};
 use super::race::{Race, Round};
 use super::starts::acts_in_a_window;
 use super::{Candidate, DiagnosisError, DiagnosisSettings, additions, adequacy, compare_losses};
 use crate::fit::{Fit, FitError, fit};
-use crate::fitted_along::refitted_with_effects_along;
 
 /// A gain below this part of the best one's is no other way to begin.
 pub(super) const OTHER_WAY: f64 = 0.5;
@@ -181,11 +181,8 @@ impl Chains<'_> {
     /// A link with what the recordings show of how they were made once it is there: without it that was hidden under what
     /// was missing.
     fn with_effects_along(&self, mut link: Candidate) -> Result<Candidate, DiagnosisError> {
-        if acts_in_a_window(link.physics, &link.fit.model.machine, link.site) {
-            return Ok(link);
-        }
-        let (given, behind) = (link.fit.model.effects.len(), link.fit.model.effects.len() - 1);
-        link.fit = refitted_with_effects_along(link.fit, behind, self.identification, &self.settings.fit);
+        let given = link.fit.model.effects.len();
+        link.fit = addition_with_effects_along(link.fit, self.identification, &self.settings.fit);
         if link.fit.model.effects.len() > given {
             let known = &link.validation.model;
             link.validation = evaluate_in_known_windows(&link.fit.model, known, self.validation, &self.settings.fit)?;

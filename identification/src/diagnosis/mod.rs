@@ -23,8 +23,8 @@ mod worst_stretch;
 
 use adequacy::adequacy;
 pub use adequacy::{Adequacy, normalised_error};
-pub(crate) use candidate::fit_addition;
 pub use candidate::{Candidate, CandidateError, Unpromising, additions};
+pub(crate) use candidate::{addition_with_effects_along, fit_addition};
 pub use contribution::{Contribution, ContributionBin, contribution};
 pub(crate) use diagnose::fit_nominal;
 pub use diagnose::{Diagnosis, DiagnosisError, Verdict, diagnose};

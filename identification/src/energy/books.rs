@@ -39,8 +39,8 @@ pub struct EffectBooks {
     pub site: Site,
     /// What it belongs to.
     pub acts_on: ActsOn,
-    /// Whether it stores energy instead of taking it.
-    pub stores: bool,
+    /// Whether it has power of its own, [`excavator_model::energy::EffectPower::has_power`].
+    pub has_power: bool,
     /// On pistons and joints.
     pub mechanical: Vec<f64>,
     /// Into the cap side.
@@ -73,7 +73,7 @@ impl Books {
             effect: effect.name(),
             site: effect.site,
             acts_on: effect.physics.card().acts_on,
-            stores: false,
+            has_power: true,
             mechanical: Vec::new(),
             cap: Vec::new(),
             rod: Vec::new(),
@@ -120,7 +120,7 @@ impl Books {
             books.rod_force_power.push(pushed);
         }
         for (books, power) in self.effects.iter_mut().zip(&ledger.effects) {
-            books.stores = power.stores;
+            books.has_power = power.has_power;
             books.mechanical.push(power.mechanical);
             books.cap.push(power.cap);
             books.rod.push(power.rod);

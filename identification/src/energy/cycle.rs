@@ -73,7 +73,7 @@ impl Cycles {
         if let Some((_, totals)) = &mut self.current {
             totals.add(books, entry);
             for (blank, own) in self.model_totals.effects.iter_mut().zip(&totals.effects) {
-                blank.stores = own.stores;
+                blank.has_power = own.has_power;
             }
         }
     }

@@ -38,8 +38,8 @@ pub struct EffectTotal {
     pub site: Site,
     /// What it belongs to.
     pub acts_on: ActsOn,
-    /// Whether it stores; its energy is then in the gains of storage.
-    pub stores: bool,
+    /// Whether it has power of its own; that of what only stores is in the gains of storage.
+    pub has_power: bool,
     /// Given to links and chambers.
     pub into_cylinders: f64,
     /// Given to the pump line.
@@ -68,7 +68,7 @@ impl Totals {
             effect: effect.name(),
             site: effect.site,
             acts_on: effect.physics.card().acts_on,
-            stores: false,
+            has_power: true,
             into_cylinders: 0.0,
             into_pump_line: 0.0,
         });
@@ -98,7 +98,7 @@ impl Totals {
             totals.rod_internal += gain(&own.rod_internal);
         }
         for (total, own) in self.effects.iter_mut().zip(&books.effects) {
-            total.stores = own.stores;
+            total.has_power = own.has_power;
             let into_cylinders = integral(&|k| own.into_cylinders(k));
             let into_pump_line = integral(&|k| own.pump_line[k]);
             total.into_cylinders += into_cylinders;

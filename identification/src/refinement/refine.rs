@@ -6,9 +6,11 @@ use excavator_model::simulation::RunError;
 use excavator_model::{HistoryEntry, Model, ModelError, addition_name, site_name};
 
 use crate::diagnosis::{
-    CandidateError, Diagnosis, DiagnosisError, DiagnosisSettings, Verdict, diagnose, fit_addition, fit_nominal,
+    CandidateError, Diagnosis, DiagnosisError, DiagnosisSettings, Verdict, addition_with_effects_along, diagnose,
+    fit_addition, fit_nominal,
 };
 use crate::fit::{Fit, FitError};
+use crate::fitted_along::found_along;
 use crate::validation::{Comparison, compare};
 
 /// What is to be added.
@@ -133,6 +135,7 @@ pub fn refine(
                 progress(&name, (number + 1) as f64 / (named.len() + 1) as f64);
                 current = fit_addition(&current.model, physics, site, identification, &settings.fit)
                     .map_err(RefineError::from)?;
+                current = addition_with_effects_along(current, identification, &settings.fit);
                 fits.push((Some(name), current.clone()));
             }
             None
@@ -151,10 +154,7 @@ pub fn refine(
         let before = number.checked_sub(1).map(|previous| steps[previous].mean_error());
         final_model.history.push(HistoryEntry {
             when: when.to_string(),
-            what: step
-                .added
-                .as_ref()
-                .map_or_else(|| "parameters identified".to_string(), |name| format!("added {name}")),
+            what: what_was_done(number.checked_sub(1).map_or(model, |previous| &steps[previous].fit.model), step),
             recordings: recordings.clone(),
             validation_error_before: before,
             validation_error_after: Some(step.mean_error()),
@@ -164,4 +164,13 @@ pub fn refine(
         parameter.source = "identified".into();
     }
     Ok(Refinement { given, steps, model: final_model, diagnosis })
+}
+
+/// Words for a model's history: the step, and what was fitted along since the model `before`.
+fn what_was_done(before: &Model, step: &Step) -> String {
+    let along: Vec<String> = found_along(before, &step.fit.model)
+        .map(|effect| addition_name(effect.physics, site_name(&before.machine, effect.site)))
+        .collect();
+    let done = step.added.as_ref().map_or_else(|| "parameters identified".to_string(), |name| format!("added {name}"));
+    if along.is_empty() { done } else { format!("{done}; fitted along: {}", along.join(", ")) }
 }

@@ -38,7 +38,7 @@ pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
         for (cylinder, own) in machine.cylinders.iter().zip(&totals.cylinders) {
             flow.give(pump, &format!("metering, {} valve", cylinder.name), own.metering_loss, 1, LOSS);
         }
-        for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && !effect.stores) {
+        for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
             flow.give(pump, &words::spoken(effect.effect), -effect.into_pump_line, 1, LOSS);
         }
         flow.give(pump, "stored in the pump line", totals.pump_line, 1, STORED);
@@ -53,7 +53,7 @@ pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
         let from = cylinders[index];
         let many = machine.cylinders.len() > 1;
         let label = |what: &str| if many { format!("{what}, {}", cylinder.name) } else { what.to_string() };
-        for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && !effect.stores) {
+        for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
             if site_name(machine, effect.site) == cylinder.name {
                 flow.give(from, &label(&words::spoken(effect.effect)), -effect.into_cylinders, 2, LOSS);
             }

@@ -65,7 +65,7 @@ fn lines(model: &Model, totals: &Totals) -> Vec<Line> {
     };
     if matches!(model.machine.supply, Supply::PumpLine(_)) {
         add("Pump".into(), None, totals.pump, true);
-        for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && !effect.stores) {
+        for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
             if effect.into_pump_line != 0.0 {
                 add("lost between pump and tank".into(), Some(effect.effect), -effect.into_pump_line, false);
             }
@@ -78,7 +78,7 @@ fn lines(model: &Model, totals: &Totals) -> Vec<Line> {
     }
     for (index, (cylinder, own)) in model.machine.cylinders.iter().zip(&totals.cylinders).enumerate() {
         add(format!("Supplied to the {} cylinder", cylinder.name), None, own.supplied, true);
-        for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && !effect.stores) {
+        for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
             if site_name(&model.machine, effect.site) == cylinder.name {
                 add("dissipated".into(), Some(effect.effect), -effect.into_cylinders, false);
             }

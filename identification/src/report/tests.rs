@@ -297,13 +297,19 @@ fn diagnosis_shows_evidence_cards_and_what_is_left() {
     assert_sound(&diagnosis_page(&model(), &diagnosis(Verdict::Adequate, vec![]), &[comparison(0.0)], &[]));
 }
 
+/// Gives the last effect of a model a value that a fit found.
+fn found_value(model: &mut Model, value: f64) {
+    let parameter = &mut model.effects.last_mut().unwrap().parameters[0];
+    (parameter.value, parameter.standard_error) = (value, Some(1e-9));
+}
+
 #[test]
 fn what_is_fitted_along_is_told_once_it_is_known() {
     let mut found = diagnosis(Verdict::Adequate, vec![]);
     assert!(!verdict_sentence(&model(), &found).contains("spool sensor"));
     let lead = effects::find("spool_sensor_lead").unwrap();
     let mut known = found.nominal.model.with_effect(lead, Site::Cylinder(0)).unwrap();
-    known.effects.last_mut().unwrap().parameters[0].value = -4.5e-4;
+    found_value(&mut known, -4.5e-4);
     found.nominal.model = known.clone();
     let sentence = verdict_sentence(&model(), &found);
     assert!(
@@ -312,13 +318,13 @@ fn what_is_fitted_along_is_told_once_it_is_known() {
     );
     let offset = effects::find("spool_sensor_offset").unwrap();
     found.nominal.model = known.with_effect(offset, Site::Cylinder(0)).unwrap();
-    found.nominal.model.effects.last_mut().unwrap().parameters[0].value = 7e-8;
+    found_value(&mut found.nominal.model, 7e-8);
     let both = verdict_sentence(&model(), &found);
     assert!(both.contains("0.45 ms after") && both.contains("does not read zero where its valve is closed"), "{both}");
     assert!(both.contains("+0.070 mm2"), "{both}");
     let reversal = effects::find("friction_reversal").unwrap();
     found.nominal.model = known.with_effect(reversal, Site::Cylinder(0)).unwrap();
-    found.nominal.model.effects.last_mut().unwrap().parameters[0].value = 2.14e-3;
+    found_value(&mut found.nominal.model, 2.14e-3);
     let sentence = verdict_sentence(&model(), &found);
     assert!(
         sentence.contains("Friction turns round over another speed") && sentence.contains("2.1 mm/s"),
@@ -326,16 +332,21 @@ fn what_is_fitted_along_is_told_once_it_is_known() {
     );
     let corner = effects::find("friction_corner").unwrap();
     found.nominal.model = known.with_effect(corner, Site::Cylinder(0)).unwrap();
-    found.nominal.model.effects.last_mut().unwrap().parameters[0].value = -1.2;
+    found_value(&mut found.nominal.model, -1.2);
     let sentence = verdict_sentence(&model(), &found);
     assert!(sentence.contains("turns another corner than the usual one (that of the arm a softer one)"), "{sentence}");
     let plain = built_in("zx30u-arm").unwrap();
     let is_along = |family| matches!(family, Family::Recording | Family::Rounding);
     for physics in effects::CATALOGUE.iter().copied().filter(|physics| is_along(physics.card().family)) {
         found.nominal.model = plain.with_effect(physics, Site::Cylinder(0)).unwrap();
+        let start = found.nominal.model.effects.last().unwrap().parameters[0].value;
+        found_value(&mut found.nominal.model, 2.0 * start + 1.0);
         let sentence = verdict_sentence(&plain, &found);
         assert!(sentence.contains("taken into account"), "{}: {sentence}", physics.card().name);
     }
+    // What only stood in for what was missing is not told.
+    found.nominal.model.effects.last_mut().unwrap().parameters[0].standard_error = Some(1e9);
+    assert!(!verdict_sentence(&plain, &found).contains("taken into account"));
     found.nominal.model = known.clone();
     // Whoever says so in the model needs no telling.
     assert!(!verdict_sentence(&known, &found).contains("spool sensor"));

@@ -7,6 +7,7 @@ use super::numbers::{percent, ratio, significant};
 use super::words;
 use crate::diagnosis::{Adequacy, Candidate, Diagnosis, Verdict};
 use crate::fit::Fit;
+use crate::fitted_along::still_shows;
 
 /// What a diagnosis found, in one or two plain sentences. Effects that the recordings cannot tell apart are all named.
 pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
@@ -118,7 +119,7 @@ fn fitted_along(given: &Model, diagnosis: &Diagnosis) -> String {
     let told = |telling: &Telling| {
         let found = last.effects.iter().filter(|effect| effect.name() == telling.effect);
         let found: Vec<String> = found
-            .filter(|effect| !given.has(effect.name(), effect.site))
+            .filter(|effect| !given.has(effect.name(), effect.site) && still_shows(effect))
             .filter_map(|effect| {
                 let place = site_name(&last.machine, effect.site);
                 Some(format!("that of the {place} {}", (telling.value)(effect.parameters.first()?.value)))

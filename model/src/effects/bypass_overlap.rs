@@ -43,6 +43,10 @@ impl Physics for BypassOverlap {
         PARAMETERS
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn adjust<T: Scalar>(&self, _site: Site, parameters: &[T], now: &mut Situation<T>) {
         for piston in &mut now.pistons {
             piston.bypass_closing = (piston.bypass_closing - parameters[0]).positive_part();

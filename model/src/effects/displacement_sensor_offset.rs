@@ -40,6 +40,10 @@ impl Physics for DisplacementSensorOffset {
         PARAMETERS
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn distort<T: Scalar>(&self, site: Site, parameters: &[T], instruments: &mut Instruments<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         instruments.of_mut(Channel::Displacement(cylinder)).offset += parameters[0];

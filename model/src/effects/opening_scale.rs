@@ -46,6 +46,10 @@ impl Physics for OpeningScale {
         PARAMETERS
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn is_worth_a_name(&self, parameters: &[f64]) -> bool {
         parameters.first().is_some_and(|scale| scale.abs() >= ACCURACY)
     }

@@ -24,6 +24,12 @@ pub trait Physics: Sync {
         true
     }
 
+    /// Whether it has power of its own, by what it contributes to the rows. What shifts an opening, rounds another effect or acts on an
+    /// instrument has none, and no line in an energy balance.
+    fn has_power(&self) -> bool {
+        true
+    }
+
     /// Number of states that it adds to the model.
     fn states(&self) -> usize {
         0
@@ -76,6 +82,7 @@ pub trait Effect: Sync {
     fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard];
     fn value_where_left_out(&self, parameter: &str) -> Option<f64>;
     fn is_worth_a_name(&self, parameters: &[f64]) -> bool;
+    fn has_power(&self) -> bool;
     fn states(&self) -> usize;
     fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> f64;
     fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual;
@@ -106,6 +113,9 @@ impl<P: Physics> Effect for P {
     }
     fn is_worth_a_name(&self, parameters: &[f64]) -> bool {
         Physics::is_worth_a_name(self, parameters)
+    }
+    fn has_power(&self) -> bool {
+        Physics::has_power(self)
     }
     fn states(&self) -> usize {
         Physics::states(self)

@@ -44,6 +44,10 @@ impl Physics for PressureCompensation {
         PARAMETERS
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         now.pistons[cylinder].compensator_margin = Some(parameters[0]);

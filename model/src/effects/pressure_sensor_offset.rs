@@ -70,6 +70,10 @@ impl Physics for PressureSensorOffset {
         }
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn distort<T: Scalar>(&self, site: Site, parameters: &[T], instruments: &mut Instruments<T>) {
         match site {
             Site::Cylinder(cylinder) => {

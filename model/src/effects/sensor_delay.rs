@@ -75,6 +75,10 @@ impl Physics for SensorDelay {
         }
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn distort<T: Scalar>(&self, site: Site, parameters: &[T], instruments: &mut Instruments<T>) {
         match site {
             Site::Cylinder(cylinder) => {

@@ -48,6 +48,10 @@ impl Physics for SpoolSensorLead {
         PARAMETERS
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn reads_course(&self) -> bool {
         true
     }

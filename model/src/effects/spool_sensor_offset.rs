@@ -42,6 +42,10 @@ impl Physics for SpoolSensorOffset {
         PARAMETERS
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn reads_course(&self) -> bool {
         true
     }

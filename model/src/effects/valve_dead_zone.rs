@@ -52,6 +52,10 @@ impl Physics for ValveDeadZone {
         PARAMETERS
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn opening<T: Scalar>(&self, parameters: &[T], opening: T, _maximum: f64) -> T {
         (opening - parameters[0]).positive_part() - (-opening - parameters[1]).positive_part()
     }

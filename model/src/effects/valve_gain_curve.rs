@@ -55,6 +55,10 @@ impl Physics for ValveGainCurve {
         PARAMETERS
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn opening<T: Scalar>(&self, parameters: &[T], opening: T, maximum: f64) -> T {
         let travel = opening.abs() / maximum;
         opening * (travel * (parameters[0] + parameters[1] * travel) + 1.0)

@@ -45,6 +45,10 @@ impl Physics for ValveHysteresis {
         PARAMETERS
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn states(&self) -> usize {
         1
     }

@@ -57,6 +57,10 @@ impl Physics for ValveLag {
         PARAMETERS
     }
 
+    fn has_power(&self) -> bool {
+        false
+    }
+
     fn value_where_left_out(&self, parameter: &str) -> Option<f64> {
         (parameter == "second_order_share").then_some(0.0)
     }

@@ -165,11 +165,12 @@ impl<T: Number> Account<'_, '_, T> {
                 if (has_mass || has_weight) && !effect.acts_always() {
                     mechanical += self.brought_along(number);
                 }
+                let only_stores = (has_mass || has_weight || has_spring) && effect.acts_always();
                 EffectPower {
                     effect: effect.name(),
                     site: effect.site,
                     acts_on,
-                    stores: (has_mass || has_weight || has_spring) && effect.acts_always(),
+                    has_power: effect.physics.has_power() && !only_stores,
                     mechanical,
                     cap,
                     rod,

@@ -26,9 +26,9 @@ pub struct EffectPower<T = f64> {
     pub site: Site,
     /// The part of the machine that it belongs to.
     pub acts_on: ActsOn,
-    /// Whether all that the effect does is to store energy: its torque is in the storage, not in `mechanical`. A load that is
-    /// picked up brings its energy along, so it does more.
-    pub stores: bool,
+    /// Whether the effect can have power here. One that only stores has not: its torque is in the storage, not in `mechanical` (a load
+    /// that is picked up brings its energy along, so it does more). Nor has one that only rounds others, or acts on an instrument.
+    pub has_power: bool,
     /// Torque times joint rate plus piston force times velocity.
     pub mechanical: T,
     /// Flow into the cap side times e(p+), \[A\] Eq. 11.

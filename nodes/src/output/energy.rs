@@ -44,7 +44,7 @@ fn lines(model: &Model, totals: &Totals) -> Vec<(String, f64, bool)> {
     if matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) {
         lines.push(("pump".to_string(), totals.pump, false));
         for effect in
-            totals.effects.iter().filter(|e| e.acts_on != ActsOn::Valve && !e.stores && e.into_pump_line != 0.0)
+            totals.effects.iter().filter(|e| e.acts_on != ActsOn::Valve && e.has_power && e.into_pump_line != 0.0)
         {
             lines.push((format!("  lost: {} at the pump line", effect.effect), -effect.into_pump_line, false));
         }
@@ -57,7 +57,7 @@ fn lines(model: &Model, totals: &Totals) -> Vec<(String, f64, bool)> {
             lines.push((format!("  lost: metering at the {name} valve"), own.metering_loss, false));
         }
         lines.push((format!("supplied to the {name}"), own.supplied, false));
-        for effect in totals.effects.iter().filter(|e| e.acts_on != ActsOn::Valve && !e.stores) {
+        for effect in totals.effects.iter().filter(|e| e.acts_on != ActsOn::Valve && e.has_power) {
             if site_name(&model.machine, effect.site) == name {
                 lines.push((format!("  lost: {} at the {name}", effect.effect), -effect.into_cylinders, false));
             }
@@ -185,7 +185,7 @@ fn totals_json(model: &Model, totals: &Totals, derived: bool) -> Value {
     let effects: Vec<Value> = totals
         .effects
         .iter()
-        .filter(|effect| !effect.stores)
+        .filter(|effect| effect.has_power)
         .map(|effect| {
             json!({"effect": effect.effect, "at": site_name(&model.machine, effect.site),
                    "into_cylinders": effect.into_cylinders, "into_pump_line": effect.into_pump_line})

@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use excavator_identification::diagnosis::{Adequacy, Candidate, Diagnosis, normalised_error};
+use excavator_identification::fitted_along::found_along;
 use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
 use excavator_identification::validation::{Comparison, Correlation};
-use excavator_model::Model;
+use excavator_model::effects::Site;
 use excavator_model::recording::Recording;
+use excavator_model::{Model, site_name};
 use serde_json::{Map, Value, json};
 
 use crate::error::VerbError;
@@ -109,9 +111,9 @@ pub fn comparison_json(comparison: &Comparison) -> Value {
     })
 }
 
-/// Parameters that a model has of the effect of `candidate`.
-fn own_parameters(model: &Model, candidate: &Candidate) -> Vec<Value> {
-    let is_own = |effect: usize| model.effects[effect].is(candidate.name(), candidate.site);
+/// Parameters that a model has of an effect at a site.
+fn own_parameters(model: &Model, name: &str, site: Site) -> Vec<Value> {
+    let is_own = |effect: usize| model.effects[effect].is(name, site);
     let indices: Vec<usize> =
         model.parameters().enumerate().filter(|(_, (effect, _))| is_own(*effect)).map(|(index, _)| index).collect();
     parameters(model, &indices)
@@ -131,13 +133,26 @@ fn candidate_json(candidate: &Candidate, before: f64, validation: &[&Recording],
         "significance": finite(candidate.evidence.significance),
         "bootstrap": {"gains": finite(candidate.inclusion.gains), "is_first": finite(candidate.inclusion.is_first)},
         "tied_with_first": candidate.tied_with_first,
-        "parameters": own_parameters(model, candidate),
+        "parameters": own_parameters(model, candidate.name(), candidate.site),
         "refitted": parameters(model, &model.unknown_parameters()),
     })
 }
 
-/// Result of `diagnose`.
-pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value {
+/// What was fitted along in `fitted`, a model that began as `given`.
+fn along_json(given: &Model, fitted: &Model) -> Vec<Value> {
+    found_along(given, fitted)
+        .map(|effect| {
+            json!({
+                "effect": effect.name(),
+                "cylinder": site_name(&fitted.machine, effect.site),
+                "parameters": own_parameters(fitted, effect.name(), effect.site),
+            })
+        })
+        .collect()
+}
+
+/// Result of `diagnose` for the model `given`.
+pub fn diagnosis_json(given: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) -> Value {
     let before = normalised_error(&diagnosis.nominal_validation, validation);
     let found = diagnosis.chain.last().map(|last| &last.fit.model);
     let candidates = |list: &[Candidate]| -> Vec<Value> {
@@ -173,7 +188,7 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
                 "cylinder": c.place,
                 "loss_after": finite(c.validation.loss()),
                 "typical_loss_after": finite(c.validation.typical_loss()),
-                "parameters": own_parameters(found.unwrap_or(&c.fit.model), c),
+                "parameters": own_parameters(found.unwrap_or(&c.fit.model), c.name(), c.site),
             })
         })
         .collect();
@@ -188,6 +203,7 @@ pub fn diagnosis_json(diagnosis: &Diagnosis, validation: &[&Recording]) -> Value
         "candidates": with_evidence,
         "rejected": candidates(&diagnosis.rejected),
         "together": chain,
+        "fitted_along": along_json(given, found.unwrap_or(&diagnosis.nominal.model)),
         "where": places,
         "unexplained": diagnosis.unexplained.as_ref().map(|rest| json!({
             "equation": rest.equation,

@@ -43,7 +43,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         sources::write_text(path, &diagnosis_page(&model, &diagnosis, &comparisons, &missing))?;
     }
     if let Some(path) = &arguments.json.json {
-        let mut value = diagnosis_json(&diagnosis, &validation);
+        let mut value = diagnosis_json(&model, &diagnosis, &validation);
         let sentences = |found: &[MissingPower]| found.iter().map(missing_power_json).collect::<Vec<_>>();
         value["missing_power"] = missing
             .iter()

@@ -222,7 +222,7 @@ impl<'m, 's> Monitor<'m, 's> {
                 let oil = model.machine.cylinders.get(number).is_some_and(|cylinder| cylinder.chambers.is_some());
                 let pushed = if oil { 0.0 } else { self.rod_power(&state, &inputs, number) };
                 let terms = own()
-                    .filter(|effect| effect.acts_on != ActsOn::Valve && !effect.stores)
+                    .filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power)
                     .map(|effect| EffectTerm { effect: effect.effect, power: effect.into_cylinders() })
                     .collect();
                 CylinderBalance {
