@@ -100,3 +100,22 @@ fn what_a_recording_does_not_show_is_open_on_both_sides() {
     let found = profiled_addition("relief_valve", &[34e6, 1e-9]);
     assert!(!found.is_identifiable(), "{found:?}");
 }
+
+#[test]
+fn what_a_recording_does_not_show_takes_nothing_from_what_is_known_of_the_others() {
+    let recording = measured(swing, 3);
+    let errors = |model: &Model| -> Vec<f64> {
+        let found = fit(model, &[&recording], &FitSettings::default()).unwrap();
+        found.model.parameters().filter_map(|(_, parameter)| parameter.standard_error).collect()
+    };
+    let alone = model(&["arm.viscous_damping", "arm.coulomb_friction"]);
+    let mut more = alone.with_effect(find("relief_valve").unwrap(), Site::PumpLine).unwrap();
+    for (parameter, value) in more.effects.last_mut().unwrap().parameters.iter_mut().zip([34e6, 1e-9]) {
+        parameter.value = value;
+    }
+    let (alone, more) = (errors(&alone), errors(&more));
+    assert_eq!(more[2..], [f64::INFINITY; 2], "{more:?}");
+    for (error, same) in more.iter().zip(&alone) {
+        assert!((error / same - 1.0).abs() < 0.1, "{more:?}, {alone:?}");
+    }
+}

@@ -1,5 +1,6 @@
 //! Output-error fit: simulate, compare with what was measured, improve the parameters.
 
+mod covariance;
 mod instruments;
 mod linear_refit;
 #[cfg(test)]

@@ -13,6 +13,7 @@ use excavator_model::simulation::SimulationError;
 use excavator_model::{Model, SignalError};
 use nalgebra::{DMatrix, DVector};
 
+use super::covariance::clustered_covariance;
 use super::normal_equations::{RawSums, SegmentSums};
 use super::problem::Problem;
 use super::trial::loss_of;
@@ -322,39 +323,4 @@ fn result(model: &Model, problem: Problem<'_, '_>, state: State, steps: usize, c
         .collect();
     let block_errors = state.sums.iter().flat_map(|segment| segment.block_errors.iter().cloned()).collect();
     Fit { model, fitted, covariance, inflation, instruments, errors, block_errors, block_places, steps, converged }
-}
-
-/// Covariance that holds for coloured errors: blocks of half a second are taken as independent, errors inside one may be
-/// correlated in any way (cluster-robust "sandwich", Liang and Zeger 1986), with the factor n/(n - p) on the blocks. And the
-/// ratio of its diagonal to that of white errors.
-fn clustered_covariance(sums: &[SegmentSums], scales: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
-    let fitted = scales.len();
-    let mut information = DMatrix::<f64>::zeros(fitted, fitted);
-    let mut meat = DMatrix::<f64>::zeros(fitted, fitted);
-    let mut blocks = 0.0;
-    for segment in sums {
-        information += &segment.information;
-        for block in &segment.block_gradients {
-            meat += block * block.transpose();
-            blocks += 1.0;
-        }
-    }
-    let Some(factor) = information.clone().cholesky() else {
-        return (DMatrix::from_element(fitted, fitted, f64::INFINITY), vec![f64::NAN; fitted]);
-    };
-    let inverse = factor.inverse();
-    let parameters = fitted as f64;
-    let correction = if blocks > parameters { blocks / (blocks - parameters) } else { f64::INFINITY };
-    let mut covariance = &inverse * meat * &inverse * correction;
-    // White-noise theory is a lower bound that few clusters can fall below by chance.
-    for index in 0..fitted {
-        covariance[(index, index)] = covariance[(index, index)].max(inverse[(index, index)]);
-    }
-    let inflation = (0..fitted).map(|index| covariance[(index, index)] / inverse[(index, index)]).collect();
-    for row in 0..fitted {
-        for column in 0..fitted {
-            covariance[(row, column)] *= scales[row] * scales[column];
-        }
-    }
-    (covariance, inflation)
 }

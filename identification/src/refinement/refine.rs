@@ -43,7 +43,9 @@ impl Step {
 /// A refined model and how it came about.
 #[derive(Debug, Clone)]
 pub struct Refinement {
-    /// The model as it was given with its own numbers, on the validation recordings, where it can be simulated.
+    /// The model as it was given.
+    pub given_model: Model,
+    /// It with its own numbers, on the validation recordings, where it can be simulated.
     pub given: Vec<Comparison>,
     /// Step 0 is before anything is added.
     pub steps: Vec<Step>,
@@ -163,7 +165,7 @@ pub fn refine(
     for parameter in final_model.parameters_mut().filter(|parameter| !parameter.known) {
         parameter.source = "identified".into();
     }
-    Ok(Refinement { given, steps, model: final_model, diagnosis })
+    Ok(Refinement { given_model: model.clone(), given, steps, model: final_model, diagnosis })
 }
 
 /// Words for a model's history: the step, and what was fitted along since the model `before`.

@@ -36,7 +36,7 @@ pub fn comparison_page(model: &Model, comparisons: &[Comparison]) -> String {
     sections.push(Section {
         anchor: "parameters",
         title: "Parameters".into(),
-        body: parameter_table::of_model(model, &[]),
+        body: parameter_table::of_model(model, model, &[]),
     });
     page("Comparison", &model.machine.name, &lead, &sections)
 }

@@ -48,7 +48,7 @@ pub fn diagnosis_page(
     sections.push(Section {
         anchor: "parameters",
         title: "Parameters of the refitted model".into(),
-        body: parameter_table::of_model(&diagnosis.nominal.model, &[]),
+        body: parameter_table::of_model(model, &diagnosis.nominal.model, &[]),
     });
     page("Diagnosis", &model.machine.name, &lead, &sections)
 }

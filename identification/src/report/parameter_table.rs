@@ -1,19 +1,28 @@
 //! Parameters with units and standard errors.
 
+use std::collections::BTreeMap;
+
 use excavator_model::effects::{Site, Start};
-use excavator_model::{Model, ModelEffect, Parameter, site_name};
+use excavator_model::{Model, ModelEffect, Parameter, addition_name, site_name};
 use maud::{Markup, html};
 
 use super::numbers::{NOTHING, percent, with_error};
 use super::{units, words};
+use crate::fitted_along::found_along;
 
 /// Standard error over value from which on a number is called poorly known.
 const POORLY_KNOWN: f64 = 0.5;
 
-/// All parameters of a model, effect by effect; effects in `added` (`effect@place`) are marked.
-pub(super) fn of_model(model: &Model, added: &[String]) -> Markup {
+/// All parameters of a model, effect by effect. Marked are effects in `added` (`effect@place`), and what was fitted along
+/// since the model `given`.
+pub(super) fn of_model(given: &Model, model: &Model, added: &[String]) -> Markup {
     let effects: Vec<&ModelEffect> = model.effects.iter().filter(|effect| !effect.parameters.is_empty()).collect();
-    table(model, &effects, Some(added))
+    let marks = found_along(given, model)
+        .map(|effect| addition_name(effect.physics, site_name(&model.machine, effect.site)))
+        .map(|name| (name, "fitted along"))
+        .chain(added.iter().map(|name| (name.clone(), "added")))
+        .collect();
+    table(model, &effects, Some(marks))
 }
 
 /// Parameters of one effect of a model.
@@ -23,9 +32,9 @@ pub(super) fn of_effect(model: &Model, name: &str, site: Site) -> Markup {
     table(model, &effects, None)
 }
 
-/// With a column of effects where `added` is given.
-fn table(model: &Model, effects: &[&ModelEffect], added: Option<&[String]>) -> Markup {
-    let (in_model, added) = (added.is_some(), added.unwrap_or_default());
+/// With a column of effects where `marks` are given: words for some of them, by `effect@place`. The last that fits is taken.
+fn table(model: &Model, effects: &[&ModelEffect], marks: Option<BTreeMap<String, &'static str>>) -> Markup {
+    let (in_model, marks) = (marks.is_some(), marks.unwrap_or_default());
     let poor = effects
         .iter()
         .flat_map(|effect| &effect.parameters)
@@ -40,13 +49,14 @@ fn table(model: &Model, effects: &[&ModelEffect], added: Option<&[String]>) -> M
                 } }
                 tbody { @for effect in effects {
                     @let place = site_name(&model.machine, effect.site);
+                    @let mark = marks.get(&addition_name(effect.physics, place));
                     @for (number, parameter) in effect.parameters.iter().enumerate() {
                         @let relative = relative_error(parameter);
                         tr.weak[relative.is_some_and(|relative| relative > POORLY_KNOWN)].first[in_model && number == 0] {
                             @if in_model {
                                 td { @if number == 0 {
                                     (words::spoken(effect.name()))
-                                    @if added.contains(&format!("{}@{place}", effect.name())) { " " span.chip.also { "added" } }
+                                    @if let Some(mark) = mark { " " span.chip.also { (mark) } }
                                 } }
                             }
                             (cells(effect, place, parameter, relative))

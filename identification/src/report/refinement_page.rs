@@ -25,7 +25,7 @@ pub fn refinement_page(refinement: &Refinement) -> String {
     let lead = html! {
         p.about { (model.machine.description) }
         @match &refinement.diagnosis {
-            Some(diagnosis) => (verdict(model, diagnosis)),
+            Some(diagnosis) => (verdict(&refinement.given_model, diagnosis)),
             None => p.verdict { (what_was_done(&added)) },
         }
         (tiles(&stages))
@@ -42,7 +42,7 @@ pub fn refinement_page(refinement: &Refinement) -> String {
         Section {
             anchor: "parameters",
             title: "Parameters of the final model".into(),
-            body: parameter_table::of_model(model, &added),
+            body: parameter_table::of_model(&refinement.given_model, model, &added),
         },
     ];
     if let Some(diagnosis) = &refinement.diagnosis {

@@ -126,6 +126,7 @@ fn refinement() -> Refinement {
         validation_error_after: None,
     });
     Refinement {
+        given_model: model(),
         given: vec![comparison(0.4)],
         steps: vec![
             step(None, fit_of(&model(), 1e-2), 0.2),
@@ -363,4 +364,19 @@ fn refinement_tells_the_story() {
     assert_eq!(plots(&page).len(), 2 * SIGNALS.len());
     assert_eq!(plots(&page)[0]["series"].as_array().unwrap().len(), 3);
     assert!(page.len() < 3_000_000);
+}
+
+#[test]
+fn a_refined_model_tells_what_was_fitted_along_since_the_given_one() {
+    let mut refinement = refinement();
+    assert!(!refinement_page(&refinement).contains("fitted along"));
+    let found = refinement.diagnosis.as_mut().unwrap();
+    let reversal = effects::find("friction_reversal").unwrap();
+    for model in [&mut refinement.model, &mut found.chain.last_mut().unwrap().fit.model] {
+        *model = model.with_effect(reversal, Site::Cylinder(0)).unwrap();
+        found_value(model, 2.14e-3);
+    }
+    let page = refinement_page(&refinement);
+    assert!(page.contains("Friction turns round over another speed than the usual 1 mm/s"));
+    assert_eq!(page.matches("fitted along").count(), 1);
 }

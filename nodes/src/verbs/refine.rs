@@ -32,7 +32,7 @@ pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
     drop(progress);
     sources::write_text(&arguments.output, &to_text(&refinement.model)?)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&model, &refinement);
+        show(&refinement);
         print(&format!("written: {}", arguments.output.display()));
     }
     if let Some(path) = &arguments.report {
@@ -61,9 +61,9 @@ fn named(model: &Model, names: &[String]) -> Result<Additions, VerbError> {
 }
 
 /// Prints a refinement for people.
-pub fn show(model: &Model, refinement: &Refinement) {
+pub fn show(refinement: &Refinement) {
     if let Some(diagnosis) = &refinement.diagnosis {
-        print(&verdict_sentence(model, diagnosis));
+        print(&verdict_sentence(&refinement.given_model, diagnosis));
     }
     print(&step_table(refinement).to_string());
     if let Some(last) = refinement.steps.last() {
