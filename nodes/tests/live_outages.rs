@@ -59,6 +59,29 @@ fn an_unplugged_cable_of_five_seconds_costs_nothing() {
 }
 
 #[test]
+#[ignore = "takes a minute"]
+fn an_unplugged_cable_of_thirty_seconds_loses_nothing_that_is_not_counted() {
+    let (_keep, folder) = folder();
+    let bag = folder.join("bag");
+    let Some(line) = line("thirty", &bag) else { return };
+    line.left.unplug();
+    sleep(30.0);
+    line.left.plug();
+    sleep(15.0);
+    let (stamps, log) = end(line, &bag);
+    let lost = custom_number(&bag, "lost_messages:/arm/state") as f64;
+    let missing: f64 = stamps.windows(2).map(|pair| pair[1] - pair[0] - 0.005).filter(|gap| *gap > 0.002).sum();
+    println!(
+        "longest gap {:.1} s, {lost} states counted as lost, {:.0} missing",
+        longest_gap(&stamps),
+        200.0 * missing
+    );
+    assert!(longest_gap(&stamps) < 35.0, "{}: {log}", longest_gap(&stamps));
+    assert!(stamps[stamps.len() - 1] > 44.0, "{}: {log}", stamps[stamps.len() - 1]);
+    assert!((lost - 200.0 * missing).abs() <= 2.0, "{lost} counted, {} missing: {log}", 200.0 * missing);
+}
+
+#[test]
 #[ignore = "takes two minutes"]
 fn an_outage_longer_than_every_lease_ends_within_seconds_of_the_cable() {
     let (_keep, folder) = folder();

@@ -1,7 +1,7 @@
 //! Tables for people.
 
-use comfy_table::presets::UTF8_FULL_CONDENSED;
-use comfy_table::{Attribute, Cell, CellAlignment, Table};
+use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
+use comfy_table::{Attribute, Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 use excavator_identification::diagnosis::{Candidate, Diagnosis, normalised_error};
 use excavator_identification::fit::Fit;
 use excavator_identification::refinement::Refinement;
@@ -34,6 +34,20 @@ pub(super) fn table(header: &[&str]) -> Table {
 
 pub(super) fn right(text: impl ToString) -> Cell {
     Cell::new(text.to_string()).set_alignment(CellAlignment::Right)
+}
+
+/// Effects of one family, without lines: name, place and summary, which is wrapped where a terminal is too narrow. The columns
+/// of several such tables stand below each other, `name_width` and `place_width` characters wide.
+pub fn effect_table(effects: &[[&str; 3]], name_width: u16, place_width: u16) -> Table {
+    let mut table = Table::new();
+    table.load_style(NOTHING);
+    table.set_content_arrangement(ContentArrangement::Dynamic);
+    table.add_rows(effects.iter().map(|texts| texts.map(Cell::new)));
+    let padding = 2;
+    for (column, width) in table.column_iter_mut().zip([name_width, place_width]) {
+        column.set_constraint(ColumnConstraint::Absolute(Width::Fixed(width + padding)));
+    }
+    table
 }
 
 /// Identified parameters with 95 % intervals.

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use excavator_model::document::built_in;
-use excavator_model::effects::{self, ActsOn, Effect, Family, Kind, ParameterCard, Site};
+use excavator_model::effects::{self, ActsOn, Card, Effect, Family, Kind, ParameterCard, Site};
 use serde_json::{Value, json};
 
 use super::print;
 use crate::cli::EffectsArguments;
 use crate::error::VerbError;
-use crate::output::{number, write_json};
+use crate::output::{effect_table, number, write_json};
 
 pub fn run(arguments: &EffectsArguments) -> Result<(), VerbError> {
     let wanted: Vec<&'static dyn Effect> = match &arguments.name {
@@ -39,6 +39,9 @@ fn place(acts_on: ActsOn) -> &'static str {
 }
 
 fn list(all: &[&'static dyn Effect]) {
+    let longest = |text: fn(&Card) -> &'static str| {
+        all.iter().map(|effect| text(effect.card()).len() as u16).max().unwrap_or_default()
+    };
     for (family, title) in [
         (Family::Base, "In the nominal model"),
         (Family::Recording, "How recordings are made: fitted along where they show it, never a candidate"),
@@ -48,10 +51,9 @@ fn list(all: &[&'static dyn Effect]) {
         (Family::Candidate, "Candidates beyond it"),
     ] {
         print(title);
-        for effect in all.iter().filter(|effect| effect.card().family == family) {
-            let card = effect.card();
-            print(&format!("  {:22} {:20} {}", card.name, place(card.acts_on), card.summary));
-        }
+        let own = all.iter().map(|effect| effect.card()).filter(|card| card.family == family);
+        let rows: Vec<[&str; 3]> = own.map(|card| [card.name, place(card.acts_on), card.summary]).collect();
+        print(&effect_table(&rows, longest(|card| card.name), longest(|card| place(card.acts_on))).trim_fmt());
     }
     print("`excavator effects NAME` describes one.");
 }
