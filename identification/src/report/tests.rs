@@ -71,7 +71,7 @@ fn candidate(name: &str, gain: f64, accepted: bool, tied: bool) -> Candidate {
         site,
         place: place.into(),
         fit: fit_of(&extended, 1e-3),
-        validation: fit_of(&extended, 1e-3),
+        validation: fit_of(&extended, 1e-2 * (-0.5 * gain).exp()),
         evidence: Evidence { gain, significance: 9.0 },
         inclusion: Inclusion { gains: 1.0, is_first: 0.97 },
         identification_gain: gain,

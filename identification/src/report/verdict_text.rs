@@ -148,7 +148,7 @@ fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
         2 => ": these recordings cannot tell the two apart. ",
         _ => ": these recordings cannot tell them apart. ",
     };
-    let times = ratio(first.evidence.gain.exp());
+    let times = times_smaller(diagnosis, first);
     let found = format!("the squared error on recordings it was not fitted to becomes {times} times smaller");
     text += &match names.len() {
         1 => format!("With it {found}."),
@@ -159,6 +159,12 @@ fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
         text += &format!(" Beyond it: {}.", words::list(&further, "and"));
     }
     text
+}
+
+/// By what the squared error on the validation recordings is smaller with everything up to this link. The gain of its evidence
+/// may be less: it is that of a few steps, or the smaller one of several recordings.
+fn times_smaller(diagnosis: &Diagnosis, link: &Candidate) -> String {
+    ratio((diagnosis.nominal_validation.loss() - link.validation.loss()).exp())
 }
 
 /// Share of a residual that a variable must explain to be named.
@@ -189,7 +195,7 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
     text += ".";
     if let Some(last) = diagnosis.chain.last() {
         let (verb, explain) = if helpful.len() == 1 { ("makes", "does") } else { ("make", "do") };
-        let times = ratio((diagnosis.nominal_validation.loss() - last.validation.loss()).exp());
+        let times = times_smaller(diagnosis, last);
         text += &format!(
             " Of the catalogue, {} {verb} the squared error on recordings it was not fitted to {times} times smaller, but \
              {explain} not explain all of it.",
@@ -219,7 +225,7 @@ fn construction(diagnosis: &Diagnosis) -> String {
             " With a {} the squared error would become {} times smaller. How a machine is built no diagnosis says: if this one has \
              that, add {}@{} by hand.",
             place_of(built),
-            ratio(built.evidence.gain.exp()),
+            times_smaller(diagnosis, built),
             built.name(),
             built.place
         )
