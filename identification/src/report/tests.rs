@@ -218,6 +218,11 @@ fn verdicts_name_effect_and_place_and_admit_ties() {
         "Missing in zx30u-arm: valve dead zone at the arm valve section. With it the squared error on recordings it was \
          not fitted to becomes 7.39 times smaller."
     );
+    let mut both = named.clone();
+    both.chain.push(candidate("hose_loss", 5.0, true, false));
+    assert!(sentence(&both).ends_with(
+        "becomes 7.39 times smaller. Beyond it: hose loss at the arm cylinder, with which it becomes 148 times smaller."
+    ));
     let tied = diagnosis(
         Verdict::MissingEffect,
         vec![candidate("valve_dead_zone", 2.0, true, true), candidate("relief_valve", 1.9, true, true)],

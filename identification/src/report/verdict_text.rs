@@ -155,8 +155,9 @@ fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
         _ => format!("With the first of them {found}."),
     };
     let further: Vec<String> = diagnosis.chain.iter().skip(1).map(place_of).collect();
-    if !further.is_empty() {
-        text += &format!(" Beyond it: {}.", words::list(&further, "and"));
+    if let (Some(last), false) = (diagnosis.chain.last(), further.is_empty()) {
+        let (names, times) = (words::list(&further, "and"), times_smaller(diagnosis, last));
+        text += &format!(" Beyond it: {names}, with which it becomes {times} times smaller.");
     }
     text
 }
