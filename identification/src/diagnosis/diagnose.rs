@@ -158,7 +158,7 @@ pub fn diagnose(
     }
     if explained && let Some(last) = chain.last() {
         mark_doubtful_leads(&mut candidates, &chain, settings.doubtful_lead * last.validation.loss());
-        chain = chains.settle_ties(chain, &mut candidates, progress)?;
+        chain = chains.settle_ties(chain, &mut candidates, &mut rejected, progress)?;
     }
     let mut built = BuiltOtherwise::default();
     if explained && !chain.is_empty() {
