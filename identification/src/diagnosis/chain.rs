@@ -106,7 +106,8 @@ impl Chains<'_> {
     }
 
     /// Whether a chain of effects explains the recordings: the model is adequate with them, or so much better and good
-    /// enough, or what it leaves is no more than the readings of the inputs leave open.
+    /// enough, or what it leaves is no more than the readings of the inputs leave open. What leaves more than right effects do must
+    /// take away the more.
     pub fn explains(&self, chain: &[Candidate]) -> bool {
         let settings = self.settings;
         let Some(last) = chain.last().map(|last| &last.validation) else {
@@ -114,10 +115,12 @@ impl Chains<'_> {
         };
         let share = (1.0 - last.loss() / self.nominal_validation.loss()).min(self.share_where_fitted(chain));
         let least = if chain.len() > 1 { settings.least_shared_share } else { settings.least_explained_share };
+        let typical_share = 1.0 - last.typical_loss() / self.nominal_validation.typical_loss();
+        let is_right = last.typical_loss() <= settings.right_loss || typical_share >= settings.resembling_share;
         if self.is_adequate(last) {
-            return share >= least;
+            return share >= least && is_right;
         }
-        share >= least.max(settings.explained_share) && last.typical_loss() <= settings.explained_loss
+        is_right && share >= least.max(settings.explained_share) && last.typical_loss() <= settings.explained_loss
             // What readings leave open is no reason to name something in a model that lacks nothing.
             || !self.nominal_is_adequate
                 && inputs_explain_the_rest(last, self.nominal_validation, least, self.validation, settings)
