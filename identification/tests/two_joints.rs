@@ -158,7 +158,7 @@ fn the_effect_and_its_cylinder_are_named() {
         &[("stribeck_friction", ARM, &[400.0, 0.01])],
         &[("hose_loss", BOOM, &[4e5])],
         &[("pressure_sensor_offset", ARM, &[1e5, 0.0])],
-        &[("valve_hysteresis", BOOM, &[4e-6])],
+        &[("valve_hysteresis", BOOM, &[4e-6, 1.0])],
         &[("entrained_air", ARM, &[0.02])],
         &[("asymmetric_friction", BOOM, &[2000.0])],
         &[("valve_leakage", ARM, &[3e-12, 2e-12, 3e-12, 2e-12])],

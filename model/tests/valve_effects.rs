@@ -173,7 +173,7 @@ fn only_valves_and_pump_line_have_a_say_in_the_way_of_oil() {
                 let typical: Vec<f64> =
                     effect.parameters(&model.machine, site).iter().map(|parameter| parameter.typical).collect();
                 assert_eq!(effect.states(), 0, "{name}");
-                assert_eq!(effect.spool_plain(&typical, &[], &mut [], 3e-5), 3e-5, "{name}");
+                assert_eq!(effect.spool_plain(&typical, &[], &mut [], 3e-5), [3e-5, 3e-5], "{name}");
                 assert_eq!(effect.opening_plain(&typical, 3e-5, 1e-4), 3e-5, "{name}");
                 let mut situation = Situation::<f64>::empty(&model.machine);
                 effect.adjust_plain(site, &typical, &mut situation);
@@ -183,32 +183,57 @@ fn only_valves_and_pump_line_have_a_say_in_the_way_of_oil() {
     }
 }
 
-/// The play holds still inside its width and follows a moving spool at half its width, late by 1 ms.
+/// At an edge the opening is exactly the ideal play's, inside it what it was at the last reversal.
 #[test]
-fn play_follows_within_its_accuracy() {
-    let mut model = built_in("zx30u-arm").unwrap();
-    model = model.with_effect(find("valve_hysteresis").unwrap(), Site::Cylinder(0)).unwrap();
+fn play_is_the_ideal_one() {
     let width = 8e-6;
-    model.effects.last_mut().unwrap().parameters[0].value = width;
+    let model = arm_with("valve_hysteresis", CYLINDER, &[width, 1.0]);
     let system = System::new(&model);
+    let parameters = model.parameter_values();
     let (amplitude, frequency) = (6e-5, 0.5);
     let spool = |t: f64| amplitude * (std::f64::consts::TAU * frequency * t).sin();
     let recording = common::driven(&model, 4.0, 1e-3, |_, t| spool(t), |_| 0.0);
     let signals = InputSignals::from_recording(&model, &recording).unwrap();
-    let mut integrator = Integrator::new(&system, &model.parameter_values(), &[], Tolerances::default());
+    let mut integrator = Integrator::new(&system, &parameters, &[], Tolerances::default());
     let mut state = common::at_rest(&system);
-    let own = system.layout().effect_states.last().unwrap().0;
-    let fastest = amplitude * std::f64::consts::TAU * frequency;
-    let (mut ideal, mut worst) = (0.0_f64, 0.0_f64);
+    let mut workspace = system.workspace();
+    let mut inputs = Inputs::zero(1);
+    let (mut ideal, mut worst, mut held) = (0.0_f64, 0.0_f64, 0);
     for index in 0..signals.len() - 1 {
         let now = spool(recording.time[index]);
+        let before = ideal;
         ideal = ideal.clamp(now - width / 2.0, now + width / 2.0);
-        worst = worst.max((state[own] - ideal).abs());
+        held += usize::from(index > 0 && ideal == before);
+        signals.between(index, 0.0, &mut inputs);
+        system.observe(&mut workspace, &parameters, &state, &inputs, &mut vec![0.0; system.layout().len]);
+        worst = worst.max((workspace.situation.pistons[0].opening - ideal).abs());
         integrator.advance(&signals, index, &mut state, None).unwrap();
     }
-    println!("play: {worst:.1e} m2 behind the ideal, {:.1e} promised", 1e-3 * fastest);
-    assert!(worst < 1.05e-3 * fastest, "{worst:e}");
-    assert!(worst > 0.5e-3 * fastest, "the bound is not met by chance");
+    // The spool turns round with 6e-4 m2/s2: a memory that is late by 1 ms stands that much times (1 ms)^2 too low.
+    let allowed = amplitude * (std::f64::consts::TAU * frequency * 1e-3).powi(2) + 1e-9;
+    println!("play: {worst:.1e} m2 from the ideal, {allowed:.1e} allowed; held for {held} samples");
+    assert!(held > 100, "the play is never inside its width");
+    assert!(worst < allowed, "{worst:e}");
+}
+
+/// The bypass has the whole play, none of it, or a share: the metering edges have it in any case.
+#[test]
+fn the_bypass_has_its_share_of_the_play() {
+    let (width, area) = (8e-6, 5e-5);
+    for share in [0.0, 0.3, 1.0] {
+        let model = arm_with("valve_hysteresis", CYLINDER, &[width, share]);
+        let system = System::new(&model);
+        let mut inputs = Inputs::zero(1);
+        inputs.orifice_area[0] = area;
+        let mut workspace = system.workspace();
+        let state = common::at_rest(&system);
+        let mut rates = vec![0.0; system.layout().len];
+        system.observe(&mut workspace, &model.parameter_values(), &state, &inputs, &mut rates);
+        let piston = &workspace.situation.pistons[0];
+        assert!((piston.opening - (area - width / 2.0)).abs() < 1e-18, "{}", piston.opening);
+        let wanted = area - share * width / 2.0;
+        assert!((piston.bypass_closing - wanted).abs() < 1e-18, "{share}: {} {wanted}", piston.bypass_closing);
+    }
 }
 
 /// A compensated section holds its flow whatever the load, as long as the pump is the margin above it; below it is an

@@ -157,6 +157,21 @@ fn wrong_units() {
         recording.cylinders[0].cap_pressure.iter_mut().for_each(|p| *p *= 1e-5);
     });
     assert_one_clear_line(&compare(folder.path(), "zx30u-arm", &path), &["arm.cap_pressure", "bar"]);
+    let path = bag(folder.path(), "kilopascal", |recording| {
+        let arm = &mut recording.cylinders[0];
+        for pressures in [&mut arm.cap_pressure, &mut arm.rod_pressure] {
+            pressures.iter_mut().for_each(|value| *value /= 1e3);
+        }
+    });
+    assert_one_clear_line(&compare(folder.path(), "zx30u-arm", &path), &["arm.cap_pressure", "kPa"]);
+    let path = bag(folder.path(), "kilopascal-pump", |recording| {
+        recording.pump_pressure.iter_mut().for_each(|value| *value /= 1e3);
+    });
+    assert_one_clear_line(&compare(folder.path(), "zx30u-arm", &path), &["pump_pressure", "kPa"]);
+    let path = bag(folder.path(), "open-rod-side", |recording| {
+        recording.cylinders[0].rod_pressure.iter_mut().for_each(|value| *value /= 1e2);
+    });
+    assert!(compare(folder.path(), "zx30u-arm", &path).status.success(), "a side at 0.1 bar is no wrong unit");
 }
 
 #[test]

@@ -17,6 +17,13 @@ const LEAST_MOTION: f64 = 20.0;
 /// Largest hydraulic pressure in use, Pa (gauge): mobile machines stay under 50 MPa.
 const HIGHEST_PRESSURE: f64 = 1e8;
 
+/// What a pressure reaches that is measured in Pa, even if only by its noise; 30 is what 3 MPa are in bar.
+const LEAST_PRESSURE: f64 = 1e3;
+
+/// What the higher of a cylinder's pressures reaches where it moves anything, and the pump's where it feeds that, Pa: 0.2 bar moves
+/// not even a seal; 3000 is what 3 MPa are in kPa.
+const LEAST_WORKING_PRESSURE: f64 = 2e4;
+
 /// Checks that `recording` can be used with `model`.
 ///
 /// # Errors
@@ -63,7 +70,17 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
             at_most(model, recording, &name("orifice_area"), &signals.orifice_area, "m2", limit)?;
             at_most(model, recording, &name("orifice_command"), &signals.orifice_command, "m2", limit)?;
             for (signal, values) in [("cap_pressure", &signals.cap_pressure), ("rod_pressure", &signals.rod_pressure)] {
-                pressure(model, recording, &name(signal), values)?;
+                pressure(model, recording, &name(signal), values, LEAST_PRESSURE)?;
+            }
+            // Of one side alone nobody knows whether it is the one that works.
+            if is_measured(&signals.cap_pressure) && is_measured(&signals.rod_pressure) {
+                let cap_works = usual_size(&signals.cap_pressure) > usual_size(&signals.rod_pressure);
+                let (signal, working) = if cap_works {
+                    ("cap_pressure", &signals.cap_pressure)
+                } else {
+                    ("rod_pressure", &signals.rod_pressure)
+                };
+                pressure(model, recording, &name(signal), working, LEAST_WORKING_PRESSURE)?;
             }
             let opening =
                 if is_measured(&signals.orifice_area) { &signals.orifice_area } else { &signals.orifice_command };
@@ -82,13 +99,13 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
                 return Err(stretch.error(recording, name("rod_force"), "N"));
             }
             if cylinder.imposed_motion.is_some() {
-                pressure(model, recording, &name("cap_pressure"), &signals.cap_pressure)?;
-                pressure(model, recording, &name("rod_pressure"), &signals.rod_pressure)?;
+                pressure(model, recording, &name("cap_pressure"), &signals.cap_pressure, LEAST_PRESSURE)?;
+                pressure(model, recording, &name("rod_pressure"), &signals.rod_pressure, LEAST_PRESSURE)?;
             }
         }
     }
     if machine.has_chambers() {
-        pressure(model, recording, "pump_pressure", &recording.pump_pressure)?;
+        pressure(model, recording, "pump_pressure", &recording.pump_pressure, LEAST_WORKING_PRESSURE)?;
         at_most(model, recording, "tank_pressure", &recording.tank_pressure, "Pa", HIGHEST_PRESSURE)?;
         at_most(model, recording, "pump_flow", &recording.pump_flow, "m3/s", 0.1)?;
     }
@@ -226,12 +243,11 @@ fn within_stroke(
     }
 }
 
-fn pressure(model: &Model, recording: &Recording, name: &str, signal: &[f64]) -> Result<(), GateError> {
+fn pressure(model: &Model, recording: &Recording, name: &str, signal: &[f64], least: f64) -> Result<(), GateError> {
     at_most(model, recording, name, signal, "Pa", HIGHEST_PRESSURE)?;
     match usual_size(signal) {
-        // A working hydraulic pressure is never below 1 kPa all the time; 30 is what 3 MPa are in bar. Zero throughout is
-        // no measurement in another unit but a side that is open to the air, given as a constant.
-        Some(value) if value < 1e3 && value > 0.0 => Err(GateError::TooSmall {
+        // Zero throughout is no measurement in another unit but a side that is open to the air, given as a constant.
+        Some(value) if value < least && value > 0.0 => Err(GateError::TooSmall {
             source_name: recording.source.clone(),
             signal: name.to_string(),
             value,

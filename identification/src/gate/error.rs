@@ -90,7 +90,7 @@ pub enum GateError {
     },
     /// A signal far too small to be in SI units.
     #[error(
-        "{source_name}: {signal} never exceeds {value:.3e} {unit}, far below anything hydraulic; is it in {unit}, not in bar or MPa?"
+        "{source_name}: {signal} never exceeds {value:.3e} {unit}, far below anything hydraulic; is it in {unit}, not in kPa, bar or MPa?"
     )]
     TooSmall {
         /// The recording.

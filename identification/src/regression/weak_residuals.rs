@@ -29,7 +29,7 @@ pub fn weak_residuals(
     recording: &Recording,
     settings: &WeakFormSettings,
 ) -> Result<Vec<WeakResidual>, RegressionError> {
-    let rows = rows(model, &[recording], settings, &[], false)?;
+    let (rows, _) = rows(model, &[recording], settings, &[], false, None)?;
     let (half_width, _) = settings.widths(&[recording]);
     // Integral of the test function (1 - x²)^4 over [-1, 1].
     const BUMP_AREA: f64 = 256.0 / 315.0;

@@ -25,22 +25,27 @@ pub(super) struct Row {
     pub instruments: DVector<f64>,
 }
 
+/// The rows of `recordings`, and the recordings as `model` would have produced them. Noise is taken off what is measured against
+/// `guides`, or against these where there are none.
 pub(super) fn rows(
     model: &Model,
     recordings: &[&Recording],
     settings: &WeakFormSettings,
     unknown: &[usize],
     with_instruments: bool,
-) -> Result<Vec<Row>, RegressionError> {
+    guides: Option<&[Recording]>,
+) -> Result<(Vec<Row>, Vec<Recording>), RegressionError> {
     let system = System::new(model);
     let linkages: Vec<Linkage> = model.machine.cylinders.iter().map(|cylinder| cylinder.linkage).collect();
     let (half_width, step) = settings.widths(recordings);
     let mut rows = Vec::new();
+    let mut simulations = Vec::new();
     for (number, recording) in recordings.iter().enumerate() {
         let noise = sensor_noise(recording, model)?;
         let truth = undistorted(model, recording);
         let simulation = simulated(model, recording, &truth)?;
-        let observation = observe_guided(model, &truth, &simulation.recording)?;
+        let guide = guides.and_then(|guides| guides.get(number)).unwrap_or(&simulation.recording);
+        let observation = observe_guided(model, &truth, guide)?;
         let measured = equations(&system, &observation, &simulation.effect_states, unknown);
         let instruments = if with_instruments {
             let observation = observe(model, &simulation.recording)?;
@@ -81,8 +86,9 @@ pub(super) fn rows(
                 });
             }
         }
+        simulations.push(simulation.recording);
     }
-    Ok(rows)
+    Ok((rows, simulations))
 }
 
 fn sensor_noise(recording: &Recording, model: &Model) -> Result<SensorNoise, RegressionError> {

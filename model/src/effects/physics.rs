@@ -35,10 +35,10 @@ pub trait Physics: Sync {
         0
     }
 
-    /// Where the spool really is (m²), given where the input says it is; `states` are the effect's own, whose rates
-    /// go to `rates`. Asked of effects of valves only, as is [`Physics::opening`].
-    fn spool<T: Scalar>(&self, _parameters: &[T], _states: &[T], _rates: &mut [T], spool: T) -> T {
-        spool
+    /// Where the metering edges and where the bypass's really are (m²), given where the input says the spool is; `states` are the
+    /// effect's own, whose rates go to `rates`. Asked of effects of valves only, as is [`Physics::opening`].
+    fn spool<T: Scalar>(&self, _parameters: &[T], _states: &[T], _rates: &mut [T], spool: T) -> [T; 2] {
+        [spool, spool]
     }
 
     /// Whether the effect looks at how the input changes, by [`Physics::read`].
@@ -84,8 +84,8 @@ pub trait Effect: Sync {
     fn is_worth_a_name(&self, parameters: &[f64]) -> bool;
     fn has_power(&self) -> bool;
     fn states(&self) -> usize;
-    fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> f64;
-    fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual;
+    fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> [f64; 2];
+    fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> [Dual; 2];
     fn reads_course(&self) -> bool;
     fn read_plain(&self, parameters: &[f64], reading: f64, course: [f64; 2]) -> f64;
     fn read_dual(&self, parameters: &[Dual], reading: Dual, course: [Dual; 2]) -> Dual;
@@ -120,10 +120,10 @@ impl<P: Physics> Effect for P {
     fn states(&self) -> usize {
         Physics::states(self)
     }
-    fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> f64 {
+    fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> [f64; 2] {
         self.spool(parameters, states, rates, spool)
     }
-    fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> Dual {
+    fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> [Dual; 2] {
         self.spool(parameters, states, rates, spool)
     }
     fn reads_course(&self) -> bool {
@@ -176,7 +176,7 @@ impl std::fmt::Debug for dyn Effect {
 /// A number type that effects can be evaluated with.
 #[allow(missing_docs)]
 pub trait Number: Scalar {
-    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self;
+    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> [Self; 2];
     fn read(effect: &dyn Effect, parameters: &[Self], reading: Self, course: [Self; 2]) -> Self;
     fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self;
     fn adjust(effect: &dyn Effect, site: Site, parameters: &[Self], now: &mut Situation<Self>);
@@ -186,7 +186,7 @@ pub trait Number: Scalar {
 }
 
 impl Number for f64 {
-    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self {
+    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> [Self; 2] {
         effect.spool_plain(parameters, states, rates, spool)
     }
     fn read(effect: &dyn Effect, parameters: &[Self], reading: Self, course: [Self; 2]) -> Self {
@@ -210,7 +210,7 @@ impl Number for f64 {
 }
 
 impl Number for Dual {
-    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> Self {
+    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> [Self; 2] {
         effect.spool_dual(parameters, states, rates, spool)
     }
     fn read(effect: &dyn Effect, parameters: &[Self], reading: Self, course: [Self; 2]) -> Self {

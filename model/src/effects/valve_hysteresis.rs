@@ -1,15 +1,20 @@
 //! Play between spool and opening.
 
 use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
-use crate::machine::Machine;
+use crate::machine::{Machine, Supply};
 
 /// Play between spool and opening.
 ///
 /// The ideal play moves its output only while its input pushes: `dz = du` at an edge, a law in the input's rate, which a
-/// sampled input does not have. Here the edge pulls z along like a lag of [`FOLLOW_TIME`]: z stays behind the ideal play by
-/// at most `T |du/dt|`, that is 1e-7 m² or 0.1 % of a usual full opening at a full stroke per second, and holds exactly
-/// inside the play. The right-hand side is continuous (Lipschitz), so sensitivities need no jump condition, and a
-/// linearly implicit step takes an edge like any other stiff lag.
+/// sampled input does not have. Here the edge pulls the memory z along like a lag of [`FOLLOW_TIME`], and the output is the
+/// memory as far as the edges let it be: at an edge exactly the ideal play's, inside the memory. What is left of the lag is where
+/// the memory stands after a reversal, behind the ideal play by `T |du/dt|` a millisecond before it: where the spool turned
+/// round within a few milliseconds, nothing where it slowed down first. The right-hand side is continuous (Lipschitz), so
+/// sensitivities need no jump condition, and a linearly implicit step takes an edge like any other stiff lag.
+///
+/// Where the play is decides who has it. Between the sensor and the spool, all lands of the spool have it, that of the
+/// bypass too. In the metering edges' own pilot stage the bypass has none: it follows what the sensor says. A share
+/// says how much of it the bypass has, for a pump's pressure shows the one as clearly as the other.
 pub struct ValveHysteresis;
 
 static CARD: Card = Card {
@@ -17,32 +22,50 @@ static CARD: Card = Card {
     acts_on: ActsOn::Valve,
     family: Family::Candidate,
     summary: "The opening follows the measured spool only after some play has been taken up: backlash, or friction in a pilot stage.",
-    equation: "T dz/dt = max(0, u - z - w/2) - max(0, z - u - w/2), opening from z; T = 1 ms",
+    equation: "T dz/dt = y - z, y = z where |u - z| < w/2, else the edge u - w/2 or u + w/2; opening from y, bypass from u + c (y - u); T = 1 ms",
     source: "[B] IV-B; play operator (e.g. Visintin, Differential Models of Hysteresis) in a rate form",
     shows: "Flow against opening runs on two lines, one for opening and one for closing; after a reversal nothing happens for the width of the play.",
     experiment: "Slow triangles of the spool around several mean openings.",
     energy: "Changes the supply through the valve; dissipates nothing itself.",
 };
 
-static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "play_width",
-    symbol: "w",
-    unit: "m2",
-    meaning: "spool travel lost at each reversal, as an orifice area",
-    kind: Kind::Shape,
-    minimum: 0.0,
-    maximum: 5e-5,
-    typical: 1e-5,
-    start: Start::At(&[4e-6, 5e-7]),
-}];
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: "play_width",
+        symbol: "w",
+        unit: "m2",
+        meaning: "spool travel lost at each reversal, as an orifice area",
+        kind: Kind::Shape,
+        minimum: 0.0,
+        maximum: 5e-5,
+        typical: 1e-5,
+        start: Start::At(&[4e-6, 5e-7]),
+    },
+    ParameterCard {
+        name: "bypass_share",
+        symbol: "c",
+        unit: "-",
+        meaning: "how much of the play the bypass has: 1 where it is on the same spool, 0 where it follows the sensor",
+        kind: Kind::Shape,
+        minimum: 0.0,
+        maximum: 1.0,
+        typical: 1.0,
+        start: Start::At(&[0.5]),
+    },
+];
 
 impl Physics for ValveHysteresis {
     fn card(&self) -> &'static Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
-        PARAMETERS
+    fn parameters(&self, machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+        // Without a pump line there is no bypass.
+        if matches!(machine.supply, Supply::PumpLine(_)) { PARAMETERS } else { &PARAMETERS[..1] }
+    }
+
+    fn value_where_left_out(&self, parameter: &str) -> Option<f64> {
+        (parameter == "bypass_share").then_some(1.0)
     }
 
     fn has_power(&self) -> bool {
@@ -53,14 +76,17 @@ impl Physics for ValveHysteresis {
         1
     }
 
-    fn spool<T: Scalar>(&self, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> T {
+    fn spool<T: Scalar>(&self, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2] {
         let ahead = spool - states[0];
         let half = parameters[0] * 0.5;
-        rates[0] = ((ahead - half).positive_part() - (-ahead - half).positive_part()) / FOLLOW_TIME;
-        states[0]
+        let pulled = (ahead - half).positive_part() - (-ahead - half).positive_part();
+        rates[0] = pulled / FOLLOW_TIME;
+        let opening = states[0] + pulled;
+        let bypass = parameters.get(1).map_or(opening, |share| spool + *share * (opening - spool));
+        [opening, bypass]
     }
 }
 
-/// Time T in which the output reaches an edge that pulls it, s: the sample interval of a fast recorder, under which no
+/// Time T in which the memory reaches an edge that pulls it, s: the sample interval of a fast recorder, under which no
 /// difference to the ideal play can be seen.
 const FOLLOW_TIME: f64 = 1.0e-3;

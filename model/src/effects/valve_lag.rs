@@ -69,12 +69,12 @@ impl Physics for ValveLag {
         2
     }
 
-    fn spool<T: Scalar>(&self, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> T {
+    fn spool<T: Scalar>(&self, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2] {
         let (lag, share) = (parameters[0], parameters[1]);
         let (before, opening) = (states[0], states[1]);
         rates[1] = (before - opening) / lag;
         rates[0] = rates[1] + (spool - before) / (share * lag + FASTEST);
-        opening
+        [opening, opening]
     }
 }
 

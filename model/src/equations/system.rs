@@ -182,6 +182,9 @@ impl<'m> System<'m> {
         state: &[T],
         rates: &mut [T],
     ) {
+        for piston in &mut situation.pistons {
+            piston.bypass_closing = piston.spool;
+        }
         for &number in &self.adjusting {
             let effect = &self.model.effects[number];
             let Site::Cylinder(index) = effect.site else { continue };
@@ -189,13 +192,15 @@ impl<'m> System<'m> {
             let (state_first, states) = self.layout.effect_states[number];
             let own_states = &state[state_first..state_first + states];
             let own_rates = &mut rates[state_first..state_first + states];
-            let spool = situation.pistons[index].spool;
-            situation.pistons[index].spool =
-                T::spool(effect.physics, &parameters[first..last], own_states, own_rates, spool);
+            let piston = &mut situation.pistons[index];
+            let [metering, bypass] =
+                T::spool(effect.physics, &parameters[first..last], own_states, own_rates, piston.spool);
+            piston.bypass_closing += bypass - piston.spool;
+            piston.spool = metering;
         }
         for piston in &mut situation.pistons {
             piston.opening = piston.spool;
-            piston.bypass_closing = piston.spool.abs();
+            piston.bypass_closing = piston.bypass_closing.abs();
             piston.backflow = T::from(1.0);
             piston.compensator_margin = None;
             piston.hose_resistance = None;
