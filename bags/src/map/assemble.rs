@@ -9,7 +9,7 @@ use super::error::MapError;
 use super::resample::{Policy, resample};
 use super::signal::SignalKind;
 use super::track::Track;
-use crate::reading::{ReadReport, count_late, gaps};
+use crate::reading::{ReadReport, count_late, gaps, steps_back};
 
 /// What was read for one signal.
 pub(super) enum Samples {
@@ -31,6 +31,7 @@ pub(super) fn assemble(
     report: &mut ReadReport,
 ) -> Result<Recording, MapError> {
     report.reordered = count_late(&stamps);
+    report.notes.extend(steps_back(&stamps));
     let count = stamps.len();
     stamps.sort_unstable();
     stamps.dedup();

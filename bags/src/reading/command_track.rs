@@ -3,8 +3,8 @@
 use excavator_model::recording::Recording;
 use excavator_msgs::OrificeCommand;
 
+use super::late_stamps::count_late;
 use super::report::ReadReport;
-use super::state_table::count_late;
 
 /// The commands of one cylinder in the order of the bag.
 #[derive(Debug)]

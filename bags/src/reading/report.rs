@@ -47,7 +47,7 @@ pub struct ReadReport {
     pub truncated_after: Option<f64>,
     /// Messages that `metadata.yaml` promises and that are not there; 0 without metadata.
     pub missing_messages: u64,
-    /// What a map or a table could not give, one line each.
+    /// What a map or a table could not give, and where a clock was set back, one line each.
     pub notes: Vec<String>,
 }
 

@@ -3,6 +3,7 @@
 use excavator_model::recording::{CylinderSignals, Recording};
 use excavator_msgs::{ArmState, CylinderState};
 
+use super::late_stamps::{count_late, steps_back};
 use super::report::{Gap, ReadReport};
 
 /// An interval longer than this many median intervals is a gap.
@@ -86,6 +87,7 @@ impl StateTable {
         report.infinite_values += self.infinite_values;
         report.repeated_cylinders = self.repeated_cylinders;
         report.reordered = count_late(&self.stamps);
+        report.notes.extend(steps_back(&self.stamps));
         let order = rows_by_stamp(&self.stamps);
         report.duplicates = (self.stamps.len() - order.len()) as u64;
         let samples = self.stamps.len();
@@ -124,17 +126,6 @@ impl StateTable {
 fn push_finite(column: &mut Vec<f64>, value: f64, infinite_values: &mut u64) {
     *infinite_values += u64::from(value.is_infinite());
     column.push(if value.is_infinite() { f64::NAN } else { value });
-}
-
-/// How many stamps are smaller than one before them.
-pub(crate) fn count_late(stamps: &[i64]) -> u64 {
-    let mut latest = i64::MIN;
-    let mut late = 0;
-    for &stamp in stamps {
-        late += u64::from(stamp < latest);
-        latest = latest.max(stamp);
-    }
-    late
 }
 
 /// Rows in the order of their stamps; of rows with equal stamps only the first.

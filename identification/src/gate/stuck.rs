@@ -1,6 +1,6 @@
 //! Sensors that show one value while the machine works.
 
-use excavator_model::recording::{Recording, is_measured, resolution};
+use excavator_model::recording::{Recording, is_measured, noise_level, resolution};
 
 use super::GateError;
 use super::opening::{largest, open_one_way};
@@ -22,6 +22,9 @@ const NEAR_THE_END: f64 = 0.05;
 /// Share of a signal's range from which on a converter's step is coarse: whether the sensor lives cannot be told from its noise,
 /// which is smaller than a step.
 const COARSE: f64 = 5e-3;
+
+/// Noise of a sensor, in steps of its converter, from which on a second without any is a second without the sensor.
+const ALIVE: f64 = 2.0;
 
 /// When and where a sensor is stuck.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,16 +54,18 @@ pub(super) fn stuck_pressure(time: &[f64], signal: &[f64], witnesses: &[&[f64]])
     longest(time, signal, |run| run.value.abs() >= NEAR_TANK && all_move(witnesses, run))
 }
 
-/// The longest stretch in which a piston seems to stand still away from its ends although its valve is open one way all
-/// the time and both pressures change.
+/// The longest stretch in which a piston seems to stand still although both pressures change, and either its valve is open one way
+/// all the time and the piston is away from its ends, or its valve moves and the sensor has noise everywhere else.
 pub(super) fn stuck_position(time: &[f64], signal: &[f64], opening: &[f64], pressures: &[&[f64]]) -> Option<Stretch> {
     let (least, most) = range(signal);
     let margin = NEAR_THE_END * (most - least);
     let largest = largest(opening);
+    let has_noise = noise_level(signal) > ALIVE * resolution(signal);
     longest(time, signal, |run| {
-        let one_way = open_one_way(&opening[run.first..=run.last], largest);
         let inside = run.value > least + margin && run.value < most - margin;
-        inside && largest > 0.0 && one_way && all_move(pressures, run)
+        let is_driven = inside && open_one_way(&opening[run.first..=run.last], largest);
+        let is_silent = has_noise && all_move(&[opening], run);
+        largest > 0.0 && (is_driven || is_silent) && all_move(pressures, run)
     })
 }
 
@@ -140,5 +145,14 @@ mod tests {
         assert_eq!(stuck_position(&time, &position, &open, &witnesses).unwrap().value, 0.37);
         let closed = vec![0.0; 1000];
         assert_eq!(stuck_position(&time, &position, &closed, &witnesses), None);
+        // A valve that goes both ways may leave a piston where it is, but not its sensor without noise.
+        let both_ways: Vec<f64> = time.iter().map(|t| 1e-5 * (3.0 * t).sin()).collect();
+        assert_eq!(stuck_position(&time, &position, &both_ways, &witnesses), None);
+        for (index, value) in position.iter_mut().enumerate() {
+            *value += 1e-4 * ((index * index) as f64 * 0.7).sin();
+        }
+        assert_eq!(stuck_position(&time, &position, &both_ways, &witnesses), None);
+        position[300..450].fill(0.37);
+        assert_eq!(stuck_position(&time, &position, &both_ways, &witnesses).unwrap().value, 0.37);
     }
 }
