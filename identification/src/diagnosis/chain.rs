@@ -107,7 +107,7 @@ impl Chains<'_> {
 
     /// Whether a chain of effects explains the recordings: the model is adequate with them, or so much better and good
     /// enough, or what it leaves is no more than the readings of the inputs leave open. What leaves more than right effects do must
-    /// take away the more.
+    /// take away the more, and several effects, which imitate more than one can, may leave the less.
     pub fn explains(&self, chain: &[Candidate]) -> bool {
         let settings = self.settings;
         let Some(last) = chain.last().map(|last| &last.validation) else {
@@ -116,7 +116,9 @@ impl Chains<'_> {
         let share = (1.0 - last.loss() / self.nominal_validation.loss()).min(self.share_where_fitted(chain));
         let least = if chain.len() > 1 { settings.least_shared_share } else { settings.least_explained_share };
         let typical_share = 1.0 - last.typical_loss() / self.nominal_validation.typical_loss();
-        let is_right = last.typical_loss() <= settings.right_loss || typical_share >= settings.resembling_share;
+        let effects = chain.len() as f64;
+        let is_right = last.typical_loss() <= settings.right_loss / effects
+            || 1.0 - typical_share <= (1.0 - settings.resembling_share) / effects;
         if self.is_adequate(last) {
             return share >= least && is_right;
         }
