@@ -35,25 +35,34 @@ pub fn noise_level(signal: &[f64]) -> f64 {
 /// A measured spool opening needs this before it drives a model: flow goes one way for u > 0 and another for u < 0, so
 /// noise about a closed valve does not average out but acts as a leak from pump to tank through both chambers.
 pub fn denoised(signal: &[f64]) -> Vec<f64> {
-    with_standard_errors(signal).into_iter().map(|(value, _)| value).collect()
+    with_standard_errors(signal, noise_level(signal)).into_iter().map(|(value, _)| value).collect()
 }
 
 /// [`denoised`] of a signal that is nothing but noise where nothing contradicts it: each value shrunk towards zero by what
 /// its standard error leaves in doubt, with the weights of the non-negative garrote (Breiman 1995), which leave values
 /// far beyond their errors as they are and come to zero without a jump. Nothing below `least` is taken for more than zero,
 /// however often it is repeated: half a step of a converter does not average out.
+///
+/// What is in doubt grows with the number of values that chance had: the largest of n normal variables is hardly ever beyond
+/// `sqrt(2 ln n)` (universal threshold, Donoho, Johnstone 1994). A narrow window, which an outlier gets, has thousands of
+/// others beside it, a wide one hundreds; and each sample has a choice of windows.
 pub fn denoised_towards_zero(signal: &[f64], least: f64) -> Vec<f64> {
+    let noise = noise_level(signal);
+    let doubt = |error: f64| {
+        let values = (signal.len() * HALF_WIDTHS.len()) as f64 * (error / noise).powi(2);
+        let errors = (2.0 * values.ln()).max(0.0).sqrt().max(LEAST_DOUBT);
+        // Without noise there is nothing to doubt.
+        if error > 0.0 { (errors * error).max(least) } else { least }
+    };
     let kept = |value: f64, doubt: f64| if value.abs() > doubt { value * (1.0 - (doubt / value).powi(2)) } else { 0.0 };
-    with_standard_errors(signal).into_iter().map(|(value, error)| kept(value, (DOUBT * error).max(least))).collect()
+    with_standard_errors(signal, noise).into_iter().map(|(value, error)| kept(value, doubt(error))).collect()
 }
 
-/// Standard errors within which a value is taken for zero. A recording of a minute holds hundreds of independent
-/// windows; less than one of them is further off by chance.
-const DOUBT: f64 = 3.0;
+/// Standard errors within which a value is taken for zero, however few there are.
+const LEAST_DOUBT: f64 = 3.0;
 
-/// Denoised values, each with its standard error.
-fn with_standard_errors(signal: &[f64]) -> Vec<(f64, f64)> {
-    let noise = noise_level(signal);
+/// Denoised values of a signal with this noise (standard deviation), each with its standard error.
+fn with_standard_errors(signal: &[f64], noise: f64) -> Vec<(f64, f64)> {
     if noise == 0.0 {
         return signal.iter().map(|&value| (value, 0.0)).collect();
     }
