@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::fs::write(path, page)
     };
     write("refinement", refinement_page(&refinement))?;
-    if let (Some(diagnosis), Some(first)) = (&refinement.diagnosis, refinement.steps.first()) {
+    if let (Some(diagnosis), Some(first)) = (refinement.diagnosis(), refinement.steps.first()) {
         println!("{}", verdict_sentence(&model, diagnosis));
         write("diagnosis", diagnosis_page(&model, diagnosis, &first.comparisons, &[]))?;
         write("comparison", comparison_page(&first.fit.model, &first.comparisons))?;

@@ -8,7 +8,7 @@ use excavator_model::Model;
 use excavator_model::document::{built_in, parse};
 use excavator_model::recording::Recording;
 
-use crate::cli::Mapping;
+use crate::cli::{self, Mapping};
 use crate::error::VerbError;
 
 /// A model by its built-in name or file.
@@ -34,6 +34,9 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
         eprintln!("{}: {problem}", path.display());
     }
     gate::check(model, &recording)?;
+    for remark in gate::remarks(model, &recording) {
+        eprintln!("{}: {remark}", path.display());
+    }
     Ok(recording)
 }
 
@@ -60,6 +63,21 @@ fn part_of(path: &Path) -> (PathBuf, Option<(f64, f64)>) {
 /// Several recordings.
 pub fn recordings(paths: &[impl AsRef<Path>], map: &Mapping, model: &Model) -> Result<Vec<Recording>, VerbError> {
     paths.iter().map(|path| recording(path.as_ref(), map, model)).collect()
+}
+
+/// The recordings that parameters are fitted to and those that judge the fit, with what they have in common told on standard
+/// error.
+pub fn fitted_and_judging(
+    paths: &cli::Recordings,
+    model: &Model,
+) -> Result<(Vec<Recording>, Vec<Recording>), VerbError> {
+    let identification = recordings(&paths.identification, &paths.mapping, model)?;
+    let validation = recordings(&paths.validation, &paths.mapping, model)?;
+    let (fitted, judging): (Vec<_>, Vec<_>) = (identification.iter().collect(), validation.iter().collect());
+    for shared in gate::shared_readings(&fitted, &judging) {
+        eprintln!("{shared}");
+    }
+    Ok((identification, validation))
 }
 
 /// Writes a text file.

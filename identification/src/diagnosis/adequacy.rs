@@ -48,9 +48,22 @@ pub(super) fn adequacy(fit: &Fit, recordings: &[&Recording], settings: &Diagnosi
     (is_small || error <= settings.negligible_error).then_some(Adequacy::SmallError)
 }
 
+/// Why a model as it is given is adequate, where it is; and whether it is not although the readings of the inputs leave as much open:
+/// the recordings are too coarse to tell. For a model as it is given only; a name for what is missing asks for more.
+pub(super) fn adequacy_as_given(
+    fit: &Fit,
+    recordings: &[&Recording],
+    settings: &DiagnosisSettings,
+) -> (Option<Adequacy>, bool) {
+    let alone = adequacy(fit, recordings, settings);
+    let inputs_explain = alone.is_none() && inputs_explain(fit, recordings, settings);
+    let excused = inputs_explain && normalised_error(fit, recordings) <= settings.excused_error;
+    (alone.or(excused.then_some(Adequacy::Inputs)), inputs_explain && !excused)
+}
+
 /// Whether what is left is no larger than the readings of the inputs leave open, in every instrument: what spoils the
 /// pressures only is no excuse for the displacement.
-pub(super) fn inputs_explain(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
+fn inputs_explain(fit: &Fit, recordings: &[&Recording], settings: &DiagnosisSettings) -> bool {
     with_input_floor(fit, recordings, &settings.fit).is_some_and(|raised| is_within_floor(&raised, settings))
 }
 

@@ -3,15 +3,14 @@
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
-use super::adequacy::inputs_explain;
+use super::adequacy::adequacy_as_given;
 use super::candidate::CandidateError;
 use super::chain::Chains;
 use super::construction::BuiltOtherwise;
 use super::race::Round;
 use super::starts::within_bounds;
 use super::{
-    Adequacy, Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, adequacy, compare_losses,
-    normalised_error, residual_map, unexplained,
+    Adequacy, Candidate, DiagnosisSettings, Share, Unexplained, Unpromising, compare_losses, residual_map, unexplained,
 };
 use crate::fit::{Fit, FitError, evaluate, fit};
 use crate::fitted_along::refitted_with_effects_along;
@@ -112,11 +111,7 @@ pub fn diagnose(
     let mut attempts = 0;
     let (nominal_validation, adequacy, too_coarse, first_round) = loop {
         let nominal_validation = evaluate(&nominal.model, validation, &settings.fit)?;
-        let alone = adequacy(&nominal_validation, validation, settings);
-        // For a model as it is given only; a name for what is missing asks for more.
-        let inputs_explain = alone.is_none() && inputs_explain(&nominal_validation, validation, settings);
-        let excused = inputs_explain && normalised_error(&nominal_validation, validation) <= settings.excused_error;
-        let adequacy = alone.or(excused.then_some(Adequacy::Inputs));
+        let (adequacy, too_coarse) = adequacy_as_given(&nominal_validation, validation, settings);
         let chains = Chains {
             nominal: &nominal,
             nominal_validation: &nominal_validation,
@@ -129,7 +124,7 @@ pub fn diagnose(
         let round = if is_clean { Round::default() } else { chains.round(&[], &|_| true, progress) };
         match better_nominal(&nominal, &round, identification, settings) {
             Some(better) if attempts < MOST_NOMINALS => nominal = better,
-            _ => break (nominal_validation, adequacy, inputs_explain && !excused, round),
+            _ => break (nominal_validation, adequacy, too_coarse, round),
         }
         attempts += 1;
     };

@@ -130,6 +130,12 @@ fn sensors_of_a_cylinder(
 ) -> Result<(), GateError> {
     let name = |signal: &str| format!("{}.{signal}", signals.name);
     let (cap, rod, displacement) = (&signals.cap_pressure[..], &signals.rod_pressure[..], &signals.displacement[..]);
+    if is_measured(cap) && is_the_same(cap, rod) {
+        return Err(GateError::SameSignal {
+            source_name: recording.source.clone(),
+            signals: [name("cap_pressure"), name("rod_pressure")],
+        });
+    }
     pressure_sensor(recording, &name("cap_pressure"), cap, &[rod, displacement])?;
     pressure_sensor(recording, &name("rod_pressure"), rod, &[cap, displacement])?;
     if let Some(stretch) = stuck_position(&recording.time, displacement, opening, &[cap, rod]) {
@@ -144,6 +150,12 @@ fn sensors_of_a_cylinder(
         });
     }
     Ok(())
+}
+
+/// Whether two signals that move are one, reading for reading.
+fn is_the_same(one: &[f64], other: &[f64]) -> bool {
+    let (low, high) = range(one);
+    high > low && one.iter().zip(other).all(|(a, b)| a == b || a.is_nan() && b.is_nan())
 }
 
 fn pressure_sensor(recording: &Recording, name: &str, signal: &[f64], witnesses: &[&[f64]]) -> Result<(), GateError> {
@@ -189,7 +201,7 @@ fn travel_by_opening(time: &[f64], displacement: &[f64], opening: &[f64]) -> f64
 }
 
 /// A robust largest size: single spikes are for the noise model, not for the units.
-fn usual_size(signal: &[f64]) -> Option<f64> {
+pub(super) fn usual_size(signal: &[f64]) -> Option<f64> {
     let mut sizes: Vec<f64> = signal.iter().filter(|value| value.is_finite()).map(|value| value.abs()).collect();
     let position = (sizes.len().checked_sub(1)? as f64 * 0.99) as usize;
     Some(*sizes.select_nth_unstable_by(position, f64::total_cmp).1)

@@ -162,6 +162,14 @@ pub enum GateError {
         /// Unexplained flow with the pressures exchanged, %.
         swapped: f64,
     },
+    /// Two sensors that read the same to the last digit.
+    #[error("{source_name}: {} and {} are the same signal, reading for reading; check the map or the wiring", signals[0], signals[1])]
+    SameSignal {
+        /// The recording.
+        source_name: String,
+        /// Contract names of the two.
+        signals: [String; 2],
+    },
     /// The recording has no cylinder of the machine.
     #[error(transparent)]
     Recording(#[from] excavator_model::recording::RecordingError),

@@ -4,9 +4,13 @@ mod check;
 mod clipped;
 mod error;
 mod opening;
+mod remarks;
 mod runs;
+mod shared_readings;
 mod stuck;
 mod swapped;
 
 pub use check::check;
 pub use error::GateError;
+pub use remarks::{Remark, remarks};
+pub use shared_readings::{SharedReadings, shared_readings};

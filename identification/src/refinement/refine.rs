@@ -6,8 +6,8 @@ use excavator_model::simulation::RunError;
 use excavator_model::{HistoryEntry, Model, ModelError, addition_name, site_name};
 
 use crate::diagnosis::{
-    CandidateError, Diagnosis, DiagnosisError, DiagnosisSettings, Verdict, addition_with_effects_along, diagnose,
-    fit_addition, fit_nominal,
+    CandidateError, Diagnosis, DiagnosisError, DiagnosisSettings, NamedVerdict, Verdict, addition_with_effects_along,
+    diagnose, fit_addition, fit_nominal, judge_named,
 };
 use crate::fit::{Fit, FitError};
 use crate::fitted_along::found_along;
@@ -51,26 +51,34 @@ pub struct Refinement {
     pub steps: Vec<Step>,
     /// The final model, its history extended.
     pub model: Model,
-    /// The diagnosis behind automatic additions.
-    pub diagnosis: Option<Diagnosis>,
+    /// Why this was added.
+    pub reason: Reason,
+}
+
+/// Why effects were added.
+#[derive(Debug, Clone)]
+pub enum Reason {
+    /// A diagnosis found them.
+    Found(Box<Diagnosis>),
+    /// Somebody named them; what is to be thought of that.
+    Named(NamedVerdict),
 }
 
 impl Refinement {
-    /// The verdict on the given model; for named additions, whether they lowered the error.
+    /// The verdict on the given model; for named additions, whether they explain what it was missing.
     pub fn verdict(&self) -> Verdict {
-        match &self.diagnosis {
-            Some(diagnosis) => diagnosis.verdict,
-            None if self.steps.len() > 1 && self.last_error() < self.first_error() => Verdict::MissingEffect,
-            None => Verdict::Adequate,
+        match &self.reason {
+            Reason::Found(diagnosis) => diagnosis.verdict,
+            Reason::Named(named) => named.verdict,
         }
     }
 
-    fn first_error(&self) -> f64 {
-        self.steps.first().map_or(f64::NAN, Step::mean_error)
-    }
-
-    fn last_error(&self) -> f64 {
-        self.steps.last().map_or(f64::NAN, Step::mean_error)
+    /// The diagnosis behind automatic additions.
+    pub fn diagnosis(&self) -> Option<&Diagnosis> {
+        match &self.reason {
+            Reason::Found(diagnosis) => Some(diagnosis),
+            Reason::Named(_) => None,
+        }
     }
 }
 
@@ -119,18 +127,20 @@ pub fn refine(
     let given =
         validation.iter().map(|recording| compare(model, recording)).collect::<Result<_, _>>().unwrap_or_default();
     let mut fits: Vec<(Option<String>, Fit)> = Vec::new();
-    let diagnosis = match additions {
+    let reason = match additions {
         Additions::Auto => {
             let diagnosis = diagnose(model, identification, validation, settings, progress)?;
             fits.push((None, diagnosis.nominal.clone()));
             for candidate in &diagnosis.chain {
                 fits.push((Some(addition_name(candidate.physics, &candidate.place)), candidate.fit.clone()));
             }
-            Some(diagnosis)
+            Reason::Found(Box::new(diagnosis))
         }
         Additions::Named(named) => {
             progress("fit of the given model", 0.0);
-            let mut current = fit_nominal(model, identification, settings)?;
+            let nominal = fit_nominal(model, identification, settings)?;
+            let mut added = Vec::new();
+            let mut current = nominal.clone();
             fits.push((None, current.clone()));
             for (number, &(physics, site)) in named.iter().enumerate() {
                 let name = addition_name(physics, site_name(&model.machine, site));
@@ -138,9 +148,10 @@ pub fn refine(
                 current = fit_addition(&current.model, physics, site, identification, &settings.fit)
                     .map_err(RefineError::from)?;
                 current = addition_with_effects_along(current, identification, &settings.fit);
+                added.push((physics, site, current.clone()));
                 fits.push((Some(name), current.clone()));
             }
-            None
+            Reason::Named(judge_named(&nominal, &added, identification, validation, settings)?)
         }
     };
     let mut steps: Vec<Step> = Vec::new();
@@ -165,7 +176,7 @@ pub fn refine(
     for parameter in final_model.parameters_mut().filter(|parameter| !parameter.known) {
         parameter.source = "identified".into();
     }
-    Ok(Refinement { given_model: model.clone(), given, steps, model: final_model, diagnosis })
+    Ok(Refinement { given_model: model.clone(), given, steps, model: final_model, reason })
 }
 
 /// Words for a model's history: the step, and what was fitted along since the model `before`.

@@ -5,12 +5,13 @@ use maud::{Markup, html};
 
 use super::diagnosis_page::{diagnosis_sections, verdict};
 use super::error_plots::{Errors, error_plots};
+use super::named_text::refinement_sentence;
 use super::numbers::{ratio, significant};
 use super::page::{Section, page, tile};
-use super::signal_tables::{Stages, added_name, recordings};
+use super::parameter_table;
+use super::signal_tables::{Stages, recordings};
 use super::step_plot::step_plot;
 use super::time_plots::{AFTER, BEFORE, Line, MODEL, hint, time_plots};
-use super::{parameter_table, words};
 use crate::diagnosis::Diagnosis;
 use crate::refinement::Refinement;
 use crate::validation::Comparison;
@@ -24,9 +25,9 @@ pub fn refinement_page(refinement: &Refinement) -> String {
     let added: Vec<String> = refinement.steps.iter().filter_map(|step| step.added.clone()).collect();
     let lead = html! {
         p.about { (model.machine.description) }
-        @match &refinement.diagnosis {
+        @match refinement.diagnosis() {
             Some(diagnosis) => (verdict(&refinement.given_model, diagnosis)),
-            None => p.verdict { (what_was_done(&added)) },
+            None => p.verdict { (refinement_sentence(refinement)) },
         }
         (tiles(&stages))
     };
@@ -45,7 +46,7 @@ pub fn refinement_page(refinement: &Refinement) -> String {
             body: parameter_table::of_model(&refinement.given_model, model, &added),
         },
     ];
-    if let Some(diagnosis) = &refinement.diagnosis {
+    if let Some(diagnosis) = refinement.diagnosis() {
         sections.extend(of_diagnosis(diagnosis, refinement));
     }
     sections.push(Section { anchor: "recordings", title: "Validation recordings".into(), body: recordings(after) });
@@ -67,14 +68,6 @@ fn before_and_after(refinement: &Refinement) -> (Option<&[Comparison]>, &[Compar
         _ => None,
     };
     (before, after)
-}
-
-fn what_was_done(added: &[String]) -> String {
-    let names: Vec<String> = added.iter().map(|name| added_name(name)).collect();
-    match names.as_slice() {
-        [] => "The parameters were identified again; nothing was added.".to_string(),
-        names => format!("Added as asked: {}.", words::list(names, "and")),
-    }
 }
 
 fn tiles(stages: &Stages) -> Markup {

@@ -8,12 +8,14 @@ use excavator_model::effects::{self, Family, Site};
 use excavator_model::recording::Recording;
 
 use super::{comparison_page, diagnosis_page, refinement_page, verdict_sentence};
-use crate::diagnosis::{Adequacy, Candidate, Diagnosis, Evidence, Inclusion, Share, Unexplained, Verdict};
+use crate::diagnosis::{
+    Adequacy, Candidate, Diagnosis, Evidence, Inclusion, NamedVerdict, Share, Unexplained, Verdict,
+};
 
 use crate::energy::{MissingPower, Regime};
 use crate::fit::Fit;
 use crate::fit::made_up::made_up_fit;
-use crate::refinement::{Refinement, Step};
+use crate::refinement::{Reason, Refinement, Step};
 use crate::validation::{Comparison, SignalComparison};
 
 const HOSTILE: &str = "</script><b>bag & \"co\"</b>";
@@ -133,8 +135,12 @@ fn refinement() -> Refinement {
             step(Some("valve_dead_zone@arm"), found.fit.clone(), 0.01),
         ],
         model: last,
-        diagnosis: Some(diagnosis(Verdict::MissingEffect, vec![found])),
+        reason: Reason::Found(Box::new(diagnosis(Verdict::MissingEffect, vec![found]))),
     }
+}
+
+fn named_to_no_avail() -> NamedVerdict {
+    NamedVerdict { verdict: Verdict::Unexplained, evidence: Evidence { gain: -0.1, significance: -2.0 }, helps: false }
 }
 
 /// Every opened element is closed in order, nothing is loaded, and user text is escaped.
@@ -201,7 +207,7 @@ fn pages_without_data_are_sound() {
     empty.signals.clear();
     assert_sound(&comparison_page(&model(), &[empty]));
     let mut nothing = refinement();
-    (nothing.given, nothing.diagnosis) = (Vec::new(), None);
+    (nothing.given, nothing.reason) = (Vec::new(), Reason::Named(named_to_no_avail()));
     nothing.steps.truncate(1);
     nothing.steps[0].comparisons.clear();
     assert_sound(&refinement_page(&nothing));
@@ -375,7 +381,7 @@ fn refinement_tells_the_story() {
 fn a_refined_model_tells_what_was_fitted_along_since_the_given_one() {
     let mut refinement = refinement();
     assert!(!refinement_page(&refinement).contains("fitted along"));
-    let found = refinement.diagnosis.as_mut().unwrap();
+    let Reason::Found(found) = &mut refinement.reason else { unreachable!() };
     let reversal = effects::find("friction_reversal").unwrap();
     for model in [&mut refinement.model, &mut found.chain.last_mut().unwrap().fit.model] {
         *model = model.with_effect(reversal, Site::Cylinder(0)).unwrap();

@@ -75,7 +75,7 @@ struct ImposedMotionText {
 impl MachineText {
     /// The machine, every unit and range checked.
     pub fn machine(&self, name: &str) -> Result<Machine, DocumentError> {
-        use Must::{BeFinite, BePositive};
+        use Must::{BeAboveVacuum, BeFinite, BePositive, NotBeNegative};
         let mechanism = match &self.mechanism {
             MechanismText::SingleLink { base_angle } => {
                 Mechanism::SingleLink { base_angle: base_angle.checked(name, "base_angle", "rad", BeFinite)? }
@@ -93,11 +93,11 @@ impl MachineText {
             SupplyText::PumpLine { volume, flow, tank_pressure } => Supply::PumpLine(PumpLine {
                 volume: volume.checked(name, "supply.volume", "m3", BePositive)?,
                 flow: flow.checked(name, "supply.flow", "m3/s", BePositive)?,
-                tank_pressure: tank_pressure.checked(name, "supply.tank_pressure", "Pa", BeFinite)?,
+                tank_pressure: tank_pressure.checked(name, "supply.tank_pressure", "Pa", BeAboveVacuum)?,
             }),
             SupplyText::PressureSource { pressure, tank_pressure } => Supply::PressureSource(PressureSource {
                 pressure: pressure.checked(name, "supply.pressure", "Pa", BePositive)?,
-                tank_pressure: tank_pressure.checked(name, "supply.tank_pressure", "Pa", BeFinite)?,
+                tank_pressure: tank_pressure.checked(name, "supply.tank_pressure", "Pa", BeAboveVacuum)?,
             }),
             SupplyText::None => Supply::None,
         };
@@ -131,7 +131,7 @@ impl MachineText {
         Ok(Machine {
             name: self.name.clone(),
             description: self.description.clone(),
-            gravity: self.gravity.checked(name, "gravity", "m/s2", BeFinite)?,
+            gravity: self.gravity.checked(name, "gravity", "m/s2", NotBeNegative)?,
             mechanism,
             cylinders,
             supply,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::DocumentError;
 use super::machine_text::MachineText;
-use crate::effects::{self, Kind, Site};
+use crate::effects::{self, Kind, ParameterCard, Site};
 use crate::model::site_name;
 use crate::{HistoryEntry, Model, ModelEffect};
 
@@ -103,13 +103,12 @@ fn fill_parameters(name: &str, text: &EffectText, effect: &mut ModelEffect) -> R
                 expected: card.unit,
             });
         }
-        let divides = card.kind == Kind::Reciprocal || card.kind == Kind::Shape && card.minimum > 0.0;
-        if !given.value.is_finite() || (divides && given.value <= 0.0) {
+        if let Some(must) = what_it_must_be(given, card) {
             return Err(DocumentError::Impossible {
                 name: name.to_string(),
                 quantity: format!("{}.{}", text.at, card.name),
                 value: given.value,
-                must: if divides { "positive".into() } else { "a finite number".into() },
+                must,
             });
         }
         parameter.value = given.value;
@@ -119,6 +118,21 @@ fn fill_parameters(name: &str, text: &EffectText, effect: &mut ModelEffect) -> R
         parameter.source.clone_from(&given.source);
     }
     Ok(())
+}
+
+/// What a given number must be and is not. What is to be identified is only a start, and may come out of a fit at the wrong side of
+/// zero; what is known is used as it is, and the bounds of a search are none for it.
+fn what_it_must_be(given: &ParameterText, card: &ParameterCard) -> Option<String> {
+    let divides = card.kind == Kind::Reciprocal || card.minimum > 0.0;
+    if !given.value.is_finite() {
+        Some("a finite number".into())
+    } else if divides && given.value <= 0.0 {
+        Some("positive".into())
+    } else if given.known && card.minimum >= 0.0 && given.value < 0.0 {
+        Some("zero or positive where it is known".into())
+    } else {
+        None
+    }
 }
 
 /// The text of a model. Sources of the machine's constants are not kept; its name says where to look them up.

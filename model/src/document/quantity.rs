@@ -18,8 +18,14 @@ pub(super) struct Quantity {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Must {
     BePositive,
+    NotBeNegative,
+    /// A gauge pressure in Pa.
+    BeAboveVacuum,
     BeFinite,
 }
+
+/// Gauge pressure of a vacuum, Pa.
+const VACUUM: f64 = -101_325.0;
 
 impl Quantity {
     /// A constant with its unit; the source is looked up by the caller who knows it.
@@ -39,6 +45,8 @@ impl Quantity {
         }
         let possible = match must {
             Must::BePositive => self.value.is_finite() && self.value > 0.0,
+            Must::NotBeNegative => self.value.is_finite() && self.value >= 0.0,
+            Must::BeAboveVacuum => self.value.is_finite() && self.value >= VACUUM,
             Must::BeFinite => self.value.is_finite(),
         };
         if possible {
@@ -50,6 +58,10 @@ impl Quantity {
                 value: self.value,
                 must: match must {
                     Must::BePositive => "a positive number".to_string(),
+                    Must::NotBeNegative => {
+                        "zero or a positive number; what turns the other way has a negative moment".to_string()
+                    }
+                    Must::BeAboveVacuum => format!("a gauge pressure of {VACUUM} Pa, a vacuum, or more"),
                     Must::BeFinite => "a finite number".to_string(),
                 },
             })

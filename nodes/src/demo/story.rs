@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
             progress.tell(what, done);
         })?;
     drop(progress);
-    if let Some(diagnosis) = &refinement.diagnosis {
+    if let Some(diagnosis) = refinement.diagnosis() {
         print(&candidate_table(diagnosis, &validation_only).to_string());
         print(&format!("\n3  {}", verdict_sentence(&model, diagnosis)));
     }

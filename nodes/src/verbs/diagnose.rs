@@ -17,9 +17,7 @@ use crate::sources;
 
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     let model = sources::model(&arguments.model)?;
-    let identification =
-        sources::recordings(&arguments.recordings.identification, &arguments.recordings.mapping, &model)?;
-    let validation = sources::recordings(&arguments.recordings.validation, &arguments.recordings.mapping, &model)?;
+    let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
     let identification: Vec<&Recording> = identification.iter().collect();
     let validation: Vec<&Recording> = validation.iter().collect();
     let progress = Progress::new();

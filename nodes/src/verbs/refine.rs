@@ -4,7 +4,7 @@ use std::path::Path;
 
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
-use excavator_identification::report::{refinement_page, verdict_sentence};
+use excavator_identification::report::{refinement_page, refinement_sentence};
 use excavator_model::Model;
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
@@ -18,9 +18,7 @@ use crate::sources;
 pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
     let model = sources::model(&arguments.model)?;
     let additions = if arguments.auto { Additions::Auto } else { named(&model, &arguments.add)? };
-    let identification =
-        sources::recordings(&arguments.recordings.identification, &arguments.recordings.mapping, &model)?;
-    let validation = sources::recordings(&arguments.recordings.validation, &arguments.recordings.mapping, &model)?;
+    let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
     let identification: Vec<&Recording> = identification.iter().collect();
     let validation: Vec<&Recording> = validation.iter().collect();
     let progress = Progress::new();
@@ -62,9 +60,7 @@ fn named(model: &Model, names: &[String]) -> Result<Additions, VerbError> {
 
 /// Prints a refinement for people.
 pub fn show(refinement: &Refinement) {
-    if let Some(diagnosis) = &refinement.diagnosis {
-        print(&verdict_sentence(&refinement.given_model, diagnosis));
-    }
+    print(&refinement_sentence(refinement));
     print(&step_table(refinement).to_string());
     if let Some(last) = refinement.steps.last() {
         print(&parameter_table(&last.fit.model, &last.fit.fitted).to_string());

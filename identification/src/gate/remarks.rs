@@ -1,0 +1,166 @@
+//! What is odd in a recording, but no reason to refuse it.
+
+use excavator_model::Model;
+use excavator_model::recording::{Recording, is_measured, noise_level};
+
+use super::check::usual_size;
+use super::runs::range;
+
+/// Something odd in a recording, in one line that says what to do.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Remark {
+    /// A valve opens further than the model says it can.
+    #[error(
+        "{signal} reaches {reached:.2} mm2, {times:.2} times the maximum_orifice_area of {machine}: one of the two is wrong, and effects that \
+         depend on it come out wrong"
+    )]
+    OpensTooFar {
+        /// Contract name of the signal.
+        signal: String,
+        /// Its usual largest size, mm².
+        reached: f64,
+        /// That over what the model says.
+        times: f64,
+        /// The machine.
+        machine: String,
+    },
+    /// A spool does not go where it is told.
+    #[error(
+        "{cylinder}: the spool does not follow its command (correlation {correlation:.2} at best): check sign, clock and topic of \
+         orifice_command; only orifice_area is used for the flows"
+    )]
+    CommandNotFollowed {
+        /// The cylinder.
+        cylinder: String,
+        /// Correlation of opening and command at the delay that suits them best.
+        correlation: f64,
+    },
+    /// Single readings that no sensor of this machine can mean.
+    #[error(
+        "{signal}: {count} of {samples} readings are beyond anything possible, up to {worst:.3e} {unit}; leave them out (NaN, or BAG@FROM..TO)"
+    )]
+    Spikes {
+        /// Contract name of the signal.
+        signal: String,
+        /// Readings beyond the limit.
+        count: usize,
+        /// Readings.
+        samples: usize,
+        /// The one of largest size.
+        worst: f64,
+        /// SI unit.
+        unit: &'static str,
+    },
+    /// A cylinder that the model does not have moves.
+    #[error(
+        "cylinder {cylinder} moves by {range:.3} m and is not in {machine}: it takes oil and swings what it carries; use a model that has it, or \
+         record while it rests"
+    )]
+    OtherCylinderMoves {
+        /// The cylinder.
+        cylinder: String,
+        /// How far it moves, m.
+        range: f64,
+        /// The machine.
+        machine: String,
+    },
+}
+
+/// What a valve may open beyond what the model says before it is worth a word: sensors have gains of their own.
+const OPENS_TOO_FAR: f64 = 1.1;
+
+/// Delays of a spool behind its command that are tried, s.
+const DELAYS: [f64; 7] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5];
+
+/// Correlation with a command that is followed: a dead band, a slow valve and a stop leave 0.8 and more.
+const FOLLOWS: f64 = 0.5;
+
+/// Largest hydraulic pressure a sensor can mean, Pa.
+const LARGEST_PRESSURE: f64 = 1e8;
+
+/// A cylinder that moves by less than this part of a metre, or of its noise, rests.
+const LEAST_TRAVEL: f64 = 0.01;
+
+/// All that is odd in `recording`, which has passed [`super::check`].
+pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
+    let mut found = Vec::new();
+    let machine = &model.machine;
+    for cylinder in &machine.cylinders {
+        let Ok(signals) = recording.cylinder(&cylinder.name) else { continue };
+        let name = |signal: &str| format!("{}.{signal}", cylinder.name);
+        found.extend(spikes(name("displacement"), &signals.displacement, "m", 2.0 * cylinder.stroke));
+        let Some(chambers) = &cylinder.chambers else { continue };
+        let (area, command) = (&signals.orifice_area, &signals.orifice_command);
+        let (signal, opening) = if is_measured(area) { ("orifice_area", area) } else { ("orifice_command", command) };
+        let reached = usual_size(opening).unwrap_or(0.0);
+        let times = reached / chambers.maximum_orifice_area;
+        if times > OPENS_TOO_FAR {
+            let machine = machine.name.clone();
+            found.push(Remark::OpensTooFar { signal: name(signal), reached: 1e6 * reached, times, machine });
+        }
+        if is_measured(area) && is_measured(command) {
+            let correlation = following(&recording.time, command, area);
+            if correlation.is_some_and(|correlation| correlation < FOLLOWS) {
+                let correlation = correlation.unwrap_or(0.0);
+                found.push(Remark::CommandNotFollowed { cylinder: cylinder.name.clone(), correlation });
+            }
+        }
+        found.extend(spikes(name("cap_pressure"), &signals.cap_pressure, "Pa", LARGEST_PRESSURE));
+        found.extend(spikes(name("rod_pressure"), &signals.rod_pressure, "Pa", LARGEST_PRESSURE));
+    }
+    for signals in &recording.cylinders {
+        let is_modelled = machine.cylinders.iter().any(|cylinder| cylinder.name == signals.name);
+        if is_modelled || !is_measured(&signals.displacement) {
+            continue;
+        }
+        let (low, high) = range(&signals.displacement);
+        if high - low > LEAST_TRAVEL.max(20.0 * noise_level(&signals.displacement)) {
+            let (cylinder, machine) = (signals.name.clone(), machine.name.clone());
+            found.push(Remark::OtherCylinderMoves { cylinder, range: high - low, machine });
+        }
+    }
+    found
+}
+
+fn spikes(signal: String, values: &[f64], unit: &'static str, limit: f64) -> Option<Remark> {
+    let beyond = || values.iter().copied().filter(|value| value.is_finite() && value.abs() > limit);
+    let worst = beyond().max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+    Some(Remark::Spikes { signal, count: beyond().count(), samples: values.len(), worst, unit })
+}
+
+/// Largest correlation of `follower` with an earlier `leader`, zero where that never moves; `None` where the follower rests or too
+/// little is known.
+fn following(time: &[f64], leader: &[f64], follower: &[f64]) -> Option<f64> {
+    let (low, high) = range(follower);
+    if high - low <= 20.0 * noise_level(follower) {
+        return None;
+    }
+    let held = |at: f64| time.partition_point(|&t| t <= at).checked_sub(1).map(|index| leader[index]);
+    let at_delay = |delay: f64| {
+        let pairs: Vec<(f64, f64)> = time
+            .iter()
+            .zip(follower)
+            .filter_map(|(&t, &value)| Some((held(t - delay)?, value)))
+            .filter(|(told, value)| told.is_finite() && value.is_finite())
+            .collect();
+        correlation(&pairs)
+    };
+    DELAYS.into_iter().filter_map(at_delay).max_by(f64::total_cmp)
+}
+
+/// Fewest readings that a correlation is taken of.
+const FEWEST_PAIRS: usize = 100;
+
+fn correlation(pairs: &[(f64, f64)]) -> Option<f64> {
+    let count = pairs.len() as f64;
+    let mean = |part: fn(&(f64, f64)) -> f64| pairs.iter().map(part).sum::<f64>() / count;
+    let (first, second) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let (mut product, mut squares) = (0.0, [0.0; 2]);
+    for (one, other) in pairs {
+        let (one, other) = (one - first, other - second);
+        product += one * other;
+        squares = [squares[0] + one * one, squares[1] + other * other];
+    }
+    let size = (squares[0] * squares[1]).sqrt();
+    (pairs.len() >= FEWEST_PAIRS).then_some(if size > 0.0 { product / size } else { 0.0 })
+}
