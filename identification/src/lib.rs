@@ -11,6 +11,7 @@ pub mod energy;
 pub mod fit;
 pub mod fitted_along;
 pub mod gate;
+pub mod plausibility;
 pub mod refinement;
 pub mod regression;
 pub mod report;

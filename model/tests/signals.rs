@@ -69,10 +69,17 @@ fn impossible_profiles_are_refused() {
         Segment::Hold { duration: f64::NAN, area: 1e-5 },
         Segment::Trapezoid { duration: 1.0, amplitude: 1e-5, ramp: -1.0 },
         Segment::Sine { duration: 1.0, amplitude: 1e-5, frequency: 0.0 },
+        Segment::Sine { duration: 1.0, amplitude: f64::NAN, frequency: 1.0 },
+        Segment::Hold { duration: 1.0, area: f64::INFINITY },
+        Segment::Trapezoid { duration: 1.0, amplitude: 1e-5, ramp: 0.6 },
+        Segment::Sweep { duration: 1.0, amplitude: 1e-5, from_frequency: -1.0, to_frequency: 2.0 },
+        Segment::Sweep { duration: 1.0, amplitude: 1e-5, from_frequency: 0.1, to_frequency: f64::NAN },
     ] {
         let profile = Profile { cylinder: "arm".into(), segments: vec![segment] };
         assert!(matches!(profile.check(), Err(ProfileError::Impossible { .. })), "{segment:?}");
     }
+    let nothing = Profile { cylinder: "arm".into(), segments: Vec::new() };
+    assert!(nothing.check().unwrap_err().to_string().contains("arm has no segments"));
 }
 
 #[test]

@@ -77,6 +77,12 @@ pub enum VerbError {
     NoTie { path: PathBuf, found: String },
     #[error("no manoeuvre within the limits settles this, no profile is written: {0}")]
     NothingSettles(String),
+    #[error("{}: {reason}; a part is BAG@FROM..TO, in seconds after the first sample", path.display())]
+    Part { path: PathBuf, reason: String },
+    #[error("{option} {} would be lost: {what}; give another name", path.display())]
+    SameFile { option: &'static str, path: PathBuf, what: String },
+    #[error("cannot print the result: {0}")]
+    NotPrinted(String),
     #[error("cannot add {0} twice")]
     AddedTwice(String),
 }

@@ -11,9 +11,11 @@ mod energy_monitor;
 mod error;
 mod identification_node;
 mod output;
+mod outputs;
 mod play;
 mod profile_file;
 mod record;
+mod recording_part;
 pub mod ros;
 mod sources;
 mod up;
@@ -31,7 +33,8 @@ pub fn run_command_line() -> ExitCode {
     let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let outcome = ros::RosArguments::parse(&all).map_err(error::VerbError::from).and_then(|(ros, words)| {
         let arguments = cli::Arguments::parse_from(words);
-        verbs::run(arguments.verb, &ros, ros::ros_words(&all))
+        verbs::run(arguments.verb, &ros, ros::ros_words(&all))?;
+        verbs::all_was_printed()
     });
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

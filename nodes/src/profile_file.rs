@@ -4,10 +4,16 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use excavator_model::machine::Machine;
-use excavator_model::simulation::Profile;
+use excavator_model::simulation::{Profile, Segment};
 use serde::{Deserialize, Serialize};
 
 use crate::error::VerbError;
+
+/// Most samples of a simulated bag: close to three hours at 1 kHz, about a gigabyte of memory.
+const MOST_SAMPLES: f64 = 1e7;
+
+/// What is larger by less is the same number with fewer digits.
+const ROUNDING: f64 = 1.001;
 
 /// A profile file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -52,7 +58,57 @@ impl ProfileFile {
             }
         }
         file.profiles.iter().try_for_each(Profile::check)?;
+        file.check().map_err(syntax)?;
         Ok(file)
+    }
+
+    /// What no segment is wrong in by itself.
+    fn check(&self) -> Result<(), String> {
+        for (number, profile) in self.profiles.iter().enumerate() {
+            let cylinder = &profile.cylinder;
+            if self.profiles[..number].iter().any(|earlier| earlier.cylinder == *cylinder) {
+                return Err(format!("{cylinder} has two profiles; put their segments into one"));
+            }
+            let frequency = profile.segments.iter().map(Segment::largest_frequency).fold(0.0, f64::max);
+            if 2.0 * frequency > self.rate {
+                let rate = self.rate;
+                return Err(format!(
+                    "{frequency} Hz cannot be shown by rate = {rate} samples per second; at least twice as many"
+                ));
+            }
+        }
+        let duration = self.duration();
+        if duration * self.rate > MOST_SAMPLES {
+            return Err(format!(
+                "{duration} s at rate = {} are more than {MOST_SAMPLES:e} samples; make it shorter, or the rate lower",
+                self.rate
+            ));
+        }
+        Ok(())
+    }
+
+    /// Length of the longest profile, s.
+    pub fn duration(&self) -> f64 {
+        self.profiles.iter().map(Profile::duration).fold(0.0, f64::max)
+    }
+
+    /// What is asked for that `machine` cannot do, in one line for each cylinder: openings beyond its valve's largest.
+    pub fn remarks(&self, machine: &Machine) -> Vec<String> {
+        let opens_too_far = |profile: &Profile| {
+            let cylinder = machine.cylinders.iter().find(|cylinder| cylinder.name == profile.cylinder)?;
+            let maximum = cylinder.chambers.as_ref()?.maximum_orifice_area;
+            let asked = profile.segments.iter().map(Segment::largest_area).fold(0.0, f64::max);
+            (asked > ROUNDING * maximum).then(|| {
+                format!(
+                    "{}: asked to open {:.4} mm2 and the maximum_orifice_area of {} is {:.4} mm2; simulated as asked",
+                    profile.cylinder,
+                    1e6 * asked,
+                    machine.name,
+                    1e6 * maximum
+                )
+            })
+        };
+        self.profiles.iter().filter_map(opens_too_far).collect()
     }
 
     /// The file's text, under comment lines that say what it is.
@@ -71,7 +127,6 @@ impl ProfileFile {
 mod tests {
     use super::*;
     use excavator_model::document::built_in;
-    use excavator_model::simulation::Segment;
 
     #[test]
     fn what_is_written_is_read_back() {
@@ -87,6 +142,32 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("profile.toml");
         std::fs::write(&path, file.text(&["one".into(), "two".into()]).unwrap()).unwrap();
-        assert_eq!(ProfileFile::read(&path, &built_in("zx30u-arm").unwrap().machine).unwrap(), file);
+        let machine = built_in("zx30u-arm").unwrap().machine;
+        assert_eq!(ProfileFile::read(&path, &machine).unwrap(), file);
+        assert_eq!(file.remarks(&machine), Vec::<String>::new());
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_and_what_the_valve_cannot_is_told() {
+        let machine = built_in("zx30u-arm").unwrap().machine;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("profile.toml");
+        let read = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            ProfileFile::read(&path, &machine)
+        };
+        let one = |segment: &str| format!("[[profiles]]\ncylinder = \"arm\"\nsegments = [{segment}]\n");
+        let sine = "{ kind = \"sine\", duration = 1.0, amplitude = 2e-4, frequency = 5.0 }";
+        for (text, part) in [
+            (format!("{}{}", one(sine), one(sine)), "arm has two profiles"),
+            (format!("rate = 8.0\n{}", one(sine)), "5 Hz cannot be shown"),
+            (one("{ kind = \"hold\", duration = 1e12, area = 0.0 }"), "more than 1e7 samples"),
+            (one(""), "arm has no segments"),
+        ] {
+            let error = read(&text).unwrap_err().to_string();
+            assert!(error.contains(part) && !error.contains('\n'), "{error}");
+        }
+        let remarks = read(&one(sine)).unwrap().remarks(&machine);
+        assert!(remarks.len() == 1 && remarks[0].contains("asked to open 200.0000 mm2"), "{remarks:?}");
     }
 }

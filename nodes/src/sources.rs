@@ -1,6 +1,6 @@
 //! Models and recordings by what a person calls them.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use excavator_bags::map::read_recording_or_mapped;
 use excavator_identification::gate;
@@ -10,6 +10,7 @@ use excavator_model::recording::Recording;
 
 use crate::cli::{self, Mapping};
 use crate::error::VerbError;
+use crate::recording_part::Part;
 
 /// A model by its built-in name or file.
 pub fn model(name: &str) -> Result<Model, VerbError> {
@@ -24,11 +25,10 @@ pub fn model(name: &str) -> Result<Model, VerbError> {
 /// A recording, with what was wrong in its data told on standard error, checked against the model. Bags of other people
 /// and tables are read through `map`, or the map that lies beside them. `BAG@20..40` is the part from 20 s to 40 s.
 pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording, VerbError> {
-    let (whole, part) = part_of(path);
+    let (whole, part) = Part::split(path)?;
     let (mut recording, report) = read_recording_or_mapped(&whole, map.map.as_deref())?;
-    if let Some((from, to)) = part {
-        recording = recording.part(from, to);
-        recording.source = path.display().to_string();
+    if let Some(part) = part {
+        recording = part.of(&recording, path)?;
     }
     for problem in report.problems() {
         eprintln!("{}: {problem}", path.display());
@@ -38,26 +38,6 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
         eprintln!("{}: {remark}", path.display());
     }
     Ok(recording)
-}
-
-/// A path without the part of it that is wanted, and from when to when (s). What exists as it is has no part.
-fn part_of(path: &Path) -> (PathBuf, Option<(f64, f64)>) {
-    let whole = || (path.to_path_buf(), None);
-    if path.exists() {
-        return whole();
-    }
-    let Some((before, (from, to))) = path
-        .to_str()
-        .and_then(|text| text.rsplit_once('@'))
-        .and_then(|(before, part)| Some((before, part.split_once("..")?)))
-    else {
-        return whole();
-    };
-    let time = |text: &str, open: f64| if text.is_empty() { Some(open) } else { text.parse::<f64>().ok() };
-    match (time(from, 0.0), time(to, f64::INFINITY)) {
-        (Some(from), Some(to)) => (PathBuf::from(before), Some((from, to))),
-        _ => whole(),
-    }
 }
 
 /// Several recordings.
@@ -83,20 +63,4 @@ pub fn fitted_and_judging(
 /// Writes a text file.
 pub fn write_text(path: &Path, text: &str) -> Result<(), VerbError> {
     std::fs::write(path, text).map_err(|source| VerbError::Write { path: path.to_path_buf(), source })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_part_is_given_by_its_times() {
-        let of = |text: &str| part_of(Path::new(text));
-        assert_eq!(of("drive.csv@20..40.5"), (PathBuf::from("drive.csv"), Some((20.0, 40.5))));
-        assert_eq!(of("a@b/drive@2..").0, PathBuf::from("a@b/drive"));
-        assert_eq!(of("drive@..7").1, Some((0.0, 7.0)));
-        for whole in ["drive.csv", "drive@home", "drive@one..two"] {
-            assert_eq!(of(whole), (PathBuf::from(whole), None));
-        }
-    }
 }

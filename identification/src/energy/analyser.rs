@@ -137,7 +137,7 @@ impl<'m> Analyser<'m> {
     /// Everything that was found.
     ///
     /// # Errors
-    /// As [`Analyser::push`], and [`EnergyError::TooShort`] for a recording in which there is nothing to take a slope of.
+    /// As [`Analyser::push`], and [`EnergyError::TooShort`] or [`EnergyError::TooSlow`] for a recording in which there is nothing to take a slope of.
     pub fn finish(mut self) -> Result<EnergyAnalysis, EnergyError> {
         self.begin();
         self.cut_blocks(true);
@@ -145,12 +145,9 @@ impl<'m> Analyser<'m> {
         let margin = self.margin();
         let first = self.traces.cylinders.first().and_then(|trace| trace.time.first());
         if !self.accounted || first.is_none() {
-            return Err(EnergyError::TooShort {
-                source_name: self.source,
-                samples: self.samples,
-                duration: self.last_time.max(0.0),
-                needed: 2.0 * margin,
-            });
+            let interval = self.head.as_ref().map_or(f64::NAN, Recording::sample_interval);
+            let found = (self.samples, self.last_time.max(0.0));
+            return Err(EnergyError::of_nothing(self.source, found, interval, self.settings.half_width, 2.0 * margin));
         }
         let simulation_failed = self.simulate_head();
         if let Some(frequency) = self.frequency {

@@ -28,4 +28,47 @@ pub enum EnergyError {
         /// Length that is needed, s.
         needed: f64,
     },
+    /// Too few samples within the half width of a slope.
+    #[error(
+        "{source_name} has {rate:.0} samples per second and energy takes slopes over {:.0} ms: record at least {needed:.0} per second; \
+         compare, identify and diagnose do with fewer",
+        2e3 * half_width
+    )]
+    TooSlow {
+        /// The recording.
+        source_name: String,
+        /// Samples per second.
+        rate: f64,
+        /// Half width of the slopes, s.
+        half_width: f64,
+        /// Samples per second that are needed.
+        needed: f64,
+    },
+}
+
+/// Samples on each side within the half width of a slope that it takes.
+const SAMPLES_PER_SIDE: f64 = 2.0;
+
+impl EnergyError {
+    /// Why `samples` of a recording of `duration` s whose usual interval is `interval` s gave nothing to take slopes over `half_width` of,
+    /// which needs stretches of `needed` s.
+    pub(super) fn of_nothing(
+        source_name: String,
+        (samples, duration): (usize, f64),
+        interval: f64,
+        half_width: f64,
+        needed: f64,
+    ) -> Self {
+        // A tenth for clocks that are not even.
+        if SAMPLES_PER_SIDE * interval > 1.1 * half_width {
+            EnergyError::TooSlow {
+                source_name,
+                rate: 1.0 / interval,
+                half_width,
+                needed: SAMPLES_PER_SIDE / half_width,
+            }
+        } else {
+            EnergyError::TooShort { source_name, samples, duration, needed }
+        }
+    }
 }

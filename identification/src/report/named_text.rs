@@ -1,6 +1,7 @@
 //! What named additions did, in plain sentences.
 
 use super::numbers::ratio;
+use super::plausibility_text::implausible_sentence;
 use super::signal_tables::added_name;
 use super::verdict_text::verdict_sentence;
 use super::words;
@@ -13,7 +14,9 @@ pub fn refinement_sentence(refinement: &Refinement) -> String {
         Reason::Found(diagnosis) => verdict_sentence(&refinement.given_model, diagnosis),
         Reason::Named(named) => {
             let added: Vec<String> = refinement.steps.iter().filter_map(|step| step.added.clone()).collect();
-            named_sentence(&added, named)
+            let told = named_sentence(&added, named);
+            let implausible = implausible_sentence(&refinement.given_model, &refinement.model);
+            implausible.map_or(told.clone(), |sentence| format!("{told} {sentence}"))
         }
     }
 }

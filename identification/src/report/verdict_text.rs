@@ -4,6 +4,7 @@ use excavator_model::effects::Family;
 use excavator_model::{Model, site_name};
 
 use super::numbers::{percent, ratio, significant};
+use super::plausibility_text::implausible_sentence;
 use super::words;
 use crate::diagnosis::{Adequacy, Candidate, Diagnosis, Verdict};
 use crate::fit::Fit;
@@ -36,7 +37,9 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
     } else {
         verdict
     };
-    let verdict = format!("{verdict}{}", fitted_along(model, diagnosis));
+    let last = diagnosis.chain.last().map_or(&diagnosis.nominal.model, |link| &link.fit.model);
+    let implausible = implausible_sentence(model, last).map_or(String::new(), |sentence| format!(" {sentence}"));
+    let verdict = format!("{verdict}{}{implausible}", fitted_along(model, last));
     let (undetermined, fitted) = (diagnosis.nominal.undetermined(), diagnosis.nominal.fitted.len());
     if 2 * undetermined.len() <= fitted {
         return verdict;
@@ -113,9 +116,8 @@ const TELLINGS: [Telling; 5] = [
     },
 ];
 
-/// What was fitted along, with a space before it; nothing where that is nothing.
-fn fitted_along(given: &Model, diagnosis: &Diagnosis) -> String {
-    let last = diagnosis.chain.last().map_or(&diagnosis.nominal.model, |link| &link.fit.model);
+/// What was fitted along up to the model `last`, with a space before it; nothing where that is nothing.
+fn fitted_along(given: &Model, last: &Model) -> String {
     let told = |telling: &Telling| {
         let found = last.effects.iter().filter(|effect| effect.name() == telling.effect);
         let found: Vec<String> = found

@@ -17,6 +17,12 @@ pub enum ProfileError {
         /// What it must be.
         must: &'static str,
     },
+    /// A profile asks for nothing.
+    #[error("profile: {cylinder} has no segments; give it some, or leave its profile out and it stays closed")]
+    Empty {
+        /// The cylinder.
+        cylinder: String,
+    },
 }
 
 /// Orifice area commanded to one cylinder: segments one after the other.
@@ -97,19 +103,45 @@ impl Segment {
         }
     }
 
-    fn check(&self) -> Result<(), ProfileError> {
-        let positive = |quantity, value: f64| {
-            if value.is_finite() && value > 0.0 {
-                Ok(())
-            } else {
-                Err(ProfileError::Impossible { quantity, value, must: "a positive number" })
-            }
-        };
-        positive("duration", self.duration())?;
+    /// The largest frequency, Hz; zero for what has none.
+    pub fn largest_frequency(&self) -> f64 {
         match *self {
-            Segment::Trapezoid { ramp, .. } => positive("ramp", ramp),
+            Segment::Sine { frequency, .. } => frequency,
+            Segment::Sweep { from_frequency, to_frequency, .. } => from_frequency.max(to_frequency),
+            Segment::Trapezoid { .. } | Segment::Hold { .. } => 0.0,
+        }
+    }
+
+    /// The largest area either way, m².
+    pub fn largest_area(&self) -> f64 {
+        match *self {
+            Segment::Sine { amplitude, .. }
+            | Segment::Sweep { amplitude, .. }
+            | Segment::Trapezoid { amplitude, .. } => amplitude.abs(),
+            Segment::Hold { area, .. } => area.abs(),
+        }
+    }
+
+    fn check(&self) -> Result<(), ProfileError> {
+        let must = |is_so: bool, quantity, value: f64, must| {
+            if is_so { Ok(()) } else { Err(ProfileError::Impossible { quantity, value, must }) }
+        };
+        let positive =
+            |quantity, value: f64| must(value.is_finite() && value > 0.0, quantity, value, "a positive number");
+        positive("duration", self.duration())?;
+        must(self.largest_area().is_finite(), "area or amplitude", self.largest_area(), "a finite number of m2")?;
+        match *self {
+            Segment::Trapezoid { ramp, duration, .. } => {
+                positive("ramp", ramp)?;
+                must(2.0 * ramp <= duration * (1.0 + 1e-9), "ramp", ramp, "at most half of the segment's duration")
+            }
             Segment::Sine { frequency, .. } => positive("frequency", frequency),
-            _ => Ok(()),
+            Segment::Sweep { from_frequency, to_frequency, .. } => {
+                let zero_or_more = |value: f64| value.is_finite() && value >= 0.0;
+                must(zero_or_more(from_frequency), "from_frequency", from_frequency, "zero or a positive number")?;
+                must(zero_or_more(to_frequency), "to_frequency", to_frequency, "zero or a positive number")
+            }
+            Segment::Hold { .. } => Ok(()),
         }
     }
 }
@@ -150,8 +182,11 @@ impl Profile {
     /// Checks that every number makes sense.
     ///
     /// # Errors
-    /// [`ProfileError::Impossible`].
+    /// [`ProfileError::Impossible`], and [`ProfileError::Empty`] for a profile without segments.
     pub fn check(&self) -> Result<(), ProfileError> {
+        if self.segments.is_empty() {
+            return Err(ProfileError::Empty { cylinder: self.cylinder.clone() });
+        }
         self.segments.iter().try_for_each(Segment::check)
     }
 }

@@ -1,6 +1,6 @@
 //! Arguments of the verbs that work on files.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
@@ -137,6 +137,14 @@ pub struct Recordings {
     pub validation: Vec<PathBuf>,
     #[command(flatten)]
     pub mapping: Mapping,
+}
+
+impl Recordings {
+    /// All files that are read.
+    pub fn paths(&self) -> Vec<&Path> {
+        let bags = self.identification.iter().chain(&self.validation);
+        bags.chain(&self.mapping.map).map(PathBuf::as_path).collect()
+    }
 }
 
 #[derive(Debug, Args)]

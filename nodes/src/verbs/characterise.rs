@@ -1,6 +1,6 @@
 //! `excavator characterise`
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use excavator_identification::characterisation::characterise;
 use excavator_identification::report::characterisation_page;
@@ -10,9 +10,12 @@ use super::print;
 use crate::cli::CharacteriseArguments;
 use crate::error::VerbError;
 use crate::output::{characterisation_json, characterisation_table, refusals, write_json};
-use crate::sources;
+use crate::{outputs, sources};
 
 pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
+    let mut inputs: Vec<&Path> = arguments.bags.iter().map(PathBuf::as_path).collect();
+    inputs.push(Path::new(&arguments.model));
+    outputs::check(&[("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())], &inputs)?;
     let model = sources::model(&arguments.model)?;
     let recordings = sources::recordings(&arguments.bags, &arguments.mapping, &model)?;
     let recordings: Vec<&Recording> = recordings.iter().collect();

@@ -9,9 +9,13 @@ use super::print;
 use crate::cli::CompareArguments;
 use crate::error::VerbError;
 use crate::output::{comparison_json, comparison_table, write_json};
-use crate::sources;
+use crate::{outputs, sources};
 
 pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
+    outputs::check(
+        &[("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())],
+        &[&arguments.bag, Path::new(&arguments.model)],
+    )?;
     let model = sources::model(&arguments.model)?;
     let recording = sources::recording(&arguments.bag, &arguments.mapping, &model)?;
     let comparison = compare(&model, &recording)?;

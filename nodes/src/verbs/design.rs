@@ -14,9 +14,12 @@ use crate::diagnosis_file::DiagnosisFile;
 use crate::error::VerbError;
 use crate::output::{Progress, determination_json, number, pair_table, separation_json, write_json};
 use crate::profile_file::{ProfileFile, usual_rate};
-use crate::sources;
+use crate::{outputs, sources};
 
 pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {
+    let outputs = [("-o", Some(arguments.output.as_path())), ("--json", arguments.json.json.as_deref())];
+    let diagnosis = arguments.diagnosis.as_deref();
+    outputs::check(&outputs, &[diagnosis.unwrap_or(Path::new("")), Path::new(&arguments.model)])?;
     let model = sources::model(&arguments.model)?;
     let diagnosis = arguments.diagnosis.as_deref().map(DiagnosisFile::read).transpose()?;
     let model = diagnosis.as_ref().map_or_else(|| Ok(model.clone()), |file| file.with_fitted_along(&model))?;

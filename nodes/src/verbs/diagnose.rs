@@ -13,9 +13,11 @@ use super::print;
 use crate::cli::DiagnoseArguments;
 use crate::error::VerbError;
 use crate::output::{Progress, candidate_table, diagnosis_json, missing_power_json, write_json};
-use crate::sources;
+use crate::{outputs, sources};
 
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
+    let inputs = [arguments.recordings.paths(), vec![Path::new(&arguments.model)]].concat();
+    outputs::check(&[("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())], &inputs)?;
     let model = sources::model(&arguments.model)?;
     let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
     let identification: Vec<&Recording> = identification.iter().collect();

@@ -15,7 +15,7 @@ use super::print;
 use crate::cli::{EnergyArguments, Mapping};
 use crate::error::VerbError;
 use crate::output::{energy_json, energy_table, ledger_table, write_json};
-use crate::sources;
+use crate::{outputs, sources};
 
 /// Samples per block: ten seconds at 1 kHz.
 const BLOCK: usize = 10_000;
@@ -23,6 +23,10 @@ const BLOCK: usize = 10_000;
 const WAITING: usize = 4;
 
 pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
+    outputs::check(
+        &[("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())],
+        &[&arguments.bag, Path::new(&arguments.model)],
+    )?;
     let model = sources::model(&arguments.model)?;
     let analysis = analyse_bag(&model, &arguments.bag, &arguments.mapping)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {

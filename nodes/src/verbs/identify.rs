@@ -1,13 +1,14 @@
 //! `excavator identify`
 
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use excavator_identification::fit::{FitSettings, ProfileInterval, profile};
 use excavator_identification::fitted_along::{IN_REGRESSION, fit_with_effects_along, with_effects_along};
 use excavator_identification::regression::{
     ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form,
 };
+use excavator_identification::report::implausible_sentence;
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
 use excavator_model::{HistoryEntry, Model};
@@ -17,7 +18,7 @@ use super::print;
 use crate::cli::{IdentifyArguments, Method};
 use crate::error::VerbError;
 use crate::output::{identification_json, number, parameter_table, write_json};
-use crate::sources;
+use crate::{outputs, sources};
 
 struct Identified {
     model: Model,
@@ -31,6 +32,9 @@ struct Identified {
 }
 
 pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
+    let inputs: Vec<&Path> = arguments.bag.iter().map(PathBuf::as_path).collect();
+    // The model may be written over: it has a history.
+    outputs::check(&[("-o", arguments.output.as_deref()), ("--json", arguments.json.json.as_deref())], &inputs)?;
     let model = sources::model(&arguments.model)?;
     let recordings = sources::recordings(&arguments.bag, &arguments.mapping, &model)?;
     let recordings: Vec<&Recording> = recordings.iter().collect();
@@ -46,7 +50,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
         sources::write_text(path, &to_text(&result.model)?)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&result);
+        show(&model, &result);
     }
     if let Some(path) = &arguments.json.json {
         let equations = result.equations.iter().map(|gauge| {
@@ -176,7 +180,7 @@ fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
     text
 }
 
-fn show(result: &Identified) {
+fn show(given: &Model, result: &Identified) {
     print(&parameter_table(&result.model, &result.fitted).to_string());
     for condition in &result.conditions {
         print(&format!(
@@ -200,5 +204,8 @@ fn show(result: &Identified) {
     let names = result.model.parameter_names();
     for (index, reason) in &result.not_identified {
         print(&format!("{} was not identified: {reason}", names[*index]));
+    }
+    if let Some(sentence) = implausible_sentence(given, &result.model) {
+        print(&sentence);
     }
 }

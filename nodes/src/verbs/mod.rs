@@ -13,6 +13,9 @@ mod node;
 mod refine;
 mod simulate;
 
+use std::io::{Error, ErrorKind, Write};
+use std::sync::OnceLock;
+
 use crate::cli::Verb;
 use crate::error::VerbError;
 use crate::ros::RosArguments;
@@ -40,8 +43,22 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
     }
 }
 
-/// Prints to standard output; a closed pipe is not an error of ours.
+/// Why something could not be printed.
+static NOT_PRINTED: OnceLock<Error> = OnceLock::new();
+
+/// Prints to standard output. A closed pipe is not an error of ours; of anything else [`all_was_printed`] tells.
 pub fn print(text: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stdout(), "{text}");
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => drop(NOT_PRINTED.set(error)),
+        _ => (),
+    }
+}
+
+/// Whether all that was printed has reached standard output: a full disk behind it must not end as a success.
+pub fn all_was_printed() -> Result<(), VerbError> {
+    let flushed = std::io::stdout().flush().err().filter(|error| error.kind() != ErrorKind::BrokenPipe);
+    match flushed.map(|error| error.to_string()).or_else(|| NOT_PRINTED.get().map(ToString::to_string)) {
+        Some(reason) => Err(VerbError::NotPrinted(reason)),
+        None => Ok(()),
+    }
 }

@@ -13,9 +13,16 @@ use super::print;
 use crate::cli::RefineArguments;
 use crate::error::VerbError;
 use crate::output::{Progress, parameter_table, refinement_json, step_table, write_json};
-use crate::sources;
+use crate::{outputs, sources};
 
 pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
+    // The model may be written over: it has a history.
+    let outputs = [
+        ("-o", Some(arguments.output.as_path())),
+        ("--report", arguments.report.as_deref()),
+        ("--json", arguments.json.json.as_deref()),
+    ];
+    outputs::check(&outputs, &arguments.recordings.paths())?;
     let model = sources::model(&arguments.model)?;
     let additions = if arguments.auto { Additions::Auto } else { named(&model, &arguments.add)? };
     let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;

@@ -36,9 +36,11 @@ pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
 fn with_profile(model: &Model, path: &Path) -> Result<Recording, VerbError> {
     let syntax = |reason: String| VerbError::ProfileSyntax { path: path.to_path_buf(), reason };
     let file = ProfileFile::read(path, &model.machine)?;
+    for remark in file.remarks(&model.machine) {
+        eprintln!("{}: {remark}", path.display());
+    }
     let names: Vec<&str> = model.machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();
-    let duration = file.profiles.iter().map(Profile::duration).fold(0.0, f64::max);
-    let samples = (duration * file.rate).round() as usize + 1;
+    let samples = (file.duration() * file.rate).round() as usize + 1;
     let time: Vec<f64> = (0..samples).map(|index| index as f64 / file.rate).collect();
     let mut recording = Recording::unmeasured(&path.display().to_string(), time, &names);
     if let Supply::PumpLine(line) = model.machine.supply {

@@ -1,0 +1,9 @@
+//! What strangers, careless users and broken peers do to the program, and what it does about it.
+//!
+//! Every test tries one thing and asserts what happens; then it writes a row ([`fault::Fault`]) from which `table.py` makes the
+//! table in `docs/faults.md`.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod fault;
+#[path = "../../nodes/tests/live/mod.rs"]
+mod live;
