@@ -6,7 +6,7 @@
 #![allow(clippy::panic)]
 
 use excavator_msgs::common::{
-    Clock, DiagnosticArray, DiagnosticStatus, FluidPressure, JointState, KeyValue, Log, Text,
+    Clock, DiagnosticArray, DiagnosticStatus, Flag, FluidPressure, JointState, KeyValue, Log, Text,
 };
 use excavator_msgs::layout::{Field, flat_fields};
 use excavator_msgs::{
@@ -41,6 +41,7 @@ macro_rules! primitive {
 impl<'de> de::Deserializer<'de> for Probe<'_> {
     type Error = Error;
 
+    primitive!(deserialize_bool, visit_bool, "bool", false);
     primitive!(deserialize_f64, visit_f64, "float64", 0.0);
     primitive!(deserialize_i32, visit_i32, "int32", 0);
     primitive!(deserialize_u32, visit_u32, "uint32", 0);

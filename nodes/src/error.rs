@@ -69,6 +69,8 @@ pub enum VerbError {
     Terminal(#[from] std::io::Error),
     #[error("the {part} ended by itself: {status}")]
     PartEnded { part: &'static str, status: String },
+    #[error("{0}")]
+    Machine(String),
     #[error("no bag is given; name at least one recording")]
     NoBags,
     #[error("{} is not what `excavator diagnose --json` writes: {reason}", path.display())]

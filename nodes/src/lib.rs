@@ -3,7 +3,7 @@
 mod arm_bridge;
 mod arm_simulator;
 mod cli;
-mod command;
+mod command_gate;
 pub mod dashboard;
 pub mod demo;
 mod diagnosis_file;

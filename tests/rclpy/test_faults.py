@@ -14,7 +14,7 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 from excavator_msgs.msg import ArmState
 from support.flood import dds_ports, flood, malformed_packet
-from support.simulator import STATE_QOS, Simulator, command, cylinder, seconds
+from support.simulator import STATE_QOS, Simulator, cylinder, seconds
 
 LONG = os.environ.get("EXCAVATOR_LONG") == "1"
 RATE = 1000.0
@@ -79,7 +79,7 @@ def steady(ros, excavator, simulator, tmp_path):
 def follows(ros, simulator):
     """Waits until a command is followed; fails when it never is."""
     ros.spin_until(
-        lambda: simulator.send(command(arm=3e-5)) or cylinder(simulator.last).orifice_area == pytest.approx(3e-5),
+        lambda: simulator.open(arm=3e-5) or cylinder(simulator.last).orifice_area == pytest.approx(3e-5),
         "the simulator to follow a command",
     )
 

@@ -58,7 +58,7 @@ def test_a_stopped_simulator_goes_on(ros, simulator):
     ros.spin_until(lambda: len(simulator.states) > before + 500, "states after the interruption", 30.0)
     # it hears, too
     ros.spin_until(
-        lambda: simulator.send(command(arm=2e-5)) or cylinder(simulator.last).orifice_area == pytest.approx(2e-5),
+        lambda: simulator.open(arm=2e-5) or cylinder(simulator.last).orifice_area == pytest.approx(2e-5),
         "the simulator to follow a command",
         10.0,
     )

@@ -3,6 +3,7 @@
 
 mod clock;
 mod diagnostics;
+mod flag;
 mod fluid_pressure;
 mod joint_state;
 mod log;
@@ -10,6 +11,7 @@ mod text;
 
 pub use clock::Clock;
 pub use diagnostics::{DiagnosticArray, DiagnosticStatus, KeyValue};
+pub use flag::Flag;
 pub use fluid_pressure::FluidPressure;
 pub use joint_state::JointState;
 pub use log::Log;

@@ -1,23 +1,19 @@
 //! Parameters of the simulator.
 
+use crate::command_gate::parameters as gate_parameters;
 use crate::ros::{Parameter, Value};
 
 /// All of them, with units, ranges and defaults.
 pub(super) fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     let none = || Value::StringArray(Vec::new());
-    vec![
+    let own = vec![
         Parameter::new("model", Value::String("zx30u-arm".into()), "built-in model or model file (.toml)").read_only(),
         double("rate", 1000.0, "samples per simulated second [Hz]").within(1.0, 2000.0).read_only(),
         double("speed", 1.0, "simulated seconds per second; /clock is published unless it is 1")
             .within(0.01, 10.0)
             .read_only(),
         Parameter::new("publish_clock", Value::Boolean(false), "publish simulated time on /clock").read_only(),
-        double("command_timeout", 0.1, "time for which a command holds, on the steady clock of this side [s]")
-            .within(0.001, 10.0),
-        double("closing_time", 0.05, "time in which a fully open valve closes when its command has run out [s]")
-            .within(0.001, 5.0)
-            .read_only(),
         Parameter::new(
             "start_displacement",
             Value::DoubleArray(Vec::new()),
@@ -47,5 +43,6 @@ pub(super) fn parameters() -> Vec<Parameter> {
         )
         .read_only(),
         Parameter::new("seed", Value::Integer(1), "draws noise, dropouts and losses").within(0.0, 9e15).read_only(),
-    ]
+    ];
+    own.into_iter().chain(gate_parameters()).collect()
 }

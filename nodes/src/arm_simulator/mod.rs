@@ -1,9 +1,23 @@
 //! `excavator node arm-simulator`: a model as a machine on the graph.
+//!
+//! Two processes: the node, which talks to the network and holds the command gate, and the machine with its valves, which
+//! no packet reaches ([`machine_process`]).
 
 mod declared;
+mod machine;
+mod machine_process;
 mod node;
 mod plant;
 mod sensors;
 mod stamps;
 
+pub use machine::run as run_machine;
 pub use node::run;
+
+use excavator_model::Model;
+
+/// Largest orifice area of each cylinder's valve, m²; zero where it has none.
+fn valve_limits(model: &Model) -> Vec<f64> {
+    let cylinders = model.machine.cylinders.iter();
+    cylinders.map(|cylinder| cylinder.chambers.map_or(0.0, |chambers| chambers.maximum_orifice_area)).collect()
+}

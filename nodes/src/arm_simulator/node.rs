@@ -1,20 +1,19 @@
 //! The simulator on the graph.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use excavator_model::Model;
 use excavator_model::document::to_text;
-use excavator_model::equations::System;
 use excavator_msgs::common::{Clock, JointState, Text};
-use excavator_msgs::{ArmState, Header, OrificeCommand, Time};
+use excavator_msgs::{ArmState, Header, Time};
 
 use super::declared::parameters;
-use super::plant::Plant;
+use super::machine_process::{MachineProcess, Setup};
 use super::sensors::{Instrument, Quality, SIGNALS, Sensors};
 use super::stamps::Stamps;
-use crate::command::{Lease, Valve, check, ramp};
+use super::valve_limits;
+use crate::command_gate::{Desk, Valve};
 use crate::error::VerbError;
 use crate::ros::{
     Diagnostics, Health, Latched, Logger, Outlet, Pace, Parameters, RosArguments, RosError, Supervisor, TopicQos,
@@ -52,11 +51,9 @@ pub fn run(arguments: &RosArguments) -> Result<(), VerbError> {
             .then(|| supervisor.link.publish("/clock", TopicQos::reliable(10)))
             .transpose()?,
     };
-    let desk = Arc::new(CommandDesk::new(&model, &supervisor.parameters, &supervisor.diagnostics));
-    let listening = Arc::clone(&desk);
-    supervisor.link.subscribe("/arm/orifice_command", TopicQos::reliable(10), move |command, received| {
-        listening.take(&command, received.at);
-    })?;
+    // The machine before its commands: a model that cannot be set up must not answer to anybody.
+    let machine = MachineProcess::start(&setup(&model, &supervisor)?)?;
+    let desk = Desk::open(&supervisor, valves(&model), "/arm/state")?;
     // What is published now reaches everybody who comes later.
     let _ = outlets.model.publish(Text { data: to_text(&model)? });
     let stop = supervisor.stop_flag();
@@ -70,7 +67,7 @@ pub fn run(arguments: &RosArguments) -> Result<(), VerbError> {
         stop: &stop,
     };
     let outcome = std::thread::scope(|scope| {
-        let running = scope.spawn(|| simulation.run());
+        let running = scope.spawn(|| simulation.run(machine));
         supervisor.run(|| {});
         // The simulation closes its valves before it ends.
         running.join().unwrap_or(Ok(()))
@@ -91,49 +88,32 @@ struct Outlets {
     clock: Option<Outlet<Clock>>,
 }
 
-/// Where commands come in.
-struct CommandDesk {
-    valves: Vec<Valve>,
-    lease: Mutex<Lease>,
-    accepted: AtomicU64,
-    refused: AtomicU64,
-    diagnostics: Diagnostics,
+/// The valves that can be commanded. A cylinder without a valve keeps its place, so that indices agree, under a name that
+/// nobody can say.
+fn valves(model: &Model) -> Vec<Valve> {
+    let limits = valve_limits(model);
+    let with_limits = model.machine.cylinders.iter().zip(limits);
+    with_limits
+        .map(|(cylinder, maximum_area)| {
+            let name = if cylinder.chambers.is_some() { cylinder.name.clone() } else { String::new() };
+            Valve { name, maximum_area }
+        })
+        .collect()
 }
 
-impl CommandDesk {
-    fn new(model: &Model, parameters: &Parameters, diagnostics: &Diagnostics) -> Self {
-        let cylinders = &model.machine.cylinders;
-        // A cylinder without a valve keeps its place, so that indices agree, under a name that nobody can say.
-        let valve = |cylinder: &excavator_model::machine::Cylinder| match cylinder.chambers {
-            Some(chambers) => Valve { name: cylinder.name.clone(), maximum_area: chambers.maximum_orifice_area },
-            None => Valve { name: String::new(), maximum_area: 0.0 },
-        };
-        CommandDesk {
-            valves: cylinders.iter().map(valve).collect(),
-            lease: Mutex::new(Lease::new(cylinders.len(), seconds(parameters.double("command_timeout")))),
-            accepted: AtomicU64::new(0),
-            refused: AtomicU64::new(0),
-            diagnostics: diagnostics.clone(),
-        }
-    }
-
-    fn take(&self, command: &OrificeCommand, now: Instant) {
-        match check(command, &self.valves) {
-            Ok(areas) => {
-                self.lease().renew(&areas, now);
-                self.accepted.fetch_add(1, Ordering::Relaxed);
-            }
-            Err(refusal) => {
-                let refused = self.refused.fetch_add(1, Ordering::Relaxed) + 1;
-                let values = [("refused commands", refused.to_string())];
-                self.diagnostics.tell("refusal", Health::Warning, format!("command refused: {refusal}"), &values);
-            }
-        }
-    }
-
-    fn lease(&self) -> std::sync::MutexGuard<'_, Lease> {
-        self.lease.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+fn setup(model: &Model, supervisor: &Supervisor) -> Result<Setup, VerbError> {
+    let parameters = &supervisor.parameters;
+    let (rate, speed) = (parameters.double("rate"), parameters.double("speed"));
+    Ok(Setup {
+        model: to_text(model)?,
+        name: supervisor.link.identity().name().to_string(),
+        start_displacement: parameters.doubles("start_displacement"),
+        period: 1.0 / rate,
+        wall_period: 1.0 / (rate * speed),
+        supply_pressure: parameters.double("supply_pressure"),
+        opening_time: parameters.double("opening_time"),
+        closing_time: parameters.double("closing_time"),
+    })
 }
 
 fn seconds(value: f64) -> Duration {
@@ -146,58 +126,60 @@ struct Simulation<'r> {
     diagnostics: &'r Diagnostics,
     logger: &'r Logger,
     outlets: &'r Outlets,
-    desk: &'r CommandDesk,
+    desk: &'r Desk,
     stop: &'r AtomicBool,
 }
 
 impl Simulation<'_> {
     /// The loop; sets the stop flag however it ends.
-    fn run(&self) -> Result<(), VerbError> {
-        let outcome = self.steps();
+    fn run(&self, machine: MachineProcess) -> Result<(), VerbError> {
+        let outcome = self.steps(machine);
         self.stop.store(true, Ordering::Relaxed);
         outcome
     }
 
-    fn steps(&self) -> Result<(), VerbError> {
+    fn steps(&self, mut machine: MachineProcess) -> Result<(), VerbError> {
         let parameters = self.parameters;
         let (rate, speed) = (parameters.double("rate"), parameters.double("speed"));
         let period = 1.0 / rate;
-        let system = System::new(self.model);
-        let start = parameters.doubles("start_displacement");
-        let mut plant = Plant::new(&system, &start, period, parameters.double("supply_pressure"))?;
         let seed = u64::try_from(parameters.integer("seed")).unwrap_or_default();
         let mut sensors = Sensors::new(seed, parameters.texts("not_measured"));
-        let mut valves = Valves::new(&self.desk.valves, parameters.double("closing_time"));
         let mut clock = SampleClock::new(period, self.outlets.clock.is_some());
         let mut pace = Pace::new(rate * speed);
         let mut settings = Settings::read(parameters);
         let mut reported = Instant::now();
-        let mut failures = 0_u64;
+        let mut counts = Counts::default();
+        let mut wanted = Vec::new();
+        let mut samples = 1;
         let every = |target: f64| ((rate / target).round() as u64).max(1);
         let (joints_every, clock_every) = (every(JOINT_STATES_RATE), every(CLOCK_RATE));
         self.logger.info(format!("{} at {rate} Hz, speed {speed}", self.model.machine.name));
         for sample in 0_u64.. {
             let stopping = self.stop.load(Ordering::Relaxed);
             if stopping {
-                self.desk.lease().revoke();
+                self.desk.close();
             }
-            let openings = self.desk.lease().openings(Instant::now());
-            valves.follow(&openings.areas, openings.expired || stopping, period);
-            if let Err(error) = plant.step(&valves.areas) {
-                failures += 1;
-                self.logger.error(format!("{error}; the machine is set up again at rest"));
+            self.desk.look(&mut wanted);
+            let answer = machine.go_on(&wanted, samples, settings.command_timeout, settings.oil_temperature)?;
+            for failure in &answer.failures {
+                counts.failures += 1;
+                self.logger.error(format!("{failure}; the machine is set up again at rest"));
             }
-            let mut state = plant.observe(settings.oil_temperature);
+            counts.limited = answer.limited;
+            let mut state = answer.state;
             let stamp = clock.stamp();
             state.header.stamp = stamp;
+            if self.outlets.clock.is_some() {
+                self.desk.set_simulated_time(stamp.nanoseconds());
+            }
             if sample % clock_every == 0
                 && let Some(outlet) = &self.outlets.clock
             {
                 let _ = outlet.publish(Clock { clock: stamp });
             }
-            let joints = (sample % joints_every == 0).then(|| joint_state(&state, plant.joint_rates()));
+            let joints = (sample % joints_every == 0).then(|| joint_state(&state, answer.joint_rates));
             if sensors.measure(&mut state, &settings.quality) {
-                // Refusals are counted by the outlet and told below.
+                // Refusals are counted by the outlet and reported below.
                 let _ = self.outlets.state.publish(state);
             }
             if let Some(joints) = joints {
@@ -206,51 +188,44 @@ impl Simulation<'_> {
             if reported.elapsed() >= REPORT {
                 reported = Instant::now();
                 settings = Settings::read(parameters);
-                self.desk.lease().set_timeout(settings.command_timeout);
-                self.report(openings.expired, &pace, &clock, failures);
+                self.report(&pace, &clock, &counts);
             }
-            if stopping && valves.are_closed() {
+            if stopping && answer.closed {
                 return Ok(());
             }
             pace.wait();
             // The machine does not stand still while this program had no processor.
             let missed = pace.take_missed().min(MOST_MISSED);
             clock.skip(missed);
-            for _ in 0..missed {
-                if plant.step(&valves.areas).is_err() {
-                    failures += 1;
-                }
-            }
+            samples = 1 + missed;
         }
         Ok(())
     }
 
-    fn report(&self, expired: bool, pace: &Pace, clock: &SampleClock, failures: u64) {
+    fn report(&self, pace: &Pace, clock: &SampleClock, counts: &Counts) {
         let state = &self.outlets.state;
         let values = [
             ("published states", state.published().to_string()),
             ("refused states", state.refused().to_string()),
             ("schedules started anew", pace.late().to_string()),
             ("jumps of the clock", clock.jumps.to_string()),
-            ("times set up again", failures.to_string()),
+            ("times set up again", counts.failures.to_string()),
         ];
-        let (health, message) =
-            if failures > 0 { (Health::Warning, "the machine was set up again") } else { (Health::Ok, "running") };
-        self.diagnostics.tell("simulation", health, message, &values);
-        let accepted = self.desk.accepted.load(Ordering::Relaxed);
-        let age = self.desk.lease().age(Instant::now());
-        let values = [
-            ("accepted commands", accepted.to_string()),
-            ("refused commands", self.desk.refused.load(Ordering::Relaxed).to_string()),
-            ("age of the last command [s]", age.map_or("-".into(), |age| format!("{:.3}", age.as_secs_f64()))),
-        ];
-        let (health, message) = match (expired, accepted) {
-            (true, _) => (Health::Warning, "the command has run out, valves are closed"),
-            (false, 0) => (Health::Ok, "no command yet, valves are closed"),
-            (false, _) => (Health::Ok, "following commands"),
+        let (health, message) = if counts.failures > 0 {
+            (Health::Warning, "the machine was set up again")
+        } else {
+            (Health::Ok, "running")
         };
-        self.diagnostics.tell("commands", health, message, &values);
+        self.diagnostics.tell("simulation", health, message, &values);
+        self.desk.report(counts.limited);
     }
+}
+
+/// What the machine has told so far.
+#[derive(Debug, Clone, Copy, Default)]
+struct Counts {
+    failures: u64,
+    limited: u64,
 }
 
 /// Parameters that may change while the simulator runs.
@@ -278,31 +253,6 @@ impl Settings {
             oil_temperature: number("oil_temperature"),
             command_timeout: seconds(number("command_timeout")),
         }
-    }
-}
-
-/// The valves: at once where commanded, by a ramp where they close for safety.
-struct Valves {
-    areas: Vec<f64>,
-    closing_rates: Vec<f64>,
-}
-
-impl Valves {
-    fn new(valves: &[Valve], closing_time: f64) -> Self {
-        Valves {
-            areas: vec![0.0; valves.len()],
-            closing_rates: valves.iter().map(|valve| valve.maximum_area / closing_time).collect(),
-        }
-    }
-
-    fn follow(&mut self, wanted: &[f64], closing: bool, period: f64) {
-        for ((area, &wanted), &rate) in self.areas.iter_mut().zip(wanted).zip(&self.closing_rates) {
-            *area = if closing { ramp(*area, wanted, rate, period) } else { wanted };
-        }
-    }
-
-    fn are_closed(&self) -> bool {
-        self.areas.iter().all(|&area| area == 0.0)
     }
 }
 

@@ -59,4 +59,7 @@ pub enum Verb {
     /// A live ROS 2 node.
     #[command(subcommand)]
     Node(NodeVerb),
+    /// The simulated machine of an arm simulator, which starts it.
+    #[command(hide = true)]
+    Machine,
 }

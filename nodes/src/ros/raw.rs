@@ -93,6 +93,7 @@ type Callback = Box<dyn FnMut(RawSample) + Send>;
 
 /// A reader of one topic of any type.
 pub(crate) struct RawInlet {
+    /// Name and type as they are in DDS.
     topic: String,
     type_name: String,
     qos: QosPolicies,
@@ -109,9 +110,20 @@ impl RawInlet {
         qos: QosPolicies,
         callback: impl FnMut(RawSample) + Send + 'static,
     ) -> Result<(), RosError> {
+        RawInlet::open_dds(link, &dds_topic(topic), &dds_type(type_name), qos, callback)
+    }
+
+    /// Reads a topic by the names that it has in DDS.
+    pub fn open_dds(
+        link: &Link,
+        dds_topic: &str,
+        dds_type: &str,
+        qos: QosPolicies,
+        callback: impl FnMut(RawSample) + Send + 'static,
+    ) -> Result<(), RosError> {
         link.add(Arc::new(RawInlet {
-            topic: topic.to_string(),
-            type_name: type_name.to_string(),
+            topic: dds_topic.to_string(),
+            type_name: dds_type.to_string(),
             qos,
             callback: Arc::new(Mutex::new(Box::new(callback))),
             task: Mutex::new(None),
@@ -122,8 +134,7 @@ impl RawInlet {
 impl Endpoint for RawInlet {
     fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError> {
         let failed = |reason: String| RosError::Endpoint { what: self.topic.clone(), reason };
-        let topic =
-            connection.create_topic(&dds_topic(&self.topic), &dds_type(&self.type_name), &self.qos).map_err(failed)?;
+        let topic = connection.create_topic(&self.topic, &self.type_name, &self.qos).map_err(failed)?;
         let subscriber =
             connection.participant().create_subscriber(&self.qos).map_err(|error| failed(error.to_string()))?;
         let reader = subscriber

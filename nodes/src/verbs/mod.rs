@@ -40,6 +40,7 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Dashboard(arguments) => crate::dashboard::run(&arguments, ros),
         Verb::Node(which) => node::run(which, ros),
         Verb::Import(arguments) => import::run(&arguments),
+        Verb::Machine => crate::arm_simulator::run_machine(),
     }
 }
 

@@ -33,7 +33,15 @@ def main():
 
         node.create_subscription(ArmState, "/arm/state", take, 10)
         publisher = node.create_publisher(OrificeCommand, "/arm/orifice_command", 10)
-        node.create_timer(PERIOD, lambda: publisher.publish(OrificeCommand(names=["arm"], areas=[AREA])))
+
+        def operate():
+            # neutral first: the valve may have been closed while the network was down
+            for area in (0.0, AREA):
+                message = OrificeCommand(names=["arm"], areas=[area])
+                message.header.stamp.sec, message.header.stamp.nanosec = divmod(time.time_ns(), 1_000_000_000)
+                publisher.publish(message)
+
+        node.create_timer(PERIOD, operate)
         try:
             rclpy.spin(node)
         except (KeyboardInterrupt, ExternalShutdownException):

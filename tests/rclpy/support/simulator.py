@@ -1,6 +1,7 @@
 """The simulated arm, as the tests use it."""
 
 import math
+import time
 
 from excavator_msgs.msg import ArmState, OrificeCommand
 from rclpy.qos import QoSProfile
@@ -27,9 +28,21 @@ def cylinder(state, name="arm"):
     return found
 
 
+def stamped(message, offset=0.0):
+    """The command, stamped with the time of now plus `offset` seconds."""
+    nanoseconds = time.time_ns() + round(offset * 1e9)
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(nanoseconds, 1_000_000_000)
+    return message
+
+
 def command(**areas):
-    """`command(arm=1e-5)`: stamped by the receiver's clock, so the header stays empty."""
-    return OrificeCommand(names=list(areas), areas=[float(area) for area in areas.values()])
+    """`command(arm=1e-5)`, stamped with the time of now."""
+    return stamped(OrificeCommand(names=list(areas), areas=[float(area) for area in areas.values()]))
+
+
+def neutral(names):
+    """An area of 0 for each of these cylinders: what a valve that was closed for safety wants first."""
+    return command(**{name: 0.0 for name in names})
 
 
 class Simulator:
@@ -52,14 +65,23 @@ class Simulator:
         return self.states[-1]
 
     def send(self, message):
-        self._commands.publish(message)
+        """Sends a command, stamped with the time of now."""
+        self._commands.publish(stamped(message))
+
+    def open(self, **areas):
+        """Commands neutral, then the areas: a valve that was closed for safety opens again."""
+        self.send(neutral(areas))
+        self.send(command(**areas))
 
     def hold(self, duration, **areas):
         """Commands the areas, renewed in time, and returns the states of that time."""
         before = len(self.states)
         timer = self._ros.node.create_timer(RENEWAL, lambda: self.send(command(**areas)))
         try:
-            self.send(command(**areas))
+            if all(cylinder(self.last, name).orifice_area == 0.0 for name in areas):
+                self.open(**areas)
+            else:
+                self.send(command(**areas))
             self._ros.spin_for(duration)
         finally:
             self._ros.node.destroy_timer(timer)

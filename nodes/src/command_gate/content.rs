@@ -1,88 +1,54 @@
-//! Which commands are refused.
+//! What a command says, checked against the valves that there are.
 
 use excavator_msgs::OrificeCommand;
 
+use super::refusal::Refusal;
+
 /// A valve section that can be commanded.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Valve {
+pub(crate) struct Valve {
     /// Name of its cylinder.
     pub name: String,
-    /// Largest orifice area, m².
+    /// Largest orifice area that may be commanded, m².
     pub maximum_area: f64,
-}
-
-/// Why a command changes nothing.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Refusal {
-    /// `names` and `areas` do not fit together.
-    #[error("{names} names with {areas} areas")]
-    Lengths {
-        /// Number of names.
-        names: usize,
-        /// Number of areas.
-        areas: usize,
-    },
-    /// No valve of this name.
-    #[error("there is no cylinder \"{name}\" with a valve; there is {known}")]
-    UnknownCylinder {
-        /// The name.
-        name: String,
-        /// Names that exist.
-        known: String,
-    },
-    /// The same valve twice.
-    #[error("cylinder \"{name}\" is named twice")]
-    Twice {
-        /// The name.
-        name: String,
-    },
-    /// `NaN` or infinite.
-    #[error("the area {area} m2 for \"{name}\" is not a number")]
-    NotANumber {
-        /// The cylinder.
-        name: String,
-        /// The area.
-        area: f64,
-    },
-    /// Wider than the valve.
-    #[error("the area {area:.3e} m2 for \"{name}\" is beyond {maximum:.3e} m2")]
-    OutOfRange {
-        /// The cylinder.
-        name: String,
-        /// The area, m².
-        area: f64,
-        /// What the valve can open, m².
-        maximum: f64,
-    },
 }
 
 /// Room for rounding in the largest area: commands computed as 100 % must pass.
 const ROUNDING: f64 = 1e-9;
 
+/// Letters of a name that are repeated in a refusal; the network may bring any number.
+const LONGEST_NAME: usize = 60;
+
+fn brief(name: &str) -> String {
+    name.chars().take(LONGEST_NAME).collect()
+}
+
 /// The commanded areas by index of the valve, or why the whole command is refused: half of a command is none.
 ///
 /// # Errors
 /// [`Refusal`].
-pub fn check(command: &OrificeCommand, valves: &[Valve]) -> Result<Vec<(usize, f64)>, Refusal> {
+pub(super) fn check(command: &OrificeCommand, valves: &[Valve]) -> Result<Vec<(usize, f64)>, Refusal> {
     if command.names.len() != command.areas.len() {
         return Err(Refusal::Lengths { names: command.names.len(), areas: command.areas.len() });
     }
     let mut areas: Vec<(usize, f64)> = Vec::with_capacity(command.names.len());
     for (name, &area) in command.names.iter().zip(&command.areas) {
-        let Some(index) = valves.iter().position(|valve| valve.name == *name) else {
-            let known: Vec<&str> = valves.iter().map(|valve| valve.name.as_str()).collect();
+        // A cylinder without a valve has an empty name here.
+        let Some(index) = valves.iter().position(|valve| valve.name == *name && !name.is_empty()) else {
+            let known: Vec<&str> =
+                valves.iter().map(|valve| valve.name.as_str()).filter(|name| !name.is_empty()).collect();
             let known = if known.is_empty() { "none".to_string() } else { known.join(", ") };
-            return Err(Refusal::UnknownCylinder { name: name.clone(), known });
+            return Err(Refusal::UnknownCylinder { name: brief(name), known });
         };
-        if areas.iter().any(|(known, _)| *known == index) {
-            return Err(Refusal::Twice { name: name.clone() });
+        if areas.iter().any(|(earlier, _)| *earlier == index) {
+            return Err(Refusal::Twice { name: brief(name) });
         }
         if !area.is_finite() {
-            return Err(Refusal::NotANumber { name: name.clone(), area });
+            return Err(Refusal::NotANumber { name: brief(name), area });
         }
         let maximum = valves[index].maximum_area;
         if area.abs() > maximum * (1.0 + ROUNDING) {
-            return Err(Refusal::OutOfRange { name: name.clone(), area, maximum });
+            return Err(Refusal::OutOfRange { name: brief(name), area, maximum });
         }
         areas.push((index, area.clamp(-maximum, maximum)));
     }

@@ -1,0 +1,140 @@
+//! The machine's own process: plant and valves under the node's orders, and what happens when no order comes.
+
+use std::io::ErrorKind;
+use std::os::fd::AsFd;
+use std::os::unix::net::UnixStream;
+use std::time::{Duration, Instant};
+
+use excavator_model::document;
+use excavator_model::equations::System;
+
+use super::machine_process::{Answer, Order, Ready, Setup, TalkError, receive, send};
+use super::plant::Plant;
+use super::valve_limits;
+use crate::command_gate::{Slew, Wanted};
+use crate::error::VerbError;
+
+/// Longest time that the machine goes on after its node has gone, on the wall: several times what a valve takes to close.
+const LONGEST_ALONE: Duration = Duration::from_secs(60);
+
+/// Runs the machine under the orders that come through standard input, which is one end of a pair of sockets.
+///
+/// # Errors
+/// [`VerbError::Machine`]: it was started by a person.
+pub fn run() -> Result<(), VerbError> {
+    let input = std::io::stdin().as_fd().try_clone_to_owned()?;
+    let mut stream = UnixStream::from(input);
+    let setup: Setup = receive(&mut stream)
+        .map_err(|_| VerbError::Machine("this verb is for excavator node arm-simulator only".to_string()))?;
+    let failed = |reason: String| VerbError::Machine(reason);
+    let model = match document::parse(&setup.name, &setup.model) {
+        Ok(model) => model,
+        Err(error) => {
+            return send(&mut stream, &Ready { failure: error.to_string() }).map_err(|e| failed(e.to_string()));
+        }
+    };
+    let system = System::new(&model);
+    let plant = match Plant::new(&system, &setup.start_displacement, setup.period, setup.supply_pressure) {
+        Ok(plant) => plant,
+        Err(error) => {
+            return send(&mut stream, &Ready { failure: error.to_string() }).map_err(|e| failed(e.to_string()));
+        }
+    };
+    let slew = Slew::new(&valve_limits(&model), setup.opening_time, setup.closing_time);
+    let mut machine = Machine { plant, slew, period: setup.period, failures: Vec::new() };
+    send(&mut stream, &Ready { failure: String::new() }).map_err(|error| failed(error.to_string()))?;
+    let alone = follow(&mut stream, &mut machine, Duration::from_secs_f64(setup.wall_period.clamp(1e-6, 100.0)));
+    if let Some(at) = alone {
+        machine.close(setup.wall_period);
+        eprintln!(
+            "[WARN] [{}.machine]: the node has gone; every valve was closed {:.3} s later",
+            setup.name,
+            at.elapsed().as_secs_f64()
+        );
+    }
+    Ok(())
+}
+
+struct Machine<'m, 's> {
+    plant: Plant<'m, 's>,
+    slew: Slew,
+    period: f64,
+    failures: Vec<String>,
+}
+
+/// Follows orders until the stream ends. Returns the moment at which the node went with a valve open; `None` where all were
+/// closed.
+fn follow(stream: &mut UnixStream, machine: &mut Machine<'_, '_>, wall_period: Duration) -> Option<Instant> {
+    // Samples that the machine went on by without an order, while its node did nothing.
+    let mut alone: u32 = 0;
+    let mut lease = LONGEST_ALONE;
+    loop {
+        // A machine whose node hangs goes on at its own pace.
+        let patience = if alone == 0 { lease.max(5 * wall_period) } else { wall_period };
+        if stream.set_read_timeout(Some(patience)).is_err() {
+            return Some(Instant::now());
+        }
+        match receive::<Order>(stream) {
+            Ok(order) => {
+                lease = Duration::try_from_secs_f64(order.lease).unwrap_or_default();
+                let samples = order.samples.saturating_sub(alone).max(1);
+                alone = 0;
+                machine.obey(&order, samples);
+                if send(stream, &machine.answer(order.oil_temperature)).is_err() {
+                    break;
+                }
+            }
+            Err(TalkError::Broken(error)) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
+                alone = alone.saturating_add(1);
+                machine.step_closing();
+            }
+            Err(_) => break,
+        }
+    }
+    (!machine.slew.are_closed()).then(Instant::now)
+}
+
+impl Machine<'_, '_> {
+    fn obey(&mut self, order: &Order, samples: u32) {
+        for _ in 0..samples {
+            let wanted = order.areas.iter().zip(&order.closing);
+            self.step(&wanted.map(|(&area, &closing)| Wanted { area, closing }).collect::<Vec<_>>());
+        }
+    }
+
+    fn step_closing(&mut self) {
+        self.step(&vec![Wanted { area: 0.0, closing: true }; self.slew.areas().len()]);
+    }
+
+    fn step(&mut self, wanted: &[Wanted]) {
+        self.slew.follow(wanted.iter().copied(), self.period);
+        if let Err(error) = self.plant.step(self.slew.areas())
+            && self.failures.len() < MOST_FAILURES
+        {
+            self.failures.push(error.to_string());
+        }
+    }
+
+    fn answer(&mut self, oil_temperature: f64) -> Answer {
+        let state = self.plant.observe(oil_temperature);
+        Answer {
+            state,
+            joint_rates: self.plant.joint_rates(),
+            closed: self.slew.are_closed(),
+            limited: self.slew.limited(),
+            failures: std::mem::take(&mut self.failures),
+        }
+    }
+
+    /// Closes the valves in real time.
+    fn close(&mut self, wall_period: f64) {
+        let start = Instant::now();
+        while !self.slew.are_closed() && start.elapsed() < LONGEST_ALONE {
+            self.step_closing();
+            std::thread::sleep(Duration::try_from_secs_f64(wall_period).unwrap_or_default());
+        }
+    }
+}
+
+/// Reports of one answer; a machine that fails at every sample says the same each time.
+const MOST_FAILURES: usize = 16;

@@ -1,0 +1,188 @@
+//! The machine in a process of its own.
+//!
+//! What talks to the network can be killed by the network: memory that runs out, an abort in the middleware. A valve must
+//! not stay open for it. So the machine with its valves lives in a second process that no packet reaches. It follows the node
+//! that started it through a pair of sockets, sample by sample, under a lease of its own: when the node has died its valves
+//! close at once, and when the node hangs they close as soon as the lease has run out.
+
+use std::io::{Read, Write};
+use std::os::fd::OwnedFd;
+use std::os::unix::net::UnixStream;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use excavator_bags::cdr;
+use excavator_msgs::ArmState;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::command_gate::Wanted;
+use crate::error::VerbError;
+
+/// Longest time that the machine may take for its answer; a model that takes longer for one sample is stuck.
+const LONGEST_ANSWER: Duration = Duration::from_secs(10);
+/// Largest message, bytes: the text of a model with tables.
+const LARGEST: usize = 64 << 20;
+
+/// How the machine is set up, said once.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Setup {
+    /// The model as TOML text.
+    pub model: String,
+    /// Name that its log lines have.
+    pub name: String,
+    /// Piston displacements at the start, m.
+    pub start_displacement: Vec<f64>,
+    /// Time between two samples, s of the machine.
+    pub period: f64,
+    /// Time between two samples on the wall, s.
+    pub wall_period: f64,
+    /// Pressure of a supply that is kept from outside, Pa; 0: as the machine says.
+    pub supply_pressure: f64,
+    /// Least time from closed to fully open, s.
+    pub opening_time: f64,
+    /// Time from fully open to closed for safety, s.
+    pub closing_time: f64,
+}
+
+/// What the node asks for, once per sample.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Order {
+    /// Orifice area per valve, m².
+    pub areas: Vec<f64>,
+    /// Whether the valve closes for safety, per valve.
+    pub closing: Vec<bool>,
+    /// Samples to go on by: more than one where the node was late.
+    pub samples: u32,
+    /// Time without an order after which the valves close, s.
+    pub lease: f64,
+    /// Oil temperature that is reported, degC.
+    pub oil_temperature: f64,
+}
+
+/// What the machine answers.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Answer {
+    /// The state, as perfect instruments see it; stamped by the node.
+    pub state: ArmState,
+    /// Joint rates, rad/s or m/s.
+    pub joint_rates: Vec<f64>,
+    /// Whether every valve is closed.
+    pub closed: bool,
+    /// Steps in which the rate of an opening was limited, so far.
+    pub limited: u64,
+    /// Why the machine was set up again since the last answer; empty: it was not.
+    pub failures: Vec<String>,
+}
+
+/// The first answer: empty, or why the machine cannot be set up.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Ready {
+    /// Why it is not; empty: it is.
+    pub failure: String,
+}
+
+/// Why the two processes cannot talk.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum TalkError {
+    /// The other one has ended, or does not answer in time.
+    #[error(transparent)]
+    Broken(#[from] std::io::Error),
+    /// What came is no message.
+    #[error("{0}")]
+    Nonsense(String),
+}
+
+/// Sends one message.
+pub(super) fn send<M: Serialize>(stream: &mut UnixStream, message: &M) -> Result<(), TalkError> {
+    let content = cdr::encode(message).map_err(|error| TalkError::Nonsense(error.to_string()))?;
+    let length = u32::try_from(content.len()).map_err(|error| TalkError::Nonsense(error.to_string()))?;
+    // In one piece: a reader that is killed or killed for never sees half of one.
+    let mut bytes = length.to_le_bytes().to_vec();
+    bytes.extend(content);
+    Ok(stream.write_all(&bytes)?)
+}
+
+/// Receives one message.
+pub(super) fn receive<M: DeserializeOwned>(stream: &mut UnixStream) -> Result<M, TalkError> {
+    let mut length = [0; 4];
+    stream.read_exact(&mut length)?;
+    let length = u32::from_le_bytes(length) as usize;
+    if length > LARGEST {
+        return Err(TalkError::Nonsense(format!("a message of {length} bytes, more than {LARGEST}")));
+    }
+    let mut content = vec![0; length];
+    stream.read_exact(&mut content)?;
+    cdr::decode(&content).map_err(|error| TalkError::Nonsense(error.to_string()))
+}
+
+/// The node's end.
+pub(super) struct MachineProcess {
+    child: Child,
+    stream: UnixStream,
+    order: Order,
+}
+
+impl MachineProcess {
+    /// Starts the process and sets the machine up. Signals that this thread blocks stay blocked there, so that a Ctrl-C in the
+    /// terminal ends the node, and the node closes the valves.
+    ///
+    /// # Errors
+    /// [`VerbError::Machine`]: what is wrong with the model or the start; [`VerbError::Io`].
+    pub fn start(setup: &Setup) -> Result<Self, VerbError> {
+        let (stream, theirs) = UnixStream::pair()?;
+        let child = Command::new(std::env::current_exe()?)
+            .arg("machine")
+            .stdin(Stdio::from(OwnedFd::from(theirs)))
+            .stdout(Stdio::null())
+            .spawn()?;
+        stream.set_read_timeout(Some(LONGEST_ANSWER))?;
+        let order = Order { areas: vec![], closing: vec![], samples: 1, lease: 0.0, oil_temperature: 0.0 };
+        let mut process = MachineProcess { child, stream, order };
+        let talked = send(&mut process.stream, setup).and_then(|()| receive::<Ready>(&mut process.stream));
+        let ready = talked.map_err(|error| process.ended(&error))?;
+        if ready.failure.is_empty() { Ok(process) } else { Err(VerbError::Machine(ready.failure)) }
+    }
+
+    /// Goes on by so many samples with these openings.
+    ///
+    /// # Errors
+    /// [`VerbError::Machine`] when the process has ended or does not answer.
+    pub fn go_on(
+        &mut self,
+        wanted: &[Wanted],
+        samples: u64,
+        lease: Duration,
+        oil_temperature: f64,
+    ) -> Result<Answer, VerbError> {
+        self.order.areas.clear();
+        self.order.areas.extend(wanted.iter().map(|wanted| wanted.area));
+        self.order.closing.clear();
+        self.order.closing.extend(wanted.iter().map(|wanted| wanted.closing));
+        self.order.samples = u32::try_from(samples).unwrap_or(u32::MAX);
+        self.order.lease = lease.as_secs_f64();
+        self.order.oil_temperature = oil_temperature;
+        let talked = send(&mut self.stream, &self.order).and_then(|()| receive(&mut self.stream));
+        talked.map_err(|error| self.ended(&error))
+    }
+
+    fn ended(&mut self, error: &TalkError) -> VerbError {
+        let status =
+            self.child.try_wait().ok().flatten().map_or_else(|| error.to_string(), |status| status.to_string());
+        VerbError::Machine(format!("the process of the simulated machine has failed: {status}"))
+    }
+}
+
+impl Drop for MachineProcess {
+    fn drop(&mut self) {
+        // The machine ends with its stream, a ramp later.
+        let _ = self.stream.shutdown(std::net::Shutdown::Both);
+        let start = Instant::now();
+        while matches!(self.child.try_wait(), Ok(None)) {
+            if start.elapsed() > LONGEST_ANSWER {
+                let _ = self.child.kill();
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+}

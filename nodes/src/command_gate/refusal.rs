@@ -1,0 +1,115 @@
+//! Why a command changes nothing.
+
+/// Why a command changes nothing. Each says what to do where that is not obvious.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum Refusal {
+    /// The writer is not on the list of those who may command.
+    #[error("{writer} is not among the command_writers of this node")]
+    NotAllowed {
+        /// Node name or identity.
+        writer: String,
+    },
+    /// The stamp is empty.
+    #[error(
+        "no stamp: set header.stamp to the time of sending (ros2 topic pub: \"header: auto\"), or set accept_unstamped"
+    )]
+    Unstamped,
+    /// The command was made too long ago, by the clock of this side.
+    #[error("stamped {age:.3} s ago, more than command_max_age = {most} s: are the clocks synchronised?")]
+    TooOld {
+        /// Age of the stamp, s.
+        age: f64,
+        /// Largest age that is allowed, s.
+        most: f64,
+    },
+    /// The stamp is later than now.
+    #[error("stamped {ahead:.3} s in the future, more than {most} s: are the clocks synchronised?")]
+    FromTheFuture {
+        /// Time from now to the stamp, s.
+        ahead: f64,
+        /// Largest time that is allowed, s.
+        most: f64,
+    },
+    /// `names` and `areas` do not fit together.
+    #[error("{names} names with {areas} areas")]
+    Lengths {
+        /// Number of names.
+        names: usize,
+        /// Number of areas.
+        areas: usize,
+    },
+    /// No valve of this name.
+    #[error("there is no cylinder \"{name}\" with a valve; there is {known}")]
+    UnknownCylinder {
+        /// The name.
+        name: String,
+        /// Names that exist.
+        known: String,
+    },
+    /// The same valve twice.
+    #[error("cylinder \"{name}\" is named twice")]
+    Twice {
+        /// The name.
+        name: String,
+    },
+    /// `NaN` or infinite.
+    #[error("the area {area} m2 for \"{name}\" is not a number")]
+    NotANumber {
+        /// The cylinder.
+        name: String,
+        /// The area.
+        area: f64,
+    },
+    /// Wider than the valve, or than its limit.
+    #[error("the area {area:.3e} m2 for \"{name}\" is beyond {maximum:.3e} m2")]
+    OutOfRange {
+        /// The cylinder.
+        name: String,
+        /// The area, m².
+        area: f64,
+        /// What may be commanded, m².
+        maximum: f64,
+    },
+    /// The machine is stopped.
+    #[error("the machine is stopped by {by}")]
+    Stopped {
+        /// Who stopped it.
+        by: String,
+    },
+    /// Another writer owns the valve.
+    #[error("\"{name}\" is commanded by {owner}, whose lease is valid")]
+    Owned {
+        /// The cylinder.
+        name: String,
+        /// Who owns it.
+        owner: String,
+    },
+    /// The valve was closed for safety, and does not open by itself.
+    #[error("\"{name}\" is closed because {reason}: command an area of 0 first")]
+    NeutralFirst {
+        /// The cylinder.
+        name: String,
+        /// Why it was closed.
+        reason: String,
+    },
+}
+
+impl Refusal {
+    /// A short name of the kind of refusal, the same for every command that is refused alike.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Refusal::NotAllowed { .. } => "writer not allowed",
+            Refusal::Unstamped => "unstamped",
+            Refusal::TooOld { .. } => "too old",
+            Refusal::FromTheFuture { .. } => "from the future",
+            Refusal::Lengths { .. }
+            | Refusal::UnknownCylinder { .. }
+            | Refusal::Twice { .. }
+            | Refusal::NotANumber { .. } => "malformed",
+            Refusal::OutOfRange { .. } => "beyond the limit",
+            Refusal::Stopped { .. } => "stopped",
+            Refusal::Owned { .. } => "owned by another writer",
+            Refusal::NeutralFirst { .. } => "neutral first",
+        }
+    }
+}
