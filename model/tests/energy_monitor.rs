@@ -149,6 +149,31 @@ fn missing_physics_is_told_and_noise_is_not() {
 }
 
 #[test]
+fn without_noise_the_true_model_is_explained_and_a_wrong_one_is_not() {
+    for name in ["zx30u-arm", "zx30u"] {
+        let model = built_in(name).unwrap();
+        let moving = samples(&model, &recording(&model), true);
+        // Three seconds at rest as a sensor without noise sees them: the same state again and again.
+        let resting =
+            (0..3000).map(|index| Sample { nanoseconds: moving[0].nanoseconds + index * PERIOD, ..moving[0].clone() });
+        for (what, samples) in [("moving", moving.clone()), ("resting", resting.collect())] {
+            let (_, windows) = monitored(&model, samples);
+            for window in &windows {
+                let unexplained = window.residual() * window.length;
+                println!("{name}, {what}: {unexplained:.2e} J of {:.2e} J", window.resolution);
+            }
+            assert!(windows.len() >= 2 && windows.iter().all(Window::is_explained), "{name}, {what}: {windows:?}");
+        }
+        let mut wrong = model.clone();
+        for effect in wrong.effects.iter_mut().filter(|effect| effect.name() == "viscous_damping") {
+            effect.parameters[0].value *= 0.9;
+        }
+        let (_, windows) = monitored(&wrong, moving);
+        assert!(windows.iter().all(|window| !window.is_explained()), "{name}: {windows:?}");
+    }
+}
+
+#[test]
 fn energy_out_of_nothing_violates_passivity() {
     let model = built_in("zx30u-arm").unwrap();
     let recording = recording(&model);

@@ -6,7 +6,7 @@ use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::time::Duration;
 
-use excavator::dashboard::{Board, serve};
+use excavator::dashboard::{Board, Hosts, serve};
 use excavator_msgs::common::{DiagnosticArray, DiagnosticStatus};
 use excavator_msgs::{ArmState, CylinderState, Header};
 
@@ -18,7 +18,7 @@ fn server() -> (Arc<Board>, SocketAddr) {
     let own = Arc::clone(&board);
     std::thread::spawn(move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
-        runtime.block_on(serve(listener, own, std::future::pending())).unwrap();
+        runtime.block_on(serve(listener, own, Hosts::default(), std::future::pending())).unwrap();
     });
     (board, address)
 }
@@ -26,7 +26,7 @@ fn server() -> (Arc<Board>, SocketAddr) {
 fn get(address: SocketAddr, path: &str) -> TcpStream {
     let mut stream = TcpStream::connect(address).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
-    write!(stream, "GET {path} HTTP/1.1\r\nHost: here\r\nConnection: close\r\n\r\n").unwrap();
+    write!(stream, "GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n").unwrap();
     stream
 }
 

@@ -4,6 +4,11 @@
 //! table in `docs/faults.md`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod bridge;
+mod faces;
 mod fault;
+mod goals;
+mod inside;
 #[path = "../../nodes/tests/live/mod.rs"]
 mod live;
+mod monitor;

@@ -40,12 +40,13 @@ def bags(excavator, model, tmp_path_factory):
             [excavator, "simulate", "--model", machine, "--input", profile, "-o", made[name]],
             check=True, capture_output=True, timeout=60,
         )  # fmt: skip
-    return {name: str(bag) for name, bag in made.items()}
+    return made
 
 
 @pytest.fixture(scope="module")
-def identification(ros, excavator):
-    return ros.start(excavator, "node", "identification")
+def identification(ros, excavator, bags):
+    folder = bags["short"].parent
+    return ros.start(excavator, "node", "identification", "--ros-args", "-p", f"bag_folder:={folder}")
 
 
 @pytest.fixture
@@ -61,7 +62,7 @@ def accepted(ros, action, goal, feedback=None):
 
 def test_from_goal_to_result(ros, action, bags):
     told = []
-    goal = Identify.Goal(model="zx30u-arm", bags=[bags["short"]])
+    goal = Identify.Goal(model="zx30u-arm", bags=["short"])
     handle = accepted(ros, action, goal, lambda message: told.append(message.feedback))
     answer = ros.result(handle.get_result_async(), "the result", 60.0)
     assert answer.status == GoalStatus.STATUS_SUCCEEDED, answer.result.message
@@ -88,7 +89,7 @@ def test_from_goal_to_result(ros, action, bags):
 
 
 def test_effects_are_added(ros, action, bags):
-    goal = Identify.Goal(model="zx30u-arm", bags=[bags["short"]], effects=["stribeck_friction@arm"])
+    goal = Identify.Goal(model="zx30u-arm", bags=["short"], effects=["stribeck_friction@arm"])
     handle = accepted(ros, action, goal)
     answer = ros.result(handle.get_result_async(), "the result", 120.0)
     assert answer.result.success, answer.result.message
@@ -101,16 +102,13 @@ def test_effects_are_added(ros, action, bags):
     [
         (Identify.Goal(model="zx30u-arm", bags=["/no/such/bag"]), "/no/such/bag"),
         (Identify.Goal(model="no-such-model", bags=["/no/such/bag"]), "no-such-model"),
-        (Identify.Goal(model="zx30u-arm", bags=["SHORT"], effects=["no_such_effect"]), "no_such_effect"),
+        (Identify.Goal(model="zx30u-arm", bags=["short"], effects=["no_such_effect"]), "no_such_effect"),
         (Identify.Goal(model="zx30u-arm", bags=[]), "bag"),
     ],
     ids=["no such bag", "no such model", "no such effect", "no bags"],
 )
-def test_what_cannot_be_done_is_refused_or_fails_with_a_reason(ros, action, bags, goal, word):
-    asked = Identify.Goal(
-        model=goal.model, bags=[bags["short"] if bag == "SHORT" else bag for bag in goal.bags], effects=goal.effects
-    )
-    handle = ros.result(action.send_goal_async(asked), "the answer to a goal")
+def test_what_cannot_be_done_is_refused_or_fails_with_a_reason(ros, action, goal, word):
+    handle = ros.result(action.send_goal_async(goal), "the answer to a goal")
     if not handle.accepted:
         return
     answer = ros.result(handle.get_result_async(), "the result", 30.0)
@@ -119,8 +117,23 @@ def test_what_cannot_be_done_is_refused_or_fails_with_a_reason(ros, action, bags
     assert word in answer.result.message
 
 
+@pytest.mark.parametrize("name", ["/etc/passwd", "../short", "nothing"])
+def test_files_outside_the_folder_are_not_there(ros, action, bags, name):
+    absolute = str(bags["short"])
+    messages = set()
+    for bag in (name, absolute):
+        handle = accepted(ros, action, Identify.Goal(model="zx30u-arm", bags=[bag]))
+        answer = ros.result(handle.get_result_async(), "the result", 30.0)
+        assert answer.status == GoalStatus.STATUS_ABORTED
+        messages.add(answer.result.message.replace(bag, "NAME"))
+    assert len(messages) == 1 and "bag_folder" in messages.pop()
+    handle = accepted(ros, action, Identify.Goal(model=name, bags=["short"]))
+    answer = ros.result(handle.get_result_async(), "the result", 30.0)
+    assert answer.status == GoalStatus.STATUS_ABORTED and "model_folder" in answer.result.message
+
+
 def test_cancel_ends_the_work(ros, action, bags):
-    handle = accepted(ros, action, Identify.Goal(model="zx30u-arm", bags=[bags["long"]] * 4))
+    handle = accepted(ros, action, Identify.Goal(model="zx30u-arm", bags=["long"] * 4))
     result = handle.get_result_async()
     answer = ros.result(handle.cancel_goal_async(), "the answer to a cancel request")
     assert answer.return_code == CancelGoal.Response.ERROR_NONE
@@ -131,7 +144,7 @@ def test_cancel_ends_the_work(ros, action, bags):
 
 
 def test_a_cancelled_goal_cannot_be_cancelled_again(ros, action, bags):
-    handle = accepted(ros, action, Identify.Goal(model="zx30u-arm", bags=[bags["short"]]))
+    handle = accepted(ros, action, Identify.Goal(model="zx30u-arm", bags=["short"]))
     ros.result(handle.get_result_async(), "the result", 60.0)
     answer = ros.result(handle.cancel_goal_async(), "the answer to a cancel request")
     assert answer.return_code in (
@@ -144,7 +157,7 @@ def test_a_cancelled_goal_cannot_be_cancelled_again(ros, action, bags):
 def test_the_work_does_not_block_other_traffic(ros, action, bags):
     client = ros.client(ListParameters, "/identification/list_parameters")
     ros.result(client.call_async(ListParameters.Request()), "a reply of the idle node")
-    handle = accepted(ros, action, Identify.Goal(model="zx30u-arm", bags=[bags["long"]] * 4))
+    handle = accepted(ros, action, Identify.Goal(model="zx30u-arm", bags=["long"] * 4))
     result = handle.get_result_async()
     replies = 0
     try:

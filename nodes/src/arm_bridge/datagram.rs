@@ -10,14 +10,23 @@ pub(super) fn decode(datagram: &[u8], layout: &Udp) -> Option<Vec<f64>> {
     layout.fields.iter().map(|field| number(datagram.get(field.at..)?, field.kind, layout.byte_order)).collect()
 }
 
-fn number(bytes: &[u8], kind: NumberKind, order: ByteOrder) -> Option<f64> {
+/// The number of a datagram, in layouts that have one.
+pub(super) fn sequence_number(datagram: &[u8], layout: &Udp) -> Option<u64> {
+    let field = layout.sequence?;
+    whole(datagram.get(field.at..)?, field.kind.length(), layout.byte_order)
+}
+
+fn whole(bytes: &[u8], length: usize, order: ByteOrder) -> Option<u64> {
     let mut raw = [0_u8; 8];
-    let length = kind.length();
-    raw[..length].copy_from_slice(bytes.get(..length)?);
+    raw.get_mut(..length)?.copy_from_slice(bytes.get(..length)?);
     if order == ByteOrder::Big {
         raw[..length].reverse();
     }
-    let whole = u64::from_le_bytes(raw);
+    Some(u64::from_le_bytes(raw))
+}
+
+fn number(bytes: &[u8], kind: NumberKind, order: ByteOrder) -> Option<f64> {
+    let whole = whole(bytes, kind.length(), order)?;
     let low = (whole & u64::from(u32::MAX)) as u32;
     Some(match kind {
         NumberKind::U8 => f64::from(low as u8),
@@ -34,7 +43,7 @@ fn number(bytes: &[u8], kind: NumberKind, order: ByteOrder) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm_bridge::description::DatagramField;
+    use crate::arm_bridge::description::{DatagramField, LOOPBACK, SequenceField, SequenceKind};
     use crate::arm_bridge::signals::Treatment;
 
     fn layout(byte_order: ByteOrder) -> Udp {
@@ -42,16 +51,19 @@ mod tests {
             signal: "pump_flow".into(),
             scale: 1.0,
             offset: 0.0,
-            minimum: f64::NEG_INFINITY,
-            maximum: f64::INFINITY,
+            minimum: None,
+            maximum: None,
             age: 1.0,
             delay: 0.0,
         };
         let field = |at, kind| DatagramField { at, kind, treatment: treatment.clone() };
         Udp {
             port: 1,
+            address: LOOPBACK,
+            senders: Vec::new(),
             length: 14,
             byte_order,
+            sequence: Some(SequenceField { at: 12, kind: SequenceKind::U16 }),
             fields: vec![field(0, NumberKind::I16), field(2, NumberKind::F32), field(6, NumberKind::F64)],
         }
     }
@@ -66,6 +78,15 @@ mod tests {
         big.extend(0.5_f32.to_be_bytes());
         big.extend(1e-4_f64.to_be_bytes());
         assert_eq!(decode(&big, &layout(ByteOrder::Big)), Some(vec![-2.0, 0.5, 1e-4]));
+    }
+
+    #[test]
+    fn the_sequence_number_is_read_in_both_orders() {
+        let mut datagram = [0; 14];
+        datagram[12..].copy_from_slice(&[1, 2]);
+        assert_eq!(sequence_number(&datagram, &layout(ByteOrder::Little)), Some(0x0201));
+        assert_eq!(sequence_number(&datagram, &layout(ByteOrder::Big)), Some(0x0102));
+        assert_eq!(sequence_number(&datagram, &Udp { sequence: None, ..layout(ByteOrder::Big) }), None);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The description of where signals come from.
 
+use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -35,13 +36,84 @@ fn default_rate() -> f64 {
 pub(super) struct Udp {
     /// Port to listen at.
     pub port: u16,
+    /// Address to listen at: this machine alone without, all networks with 0.0.0.0.
+    #[serde(default = "loopback")]
+    pub address: IpAddr,
+    /// Addresses whose datagrams are taken; empty, on loopback only: all.
+    #[serde(default)]
+    pub senders: Vec<IpAddr>,
     /// Length of a datagram, bytes.
     pub length: usize,
     /// Order of the bytes of a number.
     #[serde(default)]
     pub byte_order: ByteOrder,
+    /// Where the number of the datagram is, which rises by one from each to the next.
+    pub sequence: Option<SequenceField>,
     /// What is where.
     pub fields: Vec<DatagramField>,
+}
+
+/// Where signals come from unless the description says otherwise: programs of this machine.
+pub(super) const LOOPBACK: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
+
+fn loopback() -> IpAddr {
+    LOOPBACK
+}
+
+impl Udp {
+    /// Whether the layout can be read, and who may send it.
+    ///
+    /// # Errors
+    /// What is wrong, in one line.
+    fn check(&self) -> Result<(), String> {
+        let fields = self.fields.iter().map(|field| (field.treatment.signal.as_str(), field.at, field.kind.length()));
+        let sequence = self.sequence.iter().map(|field| ("sequence", field.at, field.kind.length()));
+        for (name, at, length) in fields.chain(sequence) {
+            let end = at.saturating_add(length);
+            if end > self.length {
+                return Err(format!("{name} ends at byte {end} of a datagram of {} bytes", self.length));
+            }
+        }
+        if !self.address.is_loopback() && self.senders.is_empty() {
+            return Err(format!(
+                "the [[udp]] of port {} listens at {}: name the instruments whose datagrams are taken, such as \
+                 senders = [\"192.168.1.20\"]",
+                self.port, self.address
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Where the number of a datagram is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SequenceField {
+    /// First byte.
+    pub at: usize,
+    /// Type.
+    pub kind: SequenceKind,
+}
+
+/// Type of the number of a datagram; it begins anew at zero after its largest value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[allow(missing_docs)]
+pub(super) enum SequenceKind {
+    U8,
+    U16,
+    U32,
+}
+
+impl SequenceKind {
+    /// Length, bytes.
+    pub fn length(self) -> usize {
+        match self {
+            SequenceKind::U8 => 1,
+            SequenceKind::U16 => 2,
+            SequenceKind::U32 => 4,
+        }
+    }
 }
 
 /// Order of the bytes of a number.
@@ -197,13 +269,7 @@ impl Description {
             return Err(format!("rate = {} is outside 0.1 to 2000 Hz", description.rate));
         }
         for udp in &description.udp {
-            for field in &udp.fields {
-                let end = field.at.saturating_add(field.kind.length());
-                if end > udp.length {
-                    let signal = &field.treatment.signal;
-                    return Err(format!("{signal} ends at byte {end} of a datagram of {} bytes", udp.length));
-                }
-            }
+            udp.check()?;
         }
         let sources = description.udp.len() + description.can.len() + description.topics.len();
         for can in &description.can {
@@ -259,12 +325,22 @@ mod tests {
     #[test]
     fn nonsense_is_refused_with_a_reason() {
         let udp = "[[udp]]\nport = 1\nlength = 4\n[[udp.fields]]\n";
+        let with = |line: &str| udp.replace("length", &format!("{line}\nlength"));
         let can = "[[can]]\ndbc = \"x.dbc\"\n";
         let signal = "[[can.signals]]\nmessage = \"M\"\nname = \"S\"\nsignal = \"pump_flow\"\n";
         for (text, word) in [
             (String::new(), "no signal"),
             ("rate = -1".to_string(), "rate"),
             (format!("{udp}at = 2\nkind = \"f32\"\nsignal = \"pump_flow\""), "byte 6"),
+            (format!("{}at = 0\nkind = \"u8\"\nsignal = \"pump_flow\"", with("address = \"0.0.0.0\"")), "senders = ["),
+            (format!("{}at = 0\nkind = \"u8\"\nsignal = \"pump_flow\"", with("senders = [\"pit\"]")), "IP address"),
+            (
+                format!(
+                    "{}at = 0\nkind = \"u8\"\nsignal = \"pump_flow\"",
+                    with("sequence = { at = 3, kind = \"u16\" }")
+                ),
+                "sequence ends",
+            ),
             (format!("{udp}at = 0\nkind = \"f32\"\nsignal = \"arm.colour\""), "arm.colour"),
             (format!("{udp}at = 0\nkind = \"f16\"\nsignal = \"pump_flow\""), "f16"),
             (format!("{udp}at = 0\nkind = \"f32\"\nsignal = \"pump_flow\"\ndelay = 2.0"), "delay"),

@@ -7,7 +7,10 @@
 //!
 //! [[udp]]                            # datagrams of fixed layout
 //! port = 5600
+//! address = "0.0.0.0"                # all networks; without: this machine alone
+//! senders = ["192.168.1.20"]         # whose datagrams are taken; needed with an address
 //! length = 20                        # bytes; others are refused
+//! sequence = { at = 18, kind = "u16" } # repeated and old datagrams are refused, missing ones counted
 //! byte_order = "little"              # or "big"
 //! [[udp.fields]]
 //! at = 0                             # first byte
@@ -47,8 +50,11 @@ pub mod can;
 mod can_source;
 mod datagram;
 mod description;
+mod limits;
 mod node;
 mod publisher;
+mod sequence;
 mod signals;
+mod udp_source;
 
 pub use node::run;

@@ -1,18 +1,17 @@
 //! The bridge on the graph.
 
-use std::net::UdpSocket;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use excavator_msgs::common::{FluidPressure, JointState};
 
 use super::can_source::CanSource;
-use super::datagram::decode;
-use super::description::{Description, JointField, TopicKind, TopicSource, Udp};
+use super::description::{Description, JointField, TopicKind, TopicSource};
 use super::publisher::{Publisher, Refused, lock};
 use super::signals::Signals;
+use super::udp_source::UdpSource;
 use crate::error::VerbError;
 use crate::ros::{Health, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
@@ -40,13 +39,7 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     let mut first = 0;
     let mut sockets = Vec::new();
     for udp in &description.udp {
-        let socket = UdpSocket::bind(("0.0.0.0", udp.port))
-            .and_then(|socket| socket.set_read_timeout(Some(GLANCE)).map(|()| socket))
-            .map_err(|error| RosError::Endpoint {
-                what: format!("UDP port {}", udp.port),
-                reason: error.to_string(),
-            })?;
-        sockets.push((socket, udp, first));
+        sockets.push(UdpSource::open(udp, first)?);
         first += udp.fields.len();
     }
     let mut buses = Vec::new();
@@ -69,14 +62,15 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
         diagnostics: &supervisor.diagnostics,
         refused: &refused,
         has_frames: !buses.is_empty(),
+        has_datagrams: !description.udp.is_empty(),
     };
     let has_own_clock = buses.iter().any(CanSource::is_the_clock);
     let stop = supervisor.stop_flag();
     std::thread::scope(|scope| {
         let (publisher, refused, stop) = (&publisher, &refused, &stop);
-        for (socket, udp, first) in &sockets {
+        for socket in sockets {
             let signals = &signals;
-            scope.spawn(move || listen(socket, udp, *first, signals, refused, stop));
+            scope.spawn(move || socket.listen(signals, refused, stop));
         }
         for bus in buses {
             let supervisor = &supervisor;
@@ -106,34 +100,6 @@ fn wait_for_a_reader(supervisor: &Supervisor, stop: &AtomicBool) {
         std::thread::sleep(GLANCE);
     }
     std::thread::sleep(ACQUAINTANCE);
-}
-
-fn listen(
-    socket: &UdpSocket,
-    layout: &Udp,
-    first: usize,
-    signals: &Mutex<Signals>,
-    refused: &Refused,
-    stop: &AtomicBool,
-) {
-    // One byte more than any datagram can have shows those that are too long.
-    let mut buffer = vec![0; 65_536];
-    while !stop.load(Ordering::Relaxed) {
-        // Errors are the time-out, or a network that is down: both are looked at again.
-        let Ok(length) = socket.recv(&mut buffer) else { continue };
-        let now = Instant::now();
-        match decode(&buffer[..length], layout) {
-            Some(values) => {
-                let mut signals = lock(signals);
-                for (index, value) in values.into_iter().enumerate() {
-                    signals.take(first + index, value, now);
-                }
-            }
-            None => {
-                refused.datagrams.fetch_add(1, Ordering::Relaxed);
-            }
-        }
-    }
 }
 
 fn subscribe(

@@ -27,6 +27,12 @@ pub(super) fn lock(signals: &Mutex<Signals>) -> MutexGuard<'_, Signals> {
 pub(super) struct Refused {
     /// Datagrams of another length than described.
     pub datagrams: AtomicU64,
+    /// Datagrams of senders that are not named.
+    pub strangers: AtomicU64,
+    /// Datagrams whose number had come before, or was older than the newest.
+    pub repeated: AtomicU64,
+    /// Numbers of datagrams that did not come.
+    pub missing: AtomicU64,
     /// CAN frames.
     pub frames: Counts,
 }
@@ -41,8 +47,10 @@ pub(super) struct Publisher<'p> {
     pub clock: &'p RosClock,
     pub diagnostics: &'p Diagnostics,
     pub refused: &'p Refused,
-    /// Whether anything but topics is read.
+    /// Whether CAN buses are read.
     pub has_frames: bool,
+    /// Whether datagrams are read.
+    pub has_datagrams: bool,
 }
 
 impl Publisher<'_> {
@@ -118,6 +126,11 @@ impl Publisher<'_> {
         let mut values: Vec<(&str, String)> = words.iter().map(|(name, word)| (name.as_str(), word.clone())).collect();
         let count = |counter: &AtomicU64| counter.load(Ordering::Relaxed).to_string();
         values.push(("refused datagrams", count(&self.refused.datagrams)));
+        if self.has_datagrams {
+            values.push(("datagrams of other senders", count(&self.refused.strangers)));
+            values.push(("repeated or old datagrams", count(&self.refused.repeated)));
+            values.push(("missing datagrams", count(&self.refused.missing)));
+        }
         if self.has_frames {
             let frames = &self.refused.frames;
             values.push(("short frames", count(&frames.short)));

@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 use excavator_msgs::{ArmState, CylinderState, Header, Time};
 use serde::Deserialize;
 
+use super::limits::limits_of;
+
 /// What becomes of the raw value of a signal.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub(super) struct Treatment {
@@ -17,12 +19,10 @@ pub(super) struct Treatment {
     /// What is added to it then, in SI.
     #[serde(default)]
     pub offset: f64,
-    /// Least value that can be, in SI.
-    #[serde(default = "lowest")]
-    pub minimum: f64,
-    /// Largest value that can be, in SI.
-    #[serde(default = "highest")]
-    pub maximum: f64,
+    /// Least value that can be, in SI; without: that of the kind of signal.
+    pub minimum: Option<f64>,
+    /// Largest value that can be, in SI; without: that of the kind of signal.
+    pub maximum: Option<f64>,
     /// Age beyond which a value is of no use, s.
     #[serde(default = "default_age")]
     pub age: f64,
@@ -40,22 +40,14 @@ fn one() -> f64 {
     1.0
 }
 
-fn lowest() -> f64 {
-    f64::NEG_INFINITY
-}
-
-fn highest() -> f64 {
-    f64::INFINITY
-}
-
 /// 0.1 s: ten samples of a slow instrument.
 fn default_age() -> f64 {
     0.1
 }
 
-const OF_CYLINDERS: [&str; 7] =
+pub(super) const OF_CYLINDERS: [&str; 7] =
     ["joint_angle", "displacement", "velocity", "cap_pressure", "rod_pressure", "orifice_area", "rod_force"];
-const OF_MACHINE: [&str; 4] = ["pump_pressure", "tank_pressure", "pump_flow", "oil_temperature"];
+pub(super) const OF_MACHINE: [&str; 4] = ["pump_pressure", "tank_pressure", "pump_flow", "oil_temperature"];
 
 impl Treatment {
     /// Whether it makes sense.
@@ -78,8 +70,9 @@ impl Treatment {
         if !self.scale.is_finite() || self.scale == 0.0 || !self.offset.is_finite() {
             return Err(format!("{}: scale {} and offset {} make no value", self.signal, self.scale, self.offset));
         }
-        if self.minimum.is_nan() || self.maximum.is_nan() || self.minimum >= self.maximum {
-            return Err(format!("{}: nothing is between {} and {}", self.signal, self.minimum, self.maximum));
+        let (minimum, maximum) = self.range();
+        if minimum.is_nan() || maximum.is_nan() || minimum >= maximum {
+            return Err(format!("{}: nothing is between {minimum} and {maximum}", self.signal));
         }
         if !(self.age > 0.0 && self.age < 1e6) {
             return Err(format!("{}: an age of {} s makes no sense", self.signal, self.age));
@@ -92,10 +85,17 @@ impl Treatment {
 }
 
 impl Treatment {
+    /// Least and largest value that can be, in SI.
+    pub fn range(&self) -> (f64, f64) {
+        let (least, largest) = limits_of(&self.signal);
+        (self.minimum.unwrap_or(least), self.maximum.unwrap_or(largest))
+    }
+
     /// The raw value in SI.
     fn value(&self, raw: f64) -> Result<f64, Fault> {
         let value = raw * self.scale + self.offset;
-        if !value.is_finite() || value < self.minimum || value > self.maximum {
+        let (minimum, maximum) = self.range();
+        if !value.is_finite() || value < minimum || value > maximum {
             return Err(Fault::OutOfRange(value));
         }
         Ok(value)
@@ -104,8 +104,9 @@ impl Treatment {
     /// Narrows the range to raw values from `least` to `largest`.
     pub fn narrow(&mut self, least: f64, largest: f64) {
         let (one, other) = (least * self.scale + self.offset, largest * self.scale + self.offset);
-        self.minimum = self.minimum.max(one.min(other));
-        self.maximum = self.maximum.min(one.max(other));
+        let (minimum, maximum) = self.range();
+        self.minimum = Some(minimum.max(one.min(other)));
+        self.maximum = Some(maximum.min(one.max(other)));
     }
 
     /// Whether the signal steps from one value to the next.
@@ -270,8 +271,8 @@ mod tests {
             signal: signal.into(),
             scale: 1e-3,
             offset: -0.3,
-            minimum: -0.31,
-            maximum: 0.31,
+            minimum: Some(-0.31),
+            maximum: Some(0.31),
             age: 0.05,
             delay: 0.0,
         }
@@ -301,11 +302,26 @@ mod tests {
     }
 
     #[test]
+    fn without_limits_of_its_own_a_signal_has_those_of_its_kind() {
+        let start = Instant::now();
+        let own =
+            |signal: &str| Treatment { scale: 1.0, offset: 0.0, minimum: None, maximum: None, ..treatment(signal) };
+        let wider = Treatment { maximum: Some(2e8), ..own("boom.cap_pressure") };
+        let mut signals = Signals::new(vec![own("arm.cap_pressure"), wider]);
+        for (raw, fits) in [(3e7, true), (1.5e8, false), (1e30, false), (-5e5, false)] {
+            signals.take(0, raw, start);
+            assert_eq!(signals.value(0, start).is_ok(), fits, "{raw}");
+        }
+        signals.take(1, 1.5e8, start);
+        assert!(signals.value(1, start).is_ok());
+    }
+
+    #[test]
     fn signals_with_different_delays_are_brought_onto_one_clock() {
         let start = Instant::now();
         let ms = |count: u64| start + Duration::from_millis(count);
         let slow = Treatment { delay: 0.03, ..treatment("boom.displacement") };
-        let steps = Treatment { minimum: -1.0, maximum: 1.0, ..treatment("arm.orifice_area") };
+        let steps = Treatment { minimum: Some(-1.0), maximum: Some(1.0), ..treatment("arm.orifice_area") };
         let mut signals = Signals::new(vec![treatment("arm.displacement"), slow, steps]);
         assert_eq!(signals.delay(), Duration::from_millis(30));
         // All move by one millimetre per millisecond; the slow one tells it 30 ms late.
@@ -335,6 +351,6 @@ mod tests {
     fn a_range_is_narrowed_through_a_negative_scale() {
         let mut narrowed = Treatment { scale: -1e-3, offset: 0.0, ..treatment("arm.displacement") };
         narrowed.narrow(-100.0, 200.0);
-        assert_eq!((narrowed.minimum, narrowed.maximum), (-0.2, 0.1));
+        assert_eq!(narrowed.range(), (-0.2, 0.1));
     }
 }

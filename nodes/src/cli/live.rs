@@ -95,6 +95,9 @@ pub struct DashboardArguments {
     /// Address that the page is offered at; 0.0.0.0: to everybody on the network.
     #[arg(long, default_value = "127.0.0.1")]
     pub host: String,
+    /// Name under which browsers may ask for the page, beside localhost and its address; may be given several times.
+    #[arg(long, value_name = "NAME")]
+    pub allow_host: Vec<String>,
 }
 
 #[derive(Debug, Args)]
@@ -110,7 +113,8 @@ pub struct PlayArguments {
     /// Leave out the first seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = not_negative)]
     pub start_offset: f64,
-    /// Play these topics only.
+    /// Play these topics only. Commands (OrificeCommand, */orifice_command, */stop) are played only when they are named
+    /// here: a live machine would follow them.
     #[arg(long, num_args = 1.., value_name = "TOPIC")]
     pub topics: Vec<String>,
     /// Play topics under other names.

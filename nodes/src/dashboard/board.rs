@@ -9,12 +9,16 @@ use excavator_msgs::{ArmState, CylinderEnergy, EnergyState, OrificeCommand};
 use serde_json::{Map, Value, json};
 use tokio::sync::watch;
 
+use super::bounded::{self, MOST_SHOWN};
+
 /// Frames that are kept for a page that opens: half a minute at 25 Hz.
 const HISTORY: usize = 750;
+/// Bytes of them: a machine with three cylinders makes 3 MB of half a minute.
+const HISTORY_BYTES: usize = 8 << 20;
 /// Parts of nodes of which the state of health is kept.
 const MOST_PARTS: usize = 200;
-/// Cylinders, and effects of each, that are shown.
-const MOST_SHOWN: usize = 32;
+/// Alarms that are sent; the page shows the first eight.
+const MOST_ALARMS: usize = 16;
 /// A part that has not been heard of for so long is not there any more.
 const FORGOTTEN: Duration = Duration::from_secs(10);
 /// Time without a state after which that is an alarm.
@@ -38,6 +42,8 @@ struct Content {
     powers: Powers,
     health: BTreeMap<String, Part>,
     history: VecDeque<Arc<str>>,
+    /// Bytes of the history.
+    size: usize,
 }
 
 #[derive(Default)]
@@ -74,6 +80,7 @@ impl Board {
 
     /// A state of the arm.
     pub fn take_state(&self, state: ArmState) {
+        let state = bounded::state(state);
         let mut content = self.lock();
         content.states += 1;
         content.state = Some((state, Instant::now()));
@@ -81,11 +88,12 @@ impl Board {
 
     /// A command.
     pub fn take_command(&self, command: OrificeCommand) {
-        self.lock().command = Some(command);
+        self.lock().command = Some(bounded::command(command));
     }
 
     /// A balance of the energy monitor.
     pub fn take_energy(&self, energy: EnergyState) {
+        let energy = bounded::energy(energy);
         let mut content = self.lock();
         content.balances += 1;
         content.powers.add(&energy);
@@ -95,11 +103,11 @@ impl Board {
     /// How parts of nodes are.
     pub fn take_health(&self, array: DiagnosticArray) {
         let mut content = self.lock();
-        for status in array.status {
+        for status in array.status.into_iter().take(MOST_PARTS).map(bounded::status) {
             if content.health.len() >= MOST_PARTS && !content.health.contains_key(&status.name) {
-                continue;
+                content.forget_oldest();
             }
-            let values = status.values.into_iter().take(MOST_SHOWN).map(|entry| (entry.key, entry.value)).collect();
+            let values = status.values.into_iter().map(|entry| (entry.key, entry.value)).collect();
             let part = Part { level: status.level, message: status.message, values, heard: Instant::now() };
             content.health.insert(status.name, part);
         }
@@ -112,18 +120,19 @@ impl Board {
         let frame: Arc<str> = Arc::from(content.to_json().to_string());
         content.powers = Powers::default();
         content.history.push_back(Arc::clone(&frame));
-        if content.history.len() > HISTORY {
-            content.history.pop_front();
+        content.size += frame.len();
+        while content.history.len() > HISTORY || content.size > HISTORY_BYTES {
+            let Some(oldest) = content.history.pop_front() else { break };
+            content.size -= oldest.len();
         }
         drop(content);
         self.newest.send_replace(Arc::clone(&frame));
         frame
     }
 
-    /// The frames of the last half minute, oldest first, as a JSON array.
-    pub fn history(&self) -> String {
-        let frames: Vec<Arc<str>> = self.lock().history.iter().cloned().collect();
-        format!("[{}]", frames.join(","))
+    /// The frames of the last half minute, oldest first.
+    pub fn history(&self) -> Vec<Arc<str>> {
+        self.lock().history.iter().cloned().collect()
     }
 
     /// Whoever wants the newest frame.
@@ -137,7 +146,7 @@ impl Powers {
         self.count += 1.0;
         let machine = [energy.pump_power, energy.bypass_loss, energy.metering_loss];
         self.machine.iter_mut().zip(machine).for_each(|(sum, power)| *sum += power);
-        for cylinder in energy.cylinders.iter().take(MOST_SHOWN) {
+        for cylinder in &energy.cylinders {
             if self.cylinders.len() >= MOST_SHOWN && !self.cylinders.contains_key(&cylinder.name) {
                 continue;
             }
@@ -148,7 +157,10 @@ impl Powers {
             }
             *count += 1;
             sums.iter_mut().zip(powers_of(cylinder)).for_each(|(sum, power)| *sum += power);
-            for term in cylinder.terms.iter().take(MOST_SHOWN) {
+            for term in &cylinder.terms {
+                if terms.len() >= MOST_SHOWN && !terms.contains_key(&term.effect) {
+                    continue;
+                }
                 *terms.entry(term.effect.clone()).or_default() += term.power;
             }
         }
@@ -165,6 +177,14 @@ fn finite(value: f64) -> Value {
 }
 
 impl Content {
+    /// Makes room for a part that was heard of: nodes say how they are every second, so what is there comes back.
+    fn forget_oldest(&mut self) {
+        let oldest = self.health.iter().min_by_key(|(_, part)| part.heard).map(|(name, _)| name.clone());
+        if let Some(name) = oldest {
+            self.health.remove(&name);
+        }
+    }
+
     fn to_json(&self) -> Value {
         let (stamp, silent) = match &self.state {
             Some((state, heard)) => (state.header.stamp.nanoseconds() as f64 * 1e-9, heard.elapsed() > SILENT),
@@ -187,7 +207,6 @@ impl Content {
         state
             .cylinders
             .iter()
-            .take(MOST_SHOWN)
             .map(|own| {
                 let command = self.command.as_ref().and_then(|command| {
                     let index = command.names.iter().position(|name| *name == own.name)?;
@@ -244,6 +263,7 @@ impl Content {
             alarms.push(json!({"level": part.level, "part": name, "message": part.message, "values": values}));
         }
         alarms.sort_by_key(|alarm| std::cmp::Reverse(alarm["level"].as_u64()));
+        alarms.truncate(MOST_ALARMS);
         alarms
     }
 }

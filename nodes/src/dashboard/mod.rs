@@ -4,10 +4,13 @@
 //! each page is sent the newest frame when it has taken the one before. So a slow page misses frames, and nothing grows.
 
 mod board;
+mod bounded;
+mod hosts;
 mod node;
 mod page;
 mod server;
 
 pub use board::Board;
+pub use hosts::Hosts;
 pub use node::run;
 pub use server::serve;

@@ -8,7 +8,7 @@ use std::time::Duration;
 use excavator_msgs::common::DiagnosticArray;
 use excavator_msgs::{ArmState, EnergyState, OrificeCommand};
 
-use super::{Board, serve};
+use super::{Board, Hosts, serve};
 use crate::cli::DashboardArguments;
 use crate::error::VerbError;
 use crate::ros::{Health, RosArguments, Supervisor, TopicQos};
@@ -42,7 +42,8 @@ pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), Ver
     supervisor.link.subscribe("/arm/energy", newest(50), move |energy: EnergyState, _| energies.take_energy(energy))?;
     supervisor.link.subscribe("/diagnostics", newest(10), move |array: DiagnosticArray, _| parts.take_health(array))?;
     let stop = supervisor.stop_flag();
-    let server = std::thread::spawn(move || serve_frames(listener, board, &stop));
+    let hosts = Hosts::new(arguments.allow_host.iter().cloned());
+    let server = std::thread::spawn(move || serve_frames(listener, board, hosts, &stop));
     supervisor.diagnostics.tell("page", Health::Ok, format!("http://{address}/"), &[]);
     print(&format!("dashboard: http://{address}/"));
     supervisor.run(|| {});
@@ -54,7 +55,7 @@ pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), Ver
 }
 
 /// A thread of its own: neither a slow page nor a busy graph waits for the other.
-fn serve_frames(listener: TcpListener, board: Arc<Board>, stop: &AtomicBool) -> std::io::Result<()> {
+fn serve_frames(listener: TcpListener, board: Arc<Board>, hosts: Hosts, stop: &AtomicBool) -> std::io::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let (end, ended) = tokio::sync::oneshot::channel::<()>();
     runtime.block_on(async {
@@ -67,7 +68,7 @@ fn serve_frames(listener: TcpListener, board: Arc<Board>, stop: &AtomicBool) -> 
             }
             let _ = end.send(());
         };
-        let serving = serve(listener, Arc::clone(&board), async {
+        let serving = serve(listener, Arc::clone(&board), hosts, async {
             let _ = ended.await;
         });
         futures::future::join(ticking, serving).await.1

@@ -1,48 +1,147 @@
 //! The page and its stream over HTTP.
 
 use std::convert::Infallible;
-use std::net::TcpListener;
+use std::net::{IpAddr, TcpListener};
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::Router;
+use axum::body::{Body, Bytes};
 use axum::extract::State;
-use axum::http::header;
+use axum::http::{HeaderName, Request, StatusCode, header};
 use axum::response::sse::{Event, KeepAlive, Sse};
-use axum::response::{Html, IntoResponse};
+use axum::response::{Html, IntoResponse, Response};
 use axum::routing::get;
 use futures::Stream;
-use tokio::sync::watch;
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use nix::sys::socket::{setsockopt, sockopt::TcpUserTimeout};
+use tokio::net::TcpStream;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 
-use super::Board;
 use super::page::page;
+use super::{Board, Hosts};
+
+/// Connections at a time: a browser needs three, and a handful of people look.
+const MOST_CONNECTIONS: usize = 64;
+/// Time that a client has for the header of its request. A browser sends it at once.
+const HEADER_TIME: Duration = Duration::from_secs(5);
+/// Time after which a client that takes nothing of what it asked for is let go.
+const TAKING_TIME: Duration = Duration::from_secs(30);
+/// Pause after a connection that could not be accepted: the process has no more files, or the like.
+const PAUSE: Duration = Duration::from_millis(100);
+/// Bytes of a response that wait in this process for a client.
+const BUFFER: usize = 64 * 1024;
+
+const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-length: 27\r\n\r\n\
+    too many pages are open now";
+
+/// Neither framed nor embedded by other pages, nor guessed at, nor kept.
+const HEADERS: [(HeaderName, &str); 5] = [
+    (header::CONTENT_SECURITY_POLICY, "frame-ancestors 'none'"),
+    (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+    (header::CACHE_CONTROL, "no-store"),
+    (header::REFERRER_POLICY, "no-referrer"),
+    (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+];
 
 /// Serves a board until `stop` says so: `/` is the page, `/stream` its frames as server-sent events, `/history` those of
-/// the last half minute.
+/// the last half minute. Only requests for one of `hosts` are answered.
 ///
 /// # Errors
 /// When the listener cannot be used.
 pub async fn serve(
     listener: TcpListener,
     board: Arc<Board>,
+    hosts: Hosts,
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> std::io::Result<()> {
     listener.set_nonblocking(true)?;
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    let html: Arc<str> = Arc::from(page());
+    let html: Bytes = page().into();
     let router = Router::new()
-        .route("/", get(move || std::future::ready(Html(html.to_string()))))
+        .route("/", get(move || std::future::ready(Html(html.clone()))))
         .route("/stream", get(stream))
         .route("/history", get(history))
         .with_state(board);
+    let connections = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    let accepting = async {
+        loop {
+            let Ok((stream, _)) = listener.accept().await else {
+                tokio::time::sleep(PAUSE).await;
+                continue;
+            };
+            match Arc::clone(&connections).try_acquire_owned() {
+                Ok(permit) => connect(stream, router.clone(), hosts.clone(), permit),
+                // Whether it hears the reason or not: it is let go.
+                Err(_) => drop(stream.try_write(FULL)),
+            }
+        }
+    };
     // Streams never end by themselves, so the server is dropped with them instead of waiting.
     tokio::select! {
-        served = async { axum::serve(listener, router).await } => served,
+        () = accepting => Ok(()),
         () = stop => Ok(()),
     }
 }
 
+/// Serves one request of a connection; the permit is given back with its end.
+fn connect(stream: TcpStream, router: Router, hosts: Hosts, permit: OwnedSemaphorePermit) {
+    let Ok(own) = stream.local_addr().map(|address| address.ip()) else { return };
+    // A peer that has gone, or takes nothing, does not keep its place for ever; without the option it keeps it for longer.
+    let _ = setsockopt(&stream, TcpUserTimeout, &(TAKING_TIME.as_millis() as u32));
+    let checked = axum::middleware::from_fn(move |request: Request<Body>, next: axum::middleware::Next| {
+        let allowed = hosts.accept(request.uri(), request.headers(), own);
+        async move { if allowed { next.run(request).await } else { misdirected(own) } }
+    });
+    let service = TowerToHyperService::new(router.layer(checked).layer(axum::middleware::map_response(with_headers)));
+    tokio::spawn(async move {
+        let serving = http1::Builder::new()
+            .timer(TokioTimer::new())
+            .header_read_timeout(HEADER_TIME)
+            .keep_alive(false)
+            .max_buf_size(BUFFER)
+            .serve_connection(TokioIo::new(stream), service);
+        // What a client does wrong ends its connection and concerns nobody else.
+        let _ = serving.await;
+        drop(permit);
+    });
+}
+
+async fn with_headers(mut response: Response) -> Response {
+    for (name, value) in HEADERS {
+        response.headers_mut().insert(name, axum::http::HeaderValue::from_static(value));
+    }
+    response
+}
+
+fn misdirected(own: IpAddr) -> Response {
+    let reason = format!(
+        "This page answers to localhost, to {own} and to the names that it was started with: excavator dashboard \
+         --allow-host NAME.\n"
+    );
+    (StatusCode::MISDIRECTED_REQUEST, reason).into_response()
+}
+
+/// The frames of the last half minute as a JSON array. They are shared with the board, not copied for each client.
 async fn history(State(board): State<Arc<Board>>) -> impl IntoResponse {
-    ([(header::CONTENT_TYPE, "application/json")], board.history())
+    let frames = board.history();
+    let separated = frames.into_iter().enumerate().flat_map(|(index, frame)| {
+        let separator: &'static [u8] = if index == 0 { b"" } else { b"," };
+        [Bytes::from_static(separator), Bytes::from_owner(Shared(frame))]
+    });
+    let all = std::iter::once(Bytes::from_static(b"[")).chain(separated).chain([Bytes::from_static(b"]")]);
+    let body = Body::from_stream(futures::stream::iter(all.map(Ok::<Bytes, Infallible>)));
+    ([(header::CONTENT_TYPE, "application/json")], body)
+}
+
+struct Shared(Arc<str>);
+
+impl AsRef<[u8]> for Shared {
+    fn as_ref(&self) -> &[u8] {
+        self.0.as_bytes()
+    }
 }
 
 async fn stream(State(board): State<Arc<Board>>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {

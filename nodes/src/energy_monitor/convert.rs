@@ -34,6 +34,17 @@ pub(super) fn sample(state: &ArmState, model: &Model) -> Sample {
     }
 }
 
+/// The state without cylinders that the model does not have, and without second entries of those that it has: whoever is on
+/// the network can send thousands.
+pub(super) fn trimmed(mut state: ArmState, model: &Model) -> ArmState {
+    let mut open: Vec<&str> = model.machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();
+    state.cylinders.retain(|measured| {
+        let place = open.iter().position(|name| *name == measured.name);
+        place.map(|place| open.swap_remove(place)).is_some()
+    });
+    state
+}
+
 /// The message of a balance, with the stamp of its state.
 pub(super) fn message(balance: &Balance, model: &Model) -> EnergyState {
     let cylinders = balance

@@ -10,8 +10,8 @@ use excavator_msgs::ArmState;
 
 use crate::ros::{Diagnostics, Health};
 
-/// States that no window has: the longest one at 2 kHz. A clock that goes to and fro would fill memory without end.
-const MOST_STATES: usize = 1_200_000;
+/// States per second that no machine sends, Hz. A clock that goes to and fro would fill memory without end.
+const FASTEST: f64 = 4000.0;
 
 /// Collects states until they fill a window, and hands the window to a [`judge_windows`] in a thread of its own.
 pub(super) struct Ledger<'l> {
@@ -43,7 +43,7 @@ impl<'l> Ledger<'l> {
             return;
         }
         let (first, last) = self.ends.unwrap_or((stamp, stamp));
-        if stamp < last.saturating_sub((self.length * 1e9) as i64) || self.states.len() >= MOST_STATES {
+        if stamp < last.saturating_sub((self.length * 1e9) as i64) || self.states.len() >= self.most_states() {
             self.begin_anew();
             return;
         }
@@ -58,6 +58,10 @@ impl<'l> Ledger<'l> {
                 tally.passed_over += 1;
             }
         }
+    }
+
+    fn most_states(&self) -> usize {
+        (self.length * FASTEST) as usize
     }
 
     fn begin_anew(&mut self) -> StateTable {

@@ -1,6 +1,7 @@
 //! `excavator node energy-monitor`: the energy balance of the machine, state by state.
 
 mod convert;
+mod incoming;
 mod ledger;
 mod node;
 

@@ -1,8 +1,8 @@
 //! The energy monitor on the graph.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TrySendError, sync_channel};
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
 use excavator_model::Model;
@@ -12,7 +12,8 @@ use excavator_model::equations::System;
 use excavator_msgs::common::Text;
 use excavator_msgs::{ArmState, EnergyState};
 
-use super::convert::{message, sample};
+use super::convert::{message, sample, trimmed};
+use super::incoming::{Counts, Inbox, Incoming, inbox};
 use super::ledger::{Ledger, Tally, judge_windows};
 use crate::error::VerbError;
 use crate::ros::{
@@ -20,8 +21,6 @@ use crate::ros::{
 };
 use crate::sources;
 
-/// States that may wait: a minute at 1 kHz.
-const WAITING: usize = 60_000;
 /// Time without a state after which what is waiting is given with the windows that there are.
 const IDLE: Duration = Duration::from_millis(500);
 /// Time between two words to diagnostics.
@@ -54,11 +53,6 @@ fn parameters() -> Vec<Parameter> {
     ]
 }
 
-enum Incoming {
-    State(ArmState),
-    Model(String),
-}
-
 /// Runs the monitor until it is told to stop.
 ///
 /// # Errors
@@ -68,19 +62,12 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     let name = supervisor.parameters.text("model");
     let model = if name.is_empty() { None } else { Some(sources::model(&name)?) };
     let outlet = supervisor.link.publish("/arm/energy", TopicQos::reliable(50))?;
-    let (sender, incoming) = sync_channel(WAITING);
-    let dropped = Arc::new(AtomicU64::new(0));
-    let (states, counter) = (sender.clone(), Arc::clone(&dropped));
-    supervisor.link.subscribe("/arm/state", TopicQos::reliable(1000), move |state: ArmState, _| {
-        if let Err(TrySendError::Full(_)) = states.try_send(Incoming::State(state)) {
-            counter.fetch_add(1, Ordering::Relaxed);
-        }
-    })?;
+    let (door, incoming) = inbox();
+    let states = door.clone();
+    supervisor.link.subscribe("/arm/state", TopicQos::reliable(1000), move |state: ArmState, _| states.state(state))?;
+    let counts = door.counts();
     if model.is_none() {
-        supervisor.link.subscribe("/arm/model", TopicQos::latched(), move |text: Text, _| {
-            // A model that finds no room is one of thousands per minute.
-            let _ = sender.try_send(Incoming::Model(text.data));
-        })?;
+        supervisor.link.subscribe("/arm/model", TopicQos::latched(), move |text: Text, _| door.model(text.data))?;
     }
     let stop = supervisor.stop_flag();
     let desk = Desk {
@@ -89,7 +76,7 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
         parameters: &supervisor.parameters,
         diagnostics: &supervisor.diagnostics,
         logger: &supervisor.logger,
-        dropped: &dropped,
+        counts: &counts,
         stop: &stop,
     };
     std::thread::scope(|scope| {
@@ -101,12 +88,12 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
 }
 
 struct Desk<'d> {
-    incoming: Receiver<Incoming>,
+    incoming: Inbox,
     outlet: Outlet<EnergyState>,
     parameters: &'d Parameters,
     diagnostics: &'d Diagnostics,
     logger: &'d Logger,
-    dropped: &'d AtomicU64,
+    counts: &'d Counts,
     stop: &'d AtomicBool,
 }
 
@@ -184,6 +171,7 @@ impl Desk<'_> {
         while !self.stop.load(Ordering::Relaxed) {
             match self.incoming.recv_timeout(IDLE) {
                 Ok(Incoming::State(state)) => {
+                    let state = trimmed(state, model);
                     heard = Instant::now();
                     let stamp = state.header.stamp.nanoseconds();
                     let gap = newest.map_or(0.0, |newest| stamp.saturating_sub(newest) as f64 * 1e-9);
@@ -220,7 +208,7 @@ impl Desk<'_> {
 
     fn report(&self, monitor: &Monitor<'_, '_>, silences: u64, has_velocity: bool, silence: Duration) {
         let counts = monitor.counts();
-        let dropped = self.dropped.load(Ordering::Relaxed);
+        let (dropped, odd) = self.counts.get();
         let values = [
             ("states", counts.states.to_string()),
             ("balances", counts.balances.to_string()),
@@ -230,6 +218,7 @@ impl Desk<'_> {
             ("gaps", (counts.gaps + silences).to_string()),
             ("jumps of the clock", counts.jumps.to_string()),
             ("dropped states", dropped.to_string()),
+            ("states and models that are too large", odd.to_string()),
             ("refused balances", self.outlet.refused().to_string()),
             ("delay [s]", format!("{:.4}", monitor.delay(has_velocity))),
         ];
@@ -247,7 +236,8 @@ impl Desk<'_> {
         let Some(window) = window else { return };
         let values = [
             ("unexplained power [W]", format!("{:.3}", window.residual())),
-            ("threshold from noise [W]", format!("{:.3}", window.threshold())),
+            ("threshold [W]", format!("{:.3}", window.threshold())),
+            ("resolution of the balance [W]", format!("{:.3}", window.resolution / window.length)),
             ("stored [J]", format!("{:.3}", window.stored)),
             ("supplied [J]", format!("{:.3}", window.supplied)),
             ("dissipated [J]", format!("{:.3}", -window.dissipated)),

@@ -1,38 +1,65 @@
 //! The node: the action in front, one thread that works behind.
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::time::{Duration, Instant};
 
-use super::server::{IdentifyAction, Job, News};
+use super::desk::{Desk, News};
+use super::library::{Library, QUOTED};
+use super::printable::printable;
+use super::queue::{Job, Queue};
+use super::server::IdentifyAction;
 use super::types::{Feedback, Outcome};
-use super::work::{Ended, identify};
+use super::work::{Bounds, Ended, identify};
 use crate::error::VerbError;
-use crate::ros::{Diagnostics, Health, Logger, RosArguments, Supervisor, TopicQos};
+use crate::ros::{Health, Logger, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
 /// Longest time until the worker sees that the node ends.
 const GLANCE: Duration = Duration::from_millis(200);
+/// Characters of a model's name in the log.
+const NAMED: usize = 80;
+
+fn parameters() -> Vec<Parameter> {
+    let text = |name, description| Parameter::new(name, Value::String(String::new()), description).read_only();
+    vec![
+        text("model_folder", "folder below which goals may name model files; empty: goals read no model files"),
+        text("bag_folder", "folder below which goals may name bags; empty: goals read no bags"),
+        // Ten minutes of recordings at 1 kHz with an added effect take some minutes: ten times that is no work any more.
+        Parameter::new("time_limit", Value::Double(1800.0), "longest work on a goal [s]")
+            .within(0.1, 86_400.0)
+            .read_only(),
+        Parameter::new(
+            "publish_result",
+            Value::Boolean(false),
+            "publish the model of a goal that succeeded on /arm/model, where the energy monitor takes its model from",
+        )
+        .read_only(),
+    ]
+}
 
 /// Runs the node until it is told to stop.
 ///
 /// # Errors
 /// [`VerbError`] when it cannot start.
 pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
-    let supervisor = Supervisor::start("identification", ros, Vec::new())?;
-    let model = supervisor.link.publish_latched("/arm/model", TopicQos::latched())?;
-    let (jobs, work) = channel();
+    let supervisor = Supervisor::start("identification", ros, parameters())?;
+    let given = &supervisor.parameters;
+    let library = Library::new(&given.text("model_folder"), &given.text("bag_folder")).map_err(RosError::Parameter)?;
+    let time_limit = Duration::try_from_secs_f64(given.double("time_limit")).unwrap_or(GLANCE);
+    let model = match given.flag("publish_result") {
+        true => Some(supervisor.link.publish_latched("/arm/model", TopicQos::latched())?),
+        false => None,
+    };
+    let queue = Arc::new(Queue::default());
     let (told, news) = channel();
     let name = supervisor.link.identity().resolve("/identification/run")?;
     let mapping = supervisor.link.environment().mapping;
-    supervisor.link.add(Arc::new(IdentifyAction::new(name, mapping, jobs, news, model)))?;
-    let worker = Worker {
-        work,
-        told,
-        diagnostics: supervisor.diagnostics.clone(),
-        logger: supervisor.logger.clone(),
-        stop: supervisor.stop_flag(),
-    };
+    let desk = Desk::new(Arc::clone(&queue), news, model, time_limit, &supervisor);
+    supervisor.link.add(Arc::new(IdentifyAction::new(name, mapping, desk)))?;
+    let stop = supervisor.stop_flag();
+    let worker = Worker { queue, told, logger: supervisor.logger.clone(), library, time_limit, stop };
+    supervisor.diagnostics.tell("work", Health::Ok, "waiting for a goal", &[]);
     // Not joined: work that is under way when the node is told to stop ends with the process.
     std::thread::spawn(move || worker.run());
     supervisor.run(|| {});
@@ -41,47 +68,58 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
 }
 
 struct Worker {
-    work: Receiver<Job>,
+    queue: Arc<Queue>,
     told: Sender<News>,
-    diagnostics: Diagnostics,
     logger: Logger,
-    stop: Arc<std::sync::atomic::AtomicBool>,
+    library: Library,
+    time_limit: Duration,
+    stop: Arc<AtomicBool>,
 }
 
 impl Worker {
     fn run(&self) {
         while !self.stop.load(Ordering::Relaxed) {
-            self.diagnostics.tell("work", Health::Ok, "waiting for a goal", &[]);
-            match self.work.recv_timeout(GLANCE) {
-                Ok(job) if !job.cancelled.load(Ordering::Relaxed) => self.work_on(&job),
-                Ok(_) | Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return,
+            match self.queue.pop(GLANCE) {
+                Some(job) if !job.cancelled.load(Ordering::Relaxed) => self.work_on(&job),
+                Some(_) | None => {}
             }
         }
     }
 
+    // Nobody hears the news when the node is about to end.
     fn work_on(&self, job: &Job) {
-        self.diagnostics.tell("work", Health::Ok, "identifying", &[]);
-        self.logger.info(format!("identifying {} from {} bags", short(&job.goal.model), job.goal.bags.len()));
+        let _ = self.told.send(News::Began { id: job.id });
+        let said = AtomicBool::new(false);
         let tell = |stage: &str, progress: f64| {
+            // What fails before a bag was opened, anybody can send a thousand times per second: the desk has one line for it.
+            if stage != "reading the model" && stage != "reading" && !said.swap(true, Ordering::Relaxed) {
+                let model = printable(job.goal.model.lines().next().unwrap_or_default(), NAMED);
+                self.logger.info(format!("identifying {model} from {} bags", job.goal.bags.len()));
+            }
             let feedback = Feedback { stage: stage.to_string(), progress };
-            // Nobody hears it when the node is about to end.
             let _ = self.told.send(News::Progress { id: job.id, feedback });
         };
-        let outcome = match identify(&job.goal, &job.cancelled, &tell) {
+        let deadline = Instant::now() + self.time_limit;
+        let bounds = Bounds { library: &self.library, cancelled: &job.cancelled, deadline };
+        let failed = |message: String| Outcome { message, ..Outcome::default() };
+        let outcome = match identify(&job.goal, &bounds, &tell) {
             Ok(outcome) => outcome,
             Err(Ended::Cancelled) => {
-                self.logger.info("cancelled");
+                let _ = self.told.send(News::Left { id: job.id });
                 return;
             }
-            Err(Ended::Failed(error)) => Outcome { message: error.to_string(), ..Outcome::default() },
+            Err(Ended::TimedOut) => failed(out_of_time(self.time_limit)),
+            Err(Ended::Unusable(reason)) => failed(reason.to_string()),
+            Err(Ended::Failed(error)) => failed(printable(&self.library.without_folder(&error.to_string()), QUOTED)),
         };
-        self.logger.info(outcome.message.clone());
         let _ = self.told.send(News::Ended { id: job.id, outcome });
     }
 }
 
-/// The first line of what may be a whole model.
-fn short(text: &str) -> &str {
-    text.lines().next().unwrap_or_default()
+/// What a goal is told that took too long.
+pub(super) fn out_of_time(limit: Duration) -> String {
+    format!(
+        "not done within {:.0} s; give fewer or shorter recordings, or start the node with a longer time_limit",
+        limit.as_secs_f64()
+    )
 }

@@ -1,43 +1,29 @@
 //! The action on the graph: three services and two topics.
 
-use std::collections::HashMap;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use excavator_bags::cdr;
 use excavator_msgs::Time;
-use excavator_msgs::common::Text;
 use ros2_client::action::{
     ActionServer, ActionServerQosPolicies, CancelGoalResponse, GetResultResponse, GoalStatusEnum, SendGoalResponse,
 };
 use ros2_client::action_msgs::{CancelGoalResponseEnum, GoalStatus, GoalStatusArray};
 use ros2_client::qos::{Durability, History, QosProfile, Reliability, WhenFull};
-use ros2_client::{ActionTypeName, Name, RmwRequestId};
+use ros2_client::{ActionTypeName, Name};
 
-use super::goals::{CancelAnswer, Goals, Status};
+use super::desk::Desk;
+use super::goals::CancelAnswer;
 use super::types::{Feedback, Goal, GoalId, GoalInfo, Outcome};
 use crate::ros::connection::{Closed, Connection, Endpoint, Install, Task};
-use crate::ros::{LargeReplies, Latched, Mapping, RosError, service_mapping, service_qos, system_nanoseconds};
+use crate::ros::{LargeReplies, Mapping, RosError, service_mapping, service_qos, system_nanoseconds};
 
 /// Pace of looking for requests. Nobody waits for identification in milliseconds.
 const LOOK: Duration = Duration::from_millis(10);
+/// Requests of a kind that are taken in one look: a flood of one kind does not keep the others waiting.
+const AT_ONCE: usize = 64;
 
 type Server = ActionServer<Goal, Outcome, Feedback>;
-
-/// Work to be done.
-pub(super) struct Job {
-    pub id: GoalId,
-    pub goal: Goal,
-    pub cancelled: Arc<AtomicBool>,
-}
-
-/// News from the work.
-pub(super) enum News {
-    Progress { id: GoalId, feedback: Feedback },
-    Ended { id: GoalId, outcome: Outcome },
-}
 
 /// The action; its goals outlive the connection.
 pub(super) struct IdentifyAction {
@@ -47,20 +33,9 @@ pub(super) struct IdentifyAction {
     task: Mutex<Option<Task>>,
 }
 
-struct Desk {
-    goals: Goals,
-    cancels: HashMap<GoalId, Arc<AtomicBool>>,
-    waiting: Vec<(RmwRequestId, GoalId)>,
-    jobs: Sender<Job>,
-    news: Receiver<News>,
-    model: Latched<Text>,
-}
-
 impl IdentifyAction {
-    /// The action `name` (full name); `jobs` are worked on elsewhere, `news` come from there.
-    pub fn new(name: String, mapping: Mapping, jobs: Sender<Job>, news: Receiver<News>, model: Latched<Text>) -> Self {
-        let goals = Goals::default();
-        let desk = Desk { goals, cancels: HashMap::new(), waiting: Vec::new(), jobs, news, model };
+    /// The action `name` (full name), with what the desk decides.
+    pub fn new(name: String, mapping: Mapping, desk: Desk) -> Self {
         IdentifyAction { name, mapping, desk: Arc::new(Mutex::new(desk)), task: Mutex::new(None) }
     }
 }
@@ -93,7 +68,7 @@ impl Endpoint for IdentifyAction {
         let desk = Arc::clone(&self.desk);
         let serving = async move {
             loop {
-                desk.lock().unwrap_or_else(PoisonError::into_inner).look(&server, &large);
+                look(&mut desk.lock().unwrap_or_else(PoisonError::into_inner), &server, &large);
                 tokio::time::sleep(LOOK).await;
             }
         };
@@ -108,83 +83,51 @@ impl Endpoint for IdentifyAction {
 }
 
 // Whoever asks hears nothing when an answer cannot be sent, and asks again: that is how services are.
-impl Desk {
-    fn look(&mut self, server: &Server, large: &LargeReplies) {
-        let mut changed = false;
-        while let Ok(Some((request, wanted))) = server.receive_goal() {
-            let id = *wanted.goal_id.uuid.as_bytes();
-            let now = Time::from_nanoseconds(system_nanoseconds()).unwrap_or_default();
-            let accepted = self.goals.accept(id, now);
-            if accepted {
-                let cancelled = Arc::new(AtomicBool::new(false));
-                self.cancels.insert(id, Arc::clone(&cancelled));
-                let _ = self.jobs.send(Job { id, goal: wanted.goal, cancelled });
-                changed = true;
-            }
-            let _ = server.send_goal_response(request, SendGoalResponse { accepted, stamp: library_time(now) });
-        }
-        while let Ok(Some((request, wanted))) = server.receive_cancel_request() {
-            // The library keeps the field of this type to itself; its bytes are the same as ours.
-            let info = cdr::encode(&wanted).and_then(|bytes| cdr::decode::<GoalInfo>(&bytes));
-            let Ok(info) = info else { continue };
-            let (answer, meant) = self.goals.to_cancel(info);
-            for goal in &meant {
-                if let Some(flag) = self.cancels.remove(&goal.goal_id) {
-                    flag.store(true, Ordering::Relaxed);
-                }
-                let outcome = Outcome { message: "cancelled".to_string(), ..Outcome::default() };
-                changed |= self.goals.finish(&goal.goal_id, Status::Canceled, outcome);
-            }
-            let _ = server.send_cancel_response(request, cancel_response(answer, &meant));
-        }
-        while let Ok(Some((request, wanted))) = server.receive_result_request() {
-            self.waiting.push((request, *wanted.goal_id.uuid.as_bytes()));
-        }
-        while let Ok(news) = self.news.try_recv() {
-            match news {
-                News::Progress { id, feedback } if self.goals.is_executing(&id) => {
-                    let _ = server.send_feedback(library_id(id), feedback);
-                }
-                News::Progress { .. } => {}
-                News::Ended { id, outcome } => changed |= self.end(id, outcome),
-            }
-        }
-        let goals = &self.goals;
-        self.waiting.retain(|(request, id)| match goals.result(id) {
-            None => true,
-            Some((status, result)) => {
-                let answer = GetResultResponse { status: library_status(status), result };
-                if large.send(*request, &answer).is_none() {
-                    let _ = server.send_result(*request, answer);
-                }
-                false
-            }
-        });
-        if changed {
-            let _ = server.send_goal_statuses(self.statuses());
+fn look(desk: &mut Desk, server: &Server, large: &LargeReplies) {
+    let mut changed = false;
+    let goals = std::iter::from_fn(|| server.receive_goal().ok().flatten());
+    for (request, wanted) in goals.take(AT_ONCE) {
+        let now = Time::from_nanoseconds(system_nanoseconds()).unwrap_or_default();
+        let accepted = desk.take(*wanted.goal_id.uuid.as_bytes(), wanted.goal, now);
+        changed |= accepted;
+        let _ = server.send_goal_response(request, SendGoalResponse { accepted, stamp: library_time(now) });
+    }
+    let cancels = std::iter::from_fn(|| server.receive_cancel_request().ok().flatten());
+    for (request, wanted) in cancels.take(AT_ONCE) {
+        // The library keeps the field of this type to itself; its bytes are the same as ours.
+        let info = cdr::encode(&wanted).and_then(|bytes| cdr::decode::<GoalInfo>(&bytes));
+        let Ok(info) = info else { continue };
+        let (answer, meant) = desk.cancel(info);
+        changed |= !meant.is_empty();
+        let _ = server.send_cancel_response(request, cancel_response(answer, &meant));
+    }
+    let questions = std::iter::from_fn(|| server.receive_result_request().ok().flatten());
+    for (request, wanted) in questions.take(AT_ONCE) {
+        desk.ask(request, *wanted.goal_id.uuid.as_bytes());
+    }
+    let heard = desk.listen();
+    changed |= heard.ended;
+    for (id, feedback) in heard.progress {
+        let _ = server.send_feedback(library_id(id), feedback);
+    }
+    for (request, status, result) in desk.answers() {
+        let answer = GetResultResponse { status: library_status(status), result };
+        if large.send(request, &answer).is_none() {
+            let _ = server.send_result(request, answer);
         }
     }
+    if changed {
+        let _ = server.send_goal_statuses(statuses(desk));
+    }
+}
 
-    fn end(&mut self, id: GoalId, outcome: Outcome) -> bool {
-        self.cancels.remove(&id);
-        let status = if outcome.success { Status::Succeeded } else { Status::Aborted };
-        let text = outcome.model.clone();
-        let ended = self.goals.finish(&id, status, outcome);
-        if ended && status == Status::Succeeded {
-            let _ = self.model.publish(Text { data: text });
-        }
-        ended
-    }
-
-    fn statuses(&self) -> GoalStatusArray {
-        let status_list = self
-            .goals
-            .statuses()
-            .into_iter()
-            .map(|(info, status)| GoalStatus { goal_info: library_info(info), status: library_status(status) })
-            .collect();
-        GoalStatusArray { status_list }
-    }
+fn statuses(desk: &Desk) -> GoalStatusArray {
+    let status_list = desk
+        .statuses()
+        .into_iter()
+        .map(|(info, status)| GoalStatus { goal_info: library_info(info), status: library_status(status) })
+        .collect();
+    GoalStatusArray { status_list }
 }
 
 fn cancel_response(answer: CancelAnswer, meant: &[GoalInfo]) -> CancelGoalResponse {

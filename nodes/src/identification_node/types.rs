@@ -6,12 +6,40 @@ use serde::{Deserialize, Serialize};
 /// What is asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Goal {
-    /// A model file, a built-in name, or the text of a model.
+    /// A file below the node's `model_folder`, a built-in name, or the text of a model.
     pub model: String,
-    /// Bags.
+    /// Bags below the node's `bag_folder`.
     pub bags: Vec<String>,
     /// Effects to add first.
     pub effects: Vec<String>,
+}
+
+/// Longest model, name of a bag and name of an effect in a goal, bytes. The largest model that comes with the program has
+/// 11 kB.
+const LONGEST: [usize; 3] = [64 * 1024, 1024, 256];
+/// Most bags, and most effects, of a goal.
+const MOST: usize = 64;
+
+impl Goal {
+    /// Whether the goal has a size that is worked on.
+    ///
+    /// # Errors
+    /// What of it is too large, in one line.
+    pub fn check_size(&self) -> Result<(), String> {
+        let [model, bag, effect] = LONGEST;
+        if self.model.len() > model {
+            return Err(format!("its model has {} bytes, more than {model}", self.model.len()));
+        }
+        for (what, names, longest) in [("bags", &self.bags, bag), ("effects", &self.effects, effect)] {
+            if names.len() > MOST {
+                return Err(format!("it has {} {what}, more than {MOST}", names.len()));
+            }
+            if let Some(name) = names.iter().find(|name| name.len() > longest) {
+                return Err(format!("a name among its {what} has {} bytes, more than {longest}", name.len()));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What came of it.

@@ -1,17 +1,20 @@
 //! The work itself, without ROS.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use excavator_identification::fit::{FitError, FitSettings};
 use excavator_identification::fitted_along::{IN_REGRESSION, fit_with_effects_along, with_effects_along};
 use excavator_identification::regression::{RegressionError, WeakFormSettings, weak_form_watched};
 use excavator_identification::validation::compare;
-use excavator_model::document::{parse, to_text};
+use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
 use excavator_model::{HistoryEntry, Model};
 
+use super::library::{Library, QUOTED, Unusable};
+use super::printable::printable;
+use super::refusals::tell_operator;
 use super::types::{Goal, Outcome};
 use crate::cli::Mapping;
 use crate::error::VerbError;
@@ -22,13 +25,42 @@ use crate::sources;
 pub(super) enum Ended {
     /// Nobody wants it any more.
     Cancelled,
+    /// It took longer than a goal may.
+    TimedOut,
+    /// A model or bag of the goal cannot be used.
+    Unusable(Unusable),
     /// It failed.
     Failed(VerbError),
 }
 
-impl<E: Into<VerbError>> From<E> for Ended {
-    fn from(error: E) -> Self {
-        match error.into() {
+impl From<Unusable> for Ended {
+    fn from(unusable: Unusable) -> Self {
+        Ended::Unusable(unusable)
+    }
+}
+
+/// What bounds the work on a goal.
+pub(super) struct Bounds<'b> {
+    /// The models and bags that there are for goals.
+    pub library: &'b Library,
+    /// Set when nobody wants the outcome any more.
+    pub cancelled: &'b AtomicBool,
+    /// When the work ends at the latest.
+    pub deadline: Instant,
+}
+
+impl Bounds<'_> {
+    fn check(&self) -> Result<(), Ended> {
+        if self.cancelled.load(Ordering::Relaxed) {
+            return Err(Ended::Cancelled);
+        }
+        if Instant::now() >= self.deadline { Err(Ended::TimedOut) } else { Ok(()) }
+    }
+}
+
+impl From<VerbError> for Ended {
+    fn from(error: VerbError) -> Self {
+        match error {
             VerbError::Fit(FitError::Stopped) | VerbError::Regression(RegressionError::Fit(FitError::Stopped)) => {
                 Ended::Cancelled
             }
@@ -37,22 +69,28 @@ impl<E: Into<VerbError>> From<E> for Ended {
     }
 }
 
-/// Does what the goal asks for; `tell` hears of stage and progress, `cancelled` is looked at between the stages and
+/// Does what the goal asks for; `tell` hears of stage and progress. The bounds are looked at between the stages and
 /// between the rounds of the long ones.
-pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &dyn Fn(&str, f64)) -> Result<Outcome, Ended> {
+pub(super) fn identify(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -> Result<Outcome, Ended> {
+    identify_within(goal, bounds, tell).map_err(|ended| match ended {
+        // A stopped computation does not say why it was stopped.
+        Ended::Cancelled => bounds.check().err().unwrap_or(Ended::Cancelled),
+        ended => ended,
+    })
+}
+
+fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -> Result<Outcome, Ended> {
     let stage = |name: &str, progress: f64| {
-        if cancelled.load(Ordering::Relaxed) {
-            return Err(Ended::Cancelled);
-        }
+        bounds.check()?;
         tell(name, progress);
-        Ok(())
+        Ok::<(), Ended>(())
     };
     stage("reading the model", 0.0)?;
-    let given = model(&goal.model)?;
+    let given = bounds.library.model(&goal.model)?;
     let mut wanted = given.clone();
     for effect in &goal.effects {
-        for (physics, site) in wanted.parse_addition(effect)? {
-            wanted = wanted.with_effect(physics, site)?;
+        for (physics, site) in wanted.parse_addition(effect).map_err(VerbError::from)? {
+            wanted = wanted.with_effect(physics, site).map_err(VerbError::from)?;
         }
     }
     if goal.bags.is_empty() {
@@ -61,7 +99,7 @@ pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &dyn Fn(&str, 
     let mut recordings = Vec::new();
     for (index, bag) in goal.bags.iter().enumerate() {
         stage("reading", 0.3 * index as f64 / goal.bags.len() as f64)?;
-        recordings.push(sources::recording(&PathBuf::from(bag), &Mapping { map: None }, &wanted)?);
+        recordings.push(recording(bag, bounds.library, &wanted)?);
     }
     let recordings: Vec<&Recording> = recordings.iter().collect();
     let part = |name: &'static str, from: f64, to: f64| {
@@ -71,7 +109,8 @@ pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &dyn Fn(&str, 
         }
     };
     let settings = WeakFormSettings::default();
-    let plain = weak_form_watched(&wanted, &recordings, &settings, &part("identifying", 0.3, 0.45))?;
+    let plain =
+        weak_form_watched(&wanted, &recordings, &settings, &part("identifying", 0.3, 0.45)).map_err(VerbError::from)?;
     let timing = part("identifying with the sensors' timing", 0.45, 0.45);
     let anew = |model: &Model| weak_form_watched(model, &recordings, &settings, &timing).ok();
     let mut identified = with_effects_along(
@@ -87,13 +126,16 @@ pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &dyn Fn(&str, 
     if !goal.effects.is_empty() {
         // Effects that were added start far from their values, and some enter nonlinearly: outputs are fitted too.
         let fitting = part("fitting outputs", 0.5, 0.7);
-        identified = fit_with_effects_along(&identified, &recordings, &FitSettings::default(), &fitting)?.model;
+        identified = fit_with_effects_along(&identified, &recordings, &FitSettings::default(), &fitting)
+            .map_err(VerbError::from)?
+            .model;
     }
     let (mut signals, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
     for (index, recording) in recordings.iter().enumerate() {
         stage("comparing", 0.7 + 0.3 * index as f64 / recordings.len() as f64)?;
         let share = 1.0 / recordings.len() as f64;
-        let pairs = compare(&given, recording)?.signals.into_iter().zip(compare(&identified, recording)?.signals);
+        let compared = |model: &Model| compare(model, recording).map_err(VerbError::from);
+        let pairs = compared(&given)?.signals.into_iter().zip(compared(&identified)?.signals);
         for (number, (old, new)) in pairs.enumerate() {
             if index == 0 {
                 signals.push(old.name);
@@ -122,37 +164,50 @@ pub(super) fn identify(goal: &Goal, cancelled: &AtomicBool, tell: &dyn Fn(&str, 
         validation_error_before: None,
         validation_error_after: None,
     });
-    let model = to_text(&identified)?;
+    let model = to_text(&identified).map_err(VerbError::from)?;
     Ok(Outcome { model, signals, nmse_before: before, nmse_after: after, success: true, message })
 }
 
-/// A model file, a built-in name, or the text of a model.
-fn model(text: &str) -> Result<Model, VerbError> {
-    if text.contains('\n') && !Path::new(text).exists() {
-        return Ok(parse("the model of the goal", text)?);
-    }
-    sources::model(text)
+/// A bag of the library as a recording. What a reader says may repeat what is in a file: that is for the console only.
+fn recording(name: &str, library: &Library, wanted: &Model) -> Result<Recording, Ended> {
+    let path = library.bag(name)?;
+    sources::recording(&path, &Mapping { map: None }, wanted).map_err(|error| match error {
+        VerbError::Bag(error) => {
+            tell_operator(&error.to_string());
+            Ended::Unusable(Unusable::NotARecording(printable(name, QUOTED)))
+        }
+        error => Ended::Failed(error),
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use std::cell::{Cell, RefCell};
+    use std::time::Duration;
 
     use super::*;
 
     fn goal() -> Goal {
         Goal {
             model: "zx30u-arm".to_string(),
-            bags: vec![concat!(env!("CARGO_MANIFEST_DIR"), "/../bags/samples/arm-swing").to_string()],
+            bags: vec!["arm-swing".to_string()],
             effects: vec!["entrained_air".to_string()],
         }
     }
+
+    fn work(time: Duration, cancelled: &AtomicBool, tell: &dyn Fn(&str, f64)) -> Result<Outcome, Ended> {
+        let library = Library::new("", concat!(env!("CARGO_MANIFEST_DIR"), "/../bags/samples"));
+        let library = library.map_err(|reason| Ended::Unusable(Unusable::Text(reason)))?;
+        identify(&goal(), &Bounds { library: &library, cancelled, deadline: Instant::now() + time }, tell)
+    }
+
+    const HOUR: Duration = Duration::from_secs(3600);
 
     #[test]
     fn stages_are_told_in_order_and_the_long_ones_step_by_step() {
         let told: RefCell<Vec<(String, f64)>> = RefCell::default();
         let tell = |stage: &str, done: f64| told.borrow_mut().push((stage.to_string(), done));
-        let outcome = identify(&goal(), &AtomicBool::new(false), &tell);
+        let outcome = work(HOUR, &AtomicBool::new(false), &tell);
         assert!(outcome.is_ok(), "{outcome:?}");
         let told = told.into_inner();
         assert!(told.windows(2).all(|pair| pair[0].1 <= pair[1].1), "{told:?}");
@@ -169,9 +224,18 @@ mod tests {
                 seen.set(seen.get() + usize::from(name == stage));
                 cancelled.store(seen.get() == rounds, Ordering::Relaxed);
             };
-            let ended = identify(&goal(), &cancelled, &tell);
+            let ended = work(HOUR, &cancelled, &tell);
             assert!(matches!(ended, Err(Ended::Cancelled)), "{stage}: {ended:?}");
             assert_eq!(seen.get(), rounds);
         }
+    }
+
+    #[test]
+    fn work_ends_at_its_time_limit() {
+        let start = Instant::now();
+        let ended = work(Duration::from_millis(300), &AtomicBool::new(false), &|_, _| {});
+        assert!(matches!(ended, Err(Ended::TimedOut)), "{ended:?}");
+        println!("ended after {:.2} s of 0.3 s", start.elapsed().as_secs_f64());
+        assert!(start.elapsed() < Duration::from_secs(5));
     }
 }

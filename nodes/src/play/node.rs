@@ -1,6 +1,6 @@
 //! The player on the graph.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -11,6 +11,7 @@ use excavator_msgs::common::Clock;
 use rustdds::policy;
 use rustdds::{QosPolicies, QosPolicyBuilder};
 
+use super::commands::{is_command, left_out_line};
 use super::keys::Keys;
 use super::schedule::Schedule;
 use crate::cli::PlayArguments;
@@ -50,6 +51,7 @@ pub fn run(arguments: &PlayArguments, ros: &RosArguments) -> Result<(), VerbErro
                 stop: &stop,
                 clock,
                 outlets: HashMap::new(),
+                left_out: BTreeSet::new(),
                 counts: Counts::default(),
                 next_tick: 0,
             };
@@ -90,6 +92,8 @@ struct Player<'p> {
     stop: &'p AtomicBool,
     clock: Option<Outlet<Clock>>,
     outlets: HashMap<String, Arc<RawOutlet>>,
+    /// Topics of commands that were not asked for by name.
+    left_out: BTreeSet<String>,
     counts: Counts,
     /// Bag time of the next `/clock`, ns.
     next_tick: u64,
@@ -99,6 +103,9 @@ impl Player<'_> {
     fn play(&mut self) -> Result<(), VerbError> {
         for topic in RawMessages::open(&self.arguments.bag)?.topics() {
             self.open(&topic)?;
+        }
+        if !self.left_out.is_empty() {
+            self.supervisor.logger.warn(left_out_line(&self.left_out));
         }
         // Readers find new writers within a tenth of a second; without this they would miss the beginning.
         self.rest(Duration::from_secs_f64(self.arguments.delay));
@@ -185,7 +192,7 @@ impl Player<'_> {
     }
 
     fn send(&mut self, message: RawMessage) -> Result<(), VerbError> {
-        if !self.wanted(&message.topic.name) {
+        if !self.wanted(&message.topic) {
             return Ok(());
         }
         if !self.outlets.contains_key(&message.topic.name) {
@@ -206,14 +213,18 @@ impl Player<'_> {
         Ok(())
     }
 
-    fn wanted(&self, topic: &str) -> bool {
-        let named = self.arguments.topics.is_empty() || self.arguments.topics.iter().any(|name| name == topic);
+    fn wanted(&self, topic: &Topic) -> bool {
+        let asked_for = self.arguments.topics.contains(&topic.name);
+        let named = asked_for || (self.arguments.topics.is_empty() && !is_command(&topic.name, &topic.type_name));
         // Two clocks would fight.
-        named && !(topic == "/clock" && self.clock.is_some())
+        named && !(topic.name == "/clock" && self.clock.is_some())
     }
 
     fn open(&mut self, topic: &Topic) -> Result<(), VerbError> {
-        if !self.wanted(&topic.name) || self.outlets.contains_key(&topic.name) {
+        if self.arguments.topics.is_empty() && is_command(&topic.name, &topic.type_name) {
+            self.left_out.insert(topic.name.clone());
+        }
+        if !self.wanted(topic) || self.outlets.contains_key(&topic.name) {
             return Ok(());
         }
         let name = self.supervisor.link.identity().resolve(&topic.name)?;

@@ -12,9 +12,9 @@
 //! | `excavator node arm-simulator` | `/arm_simulator` | publishes `/arm/state`, `/joint_states`, `/arm/model`, `/diagnostics`; takes `/arm/orifice_command` |
 //! | `excavator node energy-monitor` | `/energy_monitor` | takes `/arm/state`, `/arm/model`; publishes `/arm/energy`, `/diagnostics` |
 //! | `excavator node arm-bridge` | `/arm_bridge` | publishes `/arm/state`, `/joint_states`, `/diagnostics` |
-//! | `excavator node identification` | `/identification` | action `/identification/run`; publishes `/arm/model`, `/diagnostics` |
+//! | `excavator node identification` | `/identification` | action `/identification/run`; publishes `/diagnostics`, `/arm/model` on demand |
 //! | `excavator record` | `/bag_recorder` | takes what it is told to |
-//! | `excavator play` | `/bag_player` | publishes what the bag has, `/clock` on demand |
+//! | `excavator play` | `/bag_player` | publishes what the bag has, commands and `/clock` on demand |
 //!
 //! Every node takes `--ros-args` with `-r from:=to`, `-r __node:=`, `-r __ns:=`, `-p name:=value`, `--params-file`,
 //! `--log-level`, and reads `ROS_DOMAIN_ID`, `ROS_AUTOMATIC_DISCOVERY_RANGE`, `ROS_LOCALHOST_ONLY` and

@@ -92,13 +92,21 @@
     right = right.filter(function (r) { return Math.abs(r[1]) > 5e-3 * Math.max(Math.abs(supply), 0.02 * pump); });
     var scale = 150 / Math.max(pump, 1e-9), out = [];
     function watts(w) { return short(w) + " W"; }
+    // Names come from the network: they become text, never markup.
+    function draw(tag, attributes, text) {
+      var node = document.createElementNS("http://www.w3.org/2000/svg", tag);
+      Object.keys(attributes).forEach(function (name) { node.setAttribute(name, attributes[name]); });
+      if (text !== undefined) node.textContent = text;
+      out.push(node);
+    }
     function ribbon(x0, y0, x1, y1, w, colour) {
       var m = (x0 + x1) / 2;
-      out.push('<path d="M' + x0 + " " + y0 + "C" + m + " " + y0 + " " + m + " " + y1 + " " + x1 + " " + y1 + '" fill="none" stroke="' + colour + '" stroke-opacity="0.4" stroke-width="' + Math.max(w, 0.7) + '"/>');
+      draw("path", { d: "M" + x0 + " " + y0 + "C" + m + " " + y0 + " " + m + " " + y1 + " " + x1 + " " + y1, fill: "none", stroke: colour, "stroke-opacity": 0.4, "stroke-width": Math.max(w, 0.7) });
     }
     function bar(x, y, h, colour, label, w) {
-      out.push('<rect x="' + x + '" y="' + y + '" width="9" height="' + Math.max(h, 1) + '" fill="' + colour + '"/>');
-      out.push('<text x="' + (x + 13) + '" y="' + (y + 10) + '">' + label.replace(/[<&]/g, "") + '</text><text class="watts" x="' + (x + 13) + '" y="' + (y + 23) + '">' + watts(w) + "</text>");
+      draw("rect", { x: x, y: y, width: 9, height: Math.max(h, 1), fill: colour });
+      draw("text", { x: x + 13, y: y + 10 }, label);
+      draw("text", { "class": "watts", x: x + 13, y: y + 23 }, watts(w));
     }
     bar(4, 20, pump * scale, C.blue, "pump", pump);
     var leaving = 20, y = 20, from = null;
@@ -115,13 +123,13 @@
     right.forEach(function (part) {
       var h = Math.max(part[1], 0) * own_scale, w = narrow * Math.max(part[1], 0) / Math.max(whole, 1e-9);
       // Widens from its share of the cylinder's bar to the scale of the right side.
-      out.push('<path d="M139 ' + start + "C215 " + start + " 215 " + at + " 290 " + at + "V" + (at + h) + "C215 " + (at + h) + " 215 " + (start + w) + " 139 " + (start + w) + 'Z" fill="' + part[2] + '" fill-opacity="0.4"/>');
+      draw("path", { d: "M139 " + start + "C215 " + start + " 215 " + at + " 290 " + at + "V" + (at + h) + "C215 " + (at + h) + " 215 " + (start + w) + " 139 " + (start + w) + "Z", fill: part[2], "fill-opacity": 0.4 });
       start += w;
       bar(290, at, h, part[2], part[1] < 0 ? part[0] + " (gives)" : part[0], part[1]);
       at += Math.max(h, 1) + 28;
     });
     byId("flow").setAttribute("viewBox", "0 0 420 " + Math.max(y, at, 200));
-    byId("flow").innerHTML = out.join("");
+    byId("flow").replaceChildren.apply(byId("flow"), out);
   }
 
   function drawTerms() {

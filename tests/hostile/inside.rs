@@ -1,0 +1,55 @@
+//! The test itself inside a network namespace, and what it sees of the programs there.
+
+use std::fs::File;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use excavator::ros::{RosArguments, Supervisor};
+use nix::sched::{CloneFlags, setns};
+
+use crate::live::Network;
+
+/// Runs `work` on a thread in the namespace of `network`; threads that it starts are there too.
+pub fn inside<T: Send + 'static>(network: &Network, work: impl FnOnce() -> T + Send + 'static) -> T {
+    let path = format!("/run/netns/{}", network.name());
+    let thread = std::thread::spawn(move || {
+        setns(File::open(path).unwrap(), CloneFlags::CLONE_NEWNET).unwrap();
+        work()
+    });
+    match thread.join() {
+        Ok(result) => result,
+        Err(panic) => std::panic::resume_unwind(panic),
+    }
+}
+
+/// Peak memory of the program in the namespace whose command line has `word`, MB.
+pub fn peak_memory(network: &Network, word: &str) -> f64 {
+    let listed = Command::new("ip").args(["netns", "pids", network.name()]).output().unwrap();
+    for pid in String::from_utf8(listed.stdout).unwrap().split_whitespace() {
+        let read = |file: &str| std::fs::read_to_string(format!("/proc/{pid}/{file}")).unwrap_or_default();
+        if read("cmdline").contains(word) {
+            let status = read("status");
+            let line = status.lines().find(|line| line.starts_with("VmHWM:")).unwrap();
+            return line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap() / 1024.0;
+        }
+    }
+    panic!("no program with {word} in {}", network.name());
+}
+
+/// Waits until `of` gives something.
+pub fn until<T>(what: &str, time: Duration, mut of: impl FnMut() -> Option<T>) -> T {
+    let end = Instant::now() + time;
+    loop {
+        if let Some(found) = of() {
+            return found;
+        }
+        assert!(Instant::now() < end, "{what} did not come within {time:?}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// A node of the test itself, on the thread that runs inside the network.
+pub fn node_of_the_test(name: &str) -> Supervisor {
+    let ros = RosArguments::default();
+    Supervisor::start(name, &ros, Vec::new()).unwrap()
+}

@@ -1,0 +1,154 @@
+//! The energy monitor: no alarm without a reason, no memory for strangers.
+
+use std::net::TcpStream;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use excavator::ros::TopicQos;
+use excavator_msgs::common::{DiagnosticArray, DiagnosticStatus, KeyValue};
+use excavator_msgs::{ArmState, CylinderState, Header, OrificeCommand};
+
+use crate::faces::{answer, page};
+use crate::fault::Fault;
+use crate::inside::{inside, node_of_the_test, peak_memory, until};
+use crate::live::{Network, folder, messages, sleep};
+
+fn state(cylinders: Vec<CylinderState>, nanoseconds: i64) -> ArmState {
+    let stamp = excavator_msgs::Time::from_nanoseconds(nanoseconds).unwrap();
+    ArmState {
+        header: Header { stamp, frame_id: String::new() },
+        cylinders,
+        pump_pressure: 0.0,
+        tank_pressure: 0.0,
+        pump_flow: 0.0,
+        oil_temperature: 0.0,
+    }
+}
+
+/// Levels of the monitor's passivity over some seconds, while the arm moves and rests, with the largest of what was told.
+fn judged(network: &Network, folder: &Path, name: &str, model: &Path, seconds: f64) -> Vec<(u8, DiagnosticStatus)> {
+    let bag = folder.join(name);
+    let (model, window) = (format!("model:={}", model.display()), "watch_window:=0.5");
+    let simulator = network.start(&["node", "arm-simulator"]);
+    let monitor = network.start(&["node", "energy-monitor", "--ros-args", "-p", &model, "-p", window]);
+    let recorder = network.start(&["record", "/diagnostics", "-o", bag.to_str().unwrap()]);
+    inside(network, move || {
+        let node = node_of_the_test("operator");
+        let commands = node.link.publish("/arm/orifice_command", TopicQos::reliable(10)).unwrap();
+        let start = Instant::now();
+        while start.elapsed().as_secs_f64() < seconds {
+            let time = start.elapsed().as_secs_f64();
+            // A third at rest, a third to and fro, a third at rest again.
+            let moves = (seconds / 3.0..2.0 * seconds / 3.0).contains(&time);
+            let area = if moves { 5e-5 * (std::f64::consts::TAU * 0.4 * time).sin() } else { 0.0 };
+            let command =
+                OrificeCommand { header: Header::default(), names: vec!["arm".to_string()], areas: vec![area] };
+            let _ = commands.publish(command);
+            sleep(0.02);
+        }
+        node.leave();
+    });
+    for program in [recorder, monitor, simulator] {
+        assert_eq!(program.interrupt().0, 0);
+    }
+    let statuses = messages::<DiagnosticArray>(&bag, "/diagnostics").into_iter().flat_map(|(_, array)| array.status);
+    statuses.filter(|status| status.name.ends_with("passivity")).map(|status| (status.level, status)).collect()
+}
+
+fn alarms(network: &Network, folder: &Path, seconds: f64) -> (usize, usize, usize) {
+    let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../config/zx30u-arm.toml");
+    let right = judged(network, folder, "right", &config, seconds);
+    let amber: Vec<_> = right.iter().filter(|(level, _)| *level > 0).collect();
+    assert!(amber.is_empty(), "{} of {}: {amber:#?}", amber.len(), right.len());
+    // The monitor's model has half the damping of the machine.
+    let wrong = folder.join("wrong.toml");
+    let text = std::fs::read_to_string(&config).unwrap();
+    assert_eq!(text.matches("value = 13000.0").count(), 1);
+    std::fs::write(&wrong, text.replace("value = 13000.0", "value = 6500.0")).unwrap();
+    let wrong = judged(network, folder, "wrong", &wrong, 9.0);
+    let told = wrong.iter().filter(|(level, _)| *level > 0).count();
+    assert!(told > 0, "{wrong:#?}");
+    (right.len(), told, wrong.len())
+}
+
+const AMBER: Fault = Fault {
+    group: "Pages and bridges",
+    tried: "simulator and energy monitor of the same model, nothing wrong, the arm at rest and in motion",
+    outcome: "no warning; with half the damping in the monitor's model there is one as soon as the arm moves",
+};
+
+#[test]
+fn a_right_model_is_no_alarm_and_a_wrong_one_is() {
+    let Some(network) = Network::new("amber") else { return };
+    let (_keep, folder) = folder();
+    let (polls, told, of) = alarms(&network, &folder, 15.0);
+    assert!(polls >= 12, "{polls}");
+    AMBER
+        .survived(&[("polls without a warning", polls.to_string()), ("with a wrong model", format!("{told} of {of}"))]);
+}
+
+#[test]
+#[ignore = "takes two minutes"]
+fn a_right_model_is_no_alarm_for_ninety_polls() {
+    let Some(network) = Network::new("ninety") else { return };
+    let (_keep, folder) = folder();
+    let (polls, told, of) = alarms(&network, &folder, 95.0);
+    assert!(polls >= 90, "{polls}");
+    AMBER
+        .survived(&[("polls without a warning", polls.to_string()), ("with a wrong model", format!("{told} of {of}"))]);
+}
+
+#[test]
+fn enormous_states_and_diagnostics_do_not_fill_monitor_and_page() {
+    let Some(network) = Network::new("enormous") else { return };
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../config/zx30u-arm.toml");
+    let model = format!("model:={}", model.display());
+    let monitor = network.start(&["node", "energy-monitor", "--ros-args", "-p", &model]);
+    let dashboard = network.start(&["dashboard"]);
+    let (frames, sent) = inside(&network, || {
+        until("the page", Duration::from_secs(30), || TcpStream::connect(page()).ok());
+        let node = node_of_the_test("stranger");
+        let states = node.link.publish("/arm/state", TopicQos::reliable(10)).unwrap();
+        let parts = node.link.publish("/diagnostics", TopicQos::reliable(10)).unwrap();
+        sleep(1.5);
+        let mut sent = 0;
+        let start = Instant::now();
+        for round in 0..150_i64 {
+            let many = (0..800).map(|number| CylinderState::unmeasured(&format!("c{round}-{number}"))).collect();
+            let long = vec![CylinderState::unmeasured(&"x".repeat(100_000))];
+            for cylinders in [many, long] {
+                sent += usize::from(states.publish(state(cylinders, round * 1_000_000)).is_ok());
+            }
+            let part = |number: i64| DiagnosticStatus {
+                level: 2,
+                name: format!("stranger {round}: {number}"),
+                message: "m".repeat(1000),
+                hardware_id: String::new(),
+                values: vec![KeyValue { key: "k".repeat(500), value: "v".repeat(500) }; 20],
+            };
+            let array = DiagnosticArray { header: Header::default(), status: (0..4).map(part).collect() };
+            sent += usize::from(parts.publish(array).is_ok());
+            sleep(0.02);
+        }
+        println!("{sent} messages in {:.1} s", start.elapsed().as_secs_f64());
+        let history = answer("localhost", "/history");
+        node.leave();
+        (history.len(), sent)
+    });
+    let (of_monitor, of_page) = (peak_memory(&network, "energy-monitor"), peak_memory(&network, "dashboard"));
+    assert_eq!(dashboard.interrupt().0, 0);
+    assert_eq!(monitor.interrupt().0, 0);
+    assert!(sent > 100, "{sent}");
+    assert!(of_monitor < 200.0 && of_page < 200.0, "{of_monitor} MB, {of_page} MB");
+    assert!(frames < 9_000_000, "{frames}");
+    Fault {
+        group: "Pages and bridges",
+        tried: "states with 800 cylinders or names of 100 kB, diagnostics of 600 parts with long texts",
+        outcome: "the monitor refuses such states, the page shows the first of each, cut; neither grows",
+    }
+    .survived(&[
+        ("messages", sent.to_string()),
+        ("peak memory of the monitor [MB]", format!("{of_monitor:.0}")),
+        ("of the dashboard [MB]", format!("{of_page:.0}")),
+    ]);
+}
