@@ -11,6 +11,7 @@ mod import;
 mod info;
 mod node;
 mod refine;
+mod reindex;
 mod simulate;
 
 use std::io::{Error, ErrorKind, Write};
@@ -40,6 +41,7 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Dashboard(arguments) => crate::dashboard::run(&arguments, ros),
         Verb::Node(which) => node::run(which, ros),
         Verb::Import(arguments) => import::run(&arguments),
+        Verb::Reindex(arguments) => reindex::run(&arguments),
     }
 }
 
