@@ -4,6 +4,8 @@
 //! table in `docs/faults.md`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod child;
 mod fault;
 #[path = "../../nodes/tests/live/mod.rs"]
 mod live;
+mod readers;
