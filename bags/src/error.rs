@@ -6,20 +6,22 @@ use excavator_model::recording::RecordingError;
 use thiserror::Error;
 
 use crate::dynamic::LayoutError;
+use crate::limits::LimitError;
 use crate::map::MapError;
+use crate::printable;
 
 /// A bag that cannot be read or written at all. Damage that can be read around is no error but a
 /// [`Damage`](crate::Damage) in the report.
 #[derive(Debug, Error)]
 pub enum BagError {
     /// Nothing at that path.
-    #[error("{} does not exist", path.display())]
+    #[error("{} does not exist", shown(path))]
     DoesNotExist {
         /// The path asked for.
         path: PathBuf,
     },
     /// The operating system refused to read or write.
-    #[error("cannot {action} {}: {source}", path.display())]
+    #[error("cannot {action} {}: {source}", shown(path))]
     Io {
         /// What was tried: "read", "create", ...
         action: &'static str,
@@ -28,8 +30,24 @@ pub enum BagError {
         /// What the operating system says.
         source: std::io::Error,
     },
+    /// A FIFO, a device, a socket, or a folder in the place of a file.
+    #[error("{} is not a regular file but {}; give a file", shown(path), printable(found))]
+    NotARegularFile {
+        /// The path asked for.
+        path: PathBuf,
+        /// What is there: "a FIFO", "a device", ...
+        found: &'static str,
+    },
+    /// A file that costs more than [`ReadLimits`](crate::ReadLimits) allow.
+    #[error("{}: {source}", shown(path))]
+    Limit {
+        /// The file.
+        path: PathBuf,
+        /// The bound, with the numbers found and allowed.
+        source: LimitError,
+    },
     /// A folder without any file of a bag, or a file that is none.
-    #[error("{} is not a bag: {reason}; give a rosbag2 folder, an .mcap or a .db3 file", path.display())]
+    #[error("{} is not a bag: {}; give a rosbag2 folder, an .mcap or a .db3 file", shown(path), printable(reason))]
     NotABag {
         /// The path asked for.
         path: PathBuf,
@@ -37,7 +55,7 @@ pub enum BagError {
         reason: String,
     },
     /// `metadata.yaml` is not what rosbag2 writes.
-    #[error("{}: {reason}; move the file away to read the bag without it", path.display())]
+    #[error("{}: {}; move the file away to read the bag without it", shown(path), printable(reason))]
     BadMetadata {
         /// Path of `metadata.yaml`.
         path: PathBuf,
@@ -45,7 +63,11 @@ pub enum BagError {
         reason: String,
     },
     /// `metadata.yaml` lists a file that is not there.
-    #[error("{} lists {file}, which is not there; put it back, or move metadata.yaml away to read the other files", metadata.display())]
+    #[error(
+        "{} lists {}, which is not there; put it back, or move metadata.yaml away to read the other files",
+        shown(metadata),
+        printable(file)
+    )]
     MissingFile {
         /// Path of `metadata.yaml`.
         metadata: PathBuf,
@@ -53,7 +75,11 @@ pub enum BagError {
         file: String,
     },
     /// A storage other than MCAP and SQLite3.
-    #[error("{}: {storage} storage is not supported; convert the bag to MCAP with `ros2 bag convert`", path.display())]
+    #[error(
+        "{}: {} storage is not supported; convert the bag to MCAP with `ros2 bag convert`",
+        shown(path),
+        printable(storage)
+    )]
     UnsupportedStorage {
         /// The bag.
         path: PathBuf,
@@ -61,7 +87,12 @@ pub enum BagError {
         storage: String,
     },
     /// Files or messages compressed by rosbag2 itself with something else than zstd.
-    #[error("{}: rosbag2 compression mode \"{mode}\" ({format}) is not supported; convert the bag with `ros2 bag convert`", path.display())]
+    #[error(
+        "{}: rosbag2 compression mode \"{}\" ({}) is not supported; convert the bag with `ros2 bag convert`",
+        shown(path),
+        printable(mode),
+        printable(format)
+    )]
     UnsupportedCompression {
         /// The bag.
         path: PathBuf,
@@ -71,7 +102,12 @@ pub enum BagError {
         format: String,
     },
     /// Messages that are not CDR.
-    #[error("{}: topic {topic} has serialization format \"{format}\", only \"cdr\" can be read", path.display())]
+    #[error(
+        "{}: topic {} has serialization format \"{}\", only \"cdr\" can be read",
+        shown(path),
+        printable(topic),
+        printable(format)
+    )]
     UnsupportedSerialization {
         /// The bag.
         path: PathBuf,
@@ -81,7 +117,7 @@ pub enum BagError {
         format: String,
     },
     /// The bag has no such topic.
-    #[error("{} has no topic {topic}; it has {}", path.display(), listed(existing))]
+    #[error("{} has no topic {}; it has {}", shown(path), printable(topic), listed(existing))]
     NoTopic {
         /// The bag.
         path: PathBuf,
@@ -91,7 +127,7 @@ pub enum BagError {
         existing: Vec<String>,
     },
     /// The topic exists, but no message of it could be read.
-    #[error("{}: topic {topic} has no readable message{}", path.display(), because(damage))]
+    #[error("{}: topic {} has no readable message{}", shown(path), printable(topic), because(damage))]
     NoMessages {
         /// The bag.
         path: PathBuf,
@@ -101,7 +137,7 @@ pub enum BagError {
         damage: Vec<String>,
     },
     /// The topic carries another type of message.
-    #[error("{}: topic {topic} has type {found}, expected {expected}", path.display())]
+    #[error("{}: topic {} has type {}, expected {expected}", shown(path), printable(topic), printable(found))]
     WrongType {
         /// The bag.
         path: PathBuf,
@@ -113,7 +149,12 @@ pub enum BagError {
         expected: &'static str,
     },
     /// The bag was written with another version of the message definition.
-    #[error("{}: the definition of {type_name} that topic {topic} was recorded with differs from ours: {difference}", path.display())]
+    #[error(
+        "{}: the definition of {type_name} that topic {} was recorded with differs from ours: {}",
+        shown(path),
+        printable(topic),
+        printable(difference)
+    )]
     OtherDefinition {
         /// The bag.
         path: PathBuf,
@@ -125,7 +166,12 @@ pub enum BagError {
         difference: String,
     },
     /// No message of the topic can be decoded; this is about the first.
-    #[error("{}: message {index} on topic {topic} ({bytes} bytes) cannot be decoded: {reason}", path.display())]
+    #[error(
+        "{}: message {index} on topic {} ({bytes} bytes) cannot be decoded: {}",
+        shown(path),
+        printable(topic),
+        printable(reason)
+    )]
     Undecodable {
         /// The bag.
         path: PathBuf,
@@ -139,7 +185,7 @@ pub enum BagError {
         reason: String,
     },
     /// A definition of a message type is not understood.
-    #[error("{place}: {source}")]
+    #[error("{}: {}", printable(place), printable(&source.to_string()))]
     BadDefinition {
         /// The file, or the bag and topic.
         place: String,
@@ -147,10 +193,10 @@ pub enum BagError {
         source: LayoutError,
     },
     /// A topic map, or what it asks for, is wrong.
-    #[error(transparent)]
+    #[error("{}", printable(&_0.to_string()))]
     Map(#[from] MapError),
     /// A table that cannot be read.
-    #[error("{}: {reason}", path.display())]
+    #[error("{}: {}", shown(path), printable(reason))]
     BadTable {
         /// The file.
         path: PathBuf,
@@ -158,13 +204,25 @@ pub enum BagError {
         reason: String,
     },
     /// The place to write to is taken.
-    #[error("{} exists already and is not overwritten; choose another name or remove it first", path.display())]
+    #[error("{} exists already and is not overwritten; choose another name or remove it first", shown(path))]
     AlreadyExists {
         /// The path asked for.
         path: PathBuf,
     },
+    /// A file that grows while it is made readable.
+    #[error("{} is still being written; end its recorder first", shown(path))]
+    StillWritten {
+        /// The file.
+        path: PathBuf,
+    },
+    /// What was written anew is not what was read; the original is as it was.
+    #[error("the new {} does not have the messages of the original, which is left as it was", shown(path))]
+    NotVerified {
+        /// The file.
+        path: PathBuf,
+    },
     /// A bag needs a name.
-    #[error("{} does not end with a name for the bag", path.display())]
+    #[error("{} does not end with a name for the bag", shown(path))]
     NoName {
         /// The path asked for.
         path: PathBuf,
@@ -189,7 +247,12 @@ pub enum BagError {
         nanoseconds: i64,
     },
     /// The topic was added before with another type or definition.
-    #[error("topic {topic} is already in the bag as {existing}, it cannot be added as {wanted}")]
+    #[error(
+        "topic {} is already in the bag as {}, it cannot be added as {}",
+        printable(topic),
+        printable(existing),
+        printable(wanted)
+    )]
     TopicConflict {
         /// The topic.
         topic: String,
@@ -199,7 +262,7 @@ pub enum BagError {
         wanted: String,
     },
     /// A message was refused by its encoder.
-    #[error("a message for topic {topic} cannot be encoded: {reason}")]
+    #[error("a message for topic {} cannot be encoded: {}", printable(topic), printable(reason))]
     Unencodable {
         /// The topic.
         topic: String,
@@ -207,7 +270,7 @@ pub enum BagError {
         reason: String,
     },
     /// The MCAP library refused to write.
-    #[error("cannot write {}: {source}", path.display())]
+    #[error("cannot write {}: {source}", shown(path))]
     Write {
         /// The file.
         path: PathBuf,
@@ -223,10 +286,25 @@ impl BagError {
     }
 }
 
+/// A path for a terminal.
+fn shown(path: &Path) -> String {
+    printable(&path.to_string_lossy()).into_owned()
+}
+
 fn listed(topics: &[String]) -> String {
-    if topics.is_empty() { "no topics at all".to_string() } else { topics.join(", ") }
+    if topics.is_empty() { "no topics at all".to_string() } else { printable(&topics.join(", ")).into_owned() }
 }
 
 fn because(damage: &[String]) -> String {
-    if damage.is_empty() { String::new() } else { format!(" ({})", damage.join("; ")) }
+    if damage.is_empty() { String::new() } else { format!(" ({})", printable(&in_short(damage))) }
+}
+
+/// The first lines and the last, which says where reading ended.
+pub(crate) fn in_short(damage: &[String]) -> String {
+    match damage {
+        [first, second, others @ .., last] if !others.is_empty() => {
+            format!("{first}; {second}; {} more damaged places; {last}", others.len())
+        }
+        few => few.join("; "),
+    }
 }

@@ -27,24 +27,33 @@ mod container;
 pub mod dynamic;
 mod error;
 mod info;
+mod limits;
 mod location;
 pub mod map;
 mod metadata;
+mod printable;
 mod qos;
 mod raw_messages;
 mod reading;
+mod regular_file;
+mod reindex;
 mod storage;
 pub mod table;
 mod topics;
 mod writing;
+pub mod yaml;
 
 pub use container::{Damage, DamageKind};
 pub use error::BagError;
 pub use info::{
     BagInfo, ColumnInfo, EquationInfo, SignalInfo, SignalsInfo, StampTiming, TableInfo, Timing, TopicInfo, info,
 };
+pub use limits::{Limit, LimitError, ReadLimits};
+pub use printable::printable;
 pub use qos::{Durability, History, Qos, Reliability};
 pub use raw_messages::{RawMessage, RawMessages, Topic};
 pub use reading::{Gap, ReadReport, StateTable, read_recording, read_recording_in_blocks};
+pub use regular_file::{open_regular, read_regular, read_regular_text};
+pub use reindex::{Reindexed, ReindexedFile, reindex};
 pub use topics::Topics;
 pub use writing::{BagWriter, Compression, TopicId, TopicToWrite, WriteOptions, write_recording};

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::BagError;
+use crate::limits::{Limit, ReadLimits};
 use crate::metadata::{FILE_NAME, Metadata, TopicMetadata};
+use crate::regular_file::{check_regular, open_regular};
 
 /// The first bytes of every SQLite database.
 pub(crate) const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
@@ -21,20 +23,26 @@ pub(crate) struct BagFiles {
 
 impl BagFiles {
     /// Finds the files of the bag at `path` and refuses what cannot be read, before anything is read.
-    pub fn locate(path: &Path) -> Result<BagFiles, BagError> {
+    pub fn locate(path: &Path, limits: &ReadLimits) -> Result<BagFiles, BagError> {
         if !path.exists() {
             return Err(BagError::DoesNotExist { path: path.to_path_buf() });
         }
         if !path.is_dir() {
+            check_regular(path)?;
             return Ok(BagFiles { files: vec![path.to_path_buf()], promised_messages: None });
         }
         let metadata_path = path.join(FILE_NAME);
-        if metadata_path.exists() { from_metadata(path, &metadata_path) } else { from_folder(path) }
+        let found =
+            if metadata_path.exists() { from_metadata(path, &metadata_path, limits) } else { from_folder(path) }?;
+        Limit::Files
+            .check(found.files.len() as u64, limits.files as u64)
+            .map_err(|source| BagError::Limit { path: path.to_path_buf(), source })?;
+        Ok(found)
     }
 }
 
-fn from_metadata(folder: &Path, metadata_path: &Path) -> Result<BagFiles, BagError> {
-    let metadata = Metadata::read(metadata_path)?;
+fn from_metadata(folder: &Path, metadata_path: &Path, limits: &ReadLimits) -> Result<BagFiles, BagError> {
+    let metadata = Metadata::read(metadata_path, limits)?;
     if !["mcap", "sqlite3"].contains(&metadata.storage_identifier.as_str()) {
         let storage = format!("\"{}\"", metadata.storage_identifier);
         return Err(BagError::UnsupportedStorage { path: folder.to_path_buf(), storage });
@@ -80,7 +88,8 @@ fn beside(folder: &Path, listed: &str) -> Option<PathBuf> {
     [as_written, by_name, others].into_iter().find(|path| path.is_file())
 }
 
-fn from_folder(folder: &Path) -> Result<BagFiles, BagError> {
+/// The files of a bag in a folder, whatever its metadata says.
+pub(crate) fn from_folder(folder: &Path) -> Result<BagFiles, BagError> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(BagError::io("read", folder))? {
         let path = entry.map_err(BagError::io("read", folder))?.path();
@@ -128,7 +137,7 @@ fn natural_order(path: &Path) -> Vec<(String, u64)> {
 pub(crate) fn first_bytes(path: &Path) -> Result<Vec<u8>, BagError> {
     use std::io::Read;
     let mut start = Vec::new();
-    let file = std::fs::File::open(path).map_err(BagError::io("open", path))?;
+    let (file, _) = open_regular(path)?;
     file.take(SQLITE_MAGIC.len() as u64).read_to_end(&mut start).map_err(BagError::io("read", path))?;
     Ok(start)
 }

@@ -6,7 +6,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::BagError;
+use crate::limits::ReadLimits;
 use crate::qos::QosEntry;
+use crate::regular_file::read_regular_text;
+use crate::yaml::Yaml;
 
 /// Name of the file in every rosbag2 folder.
 pub(crate) const FILE_NAME: &str = "metadata.yaml";
@@ -48,17 +51,32 @@ struct Document {
 
 impl Metadata {
     /// The content of the file at `path`.
-    pub fn read(path: &Path) -> Result<Metadata, BagError> {
-        let text = std::fs::read(path).map_err(BagError::io("read", path))?;
-        let document: Document = serde_yaml_ng::from_slice(&text)
-            .map_err(|error| BagError::BadMetadata { path: path.to_path_buf(), reason: error.to_string() })?;
+    pub fn read(path: &Path, limits: &ReadLimits) -> Result<Metadata, BagError> {
+        let text = read_regular_text(path, limits.document)?;
+        let document: Document = crate::yaml::from_str(&text, limits)
+            .map_err(|reason| BagError::BadMetadata { path: path.to_path_buf(), reason })?;
         Ok(document.rosbag2_bagfile_information)
+    }
+
+    /// The pairs of text in `custom_data` of the file at `path`; none when there is no such file, or it cannot be read.
+    pub fn custom_data(path: &Path, limits: &ReadLimits) -> BTreeMap<String, String> {
+        let document: Option<Yaml> =
+            read_regular_text(path, limits.document).ok().and_then(|text| crate::yaml::from_str(&text, limits).ok());
+        let pairs = document.and_then(|yaml| yaml.get("rosbag2_bagfile_information")?.get("custom_data").cloned());
+        let Some(Yaml::Mapping(entries)) = pairs else { return BTreeMap::new() };
+        let texts = entries.into_iter().filter_map(|entry| match entry {
+            (Yaml::String(key), Yaml::String(value)) => Some((key, value)),
+            _ => None,
+        });
+        texts.collect()
     }
 }
 
 /// What is known about a bag when it is closed.
 #[derive(Debug, Clone)]
 pub(crate) struct Contents<'c> {
+    /// `mcap` or `sqlite3`.
+    pub storage: &'static str,
     pub files: &'c [FileContents],
     pub topics: &'c [TopicContents],
     pub custom_data: &'c BTreeMap<String, String>,
@@ -84,15 +102,15 @@ pub(crate) struct TopicContents {
 
 impl Contents<'_> {
     /// The text of `metadata.yaml`, field by field in the order of rosbag2.
-    pub fn to_yaml(&self) -> Result<String, serde_yaml_ng::Error> {
+    pub fn to_yaml(&self) -> Result<String, String> {
         let spans = || self.files.iter().filter_map(|file| file.span);
         let whole = spans().map(|span| span.0).min().zip(spans().map(|span| span.1).max());
         let (starting_time, duration) = start_and_duration(whole);
         let message_count = self.topics.iter().map(|topic| topic.message_count).sum();
-        serde_yaml_ng::to_string(&Written {
+        crate::yaml::to_string(&Written {
             rosbag2_bagfile_information: WrittenMetadata {
                 version: VERSION_WRITTEN,
-                storage_identifier: "mcap",
+                storage_identifier: self.storage,
                 duration,
                 starting_time,
                 message_count,

@@ -1,7 +1,9 @@
 //! The quality of service that a topic was offered with, as rosbag2 writes it down.
 
 use serde::Serialize;
-use serde_yaml_ng::Value;
+
+use crate::ReadLimits;
+use crate::yaml::{self, Yaml};
 
 /// Which samples a writer keeps for readers that lag behind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,8 +54,8 @@ impl Qos {
     /// The profiles in the YAML text of a bag's `offered_qos_profiles`, which names policies since version 9 and
     /// numbers them before. What cannot be understood is left out: a bag without QoS is still a bag.
     pub fn list_from_yaml(text: &str) -> Vec<Qos> {
-        match serde_yaml_ng::from_str::<Value>(text) {
-            Ok(Value::Sequence(profiles)) => profiles.iter().filter_map(from_value).collect(),
+        match yaml::from_str::<Yaml>(text, &ReadLimits::DEFAULT) {
+            Ok(Yaml::Sequence(profiles)) => profiles.iter().filter_map(from_value).collect(),
             _ => Vec::new(),
         }
     }
@@ -63,7 +65,7 @@ impl Qos {
         if profiles.is_empty() {
             return String::new();
         }
-        serde_yaml_ng::to_string(&Self::entries(profiles)).unwrap_or_default()
+        yaml::to_string(&Self::entries(profiles)).unwrap_or_default()
     }
 
     pub(crate) fn entries(profiles: &[Qos]) -> Vec<QosEntry> {
@@ -121,15 +123,18 @@ impl From<Qos> for QosEntry {
     }
 }
 
-fn from_value(profile: &Value) -> Option<Qos> {
+fn from_value(profile: &Yaml) -> Option<Qos> {
     let policy = |name: &str| -> Option<String> {
         match profile.get(name)? {
-            Value::String(text) => Some(text.to_lowercase()),
-            Value::Number(number) => Some(number.to_string()),
+            Yaml::String(text) => Some(text.to_lowercase()),
+            Yaml::Integer(number) => Some(number.to_string()),
             _ => None,
         }
     };
-    let depth = profile.get("depth").and_then(Value::as_u64).and_then(|depth| u32::try_from(depth).ok());
+    let depth = match profile.get("depth") {
+        Some(Yaml::Integer(depth)) => u32::try_from(*depth).ok(),
+        _ => None,
+    };
     // The numbers are those of rmw/types.h.
     Some(Qos {
         history: match policy("history")?.as_str() {

@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use bytes::Bytes;
 
+use crate::error::in_short;
 use crate::location::BagFiles;
 use crate::storage::{MessageDecompressor, StorageFile};
-use crate::{BagError, Damage, Qos};
+use crate::{BagError, Damage, Qos, ReadLimits};
 
 /// A topic as the bag defines it.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -60,6 +61,8 @@ pub struct RawMessages {
     done: Vec<StorageFile>,
     decompressor: MessageDecompressor,
     promised_messages: Option<u64>,
+    file_bytes: u64,
+    limits: ReadLimits,
 }
 
 impl RawMessages {
@@ -69,19 +72,36 @@ impl RawMessages {
     /// # Errors
     /// When there is no bag, or one of a kind that cannot be read: [`BagError::DoesNotExist`], [`BagError::NotABag`],
     /// [`BagError::BadMetadata`], [`BagError::MissingFile`], [`BagError::UnsupportedStorage`],
-    /// [`BagError::UnsupportedCompression`], [`BagError::UnsupportedSerialization`], [`BagError::Io`].
+    /// [`BagError::UnsupportedCompression`], [`BagError::UnsupportedSerialization`], [`BagError::NotARegularFile`],
+    /// [`BagError::Limit`], [`BagError::Io`].
     pub fn open(path: &Path) -> Result<Self, BagError> {
-        let BagFiles { files, promised_messages } = BagFiles::locate(path)?;
+        RawMessages::open_within(path, &ReadLimits::DEFAULT)
+    }
+
+    /// As [`RawMessages::open`], with other limits.
+    ///
+    /// # Errors
+    /// As [`RawMessages::open`].
+    pub fn open_within(path: &Path, limits: &ReadLimits) -> Result<Self, BagError> {
+        let BagFiles { files, promised_messages } = BagFiles::locate(path, limits)?;
         let mut waiting = VecDeque::new();
         for file in &files {
-            waiting.push_back(StorageFile::open(file)?);
+            waiting.push_back(StorageFile::open(file, limits)?);
         }
         if !waiting.is_empty() && waiting.iter().all(StorageFile::is_unreadable) {
             let damage: Vec<String> = waiting.iter().flat_map(StorageFile::damage).map(ToString::to_string).collect();
-            return Err(BagError::NotABag { path: path.to_path_buf(), reason: damage.join("; ") });
+            return Err(BagError::NotABag { path: path.to_path_buf(), reason: in_short(&damage) });
         }
-        let decompressor = MessageDecompressor::default();
-        Ok(RawMessages { path: path.to_path_buf(), waiting, done: Vec::new(), decompressor, promised_messages })
+        let lengths = files.iter().filter_map(|file| std::fs::metadata(file).ok()).map(|metadata| metadata.len());
+        Ok(RawMessages {
+            path: path.to_path_buf(),
+            file_bytes: lengths.fold(0, u64::saturating_add),
+            waiting,
+            done: Vec::new(),
+            decompressor: MessageDecompressor::new(limits),
+            promised_messages,
+            limits: *limits,
+        })
     }
 
     /// The path that was opened.
@@ -103,6 +123,13 @@ impl RawMessages {
     pub fn damage(&self) -> Vec<Damage> {
         let read = self.done.iter().chain(&self.waiting).flat_map(StorageFile::damage);
         read.cloned().chain(self.decompressor.damage(&self.path)).collect()
+    }
+
+    /// Checks the memory that what was read so far takes, bytes, against the limits and the size of the bag's files.
+    pub(crate) fn check_memory(&self, needed: u64) -> Result<(), BagError> {
+        self.limits
+            .check_memory(needed, self.file_bytes)
+            .map_err(|source| BagError::Limit { path: self.path.clone(), source })
     }
 
     /// How many messages `metadata.yaml` promises; `None` without one.

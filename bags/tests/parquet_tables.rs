@@ -124,7 +124,7 @@ fn broken_files_are_told_in_one_line() {
     let size = [0xfe, 0xff, 0xff, 0xff, 0x0f];
     huge.splice(7..9, size);
     let found = error(&huge);
-    assert!(found.contains("promises 2147483647 bytes"), "{found}");
+    assert!(found.contains("needs 2147483647 bytes of memory"), "{found}");
 }
 
 /// Flipped bytes where they hurt most: in the footer, which has all offsets, types and counts.

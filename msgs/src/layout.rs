@@ -91,9 +91,16 @@ pub fn flat_fields(type_name: &str, schema: &str) -> Vec<Field> {
             sections.insert(short_name(name.trim()), text);
         }
     }
-    let mut flat = Vec::new();
+    let mut flat = Flat::default();
     flatten(&sections, root, package(&short_name(type_name)), "", 0, &mut flat);
-    flat
+    flat.fields
+}
+
+/// The fields found so far, and how many were looked at: types without any field can nest without giving one.
+#[derive(Default)]
+struct Flat {
+    fields: Vec<Field>,
+    seen: usize,
 }
 
 fn flatten(
@@ -102,12 +109,13 @@ fn flatten(
     package_name: &str,
     path: &str,
     depth: usize,
-    flat: &mut Vec<Field>,
+    flat: &mut Flat,
 ) {
     for field in fields(text) {
-        if flat.len() >= FIELD_LIMIT {
+        if flat.seen >= FIELD_LIMIT {
             return;
         }
+        flat.seen += 1;
         let name = format!("{path}{}", field.name);
         let contained = resolve(field.base_type(), package_name);
         let text = sections.get(&contained).copied().or_else(|| definitions::message_text(&contained));
@@ -116,7 +124,7 @@ fn flatten(
                 let path = format!("{name}{}.", field.array_suffix());
                 flatten(sections, text, package(&contained), &path, depth + 1, flat);
             }
-            _ => flat.push(Field { type_name: field.type_name, name }),
+            _ => flat.fields.push(Field { type_name: field.type_name, name }),
         }
     }
 }
@@ -170,5 +178,9 @@ mod tests {
     fn a_definition_that_contains_itself_twice_comes_to_an_end() {
         let schema = "A a\nA b\n====================\nMSG: p/A\nA a\nA b\n";
         assert!(flat_fields("p/A", schema).len() <= FIELD_LIMIT);
+        // Two of the next type in each of 32 types, and nothing in the last.
+        let types = (0..32).map(|n| format!("====================\nMSG: p/T{n}\nT{0} a\nT{0} b\n", n + 1));
+        let empty = format!("T0 a\n{}====================\nMSG: p/T32\n", types.collect::<String>());
+        assert!(flat_fields("p/A", &empty).is_empty());
     }
 }

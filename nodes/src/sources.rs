@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use excavator_bags::map::read_recording_or_mapped;
+use excavator_bags::{ReadLimits, read_regular_text};
 use excavator_identification::gate;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse};
@@ -18,7 +19,7 @@ pub fn model(name: &str) -> Result<Model, VerbError> {
     if !path.exists() && !name.ends_with(".toml") {
         return Ok(built_in(name)?);
     }
-    let text = std::fs::read_to_string(path).map_err(|source| VerbError::Read { path: path.to_path_buf(), source })?;
+    let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
     Ok(parse(name, &text)?)
 }
 

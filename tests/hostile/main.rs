@@ -6,9 +6,11 @@
 
 mod bridge;
 mod faces;
+mod child;
 mod fault;
 mod goals;
 mod inside;
 #[path = "../../nodes/tests/live/mod.rs"]
 mod live;
 mod monitor;
+mod readers;

@@ -6,9 +6,8 @@ use bytes::Bytes;
 use thiserror::Error;
 
 use super::fields::Fields;
+use crate::limits::{Limit, LimitError};
 
-/// No recorder makes chunks this large; a larger size is damage, and must not be believed when reserving memory.
-const SIZE_LIMIT: u64 = 4 << 30;
 /// First reservation for decompressed bytes: the size that rosbag2 and we give a chunk, and then some.
 const FIRST_RESERVATION: u64 = 1 << 20;
 
@@ -21,8 +20,8 @@ pub(super) enum ChunkFault {
     UnknownCompression(String),
     #[error("it announces {announced} bytes compressed, but has {available}")]
     Incomplete { announced: u64, available: u64 },
-    #[error("it announces {0} bytes uncompressed, which no recorder writes")]
-    TooLarge(u64),
+    #[error(transparent)]
+    TooLarge(#[from] LimitError),
     #[error("it decompresses to {found} bytes instead of {announced}: {reason}")]
     Decompression { announced: u64, found: u64, reason: String },
     #[error("its checksum is {calculated:08x} instead of {saved:08x}")]
@@ -52,13 +51,12 @@ impl<'b> ChunkHead<'b> {
     }
 }
 
-/// The records of a whole chunk, checked against its size and checksum. A checksum of 0 means that there is none.
-pub(super) fn decompress(record: Bytes) -> Result<Bytes, ChunkFault> {
+/// The records of a whole chunk of at most `most` bytes, checked against its size and checksum. A checksum of 0 means that
+/// there is none.
+pub(super) fn decompress(record: Bytes, most: u64) -> Result<Bytes, ChunkFault> {
     let head = ChunkHead::parse(&record).ok_or(ChunkFault::BadHead)?;
     let announced = head.uncompressed_size;
-    if announced > SIZE_LIMIT {
-        return Err(ChunkFault::TooLarge(announced));
-    }
+    Limit::Message.check(announced, most)?;
     let compressed = usize::try_from(head.compressed_size)
         .ok()
         .and_then(|size| head.content.get(..size))
@@ -89,14 +87,14 @@ pub(super) fn decompress(record: Bytes) -> Result<Bytes, ChunkFault> {
 
 /// What can be won from a chunk of which the end is missing. Its checksum covers what is missing, so it is of no use.
 /// A writer that was killed leaves the sizes in the head unset (all ones): they are not believed either.
-pub(super) fn salvage(record: Bytes) -> Bytes {
+pub(super) fn salvage(record: Bytes, most: u64) -> Bytes {
     let Some(head) = ChunkHead::parse(&record) else {
         return Bytes::new();
     };
     if head.compression.is_empty() {
         return record.slice_ref(head.content);
     }
-    match inflate(head.compression, head.content, head.uncompressed_size.min(SIZE_LIMIT)) {
+    match inflate(head.compression, head.content, head.uncompressed_size.min(most)) {
         Ok((records, _end_is_missing)) => Bytes::from(records),
         Err(_unknown_compression) => Bytes::new(),
     }

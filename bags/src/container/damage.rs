@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use crate::printable;
+
 /// One damaged place of one file, and what it cost.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Damage {
@@ -81,6 +83,16 @@ pub enum DamageKind {
         /// How many.
         messages: u64,
     },
+    /// The file unpacks to more than any recording does; it was read up to there.
+    UnpacksWithoutEnd {
+        /// Bytes unpacked, and what is allowed for a file of that size.
+        reason: String,
+    },
+    /// More damaged places than are listed.
+    More {
+        /// How many.
+        places: u64,
+    },
 }
 
 impl Damage {
@@ -99,7 +111,8 @@ impl Damage {
 impl fmt::Display for Damage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Damage { file, offset, lost_bytes, kind, .. } = self;
-        let file = file.display();
+        let name = file.display().to_string();
+        let file = printable(&name);
         match kind {
             DamageKind::UnknownFormat => {
                 write!(f, "{file} is neither an MCAP nor a SQLite3 file: {lost_bytes} bytes left out")
@@ -140,6 +153,12 @@ impl fmt::Display for Damage {
                 write!(f, "{file}: record at byte {offset} left out, {lost_bytes} bytes lost: {reason}")
             }
             DamageKind::LostSync => write!(f, "{file}: no valid records at byte {offset}, {lost_bytes} bytes lost"),
+            DamageKind::UnpacksWithoutEnd { reason } => {
+                write!(f, "{file} was read up to byte {offset}, {lost_bytes} bytes left out: {reason}")
+            }
+            DamageKind::More { places } => {
+                write!(f, "{file}: {places} more damaged places from byte {offset} on, {lost_bytes} bytes lost")
+            }
             DamageKind::UnknownTopic { messages } => {
                 write!(
                     f,

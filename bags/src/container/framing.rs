@@ -5,6 +5,7 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use crate::BagError;
+use crate::regular_file::open_regular;
 
 /// Opcode and length.
 pub(super) const HEADER_LENGTH: u64 = 9;
@@ -31,11 +32,10 @@ pub(super) struct RecordFile {
 impl RecordFile {
     /// Opens the file at `path`, which people know as `name`.
     pub fn open(path: &Path, name: &Path) -> Result<RecordFile, BagError> {
-        let file = File::open(path).map_err(BagError::io("open", path))?;
-        let length = file.metadata().map_err(BagError::io("read", path))?.len();
+        let (file, length) = open_regular(path)?;
         Ok(RecordFile {
             path: name.to_path_buf(),
-            reader: BufReader::with_capacity(1 << 18, file),
+            reader: BufReader::with_capacity(1 << 16, file),
             position: 0,
             length,
         })

@@ -8,11 +8,13 @@ use mcap::records::op;
 
 use super::chunk;
 use super::damage::{Damage, DamageKind};
+use super::damage_list::DamageList;
 use super::fields::MessageHeader;
 use super::framing::{HEADER_LENGTH, RecordFile, RecordHead, next_in_memory};
 use super::registry::Registry;
 use super::summary::Summary;
 use crate::BagError;
+use crate::limits::{Limit, ReadLimits};
 use crate::raw_messages::{RawMessage, Topic};
 
 /// One open file.
@@ -24,10 +26,13 @@ pub(crate) struct McapFile {
     /// Whether the file ends as a closed file does, summary or not.
     closed: bool,
     chunk: Option<OpenChunk>,
-    damage: Vec<Damage>,
+    damage: DamageList,
+    /// Bytes unpacked from chunks so far.
+    unpacked: u64,
     last_log_time: Option<u64>,
     unknown_topic: UnknownTopic,
     finished: bool,
+    limits: ReadLimits,
 }
 
 /// A decompressed chunk and how far it has been read.
@@ -52,13 +57,13 @@ struct UnknownTopic {
 impl McapFile {
     /// Opens the file at `path`, which people know as `name`, and reads its summary, if it has one; `None` when it is no
     /// MCAP file.
-    pub fn open(path: &Path, name: &Path) -> Result<Option<McapFile>, BagError> {
+    pub fn open(path: &Path, name: &Path, limits: &ReadLimits) -> Result<Option<McapFile>, BagError> {
         let mut file = RecordFile::open(path, name)?;
         if file.read(mcap::MAGIC.len() as u64)? != mcap::MAGIC {
             return Ok(None);
         }
-        let mut registry = Registry::default();
-        let summary = Summary::read(&mut file, &mut registry)?;
+        let mut registry = Registry::new(limits);
+        let summary = Summary::read(&mut file, &mut registry, limits)?;
         let magic_length = mcap::MAGIC.len() as u64;
         file.go_to(file.length().saturating_sub(magic_length).max(magic_length))?;
         let closed = file.read(magic_length)? == mcap::MAGIC;
@@ -69,10 +74,12 @@ impl McapFile {
             summary,
             closed,
             chunk: None,
-            damage: Vec::new(),
+            damage: DamageList::default(),
+            unpacked: 0,
             last_log_time: None,
             unknown_topic: UnknownTopic::default(),
             finished: false,
+            limits: *limits,
         }))
     }
 
@@ -81,9 +88,14 @@ impl McapFile {
         self.registry.topics()
     }
 
+    /// Whether the file ends with an index that can be trusted.
+    pub fn has_index(&self) -> bool {
+        self.summary.is_some() && self.closed
+    }
+
     /// The damage met so far; complete once [`McapFile::next_message`] has returned `None`.
     pub fn damage(&self) -> &[Damage] {
-        &self.damage
+        self.damage.as_slice()
     }
 
     /// The next message, `None` at the end. Damage is noted and passed over.
@@ -193,6 +205,12 @@ impl McapFile {
             }
             return Ok(None);
         }
+        let is_used = matches!(head.opcode, op::MESSAGE | op::SCHEMA | op::CHANNEL | op::CHUNK);
+        if is_used && let Err(error) = Limit::Message.check(head.length, self.limits.message) {
+            self.note(head.offset, HEADER_LENGTH + head.length, DamageKind::BadRecord { reason: error.to_string() });
+            self.file.skip(head.length)?;
+            return Ok(None);
+        }
         match head.opcode {
             op::DATA_END | op::FOOTER => {
                 if !self.closed {
@@ -207,8 +225,15 @@ impl McapFile {
             }
             op::CHUNK => {
                 let record = Bytes::from(self.file.read(head.length)?);
-                match chunk::decompress(record) {
+                match chunk::decompress(record, self.limits.message) {
                     Ok(records) => {
+                        self.unpacked = self.unpacked.saturating_add(records.len() as u64);
+                        if let Err(error) = self.limits.check_unpacked(self.unpacked, self.file.length()) {
+                            let left = self.file.length().saturating_sub(head.offset);
+                            self.note(head.offset, left, DamageKind::UnpacksWithoutEnd { reason: error.to_string() });
+                            self.finish();
+                            return Ok(None);
+                        }
                         self.chunk =
                             Some(OpenChunk { offset: head.offset, records, position: 0, cut: None, recovered: 0 });
                     }
@@ -230,7 +255,8 @@ impl McapFile {
         let missing = if head.length > i64::MAX as u64 { 0 } else { head.length - available };
         let kind = DamageKind::CutOff { recovered_messages: 0 };
         if head.opcode == op::CHUNK {
-            let records = chunk::salvage(Bytes::from(self.file.read(available)?));
+            let records =
+                chunk::salvage(Bytes::from(self.file.read(available.min(self.limits.message))?), self.limits.message);
             if !records.is_empty() {
                 let cut = self.damage_at(head.offset, missing, kind);
                 self.chunk =

@@ -6,6 +6,7 @@
 
 mod chunk;
 mod damage;
+mod damage_list;
 mod fields;
 mod framing;
 mod mcap_file;
@@ -14,4 +15,5 @@ mod registry;
 mod summary;
 
 pub use damage::{Damage, DamageKind};
+pub(crate) use damage_list::DamageList;
 pub(crate) use mcap_file::McapFile;

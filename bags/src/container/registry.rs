@@ -5,15 +5,29 @@ use std::sync::Arc;
 
 use mcap::McapError;
 use mcap::records::{Record, op};
+use thiserror::Error;
 
 use super::record::parsed;
+use crate::limits::{Limit, LimitError, ReadLimits};
 use crate::raw_messages::Topic;
 
 /// Schemas and topics by their numbers in the file.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Registry {
     schemas: HashMap<u16, Arc<Schema>>,
     topics: HashMap<u16, Arc<Topic>>,
+    /// Bytes of all definitions taken in, also of those that were replaced: messages may still hold them.
+    bytes: u64,
+    limits: ReadLimits,
+}
+
+/// Why a definition is not taken in.
+#[derive(Debug, Error)]
+pub(super) enum DefinitionFault {
+    #[error(transparent)]
+    Mcap(#[from] McapError),
+    #[error(transparent)]
+    TooLarge(#[from] LimitError),
 }
 
 #[derive(Debug, PartialEq, Eq)]
@@ -24,6 +38,10 @@ struct Schema {
 }
 
 impl Registry {
+    pub fn new(limits: &ReadLimits) -> Registry {
+        Registry { schemas: HashMap::new(), topics: HashMap::new(), bytes: 0, limits: *limits }
+    }
+
     /// The topic with this number.
     pub fn topic(&self, channel: u16) -> Option<&Arc<Topic>> {
         self.topics.get(&channel)
@@ -36,7 +54,7 @@ impl Registry {
 
     /// Takes in a schema or channel record; other opcodes are ignored. A repeated definition keeps the first [`Arc`],
     /// so that messages of one topic share it; a different one replaces it.
-    pub fn define(&mut self, opcode: u8, content: &[u8]) -> Result<(), McapError> {
+    pub fn define(&mut self, opcode: u8, content: &[u8]) -> Result<(), DefinitionFault> {
         if opcode != op::SCHEMA && opcode != op::CHANNEL {
             return Ok(());
         }
@@ -48,6 +66,7 @@ impl Registry {
                     text: String::from_utf8_lossy(&data).into_owned(),
                 };
                 if self.schemas.get(&header.id).is_none_or(|known| **known != schema) {
+                    self.count(schema.text.len(), &schema.name)?;
                     self.schemas.insert(header.id, Arc::new(schema));
                 }
             }
@@ -62,11 +81,19 @@ impl Registry {
                     offered_qos_profiles: channel.metadata.get("offered_qos_profiles").cloned().unwrap_or_default(),
                 };
                 if self.topics.get(&channel.id).is_none_or(|known| **known != topic) {
+                    self.count(topic.schema.len() + topic.offered_qos_profiles.len(), &topic.name)?;
                     self.topics.insert(channel.id, Arc::new(topic));
                 }
             }
             _ => {}
         }
+        Ok(())
+    }
+    /// Counts a definition; every topic has its own copy of its type's.
+    fn count(&mut self, text: usize, name: &str) -> Result<(), LimitError> {
+        let bytes = self.bytes + (text + name.len()) as u64;
+        Limit::Definitions.check(bytes, self.limits.definitions)?;
+        self.bytes = bytes;
         Ok(())
     }
 }

@@ -7,6 +7,7 @@ use super::framing::{HEADER_LENGTH, RecordFile, next_in_memory};
 use super::record::parsed;
 use super::registry::Registry;
 use crate::BagError;
+use crate::limits::ReadLimits;
 
 /// Content of a footer record, bytes.
 const FOOTER_LENGTH: u64 = 20;
@@ -25,7 +26,11 @@ pub(super) struct Summary {
 impl Summary {
     /// Reads the summary and enters its definitions into the registry; `None` when the file has none that can be
     /// trusted. The position of the file is undefined afterwards.
-    pub fn read(file: &mut RecordFile, registry: &mut Registry) -> Result<Option<Summary>, BagError> {
+    pub fn read(
+        file: &mut RecordFile,
+        registry: &mut Registry,
+        limits: &ReadLimits,
+    ) -> Result<Option<Summary>, BagError> {
         let tail_length = HEADER_LENGTH + FOOTER_LENGTH + mcap::MAGIC.len() as u64;
         let Some(footer_offset) = file.length().checked_sub(tail_length) else {
             return Ok(None);
@@ -35,7 +40,8 @@ impl Summary {
         let Some((start, checksum)) = parse_footer(&tail) else {
             return Ok(None);
         };
-        if start == 0 || start >= footer_offset {
+        // A summary that is too large to hold is not needed either: the data is read from its beginning.
+        if start == 0 || start >= footer_offset || footer_offset - start > limits.message {
             return Ok(None);
         }
         file.go_to(start)?;

@@ -11,6 +11,8 @@ use super::error::LayoutError;
 use super::layout::Count;
 use super::{ros2idl, ros2msg};
 use crate::BagError;
+use crate::limits::{Limit, ReadLimits};
+use crate::regular_file::read_regular_text;
 
 /// One member as defined.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,11 +34,13 @@ impl Definitions {
     /// since the type may be defined elsewhere.
     ///
     /// # Errors
-    /// [`LayoutError::Syntax`].
+    /// [`LayoutError::Syntax`], [`LayoutError::Limit`].
     pub fn from_schema(type_name: &str, encoding: &str, schema: &str) -> Result<Definitions, LayoutError> {
         if schema.trim().is_empty() {
             return Ok(Definitions::default());
         }
+        // What the parsers hold in memory is up to fifty times the text.
+        Limit::Definition.check(schema.len() as u64, ReadLimits::DEFAULT.definition)?;
         let types = match encoding {
             "ros2msg" => ros2msg::parse(type_name, schema)?,
             "ros2idl" => ros2idl::parse(schema)?,
@@ -69,9 +73,9 @@ impl Definitions {
     /// Adds the type in a `.msg` file. Its package is the folder above `msg/`, else the folder that the file is in.
     ///
     /// # Errors
-    /// [`BagError::Io`], [`BagError::BadDefinition`].
+    /// [`BagError::NotARegularFile`], [`BagError::Limit`], [`BagError::Io`], [`BagError::BadDefinition`].
     pub fn add_file(&mut self, path: &Path) -> Result<(), BagError> {
-        let text = std::fs::read_to_string(path).map_err(BagError::io("read", path))?;
+        let text = read_regular_text(path, ReadLimits::DEFAULT.definition)?;
         let name_of = |part: Option<&std::ffi::OsStr>| part.map(|name| name.to_string_lossy().into_owned());
         let folders: Vec<String> = path.ancestors().skip(1).take(2).filter_map(|f| name_of(f.file_name())).collect();
         let package = match folders.as_slice() {

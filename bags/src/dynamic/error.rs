@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::limits::LimitError;
+
 /// A definition from which the layout of a message cannot be told.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LayoutError {
@@ -32,6 +34,9 @@ pub enum LayoutError {
         /// Most fields that are read.
         limit: usize,
     },
+    /// A definition that is larger than any real one.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
     /// Text that is no definition.
     #[error("the definition is not understood near \"{near}\": {reason}")]
     Syntax {

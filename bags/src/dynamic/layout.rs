@@ -6,12 +6,12 @@ use excavator_msgs::layout::short_name;
 
 use super::definitions::Definitions;
 use super::error::LayoutError;
-use crate::Topic;
+use crate::{ReadLimits, Topic};
 
-/// Deeper than any real message nests.
-const DEPTH_LIMIT: usize = 32;
-/// More fields than any real message has, all contained types together.
-const FIELD_LIMIT: usize = 20_000;
+/// Types within types; readers of messages go down as deep.
+const DEPTH_LIMIT: usize = ReadLimits::DEFAULT.nesting;
+/// Fields, all contained types together.
+const FIELD_LIMIT: usize = ReadLimits::DEFAULT.fields;
 
 /// The types that are one number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -125,15 +125,15 @@ impl Layout {
 struct Builder<'s> {
     sources: Vec<&'s Definitions>,
     structs: Vec<StructLayout>,
-    known: HashMap<String, usize>,
+    /// Number of each finished struct, and how many types deep it is.
+    known: HashMap<String, (usize, usize)>,
     fields: usize,
 }
 
 impl Builder<'_> {
-    fn add(&mut self, type_name: &str, parent: &str, depth: usize) -> Result<usize, LayoutError> {
-        if depth > DEPTH_LIMIT {
-            return Err(LayoutError::TooDeep { type_name: type_name.to_string(), limit: DEPTH_LIMIT });
-        }
+    /// Adds a type that `depth` others contain. Gives its number and how many types deep it is itself.
+    fn add(&mut self, type_name: &str, parent: &str, depth: usize) -> Result<(usize, usize), LayoutError> {
+        check_depth(type_name, depth)?;
         let Some(members) = self.sources.iter().find_map(|source| source.members(type_name)) else {
             return Err(LayoutError::UnknownType { type_name: type_name.to_string(), parent: parent.to_string() });
         };
@@ -146,21 +146,35 @@ impl Builder<'_> {
         self.structs.push(StructLayout { name: type_name.to_string(), members: Vec::new() });
         let members = members.to_vec();
         let mut laid_out = Vec::with_capacity(members.len());
+        let mut height = 0;
         for member in members {
             let kind = match primitive(&member.type_name) {
                 Some(kind) => kind,
-                None => match self.known.get(&member.type_name) {
-                    Some(&known) => Kind::Struct(known),
-                    None => Kind::Struct(self.add(&member.type_name, type_name, depth + 1)?),
-                },
+                None => {
+                    let (number, below) = match self.known.get(&member.type_name) {
+                        Some(&known) => known,
+                        None => self.add(&member.type_name, type_name, depth + 1)?,
+                    };
+                    // A known type was deep enough where it was met first; here it may be too deep.
+                    check_depth(&member.type_name, depth + 1 + below)?;
+                    height = height.max(below + 1);
+                    Kind::Struct(number)
+                }
             };
             laid_out.push(Member { name: member.name, kind, count: member.count });
         }
         self.structs[number].members = laid_out;
         // Only now: a type that contains itself is not known yet, so it nests until it is too deep.
-        self.known.insert(type_name.to_string(), number);
-        Ok(number)
+        self.known.insert(type_name.to_string(), (number, height));
+        Ok((number, height))
     }
+}
+
+fn check_depth(type_name: &str, depth: usize) -> Result<(), LayoutError> {
+    if depth > DEPTH_LIMIT {
+        return Err(LayoutError::TooDeep { type_name: type_name.to_string(), limit: DEPTH_LIMIT });
+    }
+    Ok(())
 }
 
 /// What a word that names no struct stands for, in the words of `ros2msg`.

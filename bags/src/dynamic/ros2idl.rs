@@ -214,6 +214,10 @@ impl Parser {
             }
             "sequence" => {
                 self.expect("<")?;
+                // Not read by calling this function again and again: a definition could nest until the stack is full.
+                if self.peek() == "sequence" {
+                    return Err(wrong("sequence", "sequences of sequences are not read"));
+                }
                 let element = self.type_name()?;
                 self.skip_past(">");
                 if element.count != Count::One {

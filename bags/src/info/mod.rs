@@ -80,7 +80,7 @@ impl TopicInfo {
 /// # Errors
 /// All of [`RawMessages::open`].
 pub fn info(path: &Path) -> Result<BagInfo, BagError> {
-    let files = BagFiles::locate(path)?.files;
+    let files = BagFiles::locate(path, &crate::ReadLimits::DEFAULT)?.files;
     let mut size = 0;
     for file in &files {
         size += std::fs::metadata(file).map_err(BagError::io("read", file))?.len();

@@ -11,9 +11,10 @@ use super::conversion::Conversion;
 use super::error::MapError;
 use super::quantity::Quantity;
 use super::signal::SignalName;
-use crate::BagError;
 use crate::dynamic::FieldPath;
+use crate::regular_file::read_regular_text;
 use crate::table::TableFormat;
+use crate::{BagError, ReadLimits};
 
 /// Which field of which topic, or which column of which table, is which signal.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -220,7 +221,7 @@ impl TopicMap {
     /// # Errors
     /// [`BagError::Io`], [`BagError::Map`].
     pub fn read(path: &Path) -> Result<TopicMap, BagError> {
-        let text = std::fs::read_to_string(path).map_err(BagError::io("read", path))?;
+        let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
         let mut map: TopicMap =
             text.parse().map_err(|source| MapError::InFile { path: path.to_path_buf(), source: Box::new(source) })?;
         let folder = path.parent().unwrap_or(Path::new("."));

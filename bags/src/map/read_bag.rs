@@ -24,12 +24,15 @@ pub(super) fn read_bag(path: &Path, map: &TopicMap) -> Result<(Recording, ReadRe
     let mut messages = RawMessages::open(path)?;
     let (mut counts, mut report) = (TopicCounts::default(), ReadReport::default());
     let mut first_log_time = None;
-    for message in &mut messages {
+    let mut memory = 0;
+    while let Some(message) = messages.next() {
         let message = message?;
         first_log_time.get_or_insert(message.log_time);
         counts.count(&message);
         if let Some(topic) = topics.iter_mut().find(|topic| topic.name == message.topic.name) {
             topic.take(path, &message, &extra)?;
+            memory += (size_of::<i64>() + topic.signals.len() * size_of::<(i64, f64)>()) as u64;
+            messages.check_memory(memory)?;
         }
     }
     counts.write_to(&mut report);

@@ -24,7 +24,8 @@ use crate::{BagError, Damage, RawMessage, RawMessages, Topic, Topics};
 /// # Errors
 /// All of [`RawMessages::open`]; [`BagError::NoTopic`] and [`BagError::NoMessages`] for the state topic;
 /// [`BagError::WrongType`], [`BagError::OtherDefinition`], [`BagError::UnsupportedSerialization`] for either topic;
-/// [`BagError::Undecodable`] when not one message of a topic can be decoded.
+/// [`BagError::Undecodable`] when not one message of a topic can be decoded; [`BagError::Limit`] for a bag whose values need more
+/// memory than [`ReadLimits`](crate::ReadLimits) allow.
 pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadReport), BagError> {
     let mut recording = Recording::default();
     let report = read_recording_in_blocks(path, topics, usize::MAX, |whole| {
@@ -56,12 +57,13 @@ pub fn read_recording_in_blocks(
     let mut counts = TopicCounts::default();
     let mut first_log_time = None;
     let mut blocks = BlockMaker { source: path.display().to_string(), start: None };
-    for message in &mut messages {
+    while let Some(message) = messages.next() {
         let message = message?;
         first_log_time.get_or_insert(message.log_time);
         counts.count(&message);
         if message.topic.name == topics.state {
             if let Some(state) = states.decode(&message, |bytes| decoder.decode(bytes))? {
+                messages.check_memory(table.memory_with(state.cylinders.len()))?;
                 table.push(state);
                 if table.len() >= samples {
                     let block = blocks.make(std::mem::take(&mut table), &mut track, &mut report);

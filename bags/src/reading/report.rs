@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::Damage;
+use crate::{Damage, printable};
 
 /// A pause in the state messages.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -111,6 +111,6 @@ impl ReadReport {
             lines.push(format!("commands for {names} are not used: no state message has such a cylinder"));
         }
         lines.extend(self.notes.iter().cloned());
-        lines
+        lines.into_iter().map(|line| printable(&line).into_owned()).collect()
     }
 }

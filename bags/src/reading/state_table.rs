@@ -9,6 +9,9 @@ use super::report::{Gap, ReadReport};
 /// An interval longer than this many median intervals is a gap.
 const GAP_FACTOR: f64 = 1.5;
 const NANOSECONDS_PER_SECOND: f64 = 1e9;
+/// Columns of a cylinder, and those that all share with the clock.
+const CYLINDER_COLUMNS: usize = 8;
+const SHARED_COLUMNS: usize = 5;
 
 /// The state messages read so far, in the order of the bag.
 #[derive(Debug, Default)]
@@ -70,6 +73,12 @@ impl StateTable {
             column.resize(row, f64::NAN);
             push_finite(column, value, &mut self.infinite_values);
         }
+    }
+
+    /// Bytes that the columns take once a message of so many cylinders is in, also those of cylinders that are in few messages.
+    pub fn memory_with(&self, cylinders: usize) -> u64 {
+        let columns = SHARED_COLUMNS + CYLINDER_COLUMNS * cylinders.max(self.cylinders.len());
+        (columns * (self.len() + 1) * size_of::<f64>()) as u64
     }
 
     /// Number of messages.

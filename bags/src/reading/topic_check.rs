@@ -4,7 +4,7 @@ use std::path::Path;
 
 use excavator_msgs::{Message, definitions, layout};
 
-use crate::{BagError, Topic};
+use crate::{BagError, Limit, ReadLimits, Topic};
 
 /// Checks type, serialization and definition of a topic before its first message is decoded.
 ///
@@ -32,6 +32,9 @@ pub(super) fn check<M: Message>(path: &Path, topic: &Topic) -> Result<(), BagErr
 fn difference(type_name: &str, topic: &Topic) -> Option<String> {
     if topic.schema_encoding != "ros2msg" || topic.schema.trim().is_empty() {
         return None;
+    }
+    if let Err(error) = Limit::Definition.check(topic.schema.len() as u64, ReadLimits::DEFAULT.definition) {
+        return Some(error.to_string());
     }
     let theirs = layout::flat_fields(type_name, &topic.schema);
     let ours = layout::flat_fields(type_name, &definitions::schema(type_name)?);

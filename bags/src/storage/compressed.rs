@@ -7,11 +7,11 @@ use bytes::Bytes;
 
 use crate::BagError;
 use crate::container::{Damage, DamageKind};
+use crate::limits::{Limit, ReadLimits};
+use crate::regular_file::open_regular;
 
 /// First bytes of every zstd frame. No message begins so: its encapsulation begins with a zero.
 const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
-/// No message is larger, not even a picture; of a frame that gives more, only so much is taken.
-const MESSAGE_LIMIT: u64 = 256 << 20;
 
 /// Whether the bytes begin like a zstd frame.
 pub(crate) fn is_zstd(bytes: &[u8]) -> bool {
@@ -20,9 +20,8 @@ pub(crate) fn is_zstd(bytes: &[u8]) -> bool {
 
 /// Unpacks a file that was compressed as a whole into the folder for temporary files. What is damaged ends there: the
 /// bytes before it are kept.
-pub(super) fn unpack(path: &Path) -> Result<(tempfile::TempPath, Option<Damage>), BagError> {
-    let packed = std::fs::File::open(path).map_err(BagError::io("open", path))?;
-    let packed_length = packed.metadata().map_err(BagError::io("read", path))?.len();
+pub(super) fn unpack(path: &Path, limits: &ReadLimits) -> Result<(tempfile::TempPath, Option<Damage>), BagError> {
+    let (packed, packed_length) = open_regular(path)?;
     let mut reader = zstd::stream::read::Decoder::new(BufReader::new(packed)).map_err(BagError::io("read", path))?;
     let temporary = tempfile::NamedTempFile::new().map_err(BagError::io("create", &std::env::temp_dir()))?;
     let mut writer = BufWriter::new(temporary);
@@ -34,6 +33,9 @@ pub(super) fn unpack(path: &Path) -> Result<(tempfile::TempPath, Option<Damage>)
             Ok(count) => {
                 writer.write_all(&buffer[..count]).map_err(|error| cannot_write(&writer, error))?;
                 unpacked += count as u64;
+                if let Err(error) = limits.check_unpacked(unpacked, packed_length) {
+                    break Some(error.to_string());
+                }
             }
             Err(error) => break Some(error.to_string()),
         }
@@ -57,14 +59,20 @@ fn cannot_write(writer: &BufWriter<tempfile::NamedTempFile>, error: std::io::Err
 }
 
 /// Messages that were compressed one by one.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct MessageDecompressor {
+    /// Most bytes of a message.
+    most: u64,
     bad_messages: u64,
     bad_bytes: u64,
     first_reason: Option<String>,
 }
 
 impl MessageDecompressor {
+    pub fn new(limits: &ReadLimits) -> MessageDecompressor {
+        MessageDecompressor { most: limits.message, bad_messages: 0, bad_bytes: 0, first_reason: None }
+    }
+
     /// The message as it was before compression; `None`, and counted, when it cannot be won.
     pub fn decompress(&mut self, data: Bytes) -> Option<Bytes> {
         if !is_zstd(&data) {
@@ -72,13 +80,15 @@ impl MessageDecompressor {
         }
         let mut message = Vec::new();
         let result = zstd::stream::read::Decoder::with_buffer(data.as_ref())
-            .and_then(|decoder| decoder.take(MESSAGE_LIMIT).read_to_end(&mut message));
+            .and_then(|decoder| decoder.take(self.most.saturating_add(1)).read_to_end(&mut message))
+            .map_err(|error| error.to_string())
+            .and_then(|length| Limit::Message.check(length as u64, self.most).map_err(|error| error.to_string()));
         match result {
-            Ok(_) => Some(Bytes::from(message)),
+            Ok(()) => Some(Bytes::from(message)),
             Err(error) => {
                 self.bad_messages += 1;
                 self.bad_bytes += data.len() as u64;
-                self.first_reason.get_or_insert_with(|| error.to_string());
+                self.first_reason.get_or_insert(error);
                 None
             }
         }

@@ -1,6 +1,7 @@
 //! One face for the storages of rosbag2: whatever a file is, it gives topics, messages and damage.
 
 mod compressed;
+mod sqlite_connection;
 mod sqlite_file;
 mod sqlite_query;
 mod sqlite_skip;
@@ -9,6 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::container::{Damage, DamageKind, McapFile};
+use crate::limits::ReadLimits;
 use crate::raw_messages::{RawMessage, Topic};
 use crate::{BagError, location};
 
@@ -20,9 +22,26 @@ use sqlite_file::SqliteFile;
 pub(crate) struct StorageFile {
     kind: Kind,
     /// The unpacked copy of a file that rosbag2 compressed as a whole; removed when dropped.
-    _unpacked: Option<tempfile::TempPath>,
+    unpacked_copy: Option<tempfile::TempPath>,
     /// What is wrong with the compression of the whole file.
     compression_damage: Vec<Damage>,
+}
+
+/// The storages of rosbag2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StorageKind {
+    Mcap,
+    Sqlite,
+}
+
+impl StorageKind {
+    /// The name in `metadata.yaml`.
+    pub fn name(self) -> &'static str {
+        match self {
+            StorageKind::Mcap => "mcap",
+            StorageKind::Sqlite => "sqlite3",
+        }
+    }
 }
 
 #[derive(Debug)]
@@ -35,17 +54,17 @@ enum Kind {
 
 impl StorageFile {
     /// Opens a file as what its first bytes say that it is. A file of which nothing can be read is damage, no error.
-    pub fn open(path: &Path) -> Result<StorageFile, BagError> {
+    pub fn open(path: &Path, limits: &ReadLimits) -> Result<StorageFile, BagError> {
         if !is_zstd(&location::first_bytes(path)?) {
-            return Ok(match open_plain(path, path)? {
-                Ok(kind) => StorageFile { kind, _unpacked: None, compression_damage: Vec::new() },
+            return Ok(match open_plain(path, path, limits)? {
+                Ok(kind) => StorageFile { kind, unpacked_copy: None, compression_damage: Vec::new() },
                 Err(damage) => StorageFile::nothing(vec![damage]),
             });
         }
-        let (unpacked, fault) = compressed::unpack(path)?;
+        let (unpacked, fault) = compressed::unpack(path, limits)?;
         let mut damage: Vec<Damage> = fault.into_iter().collect();
-        match open_plain(&unpacked, path)? {
-            Ok(kind) => Ok(StorageFile { kind, _unpacked: Some(unpacked), compression_damage: damage }),
+        match open_plain(&unpacked, path, limits)? {
+            Ok(kind) => Ok(StorageFile { kind, unpacked_copy: Some(unpacked), compression_damage: damage }),
             Err(fault) => {
                 damage.push(fault);
                 Ok(StorageFile::nothing(damage))
@@ -54,12 +73,35 @@ impl StorageFile {
     }
 
     fn nothing(damage: Vec<Damage>) -> StorageFile {
-        StorageFile { kind: Kind::Nothing, _unpacked: None, compression_damage: damage }
+        StorageFile { kind: Kind::Nothing, unpacked_copy: None, compression_damage: damage }
     }
 
     /// Whether not one message can be won from the file.
     pub fn is_unreadable(&self) -> bool {
         matches!(self.kind, Kind::Nothing)
+    }
+
+    /// What the file is; `None` when nothing can be read.
+    pub fn kind(&self) -> Option<StorageKind> {
+        match &self.kind {
+            Kind::Mcap(_) => Some(StorageKind::Mcap),
+            Kind::Sqlite(_) => Some(StorageKind::Sqlite),
+            Kind::Nothing => None,
+        }
+    }
+
+    /// Whether rosbag2 compressed it as a whole.
+    pub fn is_compressed(&self) -> bool {
+        self.unpacked_copy.is_some()
+    }
+
+    /// Whether it ends with the index that other readers need; of SQLite3 it is part of the file.
+    pub fn has_index(&self) -> bool {
+        match &self.kind {
+            Kind::Mcap(file) => file.has_index(),
+            Kind::Sqlite(_) => true,
+            Kind::Nothing => false,
+        }
     }
 
     /// The topics known so far.
@@ -95,16 +137,16 @@ impl StorageFile {
 }
 
 /// Opens the file at `path`, which people know as `name`.
-fn open_plain(path: &Path, name: &Path) -> Result<Result<Kind, Damage>, BagError> {
+fn open_plain(path: &Path, name: &Path, limits: &ReadLimits) -> Result<Result<Kind, Damage>, BagError> {
     let length = std::fs::metadata(path).map_err(BagError::io("read", path))?.len();
     let nothing = |kind| Damage { file: name.to_path_buf(), offset: 0, lost_bytes: length, readable_until: None, kind };
     if location::first_bytes(path)?.starts_with(location::SQLITE_MAGIC) {
-        return Ok(match SqliteFile::open(path, name) {
+        return Ok(match SqliteFile::open(path, name, limits) {
             Ok(file) => Ok(Kind::Sqlite(Box::new(file))),
             Err(reason) => Err(nothing(DamageKind::BadDatabase { reason })),
         });
     }
-    Ok(match McapFile::open(path, name)? {
+    Ok(match McapFile::open(path, name, limits)? {
         Some(file) => Ok(Kind::Mcap(Box::new(file))),
         None => Err(nothing(DamageKind::UnknownFormat)),
     })

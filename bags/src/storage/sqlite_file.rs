@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bytes::Bytes;
-use rusqlite::Connection;
 
-use super::sqlite_query::{Row, connect, rows_from, topics};
+use super::sqlite_connection::{Bounded, SqliteFault};
+use super::sqlite_query::{Row, rows_from, topics};
 use super::sqlite_skip::next_readable;
-use crate::container::{Damage, DamageKind};
+use crate::container::{Damage, DamageKind, DamageList};
+use crate::limits::ReadLimits;
 use crate::raw_messages::{RawMessage, Topic};
 
 /// Rows that are read at once: enough that asking costs nothing against reading.
@@ -21,12 +22,12 @@ const BATCH_BYTES: usize = 1 << 20;
 #[derive(Debug)]
 pub(super) struct SqliteFile {
     name: PathBuf,
-    connection: Connection,
+    connection: Bounded,
     topics: HashMap<i64, Arc<Topic>>,
     batch: VecDeque<Row>,
     /// Rows with smaller numbers have been read.
     next_row: i64,
-    damage: Vec<Damage>,
+    damage: DamageList,
     last_log_time: Option<u64>,
     /// Messages without data or whose topic is not in the table of topics, and their bytes.
     unknown: (u64, u64),
@@ -35,8 +36,8 @@ pub(super) struct SqliteFile {
 
 impl SqliteFile {
     /// Opens the database at `path`, which people know as `name`. `Err` says why nothing can be read.
-    pub fn open(path: &Path, name: &Path) -> Result<SqliteFile, String> {
-        let connection = connect(path).map_err(|error| error.to_string())?;
+    pub fn open(path: &Path, name: &Path, limits: &ReadLimits) -> Result<SqliteFile, String> {
+        let connection = Bounded::open(path, limits).map_err(|error| error.to_string())?;
         let topics = topics(&connection).map_err(|error| format!("its table of topics cannot be read: {error}"))?;
         let mut file = SqliteFile {
             name: name.to_path_buf(),
@@ -44,7 +45,7 @@ impl SqliteFile {
             topics,
             batch: VecDeque::new(),
             next_row: i64::MIN,
-            damage: Vec::new(),
+            damage: DamageList::default(),
             last_log_time: None,
             unknown: (0, 0),
             finished: false,
@@ -62,7 +63,7 @@ impl SqliteFile {
 
     /// The damage met so far.
     pub fn damage(&self) -> &[Damage] {
-        &self.damage
+        self.damage.as_slice()
     }
 
     /// The next message, `None` at the end.
@@ -104,6 +105,12 @@ impl SqliteFile {
         match (self.batch.back().map(|row| row.id.checked_add(1)), result) {
             (Some(Some(next)), Ok(false) | Err(_)) => self.next_row = next,
             (Some(None), _) | (_, Ok(_)) => self.finish(),
+            // A question without end has no row after which it ends.
+            (None, Err(error @ SqliteFault::Limit(_))) => {
+                let reason = error.to_string();
+                self.note(0, 0, DamageKind::LostRows { first: self.next_row.max(1), messages: None, reason });
+                self.finish();
+            }
             (None, Err(error)) => self.skip(&error.to_string()),
         }
     }
@@ -126,7 +133,7 @@ impl SqliteFile {
             self.note(0, bytes, DamageKind::UnknownTopic { messages });
         }
         // What was cut off came after everything that could be read.
-        for damage in &mut self.damage {
+        for damage in self.damage.as_mut_slice() {
             if damage.is_truncation() {
                 damage.readable_until = self.last_log_time;
             }

@@ -1,7 +1,6 @@
 //! The way past rows that cannot be read.
 
-use rusqlite::Connection;
-
+use super::sqlite_connection::{Bounded, SqliteFault};
 use super::sqlite_query::{last_row, rows_from};
 
 /// About the rows of one page of the database. Larger steps could pass over whole good pages between two bad ones.
@@ -10,7 +9,7 @@ const LARGEST_STEP: i64 = 64;
 const PATIENT_PROBES: usize = 5_000;
 
 /// The first row number after `bad` from which on reading succeeds; `None` when nothing readable follows.
-pub(super) fn next_readable(connection: &Connection, bad: i64) -> Option<i64> {
+pub(super) fn next_readable(connection: &Bounded, bad: i64) -> Option<i64> {
     let last = last_row(connection).ok().flatten().unwrap_or(i64::MAX);
     let (mut before, mut step) = (bad, 1_i64);
     let mut probes = 0;
@@ -38,7 +37,7 @@ pub(super) fn next_readable(connection: &Connection, bad: i64) -> Option<i64> {
 }
 
 /// Number of the first row at or after `from`, after it has been read whole.
-fn first_row(connection: &Connection, from: i64) -> rusqlite::Result<Option<i64>> {
+fn first_row(connection: &Bounded, from: i64) -> Result<Option<i64>, SqliteFault> {
     let mut found = None;
     rows_from(connection, from, |row| {
         found = Some(row.id);

@@ -1,6 +1,8 @@
 //! MATLAB files of versions 4, 6 and 7 as tables: every real numeric vector is a column.
 
+use super::fault::TableFault;
 use super::{Column, Table, Values, mat4, mat5};
+use crate::limits::{Limit, LimitError, ReadLimits};
 
 /// A numeric variable.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,16 +17,16 @@ pub(super) struct Variable {
 const COLUMN_LIMIT: usize = 256;
 
 /// The table in a file. `Err` says in one line what is wrong.
-pub(super) fn parse(bytes: &[u8]) -> Result<Table, String> {
+pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Table, TableFault> {
     let mut table = Table::default();
     let variables = if mat5::is_mat5(bytes) {
-        mat5::parse(bytes, &mut table.notes)?
+        mat5::parse(bytes, &mut table.notes, limits)?
     } else if bytes.get(512..).is_some_and(|rest| rest.starts_with(b"\x89HDF\r\n\x1a\n"))
         || bytes.starts_with(b"\x89HDF")
     {
-        return Err("it is a MATLAB 7.3 file (HDF5); save it with `save -v7` to have it read here".to_string());
+        return Err("it is a MATLAB 7.3 file (HDF5); save it with `save -v7` to have it read here".into());
     } else {
-        mat4::parse(bytes, &mut table.notes)?
+        mat4::parse(bytes, &mut table.notes, limits)?
     };
     for Variable { name, rows, values } in variables {
         let name = if name.is_empty() { format!("column_{}", table.columns.len() + 1) } else { name };
@@ -40,9 +42,38 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Table, String> {
         }
     }
     if table.columns.is_empty() {
-        return Err("it has no real numeric variable".to_string());
+        return Err("it has no real numeric variable".into());
     }
     Ok(table)
+}
+
+/// What the variables of a file may still take.
+pub(super) struct Budget<'l> {
+    limits: &'l ReadLimits,
+    file_bytes: u64,
+    /// Bytes of all values so far.
+    values: u64,
+    variables: usize,
+}
+
+impl<'l> Budget<'l> {
+    pub fn new(limits: &'l ReadLimits, file: &[u8]) -> Budget<'l> {
+        Budget { limits, file_bytes: file.len() as u64, values: 0, variables: 0 }
+    }
+
+    /// Counts a variable of so many values.
+    pub fn take(&mut self, values: usize) -> Result<(), LimitError> {
+        self.variables += 1;
+        Limit::Fields.check(self.variables as u64, self.limits.fields as u64)?;
+        // Once as a variable, once more in the columns that are made of it.
+        self.values = self.values.saturating_add(2 * (values as u64).saturating_mul(size_of::<f64>() as u64));
+        self.limits.check_memory(self.values, self.file_bytes)
+    }
+
+    /// Checks the bytes that a variable unpacks to, beside the values so far.
+    pub fn unpacks_to(&self, bytes: u64) -> Result<(), LimitError> {
+        self.limits.check_memory(self.values.saturating_add(bytes), self.file_bytes)
+    }
 }
 
 /// Numbers of one storage type, told apart by both formats.

@@ -1,25 +1,29 @@
 //! MATLAB version 4: a header of five integers, a name, the numbers (MAT-File Format, chapter 2).
 
-use super::mat::{Number, Variable};
+use super::fault::TableFault;
+use super::mat::{Budget, Number, Variable};
+use crate::limits::ReadLimits;
 
 const HEADER: usize = 20;
 /// No variable has a longer name; a longer one is no file of this format.
 const NAME_LIMIT: usize = 256;
 
 /// The real full matrices in a file; others are noted.
-pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>) -> Result<Vec<Variable>, String> {
+pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>, limits: &ReadLimits) -> Result<Vec<Variable>, TableFault> {
+    let mut budget = Budget::new(limits, bytes);
     let mut variables = Vec::new();
     let mut rest = bytes;
     while !rest.is_empty() {
         match next(rest) {
             Some((variable, after)) => {
+                budget.take(variable.as_ref().map_or(0, |variable| variable.values.len()))?;
                 match variable {
                     Ok(variable) => variables.push(variable),
                     Err(name) => notes.push(format!("{name} is no real matrix and was left out")),
                 }
                 rest = after;
             }
-            None if variables.is_empty() => return Err("it is no MATLAB file of version 4, 6 or 7".to_string()),
+            None if variables.is_empty() => return Err("it is no MATLAB file of version 4, 6 or 7".into()),
             None => {
                 notes.push(format!("the last {} bytes are no whole variable: the file is cut off", rest.len()));
                 break;

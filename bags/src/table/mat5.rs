@@ -2,13 +2,17 @@
 
 use std::io::Read;
 
-use super::mat::{Number, Variable};
+use super::fault::TableFault;
+use super::mat::{Budget, Number, Variable};
+use crate::limits::{LimitError, ReadLimits};
 
 const HEADER: usize = 128;
-/// Bytes that one packed variable may unpack to. Larger ones are not recordings.
-const UNPACKED_LIMIT: u64 = 2 << 30;
 /// Structs within structs that are looked into.
 const DEPTH_LIMIT: usize = 8;
+
+/// Dimensions of an array that are looked at, and bytes of a name; real ones have three and 63.
+const DIMENSION_LIMIT: usize = 32;
+const NAME_LIMIT: usize = 256;
 
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
@@ -23,9 +27,9 @@ pub(super) fn is_mat5(bytes: &[u8]) -> bool {
 }
 
 /// The real numeric arrays in a file, those in structs as `struct.field`; others are noted.
-pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>) -> Result<Vec<Variable>, String> {
+pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>, limits: &ReadLimits) -> Result<Vec<Variable>, TableFault> {
     let big_endian = bytes.get(126) == Some(&b'M');
-    let mut found = Found { variables: Vec::new(), notes };
+    let mut found = Found { variables: Vec::new(), notes, budget: Budget::new(limits, bytes), fault: None };
     let mut reader = Elements { rest: bytes.get(HEADER..).unwrap_or_default(), big_endian };
     while !reader.rest.is_empty() {
         let left = reader.rest.len();
@@ -34,19 +38,36 @@ pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>) -> Result<Vec<Variabl
             break;
         };
         if element.kind != COMPRESSED {
-            found.take(&element, big_endian);
+            found.take(&element, big_endian)?;
             continue;
         }
-        let mut unpacked = Vec::new();
-        let result = flate2::read::ZlibDecoder::new(element.content).take(UNPACKED_LIMIT).read_to_end(&mut unpacked);
-        let inner = Elements { rest: &unpacked, big_endian }.next();
-        match (result, inner) {
-            (Ok(_), Some(inner)) => found.take(&inner, big_endian),
-            (Err(error), _) => found.notes.push(format!("a variable cannot be unpacked: {error}")),
-            (Ok(_), None) => found.notes.push("a variable is cut off after unpacking".to_string()),
+        match unpack(&element, big_endian, &found.budget)? {
+            Ok(unpacked) => match (Elements { rest: &unpacked, big_endian }.next()) {
+                Some(inner) => found.take(&inner, big_endian)?,
+                None => found.notes.push("a variable is cut off after unpacking".to_string()),
+            },
+            Err(error) => found.notes.push(format!("a variable cannot be unpacked: {error}")),
         }
     }
     Ok(found.variables)
+}
+
+/// The bytes of a packed variable; of more than its own tag announces nothing is unpacked.
+fn unpack(element: &Element, big_endian: bool, budget: &Budget) -> Result<std::io::Result<Vec<u8>>, LimitError> {
+    let mut decoder = flate2::read::ZlibDecoder::new(element.content);
+    let mut tag = [0; 8];
+    if let Err(error) = decoder.read_exact(&mut tag) {
+        return Ok(Err(error));
+    }
+    let tag_only = Elements { rest: &tag, big_endian };
+    let (Some(kind), Some(length)) = (tag_only.word(0), tag_only.word(4)) else { return Ok(Ok(Vec::new())) };
+    // A small element has its content in its tag.
+    let length = if kind >> 16 == 0 { u64::from(length) } else { 0 };
+    budget.unpacks_to(length)?;
+    let mut unpacked = Vec::with_capacity(tag.len() + usize::try_from(length).unwrap_or_default());
+    unpacked.extend_from_slice(&tag);
+    // Padding to a multiple of eight bytes follows.
+    Ok(decoder.take(length + 8).read_to_end(&mut unpacked).map(|_| unpacked))
 }
 
 struct Element<'b> {
@@ -86,23 +107,41 @@ impl<'b> Elements<'b> {
     }
 }
 
+/// The name in a field of bytes, which ends at a zero.
+fn name_in(bytes: &[u8]) -> String {
+    let name = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+    String::from_utf8_lossy(name.get(..NAME_LIMIT).unwrap_or(name)).into_owned()
+}
+
 struct Found<'n> {
     variables: Vec<Variable>,
     notes: &'n mut Vec<String>,
+    budget: Budget<'n>,
+    /// Set when the budget is spent.
+    fault: Option<LimitError>,
 }
 
 impl Found<'_> {
-    fn take(&mut self, element: &Element, big_endian: bool) {
+    fn take(&mut self, element: &Element, big_endian: bool) -> Result<(), LimitError> {
+        self.budget.take(0)?;
         let before = self.notes.len();
         if element.kind != MATRIX {
             self.notes.push(format!("an element of type {} was left out", element.kind));
         } else if self.matrix(element.content, big_endian, None, 0).is_none() && self.notes.len() == before {
             self.notes.push("a variable that makes no sense was left out".to_string());
         }
+        self.fault.map_or(Ok(()), Err)
+    }
+
+    /// Counts a variable; `None` when it is too much.
+    fn afford(&mut self, values: usize) -> Option<()> {
+        self.fault = self.fault.or(self.budget.take(values).err());
+        self.fault.is_none().then_some(())
     }
 
     /// Takes a matrix; `name` replaces its own. `None` when it makes no sense.
     fn matrix(&mut self, content: &[u8], big_endian: bool, name: Option<String>, depth: usize) -> Option<()> {
+        self.afford(0)?;
         if content.is_empty() {
             return Some(());
         }
@@ -110,8 +149,9 @@ impl Found<'_> {
         let flags = parts.next()?;
         let flags = Elements { rest: flags.content, big_endian }.word(0)?;
         let (class, flags) = ((flags & 0xff) as u8, (flags >> 8 & 0xff) as u8);
-        let dimensions = Number::I32.read(parts.next()?.content, big_endian);
-        let own_name = String::from_utf8_lossy(parts.next()?.content).into_owned();
+        let dimensions = parts.next()?.content;
+        let dimensions = Number::I32.read(dimensions.get(..4 * DIMENSION_LIMIT).unwrap_or(dimensions), big_endian);
+        let own_name = name_in(parts.next()?.content);
         let name = name.unwrap_or(own_name);
         if class == STRUCT_CLASS && dimensions.iter().all(|&size| size == 1.0) && depth < DEPTH_LIMIT {
             return self.structure(&mut parts, &name, depth);
@@ -134,6 +174,7 @@ impl Found<'_> {
             13 => Number::U64,
             _ => return None,
         };
+        self.afford(data.content.len() / number.size())?;
         let values = number.read(data.content, big_endian);
         let rows = dimensions.first().filter(|&&rows| rows >= 0.0).map(|&rows| rows as usize)?;
         let announced: f64 = dimensions.iter().product();
@@ -152,7 +193,7 @@ impl Found<'_> {
             length.first().filter(|&&length| (1.0..=256.0).contains(&length)).map(|&length| length as usize)?;
         let names = parts.next()?.content;
         for field in names.chunks_exact(length) {
-            let field = String::from_utf8_lossy(field.split(|&byte| byte == 0).next().unwrap_or_default()).into_owned();
+            let field = name_in(field);
             let element = parts.next()?;
             self.matrix(element.content, parts.big_endian, Some(format!("{name}.{field}")), depth + 1)?;
         }

@@ -1,6 +1,7 @@
 //! Tables: columns of numbers from text files, MATLAB files and Parquet files.
 
 mod dates;
+mod fault;
 mod format;
 mod heading;
 mod mat;
@@ -8,10 +9,14 @@ mod mat4;
 mod mat5;
 mod parquet;
 mod text;
+mod text_lines;
 
+use std::io::Cursor;
 use std::path::Path;
 
-use crate::BagError;
+use crate::regular_file::{open_regular, read_regular};
+use crate::{BagError, ReadLimits};
+use fault::TableFault;
 
 pub use dates::parse_date;
 pub use format::TableFormat;
@@ -71,16 +76,32 @@ impl Table {
     /// Reads a table.
     ///
     /// # Errors
-    /// [`BagError::Io`], [`BagError::BadTable`].
+    /// [`BagError::Io`], [`BagError::NotARegularFile`], [`BagError::BadTable`], [`BagError::Limit`].
     pub fn read(path: &Path, format: &TableFormat) -> Result<Table, BagError> {
+        Table::read_within(path, format, &ReadLimits::DEFAULT)
+    }
+
+    /// As [`Table::read`], with other limits.
+    ///
+    /// # Errors
+    /// As [`Table::read`].
+    pub fn read_within(path: &Path, format: &TableFormat, limits: &ReadLimits) -> Result<Table, BagError> {
         let has_extension = |wanted| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
-        let bytes = std::fs::read(path).map_err(BagError::io("read", path))?;
-        let table = match () {
-            () if has_extension("mat") => Table::from_mat(&bytes),
-            () if has_extension("parquet") || has_extension("pq") => Table::from_parquet(bytes),
-            () => Table::from_text(&bytes, format),
+        // What is held as a whole beside its values may be as large as they.
+        let whole = || read_regular(path, limits.memory);
+        let table = if has_extension("mat") {
+            mat::parse(&whole()?, limits)
+        } else if has_extension("parquet") || has_extension("pq") {
+            parquet::parse(whole()?.into(), limits)
+        } else {
+            let (mut file, length) = open_regular(path)?;
+            text::parse(&mut file, length, format, limits)
         };
-        table.map_err(|reason| BagError::BadTable { path: path.to_path_buf(), reason })
+        table.map_err(|fault| match fault {
+            TableFault::Limit(source) => BagError::Limit { path: path.to_path_buf(), source },
+            TableFault::Io(error) => BagError::io("read", path)(error),
+            TableFault::Text(reason) => BagError::BadTable { path: path.to_path_buf(), reason },
+        })
     }
 
     /// The table in the text of a CSV file of any dialect.
@@ -88,7 +109,8 @@ impl Table {
     /// # Errors
     /// What is wrong, in one line.
     pub fn from_text(bytes: &[u8], format: &TableFormat) -> Result<Table, String> {
-        text::parse(bytes, format)
+        text::parse(&mut Cursor::new(bytes), bytes.len() as u64, format, &ReadLimits::DEFAULT)
+            .map_err(|fault| fault.to_string())
     }
 
     /// The table in a MATLAB file of version 4, 6 or 7.
@@ -96,7 +118,7 @@ impl Table {
     /// # Errors
     /// What is wrong, in one line.
     pub fn from_mat(bytes: &[u8]) -> Result<Table, String> {
-        mat::parse(bytes)
+        mat::parse(bytes, &ReadLimits::DEFAULT).map_err(|fault| fault.to_string())
     }
 
     /// The table in a Parquet file.
@@ -104,6 +126,6 @@ impl Table {
     /// # Errors
     /// What is wrong, in one line.
     pub fn from_parquet(bytes: Vec<u8>) -> Result<Table, String> {
-        parquet::parse(bytes.into())
+        parquet::parse(bytes.into(), &ReadLimits::DEFAULT).map_err(|fault| fault.to_string())
     }
 }

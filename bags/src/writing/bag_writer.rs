@@ -179,7 +179,8 @@ impl BagWriter {
                 message_count: written.messages,
             })
             .collect();
-        let contents = Contents { files: &self.finished, topics: &topics, custom_data: &self.custom_data };
+        let contents =
+            Contents { storage: "mcap", files: &self.finished, topics: &topics, custom_data: &self.custom_data };
         let path = self.folder.join(FILE_NAME);
         let text = contents.to_yaml().map_err(|error| BagError::Io {
             action: "write",

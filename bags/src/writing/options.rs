@@ -16,7 +16,7 @@ pub enum Compression {
 }
 
 impl Compression {
-    pub(super) fn to_mcap(self) -> Option<mcap::Compression> {
+    pub(crate) fn to_mcap(self) -> Option<mcap::Compression> {
         match self {
             Compression::None => None,
             Compression::Lz4 => Some(mcap::Compression::Lz4),

@@ -16,14 +16,17 @@ pub(super) fn hard_stretches(
 ) -> Option<Vec<Recording>> {
     let mut pieces: Vec<Piece> = Vec::new();
     for (number, recording) in recordings.iter().enumerate() {
-        let count = (recording.duration() / duration).round().max(1.0);
-        let length = recording.duration() / count;
-        pieces.extend((0..count as usize).map(|piece| Piece {
-            recording: number,
-            begin: piece as f64 * length,
-            end: (piece + 1) as f64 * length,
-            failure: 0.0,
-        }));
+        for samples in recording.pieces() {
+            let (start, end) = (recording.time[samples.start], recording.time[samples.end - 1]);
+            let count = ((end - start) / duration).round().max(1.0);
+            let length = (end - start) / count;
+            pieces.extend((0..count as usize).map(|piece| Piece {
+                recording: number,
+                begin: start + piece as f64 * length,
+                end: start + (piece + 1) as f64 * length,
+                failure: 0.0,
+            }));
+        }
     }
     let wanted = (pieces.len() as f64 * share).ceil() as usize;
     if wanted < FEWEST {

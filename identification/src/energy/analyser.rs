@@ -226,6 +226,13 @@ impl<'m> Analyser<'m> {
                 }
                 end = self.last_time + margin;
             }
+            // Nothing between this and the block of the next sample: a clock that was set forward leaves years without one.
+            let next = self.buffer.time.get(self.buffer.time.partition_point(|&t| t < self.cut - margin));
+            let empty = next.map_or(0.0, |next| ((next - margin - self.cut) / self.settings.block).floor());
+            if empty > 1.0 {
+                self.cut += empty * self.settings.block;
+                continue;
+            }
             let studied = self.cut < self.settings.head || self.blocks.is_multiple_of(self.settings.blocks_per_draw);
             let time = &self.buffer.time;
             let first = time.partition_point(|&t| t < self.cut - margin);

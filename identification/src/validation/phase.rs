@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use excavator_model::recording::closed_gaps;
+
 /// Frequencies searched for the excitation, Hz: an arm is moved between once in ten seconds and ten times a second.
 /// Below that, what is strongest is drift.
 const FREQUENCY_RANGE: (f64, f64) = (0.2, 10.0);
@@ -29,6 +31,11 @@ fn amplitude(time: &[f64], signal: &[f64], frequency: f64) -> (f64, f64) {
 /// Frequency in Hz at which `signal` is strongest between 0.2 Hz and 10 Hz; `None` for less than a period of the
 /// slowest or a signal that does not change.
 pub fn dominant_frequency(time: &[f64], signal: &[f64]) -> Option<f64> {
+    // The grid of frequencies is as fine as the recording is long, but not as a gap in its clock.
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len().checked_sub(1)? / 2;
+    let interval = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let time = &*closed_gaps(time, interval);
     let duration = time.last()? - time.first()?;
     if duration * FREQUENCY_RANGE.0 < 1.0 {
         return None;

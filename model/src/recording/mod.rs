@@ -4,6 +4,7 @@ mod cylinder_signals;
 mod denoise;
 mod error;
 mod interpolation;
+mod pieces;
 mod resolution;
 mod standard_deviation;
 
@@ -11,6 +12,7 @@ pub use cylinder_signals::CylinderSignals;
 pub use denoise::{denoised, denoised_towards_zero, noise_level};
 pub use error::RecordingError;
 pub use interpolation::{cubic, linear, zero_order_hold};
+pub use pieces::{closed_gaps, longest_gap};
 pub use resolution::resolution;
 pub use standard_deviation::standard_deviation;
 

@@ -21,9 +21,49 @@ pub enum RunError {
 /// Simulates `model` with the inputs of `recording` from the state measured at its start; the result has the
 /// recording's clock and inputs, and displacement, velocity, joint angle and pressures as its instruments report them.
 ///
+/// Each piece of the recording ([`Recording::pieces`]) is simulated from its own start: what happened between is not known.
+/// A piece that does not say where the machine is has `NaN` for what is simulated.
+///
 /// # Errors
 /// [`RunError`].
 pub fn simulate(model: &Model, recording: &Recording) -> Result<Recording, RunError> {
+    let pieces = recording.pieces();
+    if pieces.len() < 2 {
+        return simulate_piece(model, recording);
+    }
+    let mut simulated = recording.clone();
+    simulated.source = format!("{} simulated", model.machine.name);
+    let mut known = 0;
+    let mut failure = None;
+    for piece in pieces {
+        let mut part = recording.at(&piece.clone().collect::<Vec<usize>>());
+        match simulate_piece(model, &part) {
+            Ok(simulated) => {
+                part = simulated;
+                known += 1;
+            }
+            Err(RunError::Signal(error)) => {
+                let system = System::new(model);
+                for channel in Channel::all(system.layout()) {
+                    if let Some(values) = channel.signal_mut(&model.machine, &mut part) {
+                        values.fill(f64::NAN);
+                    }
+                }
+                failure.get_or_insert(error);
+            }
+            Err(error) => return Err(error),
+        }
+        for (whole, part) in simulated.columns_mut().into_iter().zip(part.columns_mut()) {
+            whole[piece.clone()].copy_from_slice(part);
+        }
+    }
+    match failure {
+        Some(error) if known == 0 => Err(error.into()),
+        _ => Ok(simulated),
+    }
+}
+
+fn simulate_piece(model: &Model, recording: &Recording) -> Result<Recording, RunError> {
     let signals = InputSignals::from_recording(model, recording)?;
     let system = System::new(model);
     if signals.is_empty() {

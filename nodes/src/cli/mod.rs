@@ -48,6 +48,8 @@ pub enum Verb {
     Info(InfoArguments),
     /// Make a bag of a table (CSV, MATLAB, Parquet) or of other people's topics, through a map; or guess the map.
     Import(ImportArguments),
+    /// Make a bag whose recorder was killed readable for ros2 bag and other readers.
+    Reindex(ReindexArguments),
     /// Record topics into a bag.
     Record(RecordArguments),
     /// Play a bag.

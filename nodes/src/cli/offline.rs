@@ -251,3 +251,13 @@ pub struct ImportArguments {
     #[arg(short, long, value_name = "BAG|MAP", required_unless_present = "guess")]
     pub output: Option<PathBuf>,
 }
+
+#[derive(Debug, Args)]
+pub struct ReindexArguments {
+    /// Folder of the bag, or a bare .mcap file.
+    #[arg(value_name = "BAG")]
+    pub bag: PathBuf,
+    /// Keep the original of each file that is written anew beside it, as NAME.damaged.
+    #[arg(long)]
+    pub keep: bool,
+}

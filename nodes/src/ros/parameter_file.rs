@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use serde_yaml_ng::Value as Yaml;
+use excavator_bags::yaml::{self, Yaml};
+use excavator_bags::{ReadLimits, read_regular_text};
 
 use super::value_text::from_yaml;
 use super::{NodeIdentity, RosError, Value};
@@ -13,12 +14,12 @@ use super::{NodeIdentity, RosError, Value};
 /// [`RosError::ParameterFile`].
 pub fn read_for(path: &Path, node: &NodeIdentity) -> Result<Vec<(String, Value)>, RosError> {
     let failed = |reason: String| RosError::ParameterFile { path: path.to_path_buf(), reason };
-    let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
+    let text = read_regular_text(path, ReadLimits::DEFAULT.document).map_err(|error| failed(error.to_string()))?;
     from_text(&text, node).map_err(failed)
 }
 
 fn from_text(text: &str, node: &NodeIdentity) -> Result<Vec<(String, Value)>, String> {
-    let document: Yaml = serde_yaml_ng::from_str(text).map_err(|error| error.to_string())?;
+    let document: Yaml = yaml::from_str(text, &ReadLimits::DEFAULT)?;
     let mut found = Vec::new();
     match document {
         Yaml::Null => {}

@@ -1,6 +1,7 @@
 //! Parameter values as people write them: YAML.
 
-use serde_yaml_ng::Value as Yaml;
+use excavator_bags::ReadLimits;
+use excavator_bags::yaml::{self, Yaml};
 
 use super::Value;
 
@@ -8,19 +9,17 @@ use super::Value;
 pub(super) fn from_yaml(yaml: &Yaml) -> Option<Value> {
     match yaml {
         Yaml::Bool(value) => Some(Value::Boolean(*value)),
-        Yaml::Number(number) => match number.as_i64() {
-            Some(value) => Some(Value::Integer(value)),
-            None => number.as_f64().map(Value::Double),
-        },
+        Yaml::Integer(value) => Some(Value::Integer(*value)),
+        Yaml::Double(value) => Some(Value::Double(*value)),
         Yaml::String(text) => Some(Value::String(text.clone())),
         Yaml::Sequence(items) => from_list(&items.iter().map(from_yaml).collect::<Option<Vec<Value>>>()?),
-        Yaml::Null | Yaml::Mapping(_) | Yaml::Tagged(_) => None,
+        Yaml::Null | Yaml::Mapping(_) => None,
     }
 }
 
 /// The value of the text after `name:=`.
 pub(super) fn from_text(text: &str) -> Option<Value> {
-    let yaml: Yaml = serde_yaml_ng::from_str(text).ok()?;
+    let yaml: Yaml = yaml::from_str(text, &ReadLimits::DEFAULT).ok()?;
     // What YAML reads as nothing or as a map was meant as text: `-p model:=`, `-p model:=a: b`.
     from_yaml(&yaml).or_else(|| (!matches!(yaml, Yaml::Sequence(_))).then(|| Value::String(text.to_string())))
 }

@@ -11,6 +11,7 @@ mod import;
 mod info;
 mod node;
 mod refine;
+mod reindex;
 mod simulate;
 
 use std::io::{Error, ErrorKind, Write};
@@ -41,6 +42,7 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Node(which) => node::run(which, ros),
         Verb::Import(arguments) => import::run(&arguments),
         Verb::Machine => crate::arm_simulator::run_machine(),
+        Verb::Reindex(arguments) => reindex::run(&arguments),
     }
 }
 

@@ -121,6 +121,7 @@ targets! {
     packed_bags "packed",
     can_databases "can-database",
     can_logs "can-log",
+    yaml_texts "yaml",
 }
 
 /// What SQLite and zstd took is the system's to say.

@@ -10,25 +10,23 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
+use super::fault::TableFault;
 use super::{Column, Table, heading};
+use crate::limits::ReadLimits;
 use kind::Kind;
 use values::Cells;
 
-/// Values that a file may have whatever its size, and beyond that for each of its bytes. A measured column takes bytes for
-/// every value; a file that promises more is broken or a trap.
-const VALUES: u64 = 1_000_000;
-const VALUES_PER_BYTE: u64 = 128;
-
 /// The table in a file. `Err` says in one line what is wrong.
-pub(super) fn parse(bytes: Bytes) -> Result<Table, String> {
+pub(super) fn parse(bytes: Bytes, limits: &ReadLimits) -> Result<Table, TableFault> {
     if !bytes.starts_with(b"PAR1") {
-        return Err("it is no Parquet file: it does not begin with PAR1".to_string());
+        return Err("it is no Parquet file: it does not begin with PAR1".into());
     }
     if !bytes.ends_with(b"PAR1") {
-        return Err("the end is missing: a Parquet file can only be read whole".to_string());
+        return Err("the end is missing: a Parquet file can only be read whole".into());
     }
     // The library answers most broken files with an error and some with a panic.
-    guard::without_panic(|| read(bytes)).unwrap_or_else(|panic| Err(format!("the Parquet file is broken: {panic}")))
+    guard::without_panic(|| read(bytes, limits))
+        .unwrap_or_else(|panic| Err(format!("the Parquet file is broken: {panic}").into()))
 }
 
 /// A column of the file that is one of the table.
@@ -41,30 +39,28 @@ struct Wanted {
     level: i16,
 }
 
-fn read(bytes: Bytes) -> Result<Table, String> {
+fn read(bytes: Bytes, limits: &ReadLimits) -> Result<Table, TableFault> {
     let size = bytes.len() as u64;
     let reader = SerializedFileReader::new(bytes.clone()).map_err(|error| broken(&error))?;
     let metadata = reader.metadata();
     let mut table = Table::default();
     let wanted = wanted(metadata, &mut table.notes);
     if wanted.is_empty() {
-        return Err("it has no column of numbers".to_string());
+        return Err("it has no column of numbers".into());
     }
     let rows = rows(metadata)?;
     let values = rows.saturating_mul(wanted.len() as u64);
-    if values > VALUES.saturating_add(size.saturating_mul(VALUES_PER_BYTE)) {
-        return Err(format!("the Parquet file is broken: it promises {values} values in {size} bytes"));
-    }
+    limits.check_memory(values.saturating_mul(size_of::<f64>() as u64), size)?;
     if rows == 0 {
-        return Err("the table has no rows".to_string());
+        return Err("the table has no rows".into());
     }
     let mut unpacked = 0;
     for group in metadata.row_groups() {
         if group.num_columns() != metadata.file_metadata().schema_descr().num_columns() {
-            return Err(format!("the Parquet file is broken: a row group has {} columns", group.num_columns()));
+            return Err(format!("the Parquet file is broken: a row group has {} columns", group.num_columns()).into());
         }
         for column in &wanted {
-            unpacked = pages::check(&bytes, group.column(column.index), unpacked)
+            unpacked = pages::check(&bytes, group.column(column.index), unpacked, limits)
                 .map_err(|reason| format!("column {}: {reason}", column.name))?;
         }
     }
@@ -80,7 +76,8 @@ fn read(bytes: Bytes) -> Result<Table, String> {
                     "the Parquet file is broken: row group {} has {read} of {rows} rows in column {}",
                     group + 1,
                     column.name
-                ));
+                )
+                .into());
             }
         }
         if cells.out_of_range > 0 {

@@ -5,14 +5,18 @@
 
 use parquet::file::metadata::ColumnChunkMetaData;
 
-/// Bytes that a file may unpack to whatever its size, and beyond that for each of its bytes.
-const UNPACKED: u64 = 64 << 20;
-const UNPACKED_PER_BYTE: u64 = 1100;
+use crate::limits::ReadLimits;
+
 /// Structs within structs that a header may have.
 const DEPTH_LIMIT: usize = 8;
 
 /// Bytes that the file's pages unpack to, those of this column added to those `before`.
-pub(super) fn check(file: &[u8], column: &ColumnChunkMetaData, before: u64) -> Result<u64, String> {
+pub(super) fn check(
+    file: &[u8],
+    column: &ColumnChunkMetaData,
+    before: u64,
+    limits: &ReadLimits,
+) -> Result<u64, String> {
     let (start, length) =
         (column.dictionary_page_offset().unwrap_or(column.data_page_offset()), column.compressed_size());
     let mut rest = usize::try_from(start)
@@ -20,19 +24,17 @@ pub(super) fn check(file: &[u8], column: &ColumnChunkMetaData, before: u64) -> R
         .and_then(|start| file.get(start..))
         .and_then(|rest| rest.get(..usize::try_from(length).ok()?))
         .ok_or_else(|| format!("{length} bytes from byte {start} are not in the file; it is cut or broken"))?;
-    let most = UNPACKED + UNPACKED_PER_BYTE * file.len() as u64;
+    let size = file.len() as u64;
     let mut unpacked = before;
     while !rest.is_empty() {
         let at = file.len() - rest.len();
         let (header, after) = Header::read(rest).ok_or("a page without a readable header; the file is broken")?;
         unpacked = unpacked.saturating_add(header.unpacked);
-        if unpacked > most {
-            return Err(format!(
-                "a page promises {} bytes, {unpacked} with those before it, in a file of {}; it is broken",
-                header.unpacked,
-                file.len()
-            ));
-        }
+        // Pages are unpacked one at a time, but a page is whole in memory.
+        limits
+            .check_memory(header.unpacked, size)
+            .and_then(|()| limits.check_unpacked(unpacked, size))
+            .map_err(|error| error.to_string())?;
         rest = after.get(header.packed..).ok_or_else(|| format!("the page at byte {at} is cut off"))?;
     }
     Ok(unpacked)

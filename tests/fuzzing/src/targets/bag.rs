@@ -1,9 +1,10 @@
 //! Bytes as the file of a bag: MCAP, SQLite3, packed as a whole.
 
 use std::io::Write;
+use std::path::Path;
 
 use excavator_bags::map::{guess, read_mapped};
-use excavator_bags::{RawMessages, Topics, info, read_recording};
+use excavator_bags::{RawMessages, Topics, info, read_recording, reindex};
 use excavator_model::recording::Recording;
 
 use crate::samples;
@@ -25,7 +26,25 @@ pub fn run(bytes: &[u8]) -> bool {
     {
         check(&recording);
     }
-    RawMessages::open(path).is_ok_and(|messages| messages.filter_map(Result::ok).count() > 0)
+    let count = |path: &Path| RawMessages::open(path).map_or(0, |messages| messages.filter_map(Result::ok).count());
+    let messages = count(path);
+    if let Ok(done) = reindex(path, false)
+        && done.files.iter().any(|file| file.rewritten)
+    {
+        made_whole(path, messages, count(path));
+    }
+    messages > 0
+}
+
+#[allow(clippy::panic)]
+fn made_whole(path: &Path, before: usize, after: usize) {
+    let damage = RawMessages::open(path).map(|mut messages| {
+        messages.by_ref().for_each(drop);
+        messages.damage()
+    });
+    if before != after || !damage.as_ref().is_ok_and(Vec::is_empty) {
+        panic!("of {before} messages {after} are left, with {damage:?}");
+    }
 }
 
 #[allow(clippy::panic)]

@@ -1,0 +1,136 @@
+//! The rows of a text table, read piece by piece: no more than a line is in memory.
+
+use std::cell::Cell;
+use std::io::{BufRead, BufReader, Error, Read, Result, Seek, SeekFrom};
+use std::rc::Rc;
+
+use super::fault::TableFault;
+use crate::limits::{Limit, LimitError};
+
+/// Where a table begins, and its first lines.
+pub(super) struct Head {
+    /// Bytes before the table: a mark of byte order and lines to leave out.
+    pub start: u64,
+    /// The first lines that are not blank.
+    pub lines: Vec<String>,
+}
+
+/// Reads past the mark of byte order and `skip` lines, then the first `count` lines that are not blank.
+pub(super) fn head<R: Read + Seek>(
+    source: &mut R,
+    skip: usize,
+    count: usize,
+    most: u64,
+) -> std::result::Result<Head, TableFault> {
+    source.rewind()?;
+    let mut reader = BufReader::new(source);
+    let mut start = 0;
+    while reader.fill_buf()?.starts_with("\u{feff}".as_bytes()) {
+        reader.consume(3);
+        start += 3;
+    }
+    for _ in 0..skip {
+        match line(&mut reader, most)? {
+            Some(line) => start += line.len() as u64,
+            None => break,
+        }
+    }
+    let mut lines = Vec::new();
+    while lines.len() < count {
+        let Some(line) = line(&mut reader, most)? else { break };
+        let text = String::from_utf8_lossy(&line);
+        if !text.trim().is_empty() {
+            lines.push(text.trim_end_matches(['\n', '\r']).to_string());
+        }
+    }
+    Ok(Head { start, lines })
+}
+
+/// The next line with its end, of at most `most` bytes.
+fn line(reader: &mut impl BufRead, most: u64) -> Result<Option<Vec<u8>>> {
+    let mut line = Vec::new();
+    reader.take(most.saturating_add(1)).read_until(b'\n', &mut line)?;
+    Limit::Line.check(line.len() as u64, most).map_err(Error::other)?;
+    Ok(Some(line).filter(|line| !line.is_empty()))
+}
+
+/// The rows of a table one after the other.
+pub(super) struct Rows<'s> {
+    reader: csv::Reader<Box<dyn Read + 's>>,
+    /// Bytes read since the last row ended.
+    since: Rc<Cell<u64>>,
+    record: csv::ByteRecord,
+}
+
+impl<'s> Rows<'s> {
+    /// From byte `start` of the source on; columns with blanks between them for a delimiter of a blank.
+    pub fn new<R: Read + Seek>(source: &'s mut R, start: u64, delimiter: u8, most: u64) -> Result<Rows<'s>> {
+        source.seek(SeekFrom::Start(start))?;
+        let reader = BufReader::with_capacity(1 << 16, source);
+        let (plain, delimiter): (Box<dyn Read + 's>, u8) = match delimiter {
+            b' ' => (Box::new(Squeezed { reader, most, line: Vec::new(), position: 0 }), b'\t'),
+            other => (Box::new(reader), other),
+        };
+        let since = Rc::new(Cell::new(0));
+        let bounded: Box<dyn Read + 's> = Box::new(BoundedLines { reader: plain, since: Rc::clone(&since), most });
+        let reader = csv::ReaderBuilder::new()
+            .delimiter(delimiter)
+            .has_headers(false)
+            .flexible(true)
+            .comment(Some(b'#'))
+            .from_reader(bounded);
+        Ok(Rows { reader, since, record: csv::ByteRecord::new() })
+    }
+
+    /// The next row.
+    pub fn next(&mut self) -> std::result::Result<Option<&csv::ByteRecord>, TableFault> {
+        let found = self.reader.read_byte_record(&mut self.record)?;
+        self.since.set(0);
+        Ok(found.then_some(&self.record))
+    }
+}
+
+/// Refuses to read on when a row does not end.
+struct BoundedLines<R> {
+    reader: R,
+    since: Rc<Cell<u64>>,
+    most: u64,
+}
+
+impl<R: Read> Read for BoundedLines<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
+        let found = self.since.get();
+        if found > self.most {
+            return Err(Error::other(LimitError { limit: Limit::Line, found, allowed: self.most }));
+        }
+        let count = self.reader.read(buffer)?;
+        self.since.set(found.saturating_add(count as u64));
+        Ok(count)
+    }
+}
+
+/// Lines with a single tab between their columns, where the source has any number of blanks.
+struct Squeezed<R> {
+    reader: R,
+    most: u64,
+    line: Vec<u8>,
+    position: usize,
+}
+
+impl<R: BufRead> Read for Squeezed<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
+        if self.position == self.line.len() {
+            let Some(line) = line(&mut self.reader, self.most)? else { return Ok(0) };
+            let text = String::from_utf8_lossy(&line);
+            let columns: Vec<&str> = text.split_whitespace().collect();
+            self.line = columns.join("\t").into_bytes();
+            self.line.push(b'\n');
+            self.position = 0;
+        }
+        let rest = &self.line[self.position..];
+        let count = rest.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&rest[..count]);
+        self.position += count;
+        Ok(count)
+    }
+}
