@@ -30,6 +30,7 @@ mod info;
 mod location;
 pub mod map;
 mod metadata;
+mod printable;
 mod qos;
 mod raw_messages;
 mod reading;
@@ -43,6 +44,7 @@ pub use error::BagError;
 pub use info::{
     BagInfo, ColumnInfo, EquationInfo, SignalInfo, SignalsInfo, StampTiming, TableInfo, Timing, TopicInfo, info,
 };
+pub use printable::printable;
 pub use qos::{Durability, History, Qos, Reliability};
 pub use raw_messages::{RawMessage, RawMessages, Topic};
 pub use reading::{Gap, ReadReport, StateTable, read_recording, read_recording_in_blocks};
