@@ -49,4 +49,6 @@ pub use qos::{Durability, History, Qos, Reliability};
 pub use raw_messages::{RawMessage, RawMessages, Topic};
 pub use reading::{Gap, ReadReport, StateTable, read_recording, read_recording_in_blocks};
 pub use topics::Topics;
-pub use writing::{BagWriter, Compression, TopicId, TopicToWrite, WriteOptions, write_recording};
+pub use writing::{
+    BagWriter, Compression, GoneFile, TopicId, TopicToWrite, WriteOptions, check_replaceable, write_recording,
+};

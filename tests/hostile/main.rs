@@ -5,5 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod fault;
+mod files;
 #[path = "../../nodes/tests/live/mod.rs"]
 mod live;
+mod recorder;

@@ -72,5 +72,5 @@ pub use parameter::{Kind, Parameter, Range, Value};
 pub(crate) use parameter_services::{service_mapping, service_qos};
 pub use parameters::Parameters;
 pub use qos::TopicQos;
-pub use signals::Signals;
+pub use signals::{Signals, end_with_this_process};
 pub use supervisor::Supervisor;
