@@ -221,6 +221,28 @@ pub enum BagError {
         /// The file.
         path: PathBuf,
     },
+    /// A bag that is to be replaced is none, or has files of others in it.
+    #[error("{} is not replaced: {reason}; choose another name or remove it first", shown(path))]
+    NotReplaceable {
+        /// The path asked for.
+        path: PathBuf,
+        /// What is there.
+        reason: String,
+    },
+    /// The disk is full, or the user's share of it.
+    #[error(
+        "no space left on the disk of {}: {bytes} bytes of the recording are written, what came after is lost; make room and \
+         record again",
+        shown(path)
+    )]
+    NoSpace {
+        /// The file.
+        path: PathBuf,
+        /// Bytes of it that are written and can be read.
+        bytes: u64,
+        /// What the operating system says.
+        source: std::io::Error,
+    },
     /// A bag needs a name.
     #[error("{} does not end with a name for the bag", shown(path))]
     NoName {

@@ -56,4 +56,6 @@ pub use reading::{Gap, ReadReport, StateTable, read_recording, read_recording_in
 pub use regular_file::{open_regular, read_regular, read_regular_text};
 pub use reindex::{Reindexed, ReindexedFile, reindex};
 pub use topics::Topics;
-pub use writing::{BagWriter, Compression, TopicId, TopicToWrite, WriteOptions, write_recording};
+pub use writing::{
+    BagWriter, Compression, GoneFile, TopicId, TopicToWrite, WriteOptions, check_replaceable, write_recording,
+};

@@ -67,7 +67,7 @@ impl<'de> de::Deserializer<'de> for Probe<'_> {
     }
 
     serde::forward_to_deserialize_any! {
-        bool i8 i16 i64 i128 u16 u64 u128 f32 char str bytes byte_buf option unit unit_struct newtype_struct tuple
+        i8 i16 i64 i128 u16 u64 u128 f32 char str bytes byte_buf option unit unit_struct newtype_struct tuple
         tuple_struct map enum identifier ignored_any
     }
 }
@@ -131,5 +131,6 @@ fn structs_of_other_packages_have_the_fields_of_their_definitions() {
     assert_matches::<FluidPressure>();
     assert_matches::<JointState>();
     assert_matches::<Log>();
+    assert_matches::<Flag>();
     assert_matches::<Text>();
 }

@@ -1,6 +1,6 @@
 //! Why a verb failed, in one line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use excavator_bags::BagError;
 use excavator_identification::design::DesignError;
@@ -71,6 +71,8 @@ pub enum VerbError {
     PartEnded { part: &'static str, status: String },
     #[error("{0}")]
     Machine(String),
+    #[error("the {part} did not end in good order: {status}; it has said why above")]
+    PartFailed { part: &'static str, status: String },
     #[error("no bag is given; name at least one recording")]
     NoBags,
     #[error("{} is not what `excavator diagnose --json` writes: {reason}", path.display())]
@@ -83,6 +85,14 @@ pub enum VerbError {
     Part { path: PathBuf, reason: String },
     #[error("{option} {} would be lost: {what}; give another name", path.display())]
     SameFile { option: &'static str, path: PathBuf, what: String },
+    #[error("{} exists already and is not overwritten; give another name, or --force to replace it", path.display())]
+    Exists { path: PathBuf },
+    #[error("{} is a symbolic link and is not written through; give the name of the file itself", path.display())]
+    Link { path: PathBuf },
+    #[error("{} appeared while this command ran and is not overwritten; the result is in {}", path.display(), kept.display())]
+    Appeared { path: PathBuf, kept: PathBuf },
+    #[error("files of the recording were deleted or moved while it was written: {files}; the rest is in {}", bag.display())]
+    RecordingGone { bag: PathBuf, files: String },
     #[error("cannot print the result: {0}")]
     NotPrinted(String),
     #[error("cannot add {0} twice")]
@@ -90,6 +100,11 @@ pub enum VerbError {
 }
 
 impl VerbError {
+    /// For `map_err` after an attempt to write `path`.
+    pub fn write(path: &Path) -> impl FnOnce(std::io::Error) -> VerbError {
+        move |source| VerbError::Write { path: path.to_path_buf(), source }
+    }
+
     /// 2 for wrong usage, 1 for everything that failed.
     pub fn exit_code(&self) -> u8 {
         match self {

@@ -18,6 +18,7 @@ mod record;
 mod recording_part;
 pub mod ros;
 mod sources;
+mod terminal;
 mod up;
 mod verbs;
 
@@ -32,15 +33,25 @@ use clap::Parser;
 pub fn run_command_line() -> ExitCode {
     let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let outcome = ros::RosArguments::parse(&all).map_err(error::VerbError::from).and_then(|(ros, words)| {
-        let arguments = cli::Arguments::parse_from(words);
+        let arguments = cli::Arguments::try_parse_from(words).unwrap_or_else(|refusal| refuse(&refusal));
         verbs::run(arguments.verb, &ros, ros::ros_words(&all))?;
         verbs::all_was_printed()
     });
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("excavator: {error}");
+            terminal::complain(&format!("excavator: {error}"));
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// Ends the program with what is wrong in the command line, or with its help. Names in it may be those of files of others.
+fn refuse(refusal: &clap::Error) -> ! {
+    let plain = refusal.render().to_string();
+    if let std::borrow::Cow::Owned(shown) = terminal::text(&plain) {
+        eprint!("{shown}");
+        std::process::exit(refusal.exit_code());
+    }
+    refusal.exit()
 }

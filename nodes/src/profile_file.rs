@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::VerbError;
 
-/// Most samples of a simulated bag: close to three hours at 1 kHz, about a gigabyte of memory.
-const MOST_SAMPLES: f64 = 1e7;
+/// Memory that a simulation may take, bytes.
+const MOST_MEMORY: f64 = 1e9;
 
 /// What is larger by less is the same number with fewer digits.
 const ROUNDING: f64 = 1.001;
@@ -32,6 +32,14 @@ pub struct ProfileFile {
 /// 1 kHz, as the live simulator publishes.
 pub fn usual_rate() -> f64 {
     1000.0
+}
+
+/// Most samples of a simulated bag: an hour at 1 kHz with one cylinder, twenty minutes with five.
+fn most_samples(cylinders: usize) -> f64 {
+    // The commands and what is simulated from them, with all signals; inputs of the integration; stamps.
+    let signals = 5 + 8 * cylinders;
+    let numbers = 2 * signals + 4 + cylinders;
+    (MOST_MEMORY / (8 * numbers) as f64).floor()
 }
 
 impl ProfileFile {
@@ -58,12 +66,12 @@ impl ProfileFile {
             }
         }
         file.profiles.iter().try_for_each(Profile::check)?;
-        file.check().map_err(syntax)?;
+        file.check(names.len()).map_err(syntax)?;
         Ok(file)
     }
 
-    /// What no segment is wrong in by itself.
-    fn check(&self) -> Result<(), String> {
+    /// What no segment is wrong in by itself, for a machine with so many cylinders.
+    fn check(&self, cylinders: usize) -> Result<(), String> {
         for (number, profile) in self.profiles.iter().enumerate() {
             let cylinder = &profile.cylinder;
             if self.profiles[..number].iter().any(|earlier| earlier.cylinder == *cylinder) {
@@ -77,11 +85,13 @@ impl ProfileFile {
                 ));
             }
         }
-        let duration = self.duration();
-        if duration * self.rate > MOST_SAMPLES {
+        let (duration, limit) = (self.duration(), most_samples(cylinders));
+        if duration * self.rate > limit {
             return Err(format!(
-                "{duration} s at rate = {} are more than {MOST_SAMPLES:e} samples; make it shorter, or the rate lower",
-                self.rate
+                "{duration} s x {} samples per second are {:.3e} samples; the limit is {limit:.3e} with {cylinders} cylinders \
+                 (1 GB of memory); make it shorter, or the rate lower",
+                self.rate,
+                duration * self.rate
             ));
         }
         Ok(())
@@ -161,7 +171,10 @@ mod tests {
         for (text, part) in [
             (format!("{}{}", one(sine), one(sine)), "arm has two profiles"),
             (format!("rate = 8.0\n{}", one(sine)), "5 Hz cannot be shown"),
-            (one("{ kind = \"hold\", duration = 1e12, area = 0.0 }"), "more than 1e7 samples"),
+            (
+                one("{ kind = \"hold\", duration = 1e12, area = 0.0 }"),
+                "1.000e15 samples; the limit is 4.032e6 with 1 cylinders",
+            ),
             (one(""), "arm has no segments"),
         ] {
             let error = read(&text).unwrap_err().to_string();

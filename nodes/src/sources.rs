@@ -12,6 +12,7 @@ use excavator_model::recording::Recording;
 use crate::cli::{self, Mapping};
 use crate::error::VerbError;
 use crate::recording_part::Part;
+use crate::terminal::complain;
 
 /// A model by its built-in name or file.
 pub fn model(name: &str) -> Result<Model, VerbError> {
@@ -32,11 +33,11 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
         recording = part.of(&recording, path)?;
     }
     for problem in report.problems() {
-        eprintln!("{}: {problem}", path.display());
+        complain(&format!("{}: {problem}", path.display()));
     }
     gate::check(model, &recording)?;
     for remark in gate::remarks(model, &recording) {
-        eprintln!("{}: {remark}", path.display());
+        complain(&format!("{}: {remark}", path.display()));
     }
     Ok(recording)
 }
@@ -56,12 +57,7 @@ pub fn fitted_and_judging(
     let validation = recordings(&paths.validation, &paths.mapping, model)?;
     let (fitted, judging): (Vec<_>, Vec<_>) = (identification.iter().collect(), validation.iter().collect());
     for shared in gate::shared_readings(&fitted, &judging) {
-        eprintln!("{shared}");
+        complain(&shared.to_string());
     }
     Ok((identification, validation))
-}
-
-/// Writes a text file.
-pub fn write_text(path: &Path, text: &str) -> Result<(), VerbError> {
-    std::fs::write(path, text).map_err(|source| VerbError::Write { path: path.to_path_buf(), source })
 }

@@ -2,6 +2,7 @@
 //!
 //! Processes, not threads: a process has one participant and one node, and one of them can fail without the others.
 
+use std::os::unix::process::CommandExt;
 use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
@@ -10,7 +11,7 @@ use nix::unistd::Pid;
 
 use crate::cli::UpArguments;
 use crate::error::VerbError;
-use crate::ros::Signals;
+use crate::ros::{Signals, end_with_this_process};
 
 /// Time that a part has to end in good order.
 const FAREWELL: Duration = Duration::from_secs(10);
@@ -28,10 +29,9 @@ pub fn run(arguments: &UpArguments, ros_words: &[String]) -> Result<(), VerbErro
     let outcome = start(&program, arguments, ros_words, &mut parts)
         .and_then(|()| watch(&signals, arguments.duration, &mut parts));
     // The recorder last, so that it hears the end of the others.
-    for part in parts.iter_mut().rev() {
-        part.end();
-    }
-    outcome
+    let ends: Vec<Result<(), VerbError>> = parts.iter_mut().rev().map(Part::end).collect();
+    outcome?;
+    ends.into_iter().collect()
 }
 
 struct Part {
@@ -46,7 +46,10 @@ fn start(
     parts: &mut Vec<Part>,
 ) -> Result<(), VerbError> {
     let mut spawn = |name: &'static str, words: Vec<std::ffi::OsString>| {
-        let child = Command::new(program).args(words).args(ros_words).spawn()?;
+        let mut command = Command::new(program);
+        // A terminal's Ctrl-C is for this process, which ends its parts one after the other.
+        command.args(words).args(ros_words).process_group(0);
+        let child = end_with_this_process(&mut command).spawn()?;
         parts.push(Part { name, child });
         Ok::<(), VerbError>(())
     };
@@ -79,21 +82,26 @@ fn watch(signals: &Signals, duration: Option<f64>, parts: &mut [Part]) -> Result
 }
 
 impl Part {
-    fn end(&mut self) {
-        let Ok(pid) = i32::try_from(self.child.id()) else { return };
-        if !matches!(self.child.try_wait(), Ok(None)) {
-            return;
-        }
-        // It may end by itself at this very moment; then there is nobody to be told.
-        let _ = kill(Pid::from_raw(pid), Signal::SIGINT);
+    /// Ends it in good order, or kills it where it takes too long.
+    fn end(&mut self) -> Result<(), VerbError> {
         let start = Instant::now();
-        while start.elapsed() < FAREWELL {
-            if !matches!(self.child.try_wait(), Ok(None)) {
-                return;
+        let mut signalled = false;
+        loop {
+            if let Some(status) = self.child.try_wait()? {
+                let failed = || VerbError::PartFailed { part: self.name, status: status.to_string() };
+                return if status.success() { Ok(()) } else { Err(failed()) };
+            }
+            if let (false, Ok(pid)) = (signalled, i32::try_from(self.child.id())) {
+                // A shell starts what runs in its background deaf to SIGINT. It may end by itself at this very moment.
+                let _ = kill(Pid::from_raw(pid), Signal::SIGTERM);
+                signalled = true;
+            }
+            if start.elapsed() > FAREWELL {
+                self.child.kill()?;
+                let status = self.child.wait()?.to_string();
+                return Err(VerbError::PartFailed { part: self.name, status });
             }
             std::thread::sleep(GLANCE);
         }
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }

@@ -5,12 +5,14 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod bridge;
-mod faces;
 mod child;
+mod faces;
 mod fault;
+mod files;
 mod goals;
 mod inside;
 #[path = "../../nodes/tests/live/mod.rs"]
 mod live;
 mod monitor;
 mod readers;
+mod recorder;

@@ -1,12 +1,17 @@
 //! Messages as bytes into a rosbag2 folder.
 
 use std::collections::BTreeMap;
+use std::fs::Permissions;
+use std::io::Write;
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 use excavator_msgs::{Message, definitions};
 
+use super::gone::GoneFile;
 use super::options::WriteOptions;
-use super::part::Part;
+use super::part::{Location, Part, Written};
+use super::reserve::Reserve;
 use crate::metadata::{Contents, FILE_NAME, FileContents, TopicContents};
 use crate::{BagError, Qos};
 
@@ -51,7 +56,12 @@ pub struct BagWriter {
     options: WriteOptions,
     /// The file that is being written; `None` once the bag is closed.
     part: Option<Part>,
-    finished: Vec<FileContents>,
+    finished: Vec<(Location, Written)>,
+    gone: Vec<GoneFile>,
+    /// Files created so far.
+    count: usize,
+    /// Until the bag is closed.
+    reserve: Option<Reserve>,
     topics: Vec<WrittenTopic>,
     custom_data: BTreeMap<String, String>,
 }
@@ -77,13 +87,20 @@ impl BagWriter {
             std::io::ErrorKind::AlreadyExists => BagError::AlreadyExists { path: folder.to_path_buf() },
             _ => BagError::io("create", folder)(error),
         })?;
-        let part = Part::create(folder, file_name(&name, 0), options)?;
+        let opened = Reserve::take(folder)
+            .and_then(|reserve| Ok((reserve, Part::create(folder, file_name(&name, 0), options)?)))
+            // Nothing is in the folder but what failed.
+            .inspect_err(|_| drop(std::fs::remove_dir_all(folder)));
+        let (reserve, part) = opened?;
         Ok(BagWriter {
             folder: folder.to_path_buf(),
             name,
             options: options.clone(),
             part: Some(part),
             finished: Vec::new(),
+            gone: Vec::new(),
+            count: 1,
+            reserve: Some(reserve),
             topics: Vec::new(),
             custom_data: options.custom_data.clone(),
         })
@@ -146,19 +163,47 @@ impl BagWriter {
         self.part()?.flush()
     }
 
-    /// Writes the index and `metadata.yaml`.
+    /// Looks whether the file that is being written is still where it was created. If not it is closed, so that one that was
+    /// moved is complete, and the bag goes on in another file, in the folder of the same name.
     ///
     /// # Errors
-    /// [`BagError::Write`], [`BagError::Io`].
-    pub fn finish(mut self) -> Result<(), BagError> {
-        self.close()
+    /// [`BagError::Io`], [`BagError::Write`] when there is no other file.
+    pub fn stay_in_place(&mut self) -> Result<Option<&GoneFile>, BagError> {
+        let Some(part) = self.part.take_if(|part| !part.location().is_kept()) else { return Ok(None) };
+        self.end(part)?;
+        std::fs::create_dir_all(&self.folder).map_err(BagError::io("create", &self.folder))?;
+        self.begin()?;
+        self.note_gone();
+        Ok(self.gone.last())
+    }
+
+    /// Writes the index and `metadata.yaml`. After a failure to write, the bag is closed with what the file had at the last
+    /// [`BagWriter::flush`]. Returns the files that are not at their places any more, and so not in the metadata.
+    ///
+    /// # Errors
+    /// [`BagError::Write`], [`BagError::Io`], [`BagError::NoSpace`].
+    pub fn finish(mut self) -> Result<Vec<GoneFile>, BagError> {
+        self.close()?;
+        Ok(std::mem::take(&mut self.gone))
     }
 
     /// Ends the file and goes on in another one that knows all topics, as readers of one file of a bag expect.
     fn begin_next_file(&mut self) -> Result<(), BagError> {
         let Some(part) = self.part.take() else { return Ok(()) };
-        self.finished.push(part.finish()?);
-        let mut part = Part::create(&self.folder, file_name(&self.name, self.finished.len()), &self.options)?;
+        self.end(part)?;
+        self.begin()
+    }
+
+    fn end(&mut self, part: Part) -> Result<(), BagError> {
+        let location = part.location().clone();
+        let (written, outcome) = part.finish();
+        self.finished.push((location, written));
+        outcome
+    }
+
+    fn begin(&mut self) -> Result<(), BagError> {
+        let mut part = Part::create(&self.folder, file_name(&self.name, self.count), &self.options)?;
+        self.count += 1;
         for written in &self.topics {
             part.add_topic(&written.topic)?;
         }
@@ -166,28 +211,58 @@ impl BagWriter {
         Ok(())
     }
 
+    /// Takes the files that are not at their places out of the bag.
+    fn note_gone(&mut self) {
+        let gone = self.finished.extract_if(.., |(location, _)| !location.is_kept());
+        self.gone.extend(gone.map(|(location, written)| GoneFile::new(&location, written)));
+    }
+
     fn close(&mut self) -> Result<(), BagError> {
-        let Some(part) = self.part.take() else { return Ok(()) };
-        self.finished.push(part.finish()?);
+        let Some(reserve) = self.reserve.take() else { return Ok(()) };
+        // It is for the end of the file and the metadata.
+        drop(reserve);
+        let ended = self.part.take().map_or(Ok(()), |part| self.end(part));
+        self.note_gone();
+        if self.finished.is_empty() && !self.folder.is_dir() {
+            return ended;
+        }
+        let described = self.describe();
+        ended.and(described)
+    }
+
+    /// Writes `metadata.yaml`.
+    fn describe(&self) -> Result<(), BagError> {
+        let count = |topic: usize| self.finished.iter().filter_map(|(_, file)| file.by_topic.get(topic)).sum();
         let topics: Vec<TopicContents> = self
             .topics
             .iter()
-            .map(|written| TopicContents {
+            .enumerate()
+            .map(|(index, written)| TopicContents {
                 name: written.topic.name.clone(),
                 type_name: written.topic.type_name.clone(),
                 qos: Qos::entries(&written.topic.qos),
-                message_count: written.messages,
+                message_count: count(index),
             })
             .collect();
-        let contents =
-            Contents { storage: "mcap", files: &self.finished, topics: &topics, custom_data: &self.custom_data };
+        let files: Vec<FileContents> = self.finished.iter().map(|(_, file)| file.contents.clone()).collect();
+        let contents = Contents { storage: "mcap", files: &files, topics: &topics, custom_data: &self.custom_data };
         let path = self.folder.join(FILE_NAME);
         let text = contents.to_yaml().map_err(|error| BagError::Io {
             action: "write",
             path: path.clone(),
             source: std::io::Error::other(error),
         })?;
-        std::fs::write(&path, text).map_err(BagError::io("write", &path))
+        let written = || {
+            let mut file = tempfile::Builder::new()
+                .prefix(".metadata-")
+                .permissions(Permissions::from_mode(0o666))
+                .tempfile_in(&self.folder)?;
+            file.write_all(text.as_bytes())?;
+            file.as_file().sync_all()?;
+            file.persist(&path)?;
+            Ok(())
+        };
+        written().map_err(BagError::io("write", &path))
     }
 
     /// The file that is being written, which is there as long as the bag is not closed and nothing failed.

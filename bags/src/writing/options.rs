@@ -36,6 +36,9 @@ pub struct WriteOptions {
     pub most_file_bytes: Option<u64>,
     /// Time between a file's first message and the one that goes into another file, ns; `None`: one file however long.
     pub most_file_nanoseconds: Option<u64>,
+    /// Whether [`write_recording`](crate::write_recording) replaces a bag of the same name. A [`BagWriter`](crate::BagWriter)
+    /// never does.
+    pub replace: bool,
     /// Pairs for `custom_data` in `metadata.yaml`, which `ros2 bag info` shows.
     pub custom_data: BTreeMap<String, String>,
 }
@@ -48,6 +51,7 @@ impl Default for WriteOptions {
             chunk_size: 768 * 1024,
             most_file_bytes: None,
             most_file_nanoseconds: None,
+            replace: false,
             custom_data: BTreeMap::new(),
         }
     }

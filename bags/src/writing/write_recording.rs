@@ -7,6 +7,7 @@ use excavator_msgs::{ArmState, CylinderState, Header, Message, OrificeCommand, T
 
 use super::bag_writer::{BagWriter, TopicId, TopicToWrite};
 use super::options::WriteOptions;
+use super::staging::Staging;
 use crate::{BagError, Qos, Topics, cdr};
 
 /// Depth of the history that `/arm/state` is offered with.
@@ -16,11 +17,11 @@ const COMMAND_DEPTH: u32 = 10;
 
 /// Writes a recording as a new rosbag2 folder: a state message for each sample, and a command for the first sample and
 /// each at which a command changes, with the cylinders for which it does. All stamps are those of the samples, to the
-/// nearest nanosecond.
+/// nearest nanosecond. The folder has its name only when the bag is complete.
 ///
 /// # Errors
-/// [`BagError::InvalidRecording`], [`BagError::StampOutOfRange`] and [`BagError::StampsCoincide`] before anything is
-/// written; then all of [`BagWriter`], first of all [`BagError::AlreadyExists`].
+/// [`BagError::InvalidRecording`], [`BagError::StampOutOfRange`], [`BagError::StampsCoincide`], [`BagError::AlreadyExists`]
+/// and [`BagError::NotReplaceable`] before anything is written; then all of [`BagWriter`].
 pub fn write_recording(
     path: &Path,
     recording: &Recording,
@@ -29,7 +30,19 @@ pub fn write_recording(
 ) -> Result<(), BagError> {
     recording.validate()?;
     let stamps = stamps(recording)?;
-    let mut bag = BagWriter::create(path, options)?;
+    let staging = Staging::beside(path, options.replace)?;
+    write_samples(staging.folder(), recording, &stamps, topics, options).map_err(|error| staging.named(error))?;
+    staging.put_in_place()
+}
+
+fn write_samples(
+    folder: &Path,
+    recording: &Recording,
+    stamps: &[Stamp],
+    topics: &Topics,
+    options: &WriteOptions,
+) -> Result<(), BagError> {
+    let mut bag = BagWriter::create(folder, options)?;
     let states = bag.add_topic(&TopicToWrite::of::<ArmState>(&topics.state, Qos::reliable(STATE_DEPTH)))?;
     let commands = bag.add_topic(&TopicToWrite::of::<OrificeCommand>(&topics.command, Qos::reliable(COMMAND_DEPTH)))?;
     for (sample, &Stamp { time, nanoseconds }) in stamps.iter().enumerate() {
@@ -38,7 +51,7 @@ pub fn write_recording(
         }
         write(&mut bag, states, &topics.state, nanoseconds, &state_at(recording, sample, time))?;
     }
-    bag.finish()
+    bag.finish().map(drop)
 }
 
 fn write<M: Message>(

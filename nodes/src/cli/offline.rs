@@ -1,6 +1,6 @@
 //! Arguments of the verbs that work on files.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
@@ -11,6 +11,13 @@ pub struct Json {
     /// Write the result as JSON to this file ("-": standard output, instead of the table).
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Overwriting {
+    /// Replace files that exist; never one that this command reads.
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[derive(Debug, Args)]
@@ -44,6 +51,8 @@ pub struct SimulateArguments {
     /// Bag to write.
     #[arg(short, long, value_name = "BAG")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -74,6 +83,8 @@ pub struct IdentifyArguments {
     pub method: Method,
     #[command(flatten)]
     pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Args)]
@@ -91,6 +102,8 @@ pub struct CompareArguments {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Args)]
@@ -108,6 +121,8 @@ pub struct CharacteriseArguments {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Args)]
@@ -125,6 +140,8 @@ pub struct EnergyArguments {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Args)]
@@ -140,10 +157,9 @@ pub struct Recordings {
 }
 
 impl Recordings {
-    /// All files that are read.
-    pub fn paths(&self) -> Vec<&Path> {
-        let bags = self.identification.iter().chain(&self.validation);
-        bags.chain(&self.mapping.map).map(PathBuf::as_path).collect()
+    /// All recordings.
+    pub fn bags(&self) -> impl Iterator<Item = &PathBuf> {
+        self.identification.iter().chain(&self.validation)
     }
 }
 
@@ -159,6 +175,8 @@ pub struct DiagnoseArguments {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Args)]
@@ -183,6 +201,8 @@ pub struct RefineArguments {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Args)]
@@ -215,6 +235,8 @@ pub struct DesignArguments {
     pub highest_pressure: f64,
     #[command(flatten)]
     pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Args)]
@@ -223,6 +245,8 @@ pub struct EffectsArguments {
     pub name: Option<String>,
     #[command(flatten)]
     pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Args)]
@@ -233,6 +257,8 @@ pub struct InfoArguments {
     pub mapping: Mapping,
     #[command(flatten)]
     pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Args)]
@@ -250,6 +276,8 @@ pub struct ImportArguments {
     /// Bag to write; with --guess, the file for the map.
     #[arg(short, long, value_name = "BAG|MAP", required_unless_present = "guess")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }
 
 #[derive(Debug, Args)]

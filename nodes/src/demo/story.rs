@@ -13,11 +13,19 @@ use rand_chacha::ChaCha8Rng;
 
 use super::sealed::Sealed;
 use super::{manoeuvre, plant};
-use crate::cli::DemoArguments;
+use crate::cli::{DemoArguments, Overwriting};
 use crate::error::VerbError;
 use crate::output::{Progress, candidate_table, number, step_table};
-use crate::sources;
+use crate::outputs::write;
 use crate::verbs::print;
+
+/// Every story has files of its own.
+const NEVER: Overwriting = Overwriting { force: false };
+const IDENTIFICATION: &str = "identification";
+const VALIDATION: &str = "validation";
+const MODEL: &str = "refined-model.toml";
+const TRUTH: &str = "true-machine.toml";
+const REPORT: &str = "report.html";
 
 /// Runs the demo.
 pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
@@ -28,7 +36,7 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
     print("1  A machine: the arm of a 3 t excavator, its parameters up to 20 % off the data sheet, and one physical");
     print("   effect that the model does not know. Which one is sealed until the end.");
     let mut recordings = Vec::new();
-    for (name, profile) in [("identification", manoeuvre::identification()), ("validation", manoeuvre::validation())] {
+    for (name, profile) in [(IDENTIFICATION, manoeuvre::identification()), (VALIDATION, manoeuvre::validation())] {
         let recording = plant::record(&sealed, &profile, &mut generator)?;
         let path = folder.join(name);
         write_recording(&path, &recording, &Topics::default(), &WriteOptions::default())?;
@@ -67,18 +75,19 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
         "   the machine's own parameters are found to within {:.2} % (median)",
         100.0 * sealed.base_error(&refinement.model)
     ));
-    let model_file = folder.join("refined-model.toml");
-    sources::write_text(&model_file, &to_text(&refinement.model)?)?;
-    sources::write_text(&folder.join("true-machine.toml"), &to_text(&sealed.truth)?)?;
-    let report = folder.join("report.html");
-    sources::write_text(&report, &refinement_page(&refinement))?;
+    let model_file = folder.join(MODEL);
+    write(&model_file, &to_text(&refinement.model)?, NEVER)?;
+    write(&folder.join(TRUTH), &to_text(&sealed.truth)?, NEVER)?;
+    let report = folder.join(REPORT);
+    write(&report, &refinement_page(&refinement), NEVER)?;
     print(&format!("\nOpen {} to see every signal before and after.", report.display()));
     Ok(())
 }
 
-/// The folder asked for, or the first of folder-2, folder-3, ... that holds no recording yet: nothing is overwritten.
+/// The folder asked for, or the first of folder-2, folder-3, ... that holds no file of a story yet: nothing is overwritten.
 fn free_folder(wanted: &Path) -> PathBuf {
-    let taken = |path: &Path| path.join("identification").exists() || path.join("validation").exists();
+    let names = [IDENTIFICATION, VALIDATION, MODEL, TRUTH, REPORT];
+    let taken = |path: &Path| names.iter().any(|name| path.join(name).symlink_metadata().is_ok());
     if !taken(wanted) {
         return wanted.to_path_buf();
     }

@@ -12,17 +12,12 @@ use excavator_model::recording::Recording;
 use excavator_model::{Model, site_name};
 use serde_json::{Map, Value, json};
 
+use crate::cli::Overwriting;
 use crate::error::VerbError;
 
 /// Writes JSON to a file, or to standard output for "-".
-pub fn write_json(path: &Path, value: &Value) -> Result<(), VerbError> {
-    let text = serde_json::to_string_pretty(value)?;
-    if path == Path::new("-") {
-        use std::io::Write;
-        writeln!(std::io::stdout(), "{text}")?;
-        return Ok(());
-    }
-    crate::sources::write_text(path, &(text + "\n"))
+pub fn write_json(path: &Path, value: &Value, overwriting: Overwriting) -> Result<(), VerbError> {
+    crate::outputs::write(path, &(serde_json::to_string_pretty(value)? + "\n"), overwriting)
 }
 
 /// JSON has no NaN: what is not a number is null.

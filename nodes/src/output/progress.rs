@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::terminal::printable;
+
 /// A bar with a word about what is being done.
 pub struct Progress {
     bar: ProgressBar,
@@ -25,7 +27,7 @@ impl Progress {
     /// Tells what is being done and the fraction done.
     pub fn tell(&self, what: &str, fraction: f64) {
         self.bar.set_position((fraction.clamp(0.0, 1.0) * 1000.0) as u64);
-        self.bar.set_message(what.to_string());
+        self.bar.set_message(printable(what).into_owned());
     }
 }
 

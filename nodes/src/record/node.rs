@@ -1,16 +1,16 @@
 //! The recorder on the graph.
 
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use excavator_bags::{BagWriter, WriteOptions};
 
 use super::offered::{OfferedTopic, asked, topics};
 use super::selection::Selection;
-use super::writing::{Order, TopicOutcome, write};
+use super::writing::{Order, Outcome, write};
 use crate::cli::RecordArguments;
 use crate::error::VerbError;
 use crate::ros::raw::RawInlet;
@@ -45,19 +45,30 @@ pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbEr
     let bag = BagWriter::create(&folder, &options)?;
     supervisor.logger.info(format!("recording to {}", folder.display()));
     let dropped = Arc::new(AtomicU64::new(0));
+    let gone = Mutex::new(None);
     let (sender, orders) = sync_channel(WAITING);
     let last = sender.clone();
     let stop = supervisor.stop_flag();
     let outcome = std::thread::scope(|scope| {
         let counter = Arc::clone(&dropped);
         let stop_on_failure = Arc::clone(&stop);
+        let (logger, gone_here) = (&supervisor.logger, &gone);
         let writing = scope.spawn(move || {
-            let outcome = write(bag, &orders, || counter.load(Ordering::Relaxed));
+            let outcome = write(
+                bag,
+                &orders,
+                || counter.load(Ordering::Relaxed),
+                |file| {
+                    logger.error(format!("{file} was deleted or moved; recording goes on in another file of the bag"));
+                    *gone_here.lock().unwrap_or_else(PoisonError::into_inner) = Some(file.to_string());
+                },
+            );
             stop_on_failure.store(true, Ordering::Relaxed);
             outcome
         });
         let looking = scope.spawn(|| {
-            let mut recorder = Recorder { supervisor: &supervisor, selection, sender, dropped, known: Vec::new() };
+            let mut recorder =
+                Recorder { supervisor: &supervisor, selection, sender, dropped, gone: &gone, known: Vec::new() };
             let end = arguments.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
             while !stop.load(Ordering::Relaxed) {
                 recorder.look();
@@ -80,22 +91,29 @@ pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbEr
         supervisor.logger.warn(format!("nobody published {name}"));
     }
     let result = match written {
-        Ok(written) => written.map(|topics| tell(&supervisor, &topics)).map_err(VerbError::from),
+        Ok(written) => written.map_err(VerbError::from).and_then(|outcome| tell(&supervisor, &folder, &outcome)),
         Err(_) => Ok(()),
     };
     supervisor.leave();
     result
 }
 
-fn tell(supervisor: &Supervisor, topics: &[TopicOutcome]) {
+fn tell(supervisor: &Supervisor, folder: &Path, outcome: &Outcome) -> Result<(), VerbError> {
+    let topics = &outcome.topics;
     let total: u64 = topics.iter().map(|topic| topic.messages).sum();
     for topic in topics {
+        let gone = if topic.gone > 0 { format!(", {} in files that are gone", topic.gone) } else { String::new() };
         supervisor.logger.info(format!(
-            "{}: {} messages of {} publishers, {} lost",
+            "{}: {} messages of {} publishers, {} lost{gone}",
             topic.name, topic.messages, topic.publishers, topic.lost
         ));
     }
     supervisor.logger.info(format!("{total} messages on {} topics", topics.len()));
+    if outcome.gone.is_empty() {
+        return Ok(());
+    }
+    let files: Vec<String> = outcome.gone.iter().map(ToString::to_string).collect();
+    Err(VerbError::RecordingGone { bag: folder.to_path_buf(), files: files.join(", ") })
 }
 
 /// `rosbag2_2026_11_21-06_00_00`, as `ros2 bag record` names it.
@@ -108,6 +126,8 @@ struct Recorder<'r> {
     selection: Selection,
     sender: SyncSender<Order>,
     dropped: Arc<AtomicU64>,
+    /// The file that went last.
+    gone: &'r Mutex<Option<String>>,
     known: Vec<OfferedTopic>,
 }
 
@@ -130,8 +150,12 @@ impl Recorder<'_> {
             ("topics", self.known.len().to_string()),
             ("dropped messages", self.dropped.load(Ordering::Relaxed).to_string()),
         ];
-        let health = if self.dropped.load(Ordering::Relaxed) > 0 { Health::Warning } else { Health::Ok };
-        let message = if health == Health::Ok { "recording" } else { "the disk is too slow" };
+        let gone = self.gone.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let (health, message) = match gone {
+            Some(file) => (Health::Error, format!("{file} was deleted or moved")),
+            None if self.dropped.load(Ordering::Relaxed) > 0 => (Health::Warning, "the disk is too slow".to_string()),
+            None => (Health::Ok, "recording".to_string()),
+        };
         self.supervisor.diagnostics.tell("recorder", health, message, &values);
     }
 

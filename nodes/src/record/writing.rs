@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use excavator_bags::{BagError, BagWriter, Qos, TopicId, TopicToWrite};
+use excavator_bags::{BagError, BagWriter, GoneFile, Qos, TopicId, TopicToWrite};
 use excavator_msgs::definitions;
 
 use super::losses::Losses;
@@ -24,12 +24,22 @@ pub(super) enum Order {
 }
 
 /// What a recording became.
+#[derive(Debug)]
+pub(super) struct Outcome {
+    pub topics: Vec<TopicOutcome>,
+    /// Files that are not at their places any more.
+    pub gone: Vec<GoneFile>,
+}
+
+/// What the recording of a topic became.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TopicOutcome {
     /// Full name.
     pub name: String,
-    /// Messages written.
+    /// Messages in the bag.
     pub messages: u64,
+    /// Messages in files that were deleted or moved.
+    pub gone: u64,
     /// Messages that publishers sent and that never came.
     pub lost: u64,
     /// Publishers heard.
@@ -42,21 +52,51 @@ struct Recorded {
     losses: Losses,
 }
 
-/// Writes until the end is said, then closes the bag. `dropped` tells how many messages the recorder itself had no
-/// room for.
+/// Writes until the end is said, then closes the bag, also after a failure to write. `dropped` gives how many messages the
+/// recorder itself had no room for; `on_gone` hears of a file that is not at its place any more.
 pub(super) fn write(
     mut bag: BagWriter,
     orders: &Receiver<Order>,
     dropped: impl Fn() -> u64,
-) -> Result<Vec<TopicOutcome>, BagError> {
+    on_gone: impl Fn(&GoneFile),
+) -> Result<Outcome, BagError> {
     let mut topics: Vec<Recorded> = Vec::new();
+    let written = take_orders(&mut bag, orders, &mut topics, on_gone);
+    for topic in &mut topics {
+        topic.outcome.lost = topic.losses.lost();
+        topic.outcome.publishers = topic.losses.publishers();
+        bag.set_custom_data(&format!("lost_messages:{}", topic.outcome.name), &topic.outcome.lost.to_string());
+        let silence = format!("{:.3}", topic.losses.longest_silence());
+        bag.set_custom_data(&format!("longest_silence_seconds:{}", topic.outcome.name), &silence);
+    }
+    bag.set_custom_data("dropped_by_recorder", &dropped().to_string());
+    if let Err(error) = &written {
+        bag.set_custom_data("ended_by", &error.to_string());
+    }
+    let closed = bag.finish();
+    // The first failure is the cause of the second.
+    written?;
+    let gone = closed?;
+    for (index, topic) in topics.iter_mut().enumerate() {
+        topic.outcome.gone = gone.iter().filter_map(|file| file.by_topic.get(index)).sum();
+        topic.outcome.messages = topic.outcome.messages.saturating_sub(topic.outcome.gone);
+    }
+    Ok(Outcome { topics: topics.into_iter().map(|topic| topic.outcome).collect(), gone })
+}
+
+fn take_orders(
+    bag: &mut BagWriter,
+    orders: &Receiver<Order>,
+    topics: &mut Vec<Recorded>,
+    on_gone: impl Fn(&GoneFile),
+) -> Result<(), BagError> {
     let mut flushed = Instant::now();
     loop {
         match orders.recv_timeout(FLUSH.saturating_sub(flushed.elapsed())) {
             Ok(Order::Topic { name, type_name, qos }) => {
                 let schema = definitions::schema(&type_name).unwrap_or_default();
                 let id = bag.add_topic(&TopicToWrite { name: name.clone(), type_name, schema, qos })?;
-                let outcome = TopicOutcome { name, messages: 0, lost: 0, publishers: 0 };
+                let outcome = TopicOutcome { name, messages: 0, gone: 0, lost: 0, publishers: 0 };
                 topics.push(Recorded { id, outcome, losses: Losses::default() });
             }
             Ok(Order::Message { topic, sample }) => {
@@ -66,21 +106,14 @@ pub(super) fn write(
                 bag.write(topic.id, sample.received, sample.published.unwrap_or(sample.received), &sample.data)?;
             }
             Err(RecvTimeoutError::Timeout) => {}
-            Ok(Order::End) | Err(RecvTimeoutError::Disconnected) => break,
+            Ok(Order::End) | Err(RecvTimeoutError::Disconnected) => return Ok(()),
         }
         if flushed.elapsed() >= FLUSH {
             bag.flush()?;
+            if let Some(gone) = bag.stay_in_place()? {
+                on_gone(gone);
+            }
             flushed = Instant::now();
         }
     }
-    for topic in &mut topics {
-        topic.outcome.lost = topic.losses.lost();
-        topic.outcome.publishers = topic.losses.publishers();
-        bag.set_custom_data(&format!("lost_messages:{}", topic.outcome.name), &topic.outcome.lost.to_string());
-        let silence = format!("{:.3}", topic.losses.longest_silence());
-        bag.set_custom_data(&format!("longest_silence_seconds:{}", topic.outcome.name), &silence);
-    }
-    bag.set_custom_data("dropped_by_recorder", &dropped().to_string());
-    bag.finish()?;
-    Ok(topics.into_iter().map(|topic| topic.outcome).collect())
 }

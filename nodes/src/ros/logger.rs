@@ -5,6 +5,7 @@ use excavator_msgs::common::Log;
 
 use super::clock::system_nanoseconds;
 use super::{Level, Link, Outlet, RosArguments, RosError, TopicQos};
+use crate::terminal::complain;
 
 /// Log lines that late joiners of `/rosout` get, and for how long, s: as rcl has it.
 const ROSOUT: TopicQos = TopicQos { depth: 1000, lifespan: Some(10), ..TopicQos::latched() };
@@ -51,7 +52,7 @@ impl Logger {
         let stamp = Time::from_nanoseconds(system_nanoseconds()).unwrap_or_default();
         if self.console {
             let word = format!("{level:?}").to_uppercase();
-            eprintln!("[{word}] [{}.{:09}] [{}]: {message}", stamp.sec, stamp.nanosec, self.name);
+            complain(&format!("[{word}] [{}.{:09}] [{}]: {message}", stamp.sec, stamp.nanosec, self.name));
         }
         if let Some(rosout) = &self.rosout {
             let log = Log {

@@ -74,5 +74,5 @@ pub(crate) use parameter_services::{service_mapping, service_qos};
 pub use parameters::Parameters;
 pub(crate) use peers::Peers;
 pub use qos::TopicQos;
-pub use signals::Signals;
+pub use signals::{Signals, end_with_this_process};
 pub use supervisor::Supervisor;

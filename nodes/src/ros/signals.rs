@@ -1,12 +1,22 @@
 //! SIGINT and SIGTERM as something to wait for.
 
+use std::process::Command;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use nix::sys::signal::{SigSet, Signal};
+use nix::sys::prctl::set_pdeathsig;
+use nix::sys::signal::{SigSet, Signal, kill};
+use nix::unistd::{Pid, getpid, getppid};
 
 use super::RosError;
+
+/// Signals that ask for an end, after which the process ends at once, whatever it is doing.
+const AT_ONCE: u32 = 3;
+/// Signals within this time are one request: a terminal signals a whole process group, and the parent in it its children.
+const ONE_REQUEST: Duration = Duration::from_millis(500);
+/// Number of the process that has started this one and ends with it.
+const PARENT: &str = "EXCAVATOR_PARENT";
 
 /// Signals that end this process, waited for on a thread of their own.
 pub struct Signals {
@@ -17,33 +27,44 @@ impl Signals {
     /// Blocks the signals in this thread, and so in every thread that it starts from now on: an interrupted system call
     /// ends the middleware's threads for good. Call it before anything else is started.
     ///
-    /// A second signal while the first is being followed ends the process at once.
+    /// The first request to end is to be followed; the second is ignored, since the process closes its files by then; the
+    /// third ends the process at once. A process whose parent has named itself ([`end_with_this_process`]) gets SIGTERM
+    /// when the parent has gone.
     ///
     /// # Errors
     /// [`RosError::System`].
     pub fn block() -> Result<Self, RosError> {
-        let failed = |source: nix::Error| RosError::System { action: "block signals", source: source.into() };
+        let failed =
+            |action: &'static str| move |source: nix::Error| RosError::System { action, source: source.into() };
         let mut set = SigSet::empty();
         for signal in [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP, Signal::SIGUSR1] {
             set.add(signal);
         }
-        set.thread_block().map_err(failed)?;
+        set.thread_block().map_err(failed("block signals"))?;
         let (sender, arrived) = channel();
         std::thread::Builder::new()
             .name("signals".into())
             .spawn(move || {
-                let mut ending = false;
+                let mut requests = Requests::default();
                 while let Ok(signal) = set.wait() {
-                    if ending && signal != Signal::SIGUSR1 {
+                    if signal == Signal::SIGUSR1 || requests.count(Instant::now()) == Some(1) {
+                        if sender.send(signal).is_err() {
+                            return;
+                        }
+                    } else if requests.number >= AT_ONCE {
                         std::process::exit(130);
-                    }
-                    ending |= signal != Signal::SIGUSR1;
-                    if sender.send(signal).is_err() {
-                        return;
                     }
                 }
             })
             .map_err(|source| RosError::System { action: "start the signal thread", source })?;
+        let parent = std::env::var(PARENT).ok().and_then(|number| number.parse().ok()).map(Pid::from_raw);
+        if let Some(parent) = parent {
+            set_pdeathsig(Signal::SIGTERM).map_err(failed("end with the parent"))?;
+            // It may have gone before.
+            if getppid() != parent {
+                kill(getpid(), Signal::SIGTERM).map_err(failed("end with the parent"))?;
+            }
+        }
         Ok(Signals { arrived: Mutex::new(arrived) })
     }
 
@@ -58,5 +79,44 @@ impl Signals {
                 None
             }
         }
+    }
+}
+
+/// Lets a child that waits for signals end with this process, however this process ends; to be called by the thread that
+/// starts the child and lives as long.
+pub fn end_with_this_process(child: &mut Command) -> &mut Command {
+    child.env(PARENT, getpid().to_string())
+}
+
+/// Counts requests to end.
+#[derive(Debug, Default)]
+struct Requests {
+    number: u32,
+    last: Option<Instant>,
+}
+
+impl Requests {
+    /// Number of the request that comes with a signal; `None` for a signal that belongs to the request before.
+    fn count(&mut self, now: Instant) -> Option<u32> {
+        if self.last.is_some_and(|last| now.saturating_duration_since(last) < ONE_REQUEST) {
+            return None;
+        }
+        self.last = Some(now);
+        self.number += 1;
+        Some(self.number)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_burst_of_signals_is_one_request() {
+        let start = Instant::now();
+        let mut requests = Requests::default();
+        let at = |milliseconds| start + Duration::from_millis(milliseconds);
+        let counted: Vec<Option<u32>> = [0, 1, 300, 501, 700, 1100].map(|time| requests.count(at(time))).to_vec();
+        assert_eq!(counted, [Some(1), None, None, Some(2), None, Some(3)]);
     }
 }

@@ -1,6 +1,6 @@
 //! `excavator characterise`
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use excavator_identification::characterisation::characterise;
 use excavator_identification::report::characterisation_page;
@@ -10,12 +10,13 @@ use super::print;
 use crate::cli::CharacteriseArguments;
 use crate::error::VerbError;
 use crate::output::{characterisation_json, characterisation_table, refusals, write_json};
-use crate::{outputs, sources};
+use crate::outputs::{self, Inputs};
+use crate::sources;
 
 pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
-    let mut inputs: Vec<&Path> = arguments.bags.iter().map(PathBuf::as_path).collect();
-    inputs.push(Path::new(&arguments.model));
-    outputs::check(&[("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())], &inputs)?;
+    let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let inputs = Inputs::recordings(&arguments.bags, &arguments.mapping).and(&arguments.model);
+    outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let recordings = sources::recordings(&arguments.bags, &arguments.mapping, &model)?;
     let recordings: Vec<&Recording> = recordings.iter().collect();
@@ -29,10 +30,10 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
     }
     if let Some(path) = &arguments.report {
         let sources: Vec<String> = recordings.iter().map(|recording| recording.source.clone()).collect();
-        sources::write_text(path, &characterisation_page(&model, &sources, &found))?;
+        outputs::write(path, &characterisation_page(&model, &sources, &found), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &characterisation_json(&found))?;
+        write_json(path, &characterisation_json(&found), arguments.overwriting)?;
     }
     Ok(())
 }

@@ -9,13 +9,13 @@ use super::print;
 use crate::cli::CompareArguments;
 use crate::error::VerbError;
 use crate::output::{comparison_json, comparison_table, write_json};
-use crate::{outputs, sources};
+use crate::outputs::{self, Inputs};
+use crate::sources;
 
 pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
-    outputs::check(
-        &[("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())],
-        &[&arguments.bag, Path::new(&arguments.model)],
-    )?;
+    let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let inputs = Inputs::recordings([&arguments.bag], &arguments.mapping).and(&arguments.model);
+    outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let recording = sources::recording(&arguments.bag, &arguments.mapping, &model)?;
     let comparison = compare(&model, &recording)?;
@@ -24,10 +24,10 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
         print(&comparison_table(&comparison).to_string());
     }
     if let Some(path) = &arguments.report {
-        sources::write_text(path, &comparison_page(&model, std::slice::from_ref(&comparison)))?;
+        outputs::write(path, &comparison_page(&model, std::slice::from_ref(&comparison)), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &comparison_json(&comparison))?;
+        write_json(path, &comparison_json(&comparison), arguments.overwriting)?;
     }
     Ok(())
 }

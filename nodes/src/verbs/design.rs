@@ -13,13 +13,14 @@ use crate::cli::DesignArguments;
 use crate::diagnosis_file::DiagnosisFile;
 use crate::error::VerbError;
 use crate::output::{Progress, determination_json, number, pair_table, separation_json, write_json};
+use crate::outputs::{self, Inputs, write};
 use crate::profile_file::{ProfileFile, usual_rate};
-use crate::{outputs, sources};
+use crate::sources;
 
 pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {
     let outputs = [("-o", Some(arguments.output.as_path())), ("--json", arguments.json.json.as_deref())];
-    let diagnosis = arguments.diagnosis.as_deref();
-    outputs::check(&outputs, &[diagnosis.unwrap_or(Path::new("")), Path::new(&arguments.model)])?;
+    let inputs = arguments.diagnosis.iter().fold(Inputs::default().and(&arguments.model), Inputs::and);
+    outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let diagnosis = arguments.diagnosis.as_deref().map(DiagnosisFile::read).transpose()?;
     let model = diagnosis.as_ref().map_or_else(|| Ok(model.clone()), |file| file.with_fitted_along(&model))?;
@@ -67,13 +68,13 @@ fn between_rivals(
                 if pair.settled { "told apart" } else { "stay tied" }
             )
         });
-        write(path, model, &design.profiles, &design.plan, expectation.collect())?;
+        write(path, &text(model, &design.profiles, &design.plan, expectation.collect())?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&design, written);
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &separation_json(&design, written))?;
+        write_json(path, &separation_json(&design, written), arguments.overwriting)?;
     }
     if written.is_some() { Ok(()) } else { Err(VerbError::NothingSettles(sentence(&design))) }
 }
@@ -146,7 +147,7 @@ fn for_parameter(
             design.unit,
             number(design.value)
         );
-        write(path, &model, &design.profiles, &design.plan, vec![expectation])?;
+        write(path, &text(&model, &design.profiles, &design.plan, vec![expectation])?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show_parameter(&design);
@@ -155,7 +156,7 @@ fn for_parameter(
         }
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &determination_json(&design, written))?;
+        write_json(path, &determination_json(&design, written), arguments.overwriting)?;
     }
     if written.is_some() {
         return Ok(());
@@ -187,13 +188,8 @@ fn show_parameter(design: &ParameterDesign) {
     line("this profile, as a fit to a rehearsal reports it", design.rehearsed_error);
 }
 
-fn write(
-    path: &Path,
-    model: &Model,
-    profiles: &[Profile],
-    plan: &Plan,
-    expectation: Vec<String>,
-) -> Result<(), VerbError> {
+/// The profile file.
+fn text(model: &Model, profiles: &[Profile], plan: &Plan, expectation: Vec<String>) -> Result<String, VerbError> {
     let file =
         ProfileFile { rate: usual_rate(), start: std::collections::BTreeMap::new(), profiles: profiles.to_vec() };
     let mut comment = vec![format!(
@@ -202,5 +198,5 @@ fn write(
     )];
     comment.extend(plan.chosen.iter().map(|(name, start)| format!("{start:6.1} s  {name}")));
     comment.extend(expectation);
-    sources::write_text(path, &file.text(&comment)?)
+    file.text(&comment)
 }

@@ -13,11 +13,13 @@ use super::print;
 use crate::cli::DiagnoseArguments;
 use crate::error::VerbError;
 use crate::output::{Progress, candidate_table, diagnosis_json, missing_power_json, write_json};
-use crate::{outputs, sources};
+use crate::outputs::{self, Inputs};
+use crate::sources;
 
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
-    let inputs = [arguments.recordings.paths(), vec![Path::new(&arguments.model)]].concat();
-    outputs::check(&[("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())], &inputs)?;
+    let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let inputs = Inputs::recordings(arguments.recordings.bags(), &arguments.recordings.mapping).and(&arguments.model);
+    outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
     let identification: Vec<&Recording> = identification.iter().collect();
@@ -40,7 +42,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
             .iter()
             .map(|recording| compare(&diagnosis.nominal.model, recording))
             .collect::<Result<Vec<Comparison>, _>>()?;
-        sources::write_text(path, &diagnosis_page(&model, &diagnosis, &comparisons, &missing))?;
+        outputs::write(path, &diagnosis_page(&model, &diagnosis, &comparisons, &missing), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
         let mut value = diagnosis_json(&model, &diagnosis, &validation);
@@ -49,7 +51,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
             .iter()
             .map(|(source, found)| serde_json::json!({"source": source, "found": sentences(found)}))
             .collect();
-        write_json(path, &value)?;
+        write_json(path, &value, arguments.overwriting)?;
     }
     Ok(())
 }

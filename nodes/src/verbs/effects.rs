@@ -10,8 +10,11 @@ use super::print;
 use crate::cli::EffectsArguments;
 use crate::error::VerbError;
 use crate::output::{effect_table, number, write_json};
+use crate::outputs::{self, Inputs};
 
 pub fn run(arguments: &EffectsArguments) -> Result<(), VerbError> {
+    let outputs = [("--json", arguments.json.json.as_deref())];
+    outputs::check(&outputs, &Inputs::default(), arguments.overwriting)?;
     let wanted: Vec<&'static dyn Effect> = match &arguments.name {
         Some(name) => vec![effects::find(name)?],
         None => effects::CATALOGUE.to_vec(),
@@ -24,7 +27,7 @@ pub fn run(arguments: &EffectsArguments) -> Result<(), VerbError> {
     }
     if let Some(path) = &arguments.json.json {
         let cards = wanted.iter().map(|effect| card_json(*effect)).collect::<Result<Vec<Value>, _>>()?;
-        write_json(path, &json!({ "effects": cards }))?;
+        write_json(path, &json!({ "effects": cards }), arguments.overwriting)?;
     }
     Ok(())
 }

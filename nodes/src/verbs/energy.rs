@@ -15,7 +15,8 @@ use super::print;
 use crate::cli::{EnergyArguments, Mapping};
 use crate::error::VerbError;
 use crate::output::{energy_json, energy_table, ledger_table, write_json};
-use crate::{outputs, sources};
+use crate::outputs::{self, Inputs};
+use crate::{sources, terminal};
 
 /// Samples per block: ten seconds at 1 kHz.
 const BLOCK: usize = 10_000;
@@ -23,20 +24,19 @@ const BLOCK: usize = 10_000;
 const WAITING: usize = 4;
 
 pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
-    outputs::check(
-        &[("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())],
-        &[&arguments.bag, Path::new(&arguments.model)],
-    )?;
+    let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let inputs = Inputs::recordings([&arguments.bag], &arguments.mapping).and(&arguments.model);
+    outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let analysis = analyse_bag(&model, &arguments.bag, &arguments.mapping)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&model, &analysis);
     }
     if let Some(path) = &arguments.report {
-        sources::write_text(path, &energy_page(&model, &analysis))?;
+        outputs::write(path, &energy_page(&model, &analysis), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &energy_json(&model, &analysis))?;
+        write_json(path, &energy_json(&model, &analysis), arguments.overwriting)?;
     }
     Ok(())
 }
@@ -73,7 +73,7 @@ fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAna
         Err(panic) => std::panic::resume_unwind(panic),
     };
     for problem in report.problems() {
-        eprintln!("{}: {problem}", bag.display());
+        terminal::complain(&format!("{}: {problem}", bag.display()));
     }
     Ok(analysis?.finish()?)
 }

@@ -1,7 +1,7 @@
 //! `excavator identify`
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use excavator_identification::fit::{FitSettings, ProfileInterval, profile};
 use excavator_identification::fitted_along::{IN_REGRESSION, fit_with_effects_along, with_effects_along};
@@ -18,7 +18,8 @@ use super::print;
 use crate::cli::{IdentifyArguments, Method};
 use crate::error::VerbError;
 use crate::output::{identification_json, number, parameter_table, write_json};
-use crate::{outputs, sources};
+use crate::outputs::{self, Inputs};
+use crate::sources;
 
 struct Identified {
     model: Model,
@@ -32,9 +33,11 @@ struct Identified {
 }
 
 pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
-    let inputs: Vec<&Path> = arguments.bag.iter().map(PathBuf::as_path).collect();
-    // The model may be written over: it has a history.
-    outputs::check(&[("-o", arguments.output.as_deref()), ("--json", arguments.json.json.as_deref())], &inputs)?;
+    let outputs = [("-o", arguments.output.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let inputs = Inputs::recordings(&arguments.bag, &arguments.mapping);
+    // With --force the model may become its own successor: it has a history.
+    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    outputs::check(&outputs[1..], &inputs.and(&arguments.model), arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let recordings = sources::recordings(&arguments.bag, &arguments.mapping, &model)?;
     let recordings: Vec<&Recording> = recordings.iter().collect();
@@ -47,7 +50,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
         validation_error_after: None,
     });
     if let Some(path) = &arguments.output {
-        sources::write_text(path, &to_text(&result.model)?)?;
+        outputs::write(path, &to_text(&result.model)?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&model, &result);
@@ -73,7 +76,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
         if !result.profiles.is_empty() {
             value["profiles"] = profiles_json(&result);
         }
-        write_json(path, &value)?;
+        write_json(path, &value, arguments.overwriting)?;
     }
     Ok(())
 }

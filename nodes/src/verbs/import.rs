@@ -1,5 +1,7 @@
 //! `excavator import`
 
+use std::path::Path;
+
 use excavator_bags::map::{guess, read_recording_or_mapped};
 use excavator_bags::{Topics, WriteOptions, write_recording};
 use excavator_model::recording::is_measured;
@@ -7,7 +9,8 @@ use excavator_model::recording::is_measured;
 use super::print;
 use crate::cli::ImportArguments;
 use crate::error::VerbError;
-use crate::sources;
+use crate::outputs::{self, Inputs};
+use crate::terminal;
 
 pub fn run(arguments: &ImportArguments) -> Result<(), VerbError> {
     match &arguments.output {
@@ -19,21 +22,27 @@ pub fn run(arguments: &ImportArguments) -> Result<(), VerbError> {
 }
 
 fn guess_map(arguments: &ImportArguments) -> Result<(), VerbError> {
+    // The map beside the data is not read here, and may be made anew.
+    let inputs = Inputs::recording(&arguments.data);
+    outputs::check(&[("-o", arguments.output.as_deref())], &inputs, arguments.overwriting)?;
     let guessed = guess(&arguments.data, &arguments.cylinder)?;
     let text = guessed.to_text().map_err(excavator_bags::BagError::from)?;
-    print(text.trim_end());
-    if let Some(path) = &arguments.output {
-        sources::write_text(path, &text)?;
+    outputs::standard_output(&text)?;
+    match &arguments.output {
+        Some(path) if path != Path::new("-") => outputs::write(path, &text, arguments.overwriting),
+        _ => Ok(()),
     }
-    Ok(())
 }
 
-fn import(arguments: &ImportArguments, bag: &std::path::Path) -> Result<(), VerbError> {
+fn import(arguments: &ImportArguments, bag: &Path) -> Result<(), VerbError> {
+    let inputs = Inputs::recordings([&arguments.data], &arguments.mapping);
+    outputs::check_bag(bag, &inputs, arguments.overwriting)?;
     let (recording, report) = read_recording_or_mapped(&arguments.data, arguments.mapping.map.as_deref())?;
     for problem in report.problems() {
-        eprintln!("{}: {problem}", arguments.data.display());
+        terminal::complain(&format!("{}: {problem}", arguments.data.display()));
     }
-    write_recording(bag, &recording, &Topics::default(), &WriteOptions::default())?;
+    let options = WriteOptions { replace: arguments.overwriting.force, ..WriteOptions::default() };
+    write_recording(bag, &recording, &Topics::default(), &options)?;
     let measured: Vec<String> =
         recording.signals().into_iter().filter(|(_, values)| is_measured(values)).map(|(name, _)| name).collect();
     print(&format!(

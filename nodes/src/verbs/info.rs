@@ -13,12 +13,15 @@ use super::print;
 use crate::cli::InfoArguments;
 use crate::error::VerbError;
 use crate::output::{number, write_json};
+use crate::outputs::{self, Inputs};
 
 /// A clock that is off by more than this is worth a line, s: networks and recorders take less.
 const NOTABLE_DELAY: f64 = 0.1;
 
 pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     let path = &arguments.bag;
+    let inputs = Inputs::recordings([path], &arguments.mapping);
+    outputs::check(&[("--json", arguments.json.json.as_deref())], &inputs, arguments.overwriting)?;
     if DataTable::is_table(path) && arguments.mapping.map.is_none() && TopicMap::beside(path).is_none() {
         return table_without_map(arguments);
     }
@@ -40,7 +43,8 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
         }
     }
     if let Some(file) = &arguments.json.json {
-        write_json(file, &to_json(bag.as_ref(), &signals.as_ref().map(|(recording, _)| SignalsInfo::of(recording)))?)?;
+        let signals = signals.as_ref().map(|(recording, _)| SignalsInfo::of(recording));
+        write_json(file, &to_json(bag.as_ref(), &signals)?, arguments.overwriting)?;
     }
     // A bag without our topics is still a bag; a table or map that cannot be read is a failure.
     match signals {
@@ -71,7 +75,7 @@ fn table_without_map(arguments: &InfoArguments) -> Result<(), VerbError> {
         print("signals: none, for want of a map; `excavator import --guess` proposes one");
     }
     match &arguments.json.json {
-        Some(file) => write_json(file, &serde_json::to_value(&info)?),
+        Some(file) => write_json(file, &serde_json::to_value(&info)?, arguments.overwriting),
         None => Ok(()),
     }
 }

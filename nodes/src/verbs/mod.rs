@@ -20,6 +20,7 @@ use std::sync::OnceLock;
 use crate::cli::Verb;
 use crate::error::VerbError;
 use crate::ros::RosArguments;
+use crate::terminal;
 
 /// Runs a verb; `ros` is what stood after --ros-args, `ros_words` the same in words.
 pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), VerbError> {
@@ -49,9 +50,9 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
 /// Why something could not be printed.
 static NOT_PRINTED: OnceLock<Error> = OnceLock::new();
 
-/// Prints to standard output. A closed pipe is not an error of ours; of anything else [`all_was_printed`] tells.
+/// Prints to standard output what is safe for a terminal. A closed pipe is not an error of ours; of anything else [`all_was_printed`] tells.
 pub fn print(text: &str) {
-    match writeln!(std::io::stdout(), "{text}") {
+    match writeln!(std::io::stdout(), "{}", terminal::text(text)) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => drop(NOT_PRINTED.set(error)),
         _ => (),
     }

@@ -13,16 +13,16 @@ use super::print;
 use crate::cli::RefineArguments;
 use crate::error::VerbError;
 use crate::output::{Progress, parameter_table, refinement_json, step_table, write_json};
-use crate::{outputs, sources};
+use crate::outputs::{self, Inputs};
+use crate::sources;
 
 pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
-    // The model may be written over: it has a history.
-    let outputs = [
-        ("-o", Some(arguments.output.as_path())),
-        ("--report", arguments.report.as_deref()),
-        ("--json", arguments.json.json.as_deref()),
-    ];
-    outputs::check(&outputs, &arguments.recordings.paths())?;
+    let others = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let outputs = [("-o", Some(arguments.output.as_path())), others[0], others[1]];
+    let inputs = Inputs::recordings(arguments.recordings.bags(), &arguments.recordings.mapping);
+    // With --force the model may become its own successor: it has a history.
+    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    outputs::check(&others, &inputs.and(&arguments.model), arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let additions = if arguments.auto { Additions::Auto } else { named(&model, &arguments.add)? };
     let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
@@ -35,16 +35,16 @@ pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
         progress.tell(what, done);
     })?;
     drop(progress);
-    sources::write_text(&arguments.output, &to_text(&refinement.model)?)?;
+    outputs::write(&arguments.output, &to_text(&refinement.model)?, arguments.overwriting)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&refinement);
         print(&format!("written: {}", arguments.output.display()));
     }
     if let Some(path) = &arguments.report {
-        sources::write_text(path, &refinement_page(&refinement))?;
+        outputs::write(path, &refinement_page(&refinement), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &refinement_json(&refinement, &arguments.output))?;
+        write_json(path, &refinement_json(&refinement, &arguments.output), arguments.overwriting)?;
     }
     Ok(())
 }

@@ -12,17 +12,21 @@ use excavator_model::simulation::{InputSignals, Profile, RunError, Tolerances, r
 use super::print;
 use crate::cli::SimulateArguments;
 use crate::error::VerbError;
+use crate::outputs;
 use crate::profile_file::ProfileFile;
-use crate::sources;
+use crate::{sources, terminal};
 
 pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
+    let inputs = outputs::Inputs::recordings([&arguments.input], &arguments.mapping).and(&arguments.model);
+    outputs::check_bag(&arguments.output, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let simulated = if arguments.input.extension().is_some_and(|extension| extension == "toml") {
         with_profile(&model, &arguments.input)?
     } else {
         simulate(&model, &sources::recording(&arguments.input, &arguments.mapping, &model)?)?
     };
-    write_recording(&arguments.output, &simulated, &Topics::default(), &WriteOptions::default())?;
+    let options = WriteOptions { replace: arguments.overwriting.force, ..WriteOptions::default() };
+    write_recording(&arguments.output, &simulated, &Topics::default(), &options)?;
     print(&format!(
         "{}: {} samples, {:.1} s of {}",
         arguments.output.display(),
@@ -37,7 +41,7 @@ fn with_profile(model: &Model, path: &Path) -> Result<Recording, VerbError> {
     let syntax = |reason: String| VerbError::ProfileSyntax { path: path.to_path_buf(), reason };
     let file = ProfileFile::read(path, &model.machine)?;
     for remark in file.remarks(&model.machine) {
-        eprintln!("{}: {remark}", path.display());
+        terminal::complain(&format!("{}: {remark}", path.display()));
     }
     let names: Vec<&str> = model.machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();
     let samples = (file.duration() * file.rate).round() as usize + 1;

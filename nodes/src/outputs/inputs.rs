@@ -1,0 +1,76 @@
+//! Files that a command reads.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use excavator_bags::map::TopicMap;
+
+use super::place::FileId;
+use crate::cli::Mapping;
+use crate::recording_part::Part;
+
+/// Files that a command reads, by their identity on the disk.
+#[derive(Debug, Default)]
+pub struct Inputs {
+    files: BTreeSet<FileId>,
+}
+
+impl Inputs {
+    /// A recording: a file, or a folder with everything directly in it that may be read as a part of a bag.
+    pub fn recording(path: &Path) -> Self {
+        let mut inputs = Inputs::default();
+        inputs.add_recording(path);
+        inputs
+    }
+
+    /// Recordings with their map: the one given, or those beside them.
+    pub fn recordings<'p>(paths: impl IntoIterator<Item = &'p PathBuf>, mapping: &Mapping) -> Self {
+        let mut inputs = Inputs::default();
+        for path in paths {
+            let whole = inputs.add_recording(path);
+            if mapping.map.is_none()
+                && let Some(map) = TopicMap::beside(&whole)
+            {
+                inputs.add(&map);
+            }
+        }
+        mapping.map.iter().for_each(|map| inputs.add(map));
+        inputs
+    }
+
+    /// These, and a file or the name of a built-in model.
+    #[must_use]
+    pub fn and(mut self, file: impl AsRef<Path>) -> Self {
+        self.add(file.as_ref());
+        self
+    }
+
+    /// Whether this file is read.
+    pub fn has(&self, id: FileId) -> bool {
+        self.files.contains(&id)
+    }
+
+    /// Whether a file is in both.
+    pub fn meets(&self, other: &Inputs) -> bool {
+        !self.files.is_disjoint(&other.files)
+    }
+
+    fn add_recording(&mut self, path: &Path) -> PathBuf {
+        let whole = Part::split(path).map_or_else(|_| path.to_path_buf(), |(whole, _)| whole);
+        self.add(&whole);
+        for entry in std::fs::read_dir(&whole).into_iter().flatten().flatten() {
+            let name = entry.file_name().to_string_lossy().to_lowercase();
+            if [".mcap", ".db3", ".zstd", "metadata.yaml"].iter().any(|end| name.ends_with(end)) {
+                self.add(&entry.path());
+            }
+        }
+        whole
+    }
+
+    fn add(&mut self, path: &Path) {
+        // What does not exist is missed by its reader.
+        if let Ok(found) = path.metadata() {
+            self.files.insert(FileId::of(&found));
+        }
+    }
+}
