@@ -13,8 +13,8 @@ use crate::live::{Network, folder, messages, sleep};
 
 /// The last values that a part of a node told.
 fn values(bag: &Path, part: &str) -> Vec<(String, String)> {
-    let statuses = messages::<DiagnosticArray>(bag, "/diagnostics").into_iter().flat_map(|(_, array)| array.status);
-    let last = statuses.filter(|status| status.name.ends_with(part)).next_back().expect("the part");
+    let mut statuses = messages::<DiagnosticArray>(bag, "/diagnostics").into_iter().flat_map(|(_, array)| array.status);
+    let last = statuses.rfind(|status| status.name.ends_with(part)).expect("the part");
     last.values.into_iter().map(|entry| (entry.key, entry.value)).collect()
 }
 

@@ -2,6 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use excavator_msgs::Time;
+use rustdds::bytes::Bytes;
+
 /// Whether messages of the topic are commands to a machine: openings of valves, and the emergency stop. A live machine on
 /// the same graph would obey a recording of them.
 pub(super) fn is_command(name: &str, type_name: &str) -> bool {
@@ -10,6 +13,22 @@ pub(super) fn is_command(name: &str, type_name: &str) -> bool {
         || last("orifice_command")(name)
         || (last("stop")(name) && last("Bool")(type_name))
 }
+
+/// An `OrificeCommand` (CDR, little endian, with encapsulation) stamped with the time of now: whoever names the topic wants its
+/// commands followed, and a machine refuses those that are as old as the recording. What is no such message stays as it is.
+pub(super) fn stamped_now(data: Bytes, type_name: &str, now: Time) -> Bytes {
+    let is_command = type_name.rsplit('/').next() == Some("OrificeCommand");
+    if !is_command || data.len() < STAMP.end || !data.starts_with(&[0, 1]) {
+        return data;
+    }
+    let mut bytes = data.to_vec();
+    bytes[STAMP][..4].copy_from_slice(&now.sec.to_le_bytes());
+    bytes[STAMP][4..].copy_from_slice(&now.nanosec.to_le_bytes());
+    bytes.into()
+}
+
+/// Where the stamp is: the header comes first, after four bytes of encapsulation.
+const STAMP: std::ops::Range<usize> = 4..12;
 
 /// The line about topics that are not played.
 pub(super) fn left_out_line(topics: &BTreeSet<String>) -> String {
@@ -22,8 +41,25 @@ pub(super) fn left_out_line(topics: &BTreeSet<String>) -> String {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use excavator_bags::cdr;
+    use excavator_msgs::OrificeCommand;
+
+    #[test]
+    fn commands_are_stamped_anew_and_nothing_else_is() {
+        let now = Time { sec: 1_800_000_000, nanosec: 5 };
+        let old = OrificeCommand { header: Default::default(), names: vec!["arm".into()], areas: vec![2e-5] };
+        let data = Bytes::from(cdr::encode(&old).unwrap());
+        let stamped: OrificeCommand =
+            cdr::decode(&stamped_now(data.clone(), "excavator_msgs/msg/OrificeCommand", now)).unwrap();
+        assert_eq!(stamped.header.stamp, now);
+        assert_eq!((stamped.names, stamped.areas), (old.names, old.areas));
+        assert_eq!(stamped_now(data.clone(), "excavator_msgs/msg/ArmState", now), data);
+        let short = data.slice(..8);
+        assert_eq!(stamped_now(short.clone(), "excavator_msgs/msg/OrificeCommand", now), short);
+    }
 
     #[test]
     fn commands_are_known_by_type_and_by_name() {

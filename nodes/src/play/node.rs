@@ -11,7 +11,7 @@ use excavator_msgs::common::Clock;
 use rustdds::policy;
 use rustdds::{QosPolicies, QosPolicyBuilder};
 
-use super::commands::{is_command, left_out_line};
+use super::commands::{is_command, left_out_line, stamped_now};
 use super::keys::Keys;
 use super::schedule::Schedule;
 use crate::cli::PlayArguments;
@@ -200,7 +200,12 @@ impl Player<'_> {
             self.open(&message.topic)?;
         }
         let Some(outlet) = self.outlets.get(&message.topic.name) else { return Ok(()) };
-        match outlet.publish(message.data) {
+        let data = match self.clock {
+            // Who goes by the clock of the bag takes its stamps, too.
+            Some(_) => message.data,
+            None => stamped_now(message.data, &message.topic.type_name, self.supervisor.clock.now()),
+        };
+        match outlet.publish(data) {
             Ok(()) => self.counts.played += 1,
             Err(PublishError::Failed(reason)) => {
                 if self.counts.unplayable == 0 {
