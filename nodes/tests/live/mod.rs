@@ -176,7 +176,7 @@ pub fn python_with_cyclone() -> Option<PathBuf> {
 pub fn custom_number(bag: &Path, key: &str) -> u64 {
     let text = std::fs::read_to_string(bag.join("metadata.yaml")).unwrap();
     let line = text.lines().find(|line| line.trim_start().starts_with(key)).unwrap_or_else(|| panic!("{key}: {text}"));
-    line.rsplit('\'').nth(1).unwrap().parse().unwrap()
+    line.rsplit(['\'', '"']).nth(1).unwrap().parse().unwrap()
 }
 
 pub fn folder() -> (tempfile::TempDir, PathBuf) {
