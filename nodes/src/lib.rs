@@ -48,9 +48,10 @@ pub fn run_command_line() -> ExitCode {
 
 /// Ends the program with what is wrong in the command line, or with its help. Names in it may be those of files of others.
 fn refuse(refusal: &clap::Error) -> ! {
-    let plain = refusal.render().to_string();
-    if let std::borrow::Cow::Owned(shown) = terminal::text(&plain) {
-        eprint!("{shown}");
+    let is_odd = |word: std::ffi::OsString| terminal::printable(&word.to_string_lossy()) != word.to_string_lossy();
+    if std::env::args_os().any(is_odd) {
+        // Without colours, in which a name could hide.
+        eprint!("{}", terminal::text(&refusal.render().to_string()));
         std::process::exit(refusal.exit_code());
     }
     refusal.exit()

@@ -101,7 +101,7 @@ fn a_recording_that_judges_its_own_fit_is_told() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "bag", &swinging(|_| ()));
     let told = |identification: &str, validation: &str| {
-        let words = ["refine", "--model", "zx30u-arm", "-o", "m.toml", "--add", "payload"];
+        let words = ["refine", "--model", "zx30u-arm", "-o", "m.toml", "--force", "--add", "payload"];
         let bags = ["--identification", identification, "--validation", validation];
         complaint(&excavator(folder.path(), &[&words[..], &bags].concat()))
     };

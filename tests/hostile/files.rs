@@ -206,7 +206,8 @@ fn names_of_others_do_nothing_to_a_terminal() {
         let output = excavator(folder.path(), &words);
         is_safe(&output.stdout);
         is_safe(&output.stderr);
-        let visible = |bytes: &[u8]| String::from_utf8_lossy(bytes).contains("\\u{1b}]0;owned\\u{7}");
+        // What the usage is printed with leaves the longer escapes out.
+        let visible = |bytes: &[u8]| String::from_utf8_lossy(bytes).contains("\\u{9b}31m\\u{202e}");
         assert!(visible(&output.stdout) || visible(&output.stderr), "{words:?}: {output:?}");
         lines += 1;
     }
@@ -276,7 +277,7 @@ fn the_longest_profile_stays_within_its_memory() {
     let start = Instant::now();
     let (peak, output) = peak_of(folder.path(), &SIMULATE, Duration::from_secs(600));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(peak < 1500.0, "{peak} MB");
+    assert!(peak < 1000.0, "{peak} MB");
     Fault {
         group: "Files",
         tried: "the longest profile that is simulated, an hour at 1 kHz",
