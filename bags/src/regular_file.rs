@@ -86,6 +86,7 @@ fn name_of(kind: FileType) -> &'static str {
 }
 
 #[cfg(all(test, unix))]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

@@ -118,7 +118,14 @@ impl McapFile {
 
     /// Reads on in the chunk and puts it back while it has more; `None` when something else than a message came.
     fn next_in_chunk(&mut self, mut chunk: OpenChunk) -> Option<RawMessage> {
-        match next_in_memory(&chunk.records, &mut chunk.position) {
+        // A chunk can be nothing but empty records of no use, seven million of them: they are passed over here.
+        let next = loop {
+            match next_in_memory(&chunk.records, &mut chunk.position) {
+                Ok(Some((opcode, _))) if !matches!(opcode, op::MESSAGE | op::SCHEMA | op::CHANNEL) => {}
+                next => break next,
+            }
+        };
+        match next {
             Ok(Some((opcode, range))) => {
                 let content = chunk.records.slice(range);
                 let message = self.in_memory_record(opcode, content, chunk.offset);
