@@ -52,6 +52,7 @@ pub fn closed_gaps(time: &[f64], interval: f64) -> Cow<'_, [f64]> {
 }
 
 #[cfg(test)]
+#[allow(clippy::single_range_in_vec_init)]
 mod tests {
     use super::*;
 
