@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use excavator_bags::{ReadLimits, read_regular_text};
 use excavator_identification::design::Sensors;
 use excavator_model::{Model, ModelError};
 use serde::Deserialize;
@@ -66,10 +67,9 @@ impl DiagnosisFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`VerbError::Read`], [`VerbError::DiagnosisSyntax`].
+    /// [`VerbError::Bag`], [`VerbError::DiagnosisSyntax`].
     pub fn read(path: &Path) -> Result<Self, VerbError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| VerbError::Read { path: path.to_path_buf(), source })?;
+        let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
         let text: Text = serde_json::from_str(&text)
             .map_err(|error| VerbError::DiagnosisSyntax { path: path.to_path_buf(), reason: error.to_string() })?;
         let name = |candidate: &Candidate| format!("{}@{}", candidate.effect, candidate.cylinder);

@@ -51,8 +51,6 @@ pub enum VerbError {
     Ros(#[from] RosError),
     #[error(transparent)]
     Profile(#[from] ProfileError),
-    #[error("cannot read {}: {source}", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: std::io::Error },
     #[error("{} is not a profile: {reason}", path.display())]

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use excavator_bags::{ReadLimits, read_regular_text};
 use excavator_model::machine::Machine;
 use excavator_model::simulation::{Profile, Segment};
 use serde::{Deserialize, Serialize};
@@ -48,8 +49,7 @@ impl ProfileFile {
     /// # Errors
     /// [`VerbError`] in one line that says which number or name is wrong.
     pub fn read(path: &Path, machine: &Machine) -> Result<Self, VerbError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| VerbError::Read { path: path.to_path_buf(), source })?;
+        let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
         let syntax = |reason: String| VerbError::ProfileSyntax { path: path.to_path_buf(), reason };
         let file: ProfileFile = toml::from_str(&text).map_err(|error| syntax(error.message().replace('\n', " ")))?;
         if !(1.0..=100_000.0).contains(&file.rate) {

@@ -3,6 +3,7 @@
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 
+use excavator_bags::{ReadLimits, read_regular_text};
 use serde::Deserialize;
 
 use super::signals::Treatment;
@@ -251,7 +252,7 @@ impl Description {
     /// # Errors
     /// What is wrong, in one line.
     pub fn read(path: &Path) -> Result<Self, String> {
-        let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let text = read_regular_text(path, ReadLimits::DEFAULT.document).map_err(|error| error.to_string())?;
         let mut description = Self::parse(&text).map_err(|reason| format!("{}: {reason}", path.display()))?;
         // Names of files are seen from the description, wherever the program was started.
         let folder = path.parent().unwrap_or(Path::new("."));

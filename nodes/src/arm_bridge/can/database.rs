@@ -6,6 +6,7 @@ use std::path::Path;
 use can_dbc::{
     ByteOrder, Dbc, Message, MessageId, MultiplexIndicator, NumericValue, Signal, SignalExtendedValueType, ValueType,
 };
+use excavator_bags::{ReadLimits, read_regular};
 
 use super::bits::{Bits, Coding};
 
@@ -81,7 +82,7 @@ impl Database {
         if length > LONGEST {
             return Err(failed(format!("{length} bytes are no DBC file; the longest that is read has {LONGEST}")));
         }
-        let bytes = std::fs::read(path).map_err(|error| failed(error.to_string()))?;
+        let bytes = read_regular(path, ReadLimits::DEFAULT.document).map_err(|error| failed(error.to_string()))?;
         Self::parse(&bytes).map_err(failed)
     }
 
