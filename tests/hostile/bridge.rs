@@ -40,6 +40,9 @@ fn datagram(pressure: f32, number: u16) -> Vec<u8> {
     [pressure.to_le_bytes().as_slice(), &number.to_le_bytes()].concat()
 }
 
+/// Time in which new counts reach the recorder, s: diagnostics come once per second.
+const DIAGNOSTICS: f64 = 2.0;
+
 #[test]
 fn repeated_old_and_impossible_datagrams_are_not_measured() {
     let Some(network) = Network::new("odd") else { return };
@@ -69,7 +72,7 @@ fn repeated_old_and_impossible_datagrams_are_not_measured() {
             sleep(0.01);
         }
     });
-    sleep(0.3);
+    sleep(DIAGNOSTICS);
     assert_eq!(recorder.interrupt().0, 0);
     assert_eq!(bridge.interrupt().0, 0);
     let pressures: Vec<f64> =
@@ -120,7 +123,7 @@ fn datagrams_of_other_machines_are_taken_only_from_those_named() {
                 sleep(0.01);
             }
         });
-        sleep(0.3);
+        sleep(DIAGNOSTICS);
         assert_eq!(recorder.interrupt().0, 0);
         assert_eq!(bridge.interrupt().0, 0);
         let states = messages::<ArmState>(&bag, "/arm/state");
