@@ -5,11 +5,14 @@ use std::io::{self, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// Kind and number of an error of the operating system, which cannot itself be copied.
+type Failure = (io::ErrorKind, Option<i32>);
+
 /// What became of the bytes for a [`Counted`] file; clones share it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Progress {
     bytes: Arc<AtomicU64>,
-    failure: Arc<Mutex<Option<(io::ErrorKind, Option<i32>)>>>,
+    failure: Arc<Mutex<Option<Failure>>>,
 }
 
 impl Progress {
