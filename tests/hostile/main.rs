@@ -7,3 +7,8 @@
 mod fault;
 #[path = "../../nodes/tests/live/mod.rs"]
 mod live;
+#[cfg(feature = "security")]
+mod keystore;
+mod network;
+#[cfg(feature = "security")]
+mod security;

@@ -19,7 +19,7 @@ const GLANCE: Duration = Duration::from_millis(200);
 /// # Errors
 /// [`VerbError`] when it cannot start.
 pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
-    let supervisor = Supervisor::start("identification", ros, Vec::new())?;
+    let supervisor = Supervisor::start_large("identification", ros, Vec::new())?;
     let model = supervisor.link.publish_latched("/arm/model", TopicQos::latched())?;
     let (jobs, work) = channel();
     let (told, news) = channel();
