@@ -36,7 +36,26 @@ impl Keystore {
             let (key, certificate) = (format!("private/{authority}.key.pem"), format!("public/{authority}.cert.pem"));
             let subject = format!("/CN={authority}");
             let curve = "ec_paramgen_curve:prime256v1";
-            openssl(root, &["req", "-x509", "-newkey", "ec", "-pkeyopt", curve, "-nodes", "-keyout", &key, "-out", &certificate, "-days", "3650", "-subj", &subject]);
+            openssl(
+                root,
+                &[
+                    "req",
+                    "-x509",
+                    "-newkey",
+                    "ec",
+                    "-pkeyopt",
+                    curve,
+                    "-nodes",
+                    "-keyout",
+                    &key,
+                    "-out",
+                    &certificate,
+                    "-days",
+                    "3650",
+                    "-subj",
+                    &subject,
+                ],
+            );
         }
         sign(root, &governance(protection), Path::new("enclaves/governance"));
         for enclave in enclaves {
@@ -77,10 +96,44 @@ impl Keystore {
         // The name begins with a slash, which openssl would take for a separator.
         let subject = format!("/CN={}", enclave.name.replace('/', "\\/"));
         let curve = "ec_paramgen_curve:prime256v1";
-        openssl(&folder, &["req", "-newkey", "ec", "-pkeyopt", curve, "-nodes", "-keyout", "key.pem", "-out", "request.pem", "-subj", &subject]);
+        openssl(
+            &folder,
+            &[
+                "req",
+                "-newkey",
+                "ec",
+                "-pkeyopt",
+                curve,
+                "-nodes",
+                "-keyout",
+                "key.pem",
+                "-out",
+                "request.pem",
+                "-subj",
+                &subject,
+            ],
+        );
         let authority = root.join("public/identity_ca.cert.pem");
         let key = root.join("private/identity_ca.key.pem");
-        openssl(&folder, &["x509", "-req", "-in", "request.pem", "-CA", authority.to_str().unwrap(), "-CAkey", key.to_str().unwrap(), "-out", "cert.pem", "-days", "3650", "-set_serial", "1"]);
+        openssl(
+            &folder,
+            &[
+                "x509",
+                "-req",
+                "-in",
+                "request.pem",
+                "-CA",
+                authority.to_str().unwrap(),
+                "-CAkey",
+                key.to_str().unwrap(),
+                "-out",
+                "cert.pem",
+                "-days",
+                "3650",
+                "-set_serial",
+                "1",
+            ],
+        );
         sign(root, &permissions(enclave), &folder.join("permissions"));
     }
 }
@@ -90,7 +143,22 @@ fn sign(root: &Path, document: &str, name: &Path) {
     let (xml, signed) = (root.join(name).with_extension("xml"), root.join(name).with_extension("p7s"));
     std::fs::write(&xml, document).unwrap();
     let [xml, signed] = [xml, signed].map(|path| path.to_str().unwrap().to_string());
-    openssl(root, &["smime", "-sign", "-text", "-in", &xml, "-out", &signed, "-signer", "public/permissions_ca.cert.pem", "-inkey", "private/permissions_ca.key.pem"]);
+    openssl(
+        root,
+        &[
+            "smime",
+            "-sign",
+            "-text",
+            "-in",
+            &xml,
+            "-out",
+            &signed,
+            "-signer",
+            "public/permissions_ca.cert.pem",
+            "-inkey",
+            "private/permissions_ca.key.pem",
+        ],
+    );
 }
 
 /// The governance of SROS2, but for the protection of whole messages.

@@ -5,10 +5,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod fault;
-#[path = "../../nodes/tests/live/mod.rs"]
-mod live;
 #[cfg(feature = "security")]
 mod keystore;
+#[path = "../../nodes/tests/live/mod.rs"]
+mod live;
 mod network;
 #[cfg(feature = "security")]
 mod security;

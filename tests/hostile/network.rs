@@ -25,7 +25,10 @@ const OPEN: f64 = 2e-5;
 const MEETING: f64 = 6.0;
 
 /// Runs `work` on a thread inside a network namespace; sockets and threads that it makes are there too.
-pub fn inside<T: Send + 'static>(network: &Network, work: impl FnOnce() -> T + Send + 'static) -> std::thread::JoinHandle<T> {
+pub fn inside<T: Send + 'static>(
+    network: &Network,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> std::thread::JoinHandle<T> {
     let namespace = std::fs::File::open(Path::new("/run/netns").join(network.name())).unwrap();
     std::thread::spawn(move || {
         use rustix::thread::{LinkNameSpaceType, move_into_link_name_space};
@@ -223,7 +226,11 @@ fn stranger(
 pub fn pairs(seen: &Seen) -> Vec<(&Endpoint, &Endpoint)> {
     let of = |reader: &'_ Endpoint| reader.topic.clone();
     let pair = |reader| seen.writers.iter().filter(move |w| w.topic == of(reader)).map(move |writer| (reader, writer));
-    seen.readers.iter().flat_map(pair).filter(|(reader, writer)| reader.identity[..12] != writer.identity[..12]).collect()
+    seen.readers
+        .iter()
+        .flat_map(pair)
+        .filter(|(reader, writer)| reader.identity[..12] != writer.identity[..12])
+        .collect()
 }
 
 /// What a machine's programs went through: memory of each, states, and the valve.
@@ -238,10 +245,7 @@ struct Machine {
 
 /// Simulator, monitor and recorder on one side and an operator who opens the arm's valve; a stranger on the other side sends
 /// its packets. A second later the operator falls silent, and two seconds later all ends.
-fn machine(
-    name: &str,
-    packets: impl Fn(&Seen) -> Vec<(Vec<u8>, Vec<SocketAddr>)> + Send + 'static,
-) -> Option<Machine> {
+fn machine(name: &str, packets: impl Fn(&Seen) -> Vec<(Vec<u8>, Vec<SocketAddr>)> + Send + 'static) -> Option<Machine> {
     let (left, right) = Network::pair(name)?;
     let (_keep, folder) = folder();
     let bag = folder.join("bag");
@@ -361,7 +365,8 @@ fn other_packets_with_huge_numbers() {
 fn without_the_guard_the_same_heartbeat_fills_the_memory() {
     let Some((left, right)) = Network::pair("naked") else { return };
     let words = ["node", "arm-simulator", "--ros-args", "-p", "rate:=200"];
-    let naked = left.start_other(Path::new(env!("CARGO_BIN_EXE_excavator")), &words, &[("EXCAVATOR_PACKET_GUARD", "off")]);
+    let naked =
+        left.start_other(Path::new(env!("CARGO_BIN_EXE_excavator")), &words, &[("EXCAVATOR_PACKET_GUARD", "off")]);
     let guarded = left.start(&["node", "arm-simulator", "--ros-args", "-r", "__node:=guarded", "-p", "rate:=200"]);
     let stop = Arc::new(AtomicBool::new(false));
     let operator = operator(&left, &stop);

@@ -102,7 +102,8 @@ fn a_heartbeat_without_keys_does_nothing_even_without_the_guard() {
         let seen = look(&participant);
         let socket = std::net::UdpSocket::bind("0.0.0.0:0").unwrap();
         let mut sent = 0;
-        for (reader, writer) in pairs(&seen).into_iter().filter(|(reader, _)| reader.topic == "rt/arm/orifice_command") {
+        for (reader, writer) in pairs(&seen).into_iter().filter(|(reader, _)| reader.topic == "rt/arm/orifice_command")
+        {
             for count in 0..15 {
                 for address in &reader.addresses {
                     socket.send_to(&heartbeat(reader, writer, 1 << 26, 1_000_000 + count), address).unwrap();

@@ -127,9 +127,7 @@ impl Connection {
 
 /// A participant in the domain and on the networks of the environment, with a filter in front of its sockets before it can
 /// have met a peer.
-pub(super) fn participant(
-    environment: &Environment,
-) -> Result<(DomainParticipant, Result<Guard, GuardError>), String> {
+pub(super) fn participant(environment: &Environment) -> Result<(DomainParticipant, Result<Guard, GuardError>), String> {
     let builder = DomainParticipantBuilder::new(environment.domain);
     let builder = match environment.networks() {
         Some(networks) => builder.with_only_networks(networks),
@@ -146,10 +144,7 @@ pub(super) fn participant(
 
 #[cfg(feature = "security")]
 #[allow(clippy::unnecessary_wraps)]
-fn secured(
-    builder: DomainParticipantBuilder,
-    enclave: &std::path::Path,
-) -> Result<DomainParticipantBuilder, String> {
+fn secured(builder: DomainParticipantBuilder, enclave: &std::path::Path) -> Result<DomainParticipantBuilder, String> {
     // SROS2 does not encrypt keys.
     let files = rustdds::DomainParticipantSecurityConfigFiles::with_ros_default_names(enclave, String::new());
     Ok(builder.builtin_security(files))

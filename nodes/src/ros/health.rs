@@ -73,12 +73,7 @@ pub(super) struct Watch {
 
 impl Watch {
     /// Watches a connection that was built a moment ago, and the memory of this process where that is asked for.
-    pub fn new(
-        environment: Environment,
-        participant: DomainParticipant,
-        threads: Threads,
-        watch_memory: bool,
-    ) -> Self {
+    pub fn new(environment: Environment, participant: DomainParticipant, threads: Threads, watch_memory: bool) -> Self {
         Watch {
             environment,
             participant,

@@ -7,9 +7,9 @@ use excavator_msgs::Message;
 use rustdds::DomainParticipant;
 use tokio::runtime::Handle;
 
-use super::guard::{Guard, GuardError};
 use super::connection::{Closed, Connection, Endpoint, Install, Task};
 use super::dds_names::dds_topic;
+use super::guard::{Guard, GuardError};
 use super::inlet::{Inlet, Received};
 use super::patience::{BUILDING, FAREWELL, let_go, within};
 use super::threads::Threads;

@@ -93,9 +93,11 @@ fn refused(problem: String) -> RosError {
 /// The folder of an enclave with all its files, and what it has that will not be followed.
 fn folder(keystore: Option<&str>, enclave: &str) -> Result<(PathBuf, Option<String>), String> {
     let keystore = keystore.ok_or_else(|| format!("{KEYSTORE} is not set"))?;
-    let word = |word: &str| !word.is_empty() && word.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+    let word =
+        |word: &str| !word.is_empty() && word.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
     let relative = enclave.strip_prefix('/').filter(|rest| rest.is_empty() || rest.split('/').all(word));
-    let relative = relative.ok_or_else(|| format!("\"{enclave}\" is not the name of an enclave: /name or /group/name"))?;
+    let relative =
+        relative.ok_or_else(|| format!("\"{enclave}\" is not the name of an enclave: /name or /group/name"))?;
     let folder = Path::new(keystore).join("enclaves").join(relative);
     let missing: Vec<&str> = FILES.into_iter().filter(|file| std::fs::File::open(folder.join(file)).is_err()).collect();
     if !missing.is_empty() {

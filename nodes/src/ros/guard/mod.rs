@@ -43,9 +43,9 @@ impl Limits {
     }
 }
 
-/// Sixteen submessages of any kind, and 138 pairs of time stamp and sample: what RustDDS packs into one repair round (8192
-/// bytes) with samples of 24 bytes or more, and twice what Cyclone DDS packs into a datagram of fragments.
-const SHAPE: Shape = Shape { any: 4, pairs: 46, blocks: 4 };
+/// Fourteen submessages of any kind, as many as Cyclone DDS packs into a datagram of fragments, and 144 samples: as many of 24
+/// bytes as RustDDS packs into one repair round of 8192 bytes.
+const SHAPE: Shape = Shape { first: 5, samples: 48, more: 3, blocks: 3 };
 
 /// Why packets are not checked.
 #[derive(Debug, Clone, thiserror::Error)]

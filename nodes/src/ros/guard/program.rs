@@ -59,14 +59,17 @@ pub(super) struct Limits {
     pub fragments: u32,
 }
 
-/// How many submessages a message may have.
+/// How many submessages a message may have. A message is laid out in blocks of submessages of any kind, with samples between
+/// them; what is not there is skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// Submessages of any kind, in each block.
-    pub any: usize,
-    /// Pairs of INFO_TS and DATA between two blocks: RustDDS packs what waits into one datagram.
-    pub pairs: usize,
-    /// Blocks, with pairs between them.
+    /// Submessages of any kind at the beginning, in either order of bytes.
+    pub first: usize,
+    /// Samples, each with its time stamp or without, between two blocks: RustDDS packs what waits into one datagram.
+    pub samples: usize,
+    /// Submessages of any kind in each further block; those with checks must be little endian.
+    pub more: usize,
+    /// Number of further blocks.
     pub blocks: usize,
 }
 
@@ -74,18 +77,26 @@ pub(super) struct Shape {
 pub(super) fn program(limits: &Limits, shape: &Shape) -> Option<Vec<Instruction>> {
     let mut writer = Writer { code: Assembler::default(), limits: *limits };
     writer.head();
-    for block in 0..shape.blocks {
-        for _ in 0..shape.any {
-            writer.any();
+    for _ in 0..shape.first {
+        writer.any(Checked::BothOrders);
+    }
+    for _ in 0..shape.blocks {
+        for _ in 0..shape.samples {
+            writer.sample();
         }
-        if block + 1 < shape.blocks {
-            for _ in 0..shape.pairs {
-                writer.pair();
-            }
+        for _ in 0..shape.more {
+            writer.any(Checked::LittleEndian);
         }
     }
     writer.tail();
     writer.code.assemble()
+}
+
+/// Orders in which submessages with checks are taken; refused in another.
+#[derive(Clone, Copy)]
+enum Checked {
+    BothOrders,
+    LittleEndian,
 }
 
 #[derive(Clone, Copy)]
@@ -139,7 +150,7 @@ impl Writer {
     }
 
     /// One submessage of any kind.
-    fn any(&mut self) {
+    fn any(&mut self, orders: Checked) {
         let (numbers, data_frag, nack_frag) = (self.code.label(), self.code.label(), self.code.label());
         let (walk, refuse) = (self.code.label(), self.code.label());
         self.end_or_go_on();
@@ -155,11 +166,11 @@ impl Writer {
         }
         self.code.jump(walk);
         self.code.place(numbers);
-        self.numbers(walk, refuse);
+        self.numbers(orders, walk, refuse);
         self.code.place(data_frag);
-        self.data_frag(walk, refuse);
+        self.data_frag(orders, walk, refuse);
         self.code.place(nack_frag);
-        self.nack_frag(walk, refuse);
+        self.nack_frag(orders, walk, refuse);
         self.code.place(refuse);
         self.drop();
         self.code.place(walk);
@@ -218,13 +229,20 @@ impl Writer {
     }
 
     /// A HEARTBEAT or a GAP, which have the same layout: reader, writer, first number, last number or base of the list.
-    fn numbers(&mut self, walk: Label, refuse: Label) {
+    fn numbers(&mut self, orders: Checked, walk: Label, refuse: Label) {
         let (first, last) = (HEADER + 8, HEADER + 16);
-        self.in_both_orders(|writer, order| {
+        let mut load = |writer: &mut Self, order| {
             writer.load_number(first, order, refuse);
             writer.code.plain(code::STORE, FIRST);
             writer.load_number(last, order, refuse);
-        });
+        };
+        match orders {
+            Checked::BothOrders => self.in_both_orders(load),
+            Checked::LittleEndian => {
+                self.little_endian_or(refuse);
+                load(self, Order::Little);
+            }
+        }
         self.code.plain(code::INDEX_FROM_CELL, FIRST);
         self.code.plain(code::SUBTRACT_INDEX, 0);
         self.code.plain(code::INDEX_FROM_CELL, OFFSET);
@@ -245,43 +263,46 @@ impl Writer {
         // Too long, unless it begins with number 1: RustDDS moves its mark then, and lists nothing.
         self.code.plain(code::LOAD_WORD_AT_INDEX, first);
         self.code.branch_unless(code::IF_EQUAL, 0, refuse);
-        let (little, big) = (self.code.label(), self.code.label());
+        self.word_by_order(orders, first + 4, refuse, |writer, swap| {
+            writer.code.branch(code::IF_EQUAL, swap(1), walk, refuse);
+        });
+    }
+
+    /// Goes on where the submessage is little endian, else to `refuse`.
+    fn little_endian_or(&mut self, refuse: Label) {
         self.code.plain(code::LOAD_BYTE_AT_INDEX, 1);
-        self.code.branch(code::IF_BITS, 1, little, big);
-        for (label, one) in [(little, 1_u32.swap_bytes()), (big, 1)] {
-            self.code.place(label);
-            self.code.plain(code::LOAD_WORD_AT_INDEX, first + 4);
-            self.code.branch(code::IF_EQUAL, one, walk, refuse);
+        self.code.branch_unless(code::IF_BITS, 1, refuse);
+    }
+
+    /// Loads a word as it stands in the packet, and has it judged: `judge` gets what turns a constant into that order.
+    fn word_by_order(&mut self, orders: Checked, place: u32, refuse: Label, judge: impl Fn(&mut Self, fn(u32) -> u32)) {
+        let big = self.code.label();
+        let other = if matches!(orders, Checked::BothOrders) { big } else { refuse };
+        self.little_endian_or(other);
+        self.code.plain(code::LOAD_WORD_AT_INDEX, place);
+        judge(self, u32::swap_bytes);
+        if matches!(orders, Checked::BothOrders) {
+            self.code.place(big);
+            self.code.plain(code::LOAD_WORD_AT_INDEX, place);
+            judge(self, std::convert::identity);
         }
     }
 
     /// Extra flags, offset, reader, writer, number, first fragment, fragments here, size of a fragment, size of the sample.
-    fn data_frag(&mut self, walk: Label, refuse: Label) {
-        let size = HEADER + 28;
+    fn data_frag(&mut self, orders: Checked, walk: Label, refuse: Label) {
         let too_large = !(self.limits.sample_bytes - 1);
-        self.refuse_bits(size, too_large, walk, refuse, false);
+        self.word_by_order(orders, HEADER + 28, refuse, |writer, swap| {
+            writer.code.branch(code::IF_BITS, swap(too_large), refuse, walk);
+        });
     }
 
     /// Reader, writer, number, first fragment.
-    fn nack_frag(&mut self, walk: Label, refuse: Label) {
-        let fragment = HEADER + 16;
+    fn nack_frag(&mut self, orders: Checked, walk: Label, refuse: Label) {
         let too_large = !(self.limits.fragments - 1);
-        self.refuse_bits(fragment, too_large, walk, refuse, true);
-    }
-
-    /// Refuses where a word has one of `bits`, or is 0 where that is asked for.
-    fn refuse_bits(&mut self, place: u32, bits: u32, walk: Label, refuse: Label, refuse_zero: bool) {
-        let (little, big) = (self.code.label(), self.code.label());
-        self.code.plain(code::LOAD_BYTE_AT_INDEX, 1);
-        self.code.branch(code::IF_BITS, 1, little, big);
-        for (label, bits) in [(little, bits.swap_bytes()), (big, bits)] {
-            self.code.place(label);
-            self.code.plain(code::LOAD_WORD_AT_INDEX, place);
-            if refuse_zero {
-                self.code.branch_if(code::IF_EQUAL, 0, refuse);
-            }
-            self.code.branch(code::IF_BITS, bits, refuse, walk);
-        }
+        self.word_by_order(orders, HEADER + 16, refuse, |writer, swap| {
+            writer.code.branch_if(code::IF_EQUAL, 0, refuse);
+            writer.code.branch(code::IF_BITS, swap(too_large), refuse, walk);
+        });
     }
 
     /// Goes on to the next submessage. A length of 0 is "to the end", but for kinds that may be empty.
@@ -307,20 +328,24 @@ impl Writer {
         self.code.place(next);
     }
 
-    /// A time stamp and a sample, both little endian; stays where it is where something else stands here.
-    fn pair(&mut self) {
-        let other = self.code.label();
+    /// A sample, little endian, after its time stamp where there is one; stays where it is where something else stands here.
+    fn sample(&mut self) {
+        let (plain, other) = (self.code.label(), self.code.label());
         self.end_or_go_on();
         self.code.plain(code::LOAD_WORD_AT_INDEX, 0);
-        self.code.branch_unless(code::IF_EQUAL, TIME_STAMP, other);
-        self.code.plain(code::LOAD_BYTE_AT_INDEX, TIME_STAMP_BYTES);
-        self.code.branch_unless(code::IF_EQUAL, kind::DATA, other);
-        self.code.plain(code::LOAD_BYTE_AT_INDEX, TIME_STAMP_BYTES + 1);
-        self.code.branch_unless(code::IF_BITS, 1, other);
-        self.load_half(TIME_STAMP_BYTES + 2, Order::Little);
+        self.code.branch_unless(code::IF_EQUAL, TIME_STAMP, plain);
+        self.code.plain(code::ACCUMULATOR_FROM_INDEX, 0);
+        self.code.plain(code::ADD, TIME_STAMP_BYTES);
+        self.code.plain(code::INDEX_FROM_ACCUMULATOR, 0);
+        // Nobody ends a message with a time stamp: this load drops it.
+        self.code.plain(code::LOAD_WORD_AT_INDEX, 0);
+        self.code.place(plain);
+        self.code.plain(code::AND, 0xff01_0000);
+        self.code.branch_unless(code::IF_EQUAL, kind::DATA << 24 | 1 << 16, other);
+        self.load_half(2, Order::Little);
         self.code.branch_if(code::IF_EQUAL, 0, other);
         self.code.plain(code::ADD_INDEX, 0);
-        self.code.plain(code::ADD, TIME_STAMP_BYTES + HEADER);
+        self.code.plain(code::ADD, HEADER);
         self.code.plain(code::INDEX_FROM_ACCUMULATOR, 0);
         self.code.place(other);
     }
