@@ -21,6 +21,8 @@ use crate::live::{Network, Program, folder, messages, sleep};
 pub const MOST_MEMORY: f64 = 200.0;
 /// What the operator commands, m².
 const OPEN: f64 = 2e-5;
+/// Topic of the operator.
+pub const COMMANDS: &str = "rt/arm/orifice_command";
 /// Time for peers to find each other, s.
 const MEETING: f64 = 6.0;
 
@@ -67,12 +69,7 @@ pub fn operator_with(
             .build();
         let topic = context
             .domain_participant()
-            .create_topic(
-                "rt/arm/orifice_command".into(),
-                "excavator_msgs::msg::dds_::OrificeCommand_".into(),
-                &qos,
-                TopicKind::NoKey,
-            )
+            .create_topic(COMMANDS.into(), "excavator_msgs::msg::dds_::OrificeCommand_".into(), &qos, TopicKind::NoKey)
             .unwrap();
         let publisher = node.create_publisher::<OrificeCommand>(&topic, None).unwrap();
         let start = Instant::now();
@@ -103,6 +100,13 @@ pub struct Endpoint {
     pub topic: String,
     pub identity: [u8; 16],
     pub addresses: Vec<SocketAddr>,
+}
+
+impl Endpoint {
+    /// The first twelve bytes of the identity.
+    fn participant(&self) -> &[u8] {
+        &self.identity[..12]
+    }
 }
 
 /// What plain discovery shows: readers and writers of topics.
@@ -222,14 +226,18 @@ fn stranger(
     })
 }
 
-/// Every reader with the writers of its topic that it is matched with.
+/// Every reader with the writers of its topic that it is matched with. Readers of the operator are left out: it runs in this
+/// test's own process, without a guard.
 pub fn pairs(seen: &Seen) -> Vec<(&Endpoint, &Endpoint)> {
-    let of = |reader: &'_ Endpoint| reader.topic.clone();
-    let pair = |reader| seen.writers.iter().filter(move |w| w.topic == of(reader)).map(move |writer| (reader, writer));
-    seen.readers
-        .iter()
-        .flat_map(pair)
-        .filter(|(reader, writer)| reader.identity[..12] != writer.identity[..12])
+    let operator = seen.writers.iter().find(|writer| writer.topic == COMMANDS).map(|writer| writer.participant());
+    let others = seen.readers.iter().filter(|reader| Some(reader.participant()) != operator);
+    let writers = |reader: &Endpoint| {
+        let topic = reader.topic.clone();
+        seen.writers.iter().filter(move |writer| writer.topic == topic)
+    };
+    others
+        .flat_map(|reader| writers(reader).map(move |writer| (reader, writer)))
+        .filter(|(reader, writer)| reader.participant() != writer.participant())
         .collect()
 }
 
@@ -323,7 +331,7 @@ impl Machine {
 fn heartbeats_in_the_name_of_a_writer() {
     let packets = |seen: &Seen| {
         let pairs = pairs(seen);
-        assert!(pairs.iter().any(|(reader, _)| reader.topic == "rt/arm/orifice_command"), "{:?}", seen.readers);
+        assert!(pairs.iter().any(|(reader, _)| reader.topic == COMMANDS), "{:?}", seen.readers);
         let each = |count: u32| {
             let of = move |(reader, writer): (&Endpoint, &Endpoint)| {
                 (heartbeat(reader, writer, i64::MAX - i64::from(count), 1_000_000 + count), reader.addresses.clone())
@@ -343,13 +351,15 @@ fn other_packets_with_huge_numbers() {
         let each = |count: u32| {
             let of = move |(reader, writer): (&Endpoint, &Endpoint)| {
                 let number = i64::from(count);
+                // The writer of the commands is the operator's.
+                let asked = if writer.topic == COMMANDS { Vec::new() } else { writer.addresses.clone() };
                 let nobody = Endpoint { identity: [count as u8; 16], ..writer.clone() };
                 [
                     (gap(reader, writer, 1 << 39, (1 << 40) - 1 - number), reader.addresses.clone()),
                     (fragment(reader, writer, (1 << 30) + number, u32::MAX - count), reader.addresses.clone()),
                     (fragment(reader, &nobody, 1 + number, u32::MAX - count), reader.addresses.clone()),
-                    (fragment_asked_for(reader, writer, 1 + number, u32::MAX, count), writer.addresses.clone()),
-                    (fragment_asked_for(reader, writer, 1 + number, 0, 100 + count), writer.addresses.clone()),
+                    (fragment_asked_for(reader, writer, 1 + number, u32::MAX, count), asked.clone()),
+                    (fragment_asked_for(reader, writer, 1 + number, 0, 100 + count), asked),
                 ]
             };
             pairs.clone().into_iter().flat_map(of)
@@ -373,20 +383,20 @@ fn without_the_guard_the_same_heartbeat_fills_the_memory() {
     let packets = |seen: &Seen| {
         pairs(seen)
             .into_iter()
-            .filter(|(reader, _)| reader.topic == "rt/arm/orifice_command")
+            .filter(|(reader, _)| reader.topic == COMMANDS)
             .map(|(reader, writer)| (heartbeat(reader, writer, 1 << 26, 1_000_000), reader.addresses.clone()))
             .collect()
     };
     assert!(stranger(&right, packets).join().unwrap() >= 2);
     let end = Instant::now() + Duration::from_secs(20);
-    while peak(&naked) < MOST_MEMORY && Instant::now() < end {
+    while peak(&naked) < 300.0 && Instant::now() < end {
         sleep(0.1);
     }
     stop.store(true, Ordering::Relaxed);
     operator.join().unwrap();
     let (naked, guarded) = (peak(&naked), peak(&guarded));
     let _ = std::io::stdout().write_all(format!("{naked:.0} MB without, {guarded:.0} MB with the guard\n").as_bytes());
-    assert!(naked > 300.0, "{naked} MB: the middleware does not list missing numbers any more, remove the guard");
+    assert!(naked >= 300.0, "{naked} MB: the middleware does not list missing numbers any more, remove the guard");
     assert!(guarded < MOST_MEMORY, "{guarded} MB");
 }
 

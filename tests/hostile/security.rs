@@ -9,7 +9,7 @@ use excavator_msgs::ArmState;
 use crate::fault::Fault;
 use crate::keystore::{Enclave, Keystore};
 use crate::live::{Network, Program, folder, messages, sleep};
-use crate::network::{MOST_MEMORY, operator_with, peak};
+use crate::network::{COMMANDS, MOST_MEMORY, heartbeat, inside, look, operator_with, pairs, peak};
 
 /// Time for peers to authenticate each other, s.
 const MEETING: f64 = 8.0;
@@ -102,8 +102,7 @@ fn a_heartbeat_without_keys_does_nothing_even_without_the_guard() {
         let seen = look(&participant);
         let socket = std::net::UdpSocket::bind("0.0.0.0:0").unwrap();
         let mut sent = 0;
-        for (reader, writer) in pairs(&seen).into_iter().filter(|(reader, _)| reader.topic == "rt/arm/orifice_command")
-        {
+        for (reader, writer) in pairs(&seen).into_iter().filter(|(reader, _)| reader.topic == COMMANDS) {
             for count in 0..15 {
                 for address in &reader.addresses {
                     socket.send_to(&heartbeat(reader, writer, 1 << 26, 1_000_000 + count), address).unwrap();

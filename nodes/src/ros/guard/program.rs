@@ -231,7 +231,7 @@ impl Writer {
     /// A HEARTBEAT or a GAP, which have the same layout: reader, writer, first number, last number or base of the list.
     fn numbers(&mut self, orders: Checked, walk: Label, refuse: Label) {
         let (first, last) = (HEADER + 8, HEADER + 16);
-        let mut load = |writer: &mut Self, order| {
+        let load = |writer: &mut Self, order| {
             writer.load_number(first, order, refuse);
             writer.code.plain(code::STORE, FIRST);
             writer.load_number(last, order, refuse);
