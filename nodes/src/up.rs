@@ -11,7 +11,7 @@ use nix::unistd::Pid;
 
 use crate::cli::UpArguments;
 use crate::error::VerbError;
-use crate::ros::{Signals, end_with_this_process};
+use crate::ros::{Environment, RosArguments, Signals, end_with_this_process};
 
 /// Time that a part has to end in good order.
 const FAREWELL: Duration = Duration::from_secs(10);
@@ -23,6 +23,9 @@ const GLANCE: Duration = Duration::from_millis(100);
 /// # Errors
 /// [`VerbError`] when a part cannot be started, or ends by itself with a failure.
 pub fn run(arguments: &UpArguments, ros_words: &[String]) -> Result<(), VerbError> {
+    // What the parts would refuse one after the other is refused here once.
+    let (ros, _) = RosArguments::parse(ros_words)?;
+    Environment::read(ros.enclave.as_deref())?;
     let signals = Signals::block()?;
     let program = std::env::current_exe()?;
     let mut parts = Vec::new();

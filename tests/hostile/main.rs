@@ -11,8 +11,13 @@ mod fault;
 mod files;
 mod goals;
 mod inside;
+#[cfg(feature = "security")]
+mod keystore;
 #[path = "../../nodes/tests/live/mod.rs"]
 mod live;
 mod monitor;
+mod network;
 mod readers;
 mod recorder;
+#[cfg(feature = "security")]
+mod security;

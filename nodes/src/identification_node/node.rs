@@ -43,7 +43,7 @@ fn parameters() -> Vec<Parameter> {
 /// # Errors
 /// [`VerbError`] when it cannot start.
 pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
-    let supervisor = Supervisor::start("identification", ros, parameters())?;
+    let supervisor = Supervisor::start_large("identification", ros, parameters())?;
     let given = &supervisor.parameters;
     let library = Library::new(&given.text("model_folder"), &given.text("bag_folder")).map_err(RosError::Parameter)?;
     let time_limit = Duration::try_from_secs_f64(given.double("time_limit")).unwrap_or(GLANCE);

@@ -34,7 +34,7 @@ pub fn run(arguments: &PlayArguments, ros: &RosArguments) -> Result<(), VerbErro
     // Read what can be wrong with the bag before anybody is bothered.
     let bag = RawMessages::open(&arguments.bag)?;
     drop(bag);
-    let supervisor = Supervisor::start("bag_player", &ros, Vec::new())?;
+    let supervisor = Supervisor::start_large("bag_player", &ros, Vec::new())?;
     let clock = match arguments.clock {
         Some(_) => Some(supervisor.link.publish("/clock", TopicQos::reliable(10))?),
         None => None,

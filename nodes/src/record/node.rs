@@ -26,7 +26,7 @@ const WAITING: usize = 60_000;
 /// # Errors
 /// [`VerbError`] when it cannot start, or the bag cannot be written.
 pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbError> {
-    let supervisor = Supervisor::start("bag_recorder", ros, Vec::new())?;
+    let supervisor = Supervisor::start_large("bag_recorder", ros, Vec::new())?;
     let names: Vec<String> = if arguments.all {
         Vec::new()
     } else {

@@ -60,6 +60,8 @@ pub struct RosArguments {
     pub parameters: Vec<Override>,
     /// `--params-file`, in order.
     pub parameter_files: Vec<PathBuf>,
+    /// `-e`, `--enclave`.
+    pub enclave: Option<String>,
     /// `--log-level`.
     pub log_level: Level,
     /// `--disable-stdout-logs` turns it off.
@@ -74,6 +76,7 @@ impl Default for RosArguments {
             remaps: Vec::new(),
             parameters: Vec::new(),
             parameter_files: Vec::new(),
+            enclave: None,
             log_level: Level::Info,
             log_to_console: true,
             log_to_rosout: true,
@@ -112,7 +115,8 @@ impl RosArguments {
             "-p" | "--param" => self.parameters.push(parameter(next()?)?),
             "--params-file" => self.parameter_files.push(PathBuf::from(next()?)),
             "--log-level" => self.log_level = level(next()?)?,
-            "-e" | "--enclave" | "--log-config-file" | "--log-file-name" => {
+            "-e" | "--enclave" => self.enclave = Some(next()?.clone()),
+            "--log-config-file" | "--log-file-name" => {
                 next()?;
             }
             "--disable-stdout-logs" => self.log_to_console = false,
@@ -186,7 +190,7 @@ mod tests {
     fn what_launch_writes_is_understood() {
         let (ros, others) = parse(
             "bag --ros-args -r __node:=sim -r /arm/state:=/left/state -p rate:=500 --params-file a.yaml \
-             --log-level debug -- --loop --ros-args -p arm_simulator:seed:=3",
+             --log-level debug --enclave /arm/sim -- --loop --ros-args -p arm_simulator:seed:=3",
         )
         .unwrap();
         assert_eq!(others, ["bag", "--loop"]);
@@ -194,6 +198,7 @@ mod tests {
         assert_eq!(ros.parameters[0], Override { node: None, name: "rate".into(), value: Value::Integer(500) });
         assert_eq!(ros.parameters[1].node.as_deref(), Some("arm_simulator"));
         assert_eq!(ros.parameter_files, [PathBuf::from("a.yaml")]);
+        assert_eq!(ros.enclave.as_deref(), Some("/arm/sim"));
         assert_eq!(ros.log_level, Level::Debug);
     }
 

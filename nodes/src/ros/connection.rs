@@ -8,8 +8,9 @@ use rustdds::{DomainParticipant, DomainParticipantBuilder, QosPolicies, Topic, T
 use tokio::runtime::Handle;
 
 use super::farewell::Farewell;
+use super::guard::{Before, Guard, GuardError};
 use super::threads::Threads;
-use super::{Environment, NodeIdentity, RosError};
+use super::{Environment, NodeIdentity, RosError, Security};
 
 /// Something that runs as long as an endpoint is open.
 pub(crate) type Task = tokio::task::JoinHandle<()>;
@@ -69,6 +70,7 @@ pub(crate) struct Connection {
     node: Node,
     context: Context,
     threads: Threads,
+    guard: Result<Guard, GuardError>,
     // Last: it speaks when the participant has gone.
     farewell: Farewell,
 }
@@ -83,13 +85,13 @@ impl Connection {
     pub(super) fn join(identity: &NodeIdentity, environment: &Environment) -> Result<Self, RosError> {
         let failed = |reason: String| RosError::Join { domain: environment.domain, reason };
         let (participant, threads) = Threads::started_by(|| participant(environment));
-        let context = Context::from_domain_participant(participant.map_err(failed)?)
-            .map_err(|error| failed(error.to_string()))?;
+        let (participant, guard) = participant.map_err(failed)?;
+        let context = Context::from_domain_participant(participant).map_err(|error| failed(error.to_string()))?;
         let name = NodeName::new(identity.namespace(), identity.name()).map_err(|error| failed(error.to_string()))?;
         // Parameter services and log are ours: the library's are bound to one mapping and to its own spinner.
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
         let node = context.new_node(name, options).map_err(|error| failed(error.to_string()))?;
-        Ok(Connection { node, context, threads, farewell: Farewell::new(environment) })
+        Ok(Connection { node, context, threads, guard, farewell: Farewell::new(environment) })
     }
 
     /// Creates an endpoint on this connection; the connection is returned with it.
@@ -111,6 +113,11 @@ impl Connection {
         self.threads.clone()
     }
 
+    /// The filter in front of the participant's sockets, or why there is none.
+    pub(super) fn guard(&self) -> Result<Guard, GuardError> {
+        self.guard.clone()
+    }
+
     pub(crate) fn create_topic(&self, dds_name: &str, dds_type: &str, qos: &QosPolicies) -> Result<Topic, String> {
         self.participant()
             .create_topic(dds_name.to_string(), dds_type.to_string(), qos, TopicKind::NoKey)
@@ -118,12 +125,32 @@ impl Connection {
     }
 }
 
-/// A participant in the domain and on the networks of the environment.
-pub(super) fn participant(environment: &Environment) -> Result<DomainParticipant, String> {
+/// A participant in the domain and on the networks of the environment, with a filter in front of its sockets before it can
+/// have met a peer.
+pub(super) fn participant(environment: &Environment) -> Result<(DomainParticipant, Result<Guard, GuardError>), String> {
     let builder = DomainParticipantBuilder::new(environment.domain);
     let builder = match environment.networks() {
         Some(networks) => builder.with_only_networks(networks),
         None => builder,
     };
-    builder.build().map_err(|error| error.to_string())
+    let builder = match &environment.security {
+        Security::Off => builder,
+        Security::Enclave(folder) => secured(builder, folder)?,
+    };
+    let before = Before::look();
+    let participant = builder.build().map_err(|error| error.to_string())?;
+    Ok((participant, Guard::attach(&before, environment)))
+}
+
+#[cfg(feature = "security")]
+#[allow(clippy::unnecessary_wraps)]
+fn secured(builder: DomainParticipantBuilder, enclave: &std::path::Path) -> Result<DomainParticipantBuilder, String> {
+    // SROS2 does not encrypt keys.
+    let files = rustdds::DomainParticipantSecurityConfigFiles::with_ros_default_names(enclave, String::new());
+    Ok(builder.builtin_security(files))
+}
+
+#[cfg(not(feature = "security"))]
+fn secured(_: DomainParticipantBuilder, enclave: &std::path::Path) -> Result<DomainParticipantBuilder, String> {
+    Err(format!("this build has no DDS Security for {}", enclave.display()))
 }

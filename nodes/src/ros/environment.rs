@@ -2,7 +2,8 @@
 
 use std::net::{IpAddr, Ipv4Addr};
 
-use super::RosError;
+use super::security::choose;
+use super::{RosError, Security};
 
 /// How far peers are looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,8 +23,11 @@ pub enum Mapping {
     Enhanced,
 }
 
+/// Largest sample in fragments that a node takes where nothing else is asked for, bytes: a model has some kB.
+const LARGEST_SAMPLE: u32 = 1 << 20;
+
 /// What the environment says about the network.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Environment {
     /// `ROS_DOMAIN_ID`, 0 to 232.
     pub domain: u16,
@@ -31,18 +35,33 @@ pub struct Environment {
     pub range: DiscoveryRange,
     /// From `RMW_IMPLEMENTATION`; the default of ROS 2 is rmw_fastrtps_cpp.
     pub mapping: Mapping,
+    /// `EXCAVATOR_LARGEST_SAMPLE`: samples in fragments that are larger are dropped, bytes. Rounded up to a power of two.
+    pub largest_sample: u32,
+    /// `ROS_SECURITY_ENABLE`, `ROS_SECURITY_STRATEGY`, `ROS_SECURITY_KEYSTORE`, `ROS_SECURITY_ENCLAVE_OVERRIDE`.
+    pub security: Security,
+    /// What the user should hear of it.
+    pub warnings: Vec<String>,
 }
 
 impl Environment {
-    /// Reads the environment of this process.
+    /// Reads the environment of this process; `enclave` is that of the command line.
     ///
     /// # Errors
-    /// [`RosError::Environment`].
-    pub fn read() -> Result<Self, RosError> {
-        Self::from_lookup(|name| std::env::var(name).ok())
+    /// [`RosError::Environment`], [`RosError::Security`].
+    pub fn read(enclave: Option<&str>) -> Result<Self, RosError> {
+        Self::from_lookup(|name| std::env::var(name).ok(), enclave)
     }
 
-    fn from_lookup(lookup: impl Fn(&str) -> Option<String>) -> Result<Self, RosError> {
+    /// The same, for a node that takes samples in fragments up to `bytes`, unless the environment says otherwise.
+    #[must_use]
+    pub fn with_samples_of(mut self, bytes: u32) -> Self {
+        if self.largest_sample == LARGEST_SAMPLE {
+            self.largest_sample = bytes;
+        }
+        self
+    }
+
+    fn from_lookup(lookup: impl Fn(&str) -> Option<String>, enclave: Option<&str>) -> Result<Self, RosError> {
         let value = |name: &str| lookup(name).filter(|text| !text.trim().is_empty());
         let domain = match value("ROS_DOMAIN_ID") {
             None => 0,
@@ -68,7 +87,17 @@ impl Environment {
         let range = if localhost_only { DiscoveryRange::Localhost } else { range };
         let cyclone = value("RMW_IMPLEMENTATION").is_some_and(|name| name.contains("cyclone"));
         let mapping = if cyclone { Mapping::Cyclone } else { Mapping::Enhanced };
-        Ok(Environment { domain, range, mapping })
+        let largest_sample = match value("EXCAVATOR_LARGEST_SAMPLE") {
+            None => LARGEST_SAMPLE,
+            Some(text) => text.trim().parse().ok().filter(|bytes| *bytes <= 1 << 30).ok_or(RosError::Environment {
+                variable: "EXCAVATOR_LARGEST_SAMPLE",
+                value: text,
+                problem: "not a number of bytes up to 1073741824".to_string(),
+            })?,
+        };
+        let chosen = choose(lookup, enclave)?;
+        let (security, warnings) = (chosen.security, chosen.warnings);
+        Ok(Environment { domain, range, mapping, largest_sample, security, warnings })
     }
 
     /// Addresses of the networks to use, `None` for all.
@@ -83,25 +112,26 @@ mod tests {
     use super::*;
 
     fn of(pairs: &[(&str, &str)]) -> Result<Environment, RosError> {
-        Environment::from_lookup(|name| pairs.iter().find(|(key, _)| *key == name).map(|(_, value)| value.to_string()))
+        let lookup = |name: &str| pairs.iter().find(|(key, _)| *key == name).map(|(_, value)| value.to_string());
+        Environment::from_lookup(lookup, None)
     }
 
     #[test]
     fn defaults_are_those_of_ros() {
-        let expected = Environment { domain: 0, range: DiscoveryRange::Subnet, mapping: Mapping::Enhanced };
-        assert_eq!(of(&[]).unwrap(), expected);
+        let found = of(&[]).unwrap();
+        let expected = (0, DiscoveryRange::Subnet, Mapping::Enhanced, Security::Off);
+        assert_eq!((found.domain, found.range, found.mapping, found.security), expected);
     }
 
     #[test]
     fn variables_are_followed() {
-        let environment = of(&[
+        let found = of(&[
             ("ROS_DOMAIN_ID", "42"),
             ("ROS_AUTOMATIC_DISCOVERY_RANGE", "localhost"),
             ("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp"),
         ])
         .unwrap();
-        let expected = Environment { domain: 42, range: DiscoveryRange::Localhost, mapping: Mapping::Cyclone };
-        assert_eq!(environment, expected);
+        assert_eq!((found.domain, found.range, found.mapping), (42, DiscoveryRange::Localhost, Mapping::Cyclone));
         assert_eq!(of(&[("ROS_LOCALHOST_ONLY", "1")]).unwrap().range, DiscoveryRange::Localhost);
     }
 
@@ -110,5 +140,14 @@ mod tests {
         assert!(of(&[("ROS_DOMAIN_ID", "233")]).is_err());
         assert!(of(&[("ROS_DOMAIN_ID", "x")]).is_err());
         assert!(of(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "moon")]).is_err());
+        assert!(of(&[("EXCAVATOR_LARGEST_SAMPLE", "-1")]).is_err());
+        assert!(of(&[("ROS_SECURITY_ENABLE", "yes")]).is_err());
+    }
+
+    #[test]
+    fn the_user_s_word_on_large_samples_is_the_last() {
+        let large = 1 << 23;
+        assert_eq!(of(&[]).unwrap().with_samples_of(large).largest_sample, large);
+        assert_eq!(of(&[("EXCAVATOR_LARGEST_SAMPLE", "65536")]).unwrap().with_samples_of(large).largest_sample, 65536);
     }
 }

@@ -12,6 +12,8 @@ pub enum RosError {
     Parameter(String),
     #[error("{variable}={value} is {problem}")]
     Environment { variable: &'static str, value: String, problem: String },
+    #[error("ROS_SECURITY_STRATEGY={strategy}, not starting: {problem}")]
+    Security { strategy: &'static str, problem: String },
     #[error("cannot read parameters from {}: {reason}", path.display())]
     ParameterFile { path: PathBuf, reason: String },
     #[error("\"{name}\" is not a name in ROS: {reason}")]

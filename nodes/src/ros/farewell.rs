@@ -29,7 +29,7 @@ pub(super) struct Farewell {
 
 impl Farewell {
     pub fn new(environment: &Environment) -> Self {
-        Farewell { environment: *environment, speaker: None, addresses: Vec::new() }
+        Farewell { environment: environment.clone(), speaker: None, addresses: Vec::new() }
     }
 
     /// Notes who goes, and where the peers are that must hear of it.
@@ -84,7 +84,14 @@ mod tests {
 
     #[test]
     fn nobody_beyond_this_machine_hears_what_is_for_it_alone() {
-        let environment = |range| Environment { domain: 3, range, mapping: super::super::Mapping::Enhanced };
+        let environment = |range| Environment {
+            domain: 3,
+            range,
+            mapping: super::super::Mapping::Enhanced,
+            largest_sample: 1 << 20,
+            security: super::super::Security::Off,
+            warnings: Vec::new(),
+        };
         let here = everybody(&environment(DiscoveryRange::Localhost));
         assert!(here.iter().all(|address| address.ip().is_loopback()));
         assert_eq!(here.first().map(SocketAddr::port), Some(8160));

@@ -1,8 +1,8 @@
 //! Finding out that the middleware is broken for good.
 //!
-//! Two faults of the middleware end communication silently. A peer whose lease expired is never matched again, since
+//! Two faults of the middleware end communication silently, and a third lets it grow without bound ([`super::memory`]). A peer whose lease expired is never matched again, since
 //! its announcements look like duplicates; and its threads end when a system call is interrupted (SIGSTOP and SIGCONT, a
-//! frozen container, suspend to disk). The remedy for both is a new participant. Building one disturbs every other
+//! frozen container, suspend to disk). The remedy for all is a new participant. Building one disturbs every other
 //! peer, so it is done only on proof: a dead thread, or a lost peer that is back. Since our own participant cannot see
 //! that a lost peer is back, a second one without any endpoint, the scout, looks out for it.
 
@@ -13,6 +13,7 @@ use rustdds::{DomainParticipant, DomainParticipantStatusEvent, LostReason, RTPSE
 
 use super::Environment;
 use super::connection::participant;
+use super::memory::Memory;
 use super::networks::networks;
 use super::patience::{BUILDING, let_go, within};
 use super::reminder::ask_again;
@@ -28,6 +29,8 @@ pub(super) enum Fault {
     ThreadsDied(Died),
     /// A peer that was lost is there again, but out of reach of our participant.
     PeerReturned(Prefix),
+    /// The process needs much more memory than before, MB.
+    MemoryGrown { before: u64, now: u64 },
     /// There is a network that our participant does not know, and nobody else to be disturbed.
     NewNetwork(String),
 }
@@ -42,6 +45,7 @@ impl std::fmt::Display for Fault {
                 let name: String = prefix.iter().map(|byte| format!("{byte:02x}")).collect();
                 write!(formatter, "peer {name} was lost and is back")
             }
+            Fault::MemoryGrown { before, now } => write!(formatter, "memory has grown from {before} to {now} MB"),
             Fault::NewNetwork(name) => write!(formatter, "network {name} is new"),
         }
     }
@@ -64,11 +68,12 @@ pub(super) struct Watch {
     lost: BTreeSet<Prefix>,
     scout: Option<Scout>,
     networks: BTreeSet<(String, Ipv4Addr)>,
+    memory: Option<Memory>,
 }
 
 impl Watch {
-    /// Watches a connection that was built a moment ago.
-    pub fn new(environment: Environment, participant: DomainParticipant, threads: Threads) -> Self {
+    /// Watches a connection that was built a moment ago, and the memory of this process where that is asked for.
+    pub fn new(environment: Environment, participant: DomainParticipant, threads: Threads, watch_memory: bool) -> Self {
         Watch {
             environment,
             participant,
@@ -77,6 +82,7 @@ impl Watch {
             lost: BTreeSet::new(),
             scout: None,
             networks: addresses(),
+            memory: watch_memory.then(Memory::new),
         }
     }
 
@@ -92,7 +98,10 @@ impl Watch {
 
     /// Looks.
     pub fn look(&mut self) -> Observations {
-        let mut seen = Observations { fault: self.threads.died().map(Fault::ThreadsDied), notes: Vec::new() };
+        let died = self.threads.died().map(Fault::ThreadsDied);
+        let grown = self.memory.as_mut().and_then(Memory::grown);
+        let grown = grown.map(|(before, now)| Fault::MemoryGrown { before, now });
+        let mut seen = Observations { fault: died.or(grown), notes: Vec::new() };
         if seen.fault.is_some() {
             return seen;
         }
@@ -160,7 +169,7 @@ impl Watch {
             return;
         }
         if self.scout.is_none() {
-            match Scout::send(self.environment) {
+            match Scout::send(self.environment.clone()) {
                 Ok(scout) => self.scout = Some(scout),
                 Err(reason) => seen.notes.push(format!("cannot look out for lost peers: {reason}")),
             }
@@ -200,7 +209,8 @@ impl Scout {
     fn send(environment: Environment) -> Result<Self, String> {
         let built = within(BUILDING, move || Threads::started_by(|| participant(&environment)));
         let (participant, threads) = built.ok_or("the middleware does not answer")?;
-        Ok(Scout { participant: participant?, threads })
+        let (participant, _) = participant?;
+        Ok(Scout { participant, threads })
     }
 }
 
@@ -223,5 +233,6 @@ mod tests {
     fn a_fault_says_what_happened() {
         let died = Fault::ThreadsDied(Died { alive: 1, started: 2 });
         assert_eq!(died.to_string(), "1 of 2 threads of the middleware have ended");
+        assert_eq!(Fault::MemoryGrown { before: 30, now: 140 }.to_string(), "memory has grown from 30 to 140 MB");
     }
 }

@@ -9,6 +9,7 @@ use tokio::runtime::Handle;
 
 use super::connection::{Closed, Connection, Endpoint, Install, Task};
 use super::dds_names::dds_topic;
+use super::guard::{Guard, GuardError};
 use super::inlet::{Inlet, Received};
 use super::patience::{BUILDING, FAREWELL, let_go, within};
 use super::threads::Threads;
@@ -145,6 +146,11 @@ impl Link {
         self.lock().connection.as_ref().map(|connection| (connection.participant(), connection.threads()))
     }
 
+    /// The filter in front of the middleware's sockets, or why there is none; `None` while there is no connection.
+    pub(super) fn guard(&self) -> Option<Result<Guard, GuardError>> {
+        self.lock().connection.as_ref().map(Connection::guard)
+    }
+
     /// Whether somebody on the graph reads a topic.
     pub(crate) fn has_readers(&self, name: &str) -> bool {
         let (Some(participant), Ok(name)) = (self.participant(), self.shared.identity.resolve(name)) else {
@@ -211,7 +217,7 @@ fn build(
     environment: &Environment,
     endpoints: Vec<Arc<dyn Endpoint>>,
 ) -> Result<(Connection, Vec<Install>), RosError> {
-    let (identity, environment, domain) = (identity.clone(), *environment, environment.domain);
+    let (identity, environment, domain) = (identity.clone(), environment.clone(), environment.domain);
     let built = within(BUILDING, move || {
         let mut connection = Connection::join(&identity, &environment)?;
         let installs: Result<_, RosError> =

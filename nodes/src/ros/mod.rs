@@ -17,8 +17,8 @@
 //! | `excavator play` | `/bag_player` | publishes what the bag has, commands and `/clock` on demand |
 //!
 //! Every node takes `--ros-args` with `-r from:=to`, `-r __node:=`, `-r __ns:=`, `-p name:=value`, `--params-file`,
-//! `--log-level`, and reads `ROS_DOMAIN_ID`, `ROS_AUTOMATIC_DISCOVERY_RANGE`, `ROS_LOCALHOST_ONLY` and
-//! `RMW_IMPLEMENTATION` (which decides how services are mapped: `rmw_cyclonedds_cpp` or all others).
+//! `--log-level`, `--enclave`, and reads `ROS_DOMAIN_ID`, `ROS_AUTOMATIC_DISCOVERY_RANGE`, `ROS_LOCALHOST_ONLY` and
+//! `ROS_SECURITY_*` and `RMW_IMPLEMENTATION` (which decides how services are mapped: `rmw_cyclonedds_cpp` or all others).
 
 mod arguments;
 mod clock;
@@ -28,12 +28,14 @@ mod diagnostics;
 mod environment;
 mod error;
 mod farewell;
+mod guard;
 mod health;
 mod inlet;
 mod large_replies;
 mod latched;
 mod link;
 mod logger;
+mod memory;
 mod middleware_log;
 mod names;
 mod networks;
@@ -49,6 +51,7 @@ mod qos;
 pub(crate) mod raw;
 mod reminder;
 mod rtps;
+mod security;
 mod signals;
 mod supervisor;
 mod threads;
@@ -74,5 +77,6 @@ pub(crate) use parameter_services::{service_mapping, service_qos};
 pub use parameters::Parameters;
 pub(crate) use peers::Peers;
 pub use qos::TopicQos;
+pub use security::Security;
 pub use signals::{Signals, end_with_this_process};
 pub use supervisor::Supervisor;

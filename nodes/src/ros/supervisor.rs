@@ -8,6 +8,7 @@ use nix::sys::signal::Signal;
 use tokio::runtime::Runtime;
 
 use super::dds_names::{dds_topic, dds_type};
+use super::guard::GuardError;
 use super::health::Watch;
 use super::middleware_log::{complaints, count_complaints};
 use super::parameter_file::read_for;
@@ -21,6 +22,10 @@ use super::{
 const TICK: Duration = Duration::from_millis(250);
 /// Pause after a rebuild that failed or did not help.
 const PAUSE: Duration = Duration::from_secs(2);
+
+/// Largest sample in fragments that recorder and player handle, bytes, if the environment does not say otherwise: a point
+/// cloud of a lidar has 1 to 6 MB, an image of 1920 by 1080 without compression 6.2 MB.
+const LARGE_SAMPLE: u32 = 1 << 23;
 
 /// Everything that a node's process has beside its own work.
 pub struct Supervisor {
@@ -36,6 +41,7 @@ pub struct Supervisor {
     pub logger: Logger,
     signals: Signals,
     stop: Arc<AtomicBool>,
+    watch_memory: bool,
     // Last, so that it outlives everything that runs on it.
     _runtime: Background,
 }
@@ -57,9 +63,32 @@ impl Supervisor {
     /// # Errors
     /// [`RosError`]: wrong arguments, environment or parameter values; a domain that cannot be joined.
     pub fn start(default_name: &str, arguments: &RosArguments, declared: Vec<Parameter>) -> Result<Self, RosError> {
+        let environment = Environment::read(arguments.enclave.as_deref())?;
+        Self::start_in(environment, default_name, arguments, declared, true)
+    }
+
+    /// The same for a node that handles large samples or has much memory of its own: the memory is not watched.
+    ///
+    /// # Errors
+    /// As [`Supervisor::start`].
+    pub fn start_large(
+        default_name: &str,
+        arguments: &RosArguments,
+        declared: Vec<Parameter>,
+    ) -> Result<Self, RosError> {
+        let environment = Environment::read(arguments.enclave.as_deref())?.with_samples_of(LARGE_SAMPLE);
+        Self::start_in(environment, default_name, arguments, declared, false)
+    }
+
+    fn start_in(
+        environment: Environment,
+        default_name: &str,
+        arguments: &RosArguments,
+        declared: Vec<Parameter>,
+        watch_memory: bool,
+    ) -> Result<Self, RosError> {
         let signals = Signals::block()?;
         count_complaints();
-        let environment = Environment::read()?;
         let identity = NodeIdentity::new(default_name, &arguments.remaps)?;
         let mut overrides = Vec::new();
         for file in &arguments.parameter_files {
@@ -69,7 +98,8 @@ impl Supervisor {
             |node: &Option<String>| node.as_deref().is_none_or(|node| node == default_name || node == identity.name());
         let given = arguments.parameters.iter().filter(|given| for_us(&given.node));
         overrides.extend(given.map(|given| (given.name.clone(), given.value.clone())));
-        let (parameters, warnings) = Parameters::declare(declared, &overrides)?;
+        let (parameters, mut warnings) = Parameters::declare(declared, &overrides)?;
+        warnings.extend(environment.warnings.iter().cloned());
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(1)
             .thread_name("link")
@@ -82,9 +112,13 @@ impl Supervisor {
         let clock = RosClock::of(&link, parameters.flag("use_sim_time"))?;
         let diagnostics = Diagnostics::new(&link, &clock)?;
         offer(&link, &parameters, &clock)?;
+        match link.guard() {
+            Some(Err(GuardError::SwitchedOff)) | None | Some(Ok(_)) => {}
+            Some(Err(reason)) => warnings.push(format!("packets are not checked: {reason}")),
+        }
         warnings.into_iter().for_each(|warning| logger.warn(warning));
         let stop = Arc::new(AtomicBool::new(false));
-        Ok(Supervisor { link, parameters, clock, diagnostics, logger, signals, stop, _runtime: runtime })
+        Ok(Supervisor { link, parameters, clock, diagnostics, logger, signals, stop, watch_memory, _runtime: runtime })
     }
 
     /// The flag that ends the process: set by a signal, or by a node that has finished its work.
@@ -141,16 +175,23 @@ impl Supervisor {
 
     fn watch(&self) -> Option<Watch> {
         let (participant, threads) = self.link.alive()?;
-        Some(Watch::new(*self.link.environment(), participant, threads))
+        Some(Watch::new(self.link.environment().clone(), participant, threads, self.watch_memory))
     }
 
     fn tell_link(&self, watch: Option<&Watch>, rebuilds: u32) {
         let Some(watch) = watch else { return };
         let (malformed, others) = complaints();
+        let (guard, refused) = match self.link.guard() {
+            Some(Ok(guard)) => (guard.to_string(), guard.dropped()),
+            Some(Err(reason)) => (format!("none: {reason}"), 0),
+            None => ("none".to_string(), 0),
+        };
         let values = [
             ("peers", watch.peers().to_string()),
             ("lost peers", watch.lost().to_string()),
             ("times built anew", rebuilds.to_string()),
+            ("packet guard", guard),
+            ("packets refused or lost by the kernel", refused.to_string()),
             ("malformed packets", malformed.to_string()),
             ("other complaints of the middleware", others.to_string()),
         ];

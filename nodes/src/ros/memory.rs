@@ -1,0 +1,78 @@
+//! Memory of this process: a second line of defence behind the packet filter.
+//!
+//! Numbers in packets are bounded by the filter, but the number of packets is not: a flood of small ones makes the
+//! middleware grow, and what it has noted of peers that never were it keeps. A node of ours needs as much memory after an
+//! hour as after a second; one that has grown much gets a new participant, which knows nothing of them.
+
+use std::time::{Duration, Instant};
+
+/// Growth at which the link is built anew, MB: a node has 20 to 60.
+const MOST_GROWTH: u64 = 96;
+/// Time after which a node has opened its endpoints and met its peers.
+const SETTLED: Duration = Duration::from_secs(3);
+
+/// Watches how this process grows.
+pub(super) struct Memory {
+    since: Instant,
+    before: Option<u64>,
+}
+
+impl Memory {
+    /// Starts with what the process has when it has settled.
+    pub fn new() -> Self {
+        Memory { since: Instant::now(), before: None }
+    }
+
+    /// Memory before and now, MB, where it has grown too much.
+    pub fn grown(&mut self) -> Option<(u64, u64)> {
+        self.judge(resident()?, self.since.elapsed())
+    }
+
+    fn judge(&mut self, now: u64, age: Duration) -> Option<(u64, u64)> {
+        // A flood from the first moment on must not become the measure.
+        let before = *self.before.get_or_insert(now);
+        if age < SETTLED && now.saturating_sub(before) <= MOST_GROWTH {
+            self.before = Some(now.min(before + MOST_GROWTH / 2));
+            return None;
+        }
+        (now.saturating_sub(before) > MOST_GROWTH).then_some((before, now))
+    }
+}
+
+/// Resident memory of this process, MB.
+fn resident() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    line.split_whitespace().next()?.parse::<u64>().ok().map(|kilobytes| kilobytes / 1024)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn at(memory: &mut Memory, megabytes: u64, seconds: u64) -> Option<(u64, u64)> {
+        memory.judge(megabytes, Duration::from_secs(seconds))
+    }
+
+    #[test]
+    fn this_process_has_some_memory() {
+        assert!(resident().is_some_and(|megabytes| (1..100_000).contains(&megabytes)));
+    }
+
+    #[test]
+    fn what_a_node_needs_at_its_start_is_not_growth() {
+        let mut memory = Memory::new();
+        assert_eq!(at(&mut memory, 20, 0), None);
+        assert_eq!(at(&mut memory, 60, 2), None);
+        assert_eq!(at(&mut memory, 60 + MOST_GROWTH, 3600), None);
+        assert_eq!(at(&mut memory, 61 + MOST_GROWTH, 3601), Some((60, 61 + MOST_GROWTH)));
+    }
+
+    #[test]
+    fn a_flood_from_the_start_on_is_found() {
+        let mut memory = Memory::new();
+        let found = (0..100).find_map(|step| memory.judge(20 + 40 * step, Duration::from_millis(250 * step)));
+        assert!(found.is_some_and(|(_, now)| now < 400), "{found:?}");
+    }
+}

@@ -1,0 +1,130 @@
+//! A stranger on a network that is secured with DDS Security.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use excavator_msgs::ArmState;
+
+use crate::fault::Fault;
+use crate::keystore::{Enclave, Keystore};
+use crate::live::{Network, Program, folder, messages, sleep};
+use crate::network::{COMMANDS, MOST_MEMORY, heartbeat, inside, look, operator_with, pairs, peak};
+
+/// Time for peers to authenticate each other, s.
+const MEETING: f64 = 8.0;
+
+const ENCLAVES: [Enclave; 4] = [
+    Enclave { name: "/arm/simulator", publishes: &["rt/arm/state", "rt/arm/model", "rt/joint_states"] },
+    Enclave { name: "/arm/monitor", publishes: &["rt/arm/energy"] },
+    Enclave { name: "/recorder", publishes: &[] },
+    Enclave { name: "/operator", publishes: &["rt/arm/orifice_command"] },
+];
+
+fn start(network: &Network, words: &[&str], environment: &[(&str, &str)]) -> Program {
+    network.start_other(Path::new(env!("CARGO_BIN_EXE_excavator")), words, environment)
+}
+
+/// States in a bag, and those with an open valve of the arm.
+fn states(bag: &Path) -> (usize, usize) {
+    let states: Vec<(f64, ArmState)> = messages(bag, "/arm/state");
+    (states.len(), states.iter().filter(|(_, state)| state.cylinders[0].orifice_area > 0.0).count())
+}
+
+/// Simulator with keys; whether it hears the operator, who may have keys, is in what a recorder with keys has of it.
+fn commanded(name: &str, keystore: &Keystore, operator: ros2_client::ContextOptions) -> Option<(usize, usize, String)> {
+    let network = Network::new(name)?;
+    let (_keep, folder) = folder();
+    let bag = folder.join("bag");
+    let words = ["record", "/arm/state", "-o", bag.to_str().unwrap()];
+    let recorder = start(&network, &words, &keystore.environment("/recorder"));
+    let words = ["node", "arm-simulator", "--ros-args", "-p", "rate:=200"];
+    let simulator = start(&network, &words, &keystore.environment("/arm/simulator"));
+    let stop = Arc::new(AtomicBool::new(false));
+    let commands = operator_with(&network, &stop, operator);
+    sleep(MEETING + 4.0);
+    stop.store(true, Ordering::Relaxed);
+    commands.join().unwrap();
+    let (recorded, log) = recorder.interrupt();
+    let (simulated, other) = simulator.interrupt();
+    assert_eq!((recorded, simulated), (0, 0), "{log}{other}");
+    let (all, open) = states(&bag);
+    Some((all, open, log + &other))
+}
+
+fn keys(keystore: &Keystore, enclave: &str) -> ros2_client::ContextOptions {
+    ros2_client::ContextOptions::new().enable_security(keystore.folder(enclave), String::new())
+}
+
+#[test]
+fn peers_with_keys_talk_and_others_neither_command_nor_read() {
+    let keystore = Keystore::new(&ENCLAVES, "ENCRYPT");
+    let Some((all, open, log)) = commanded("keys", &keystore, keys(&keystore, "/operator")) else { return };
+    println!("{all} states, {open} with an open valve");
+    assert!(all > 400 && open > 100, "{all} states, {open} with an open valve: {log}");
+    let (all, without_keys, log) = commanded("nokeys", &keystore, ros2_client::ContextOptions::new()).unwrap();
+    assert!(all > 400 && without_keys == 0, "{all} states, {without_keys} with an open valve: {log}");
+    let (all, not_permitted, log) = commanded("monitor", &keystore, keys(&keystore, "/arm/monitor")).unwrap();
+    assert!(all > 400 && not_permitted == 0, "{all} states, {not_permitted} with an open valve: {log}");
+
+    let network = Network::new("reader").unwrap();
+    let (_keep, folder) = folder();
+    let bag = folder.join("bag");
+    let recorder = start(&network, &["record", "--all", "-o", bag.to_str().unwrap()], &[]);
+    let simulator = start(&network, &["node", "arm-simulator"], &keystore.environment("/arm/simulator"));
+    sleep(MEETING);
+    let (_, log) = recorder.interrupt();
+    simulator.interrupt();
+    assert!(!log.contains("/arm/state"), "{log}");
+    Fault {
+        group: "Network",
+        tried: "a participant without keys, and one whose permissions do not name the command topic, on a network with DDS Security",
+        outcome: "neither moves the valve, the one without keys sees no topic; those with keys and permission do both",
+    }
+    .survived(&[("states with an open valve, by a permitted operator", open.to_string())]);
+}
+
+#[test]
+fn a_heartbeat_without_keys_does_nothing_even_without_the_guard() {
+    let keystore = Keystore::new(&ENCLAVES, "ENCRYPT");
+    let Some((left, right)) = Network::pair("signed") else { return };
+    let mut environment = keystore.environment("/arm/simulator").to_vec();
+    environment.push(("EXCAVATOR_PACKET_GUARD", "off"));
+    let simulator = start(&left, &["node", "arm-simulator", "--ros-args", "-p", "rate:=200"], &environment);
+    let stop = Arc::new(AtomicBool::new(false));
+    let operator = operator_with(&left, &stop, keys(&keystore, "/operator"));
+    // Somebody who once had keys knows the identities; the packets are not protected.
+    let options = keystore.folder("/recorder");
+    let sent = inside(&right, move || {
+        let files = rustdds::DomainParticipantSecurityConfigFiles::with_ros_default_names(options, String::new());
+        let participant = rustdds::DomainParticipantBuilder::new(0).builtin_security(files).build().unwrap();
+        std::thread::sleep(std::time::Duration::from_secs_f64(MEETING));
+        let seen = look(&participant);
+        let socket = std::net::UdpSocket::bind("0.0.0.0:0").unwrap();
+        let mut sent = 0;
+        for (reader, writer) in pairs(&seen).into_iter().filter(|(reader, _)| reader.topic == COMMANDS) {
+            for count in 0..15 {
+                for address in &reader.addresses {
+                    socket.send_to(&heartbeat(reader, writer, 1 << 26, 1_000_000 + count), address).unwrap();
+                    sent += 1;
+                }
+            }
+        }
+        sent
+    })
+    .join()
+    .unwrap();
+    assert!(sent >= 15, "{sent} packets sent");
+    sleep(3.0);
+    stop.store(true, Ordering::Relaxed);
+    operator.join().unwrap();
+    let megabytes = peak(&simulator);
+    simulator.interrupt();
+    assert!(megabytes < MOST_MEMORY, "{megabytes} MB");
+    Fault {
+        group: "Network",
+        tried: "the same HEARTBEATs on a network with DDS Security, packet guard off",
+        outcome: "refused by the middleware, since they are not protected",
+    }
+    .survived(&[("packets sent", sent.to_string()), ("memory of the simulator [MB]", format!("{megabytes:.0}"))]);
+}
