@@ -180,7 +180,10 @@ pub fn python_with_cyclone() -> Option<PathBuf> {
 /// Number that `custom_data` of a bag's metadata has under a key.
 pub fn custom_number(bag: &Path, key: &str) -> u64 {
     let text = std::fs::read_to_string(bag.join("metadata.yaml")).unwrap();
-    let line = text.lines().find(|line| line.trim_start().starts_with(key)).unwrap_or_else(|| panic!("{key}: {text}"));
+    let line = text
+        .lines()
+        .find(|line| line.trim_start_matches([' ', '"', '\'']).starts_with(key))
+        .unwrap_or_else(|| panic!("{key}: {text}"));
     line.rsplit(['\'', '"']).nth(1).unwrap().parse().unwrap()
 }
 
