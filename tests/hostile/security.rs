@@ -12,7 +12,7 @@ use crate::live::{Network, Program, folder, messages, sleep};
 use crate::network::{COMMANDS, MOST_MEMORY, heartbeat, inside, look, operator_with, pairs, peak};
 
 /// Time for peers to authenticate each other, s.
-const MEETING: f64 = 8.0;
+const MEETING: f64 = 16.0;
 
 const ENCLAVES: [Enclave; 4] = [
     Enclave { name: "/arm/simulator", publishes: &["rt/arm/state", "rt/arm/model", "rt/joint_states"] },
@@ -49,6 +49,7 @@ fn commanded(name: &str, keystore: &Keystore, operator: ros2_client::ContextOpti
     let (simulated, other) = simulator.interrupt();
     assert_eq!((recorded, simulated), (0, 0), "{log}{other}");
     let (all, open) = states(&bag);
+    println!("{name}: {all} states, {open} with an open valve");
     Some((all, open, log + &other))
 }
 
@@ -60,7 +61,6 @@ fn keys(keystore: &Keystore, enclave: &str) -> ros2_client::ContextOptions {
 fn peers_with_keys_talk_and_others_neither_command_nor_read() {
     let keystore = Keystore::new(&ENCLAVES, "ENCRYPT");
     let Some((all, open, log)) = commanded("keys", &keystore, keys(&keystore, "/operator")) else { return };
-    println!("{all} states, {open} with an open valve");
     assert!(all > 400 && open > 100, "{all} states, {open} with an open valve: {log}");
     let (all, without_keys, log) = commanded("nokeys", &keystore, ros2_client::ContextOptions::new()).unwrap();
     assert!(all > 400 && without_keys == 0, "{all} states, {without_keys} with an open valve: {log}");
