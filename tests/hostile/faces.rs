@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use excavator::ros::TopicQos;
-use excavator_msgs::{Header, OrificeCommand};
+use excavator_msgs::OrificeCommand;
 
 use crate::fault::Fault;
-use crate::inside::{inside, node_of_the_test, peak_memory, until};
+use crate::inside::{command_of_now, inside, node_of_the_test, peak_memory, until};
 use crate::live::{Network, folder, messages, sleep};
 
 /// A recording of a simulator that an operator commands.
@@ -21,9 +21,7 @@ fn commanded(network: &Network, folder: &Path) -> PathBuf {
         let node = node_of_the_test("operator");
         let commands = node.link.publish("/arm/orifice_command", TopicQos::reliable(10)).unwrap();
         for _ in 0..120 {
-            let command =
-                OrificeCommand { header: Header::default(), names: vec!["arm".to_string()], areas: vec![3e-5] };
-            let _ = commands.publish(command);
+            let _ = commands.publish(command_of_now(3e-5));
             sleep(0.025);
         }
         node.leave();

@@ -5,6 +5,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use excavator::ros::{RosArguments, Supervisor};
+use excavator_msgs::{Header, OrificeCommand, Time};
 use nix::sched::{CloneFlags, setns};
 
 use crate::live::Network;
@@ -20,6 +21,14 @@ pub fn inside<T: Send + 'static>(network: &Network, work: impl FnOnce() -> T + S
         Ok(result) => result,
         Err(panic) => std::panic::resume_unwind(panic),
     }
+}
+
+/// A command for the arm, stamped with the time of now: without a stamp the gate refuses it.
+pub fn command_of_now(area: f64) -> OrificeCommand {
+    let since_1970 = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
+    let stamp = Time::from_nanoseconds(since_1970.as_nanos() as i64).unwrap();
+    let header = Header { stamp, frame_id: String::new() };
+    OrificeCommand { header, names: vec!["arm".to_string()], areas: vec![area] }
 }
 
 /// Peak memory of the program in the namespace whose command line has `word`, MB.

@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 
 use excavator::ros::TopicQos;
 use excavator_msgs::common::{DiagnosticArray, DiagnosticStatus, KeyValue};
-use excavator_msgs::{ArmState, CylinderState, Header, OrificeCommand};
+use excavator_msgs::{ArmState, CylinderState, Header};
 
 use crate::faces::{answer, page};
 use crate::fault::Fault;
-use crate::inside::{inside, node_of_the_test, peak_memory, until};
+use crate::inside::{command_of_now, inside, node_of_the_test, peak_memory, until};
 use crate::live::{Network, folder, messages, sleep};
 
 fn state(cylinders: Vec<CylinderState>, nanoseconds: i64) -> ArmState {
@@ -41,9 +41,7 @@ fn judged(network: &Network, folder: &Path, name: &str, model: &Path, seconds: f
             // A third at rest, a third to and fro, a third at rest again.
             let moves = (seconds / 3.0..2.0 * seconds / 3.0).contains(&time);
             let area = if moves { 5e-5 * (std::f64::consts::TAU * 0.4 * time).sin() } else { 0.0 };
-            let command =
-                OrificeCommand { header: Header::default(), names: vec!["arm".to_string()], areas: vec![area] };
-            let _ = commands.publish(command);
+            let _ = commands.publish(command_of_now(area));
             sleep(0.02);
         }
         node.leave();
