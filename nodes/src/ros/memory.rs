@@ -14,13 +14,15 @@ const SETTLED: Duration = Duration::from_secs(3);
 /// Watches how this process grows.
 pub(super) struct Memory {
     since: Instant,
-    before: Option<u64>,
+    /// What the process had at the first look, MB, and what it is measured against.
+    first: Option<u64>,
+    before: u64,
 }
 
 impl Memory {
     /// Starts with what the process has when it has settled.
     pub fn new() -> Self {
-        Memory { since: Instant::now(), before: None }
+        Memory { since: Instant::now(), first: None, before: 0 }
     }
 
     /// Memory before and now, MB, where it has grown too much.
@@ -29,12 +31,12 @@ impl Memory {
     }
 
     fn judge(&mut self, now: u64, age: Duration) -> Option<(u64, u64)> {
-        // A flood from the first moment on must not become the measure.
-        let before = *self.before.get_or_insert(now);
-        if age < SETTLED && now.saturating_sub(before) <= MOST_GROWTH {
-            self.before = Some(now.min(before + MOST_GROWTH / 2));
-            return None;
+        let first = *self.first.get_or_insert(now);
+        if age < SETTLED {
+            // A flood from the first moment on must not become the measure.
+            self.before = self.before.max(now.min(first + MOST_GROWTH / 2));
         }
+        let before = self.before.max(first);
         (now.saturating_sub(before) > MOST_GROWTH).then_some((before, now))
     }
 }
