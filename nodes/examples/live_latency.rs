@@ -47,13 +47,20 @@ impl Node {
         Node(Command::new(program).args(words).stdin(Stdio::null()).stderr(Stdio::null()).spawn().unwrap())
     }
 
-    /// Processor time used so far, s.
+    /// Processor time used so far, s, with that of the processes that it has started.
     fn processor_time(&self) -> f64 {
-        let text = std::fs::read_to_string(format!("/proc/{}/stat", self.0.id())).unwrap();
-        // The name in parentheses may hold spaces; user and system time are fields 14 and 15, in hundredths of a second.
-        let fields: Vec<&str> = text.rsplit(')').next().unwrap().split_whitespace().collect();
-        (fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap()) / 100.0
+        let pid = self.0.id();
+        let children = std::fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).unwrap_or_default();
+        let children = children.split_whitespace().map(|child| processor_time_of(child.parse().unwrap()));
+        processor_time_of(pid) + children.sum::<f64>()
     }
+}
+
+fn processor_time_of(pid: u32) -> f64 {
+    let text = std::fs::read_to_string(format!("/proc/{pid}/stat")).unwrap();
+    // The name in parentheses may hold spaces; user and system time are fields 14 and 15, in hundredths of a second.
+    let fields: Vec<&str> = text.rsplit(')').next().unwrap().split_whitespace().collect();
+    (fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap()) / 100.0
 }
 
 impl Drop for Node {
