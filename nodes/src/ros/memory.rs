@@ -14,13 +14,17 @@ const SETTLED: Duration = Duration::from_secs(3);
 /// Watches how this process grows.
 pub(super) struct Memory {
     since: Instant,
-    before: Option<u64>,
+    /// At the first look, MB.
+    first: Option<u64>,
+    /// When it had settled, MB: half of the most growth above the first at most, so that a flood from the first moment on does
+    /// not become the measure.
+    settled: u64,
 }
 
 impl Memory {
     /// Starts with what the process has when it has settled.
     pub fn new() -> Self {
-        Memory { since: Instant::now(), before: None }
+        Memory { since: Instant::now(), first: None, settled: 0 }
     }
 
     /// Memory before and now, MB, where it has grown too much.
@@ -29,13 +33,11 @@ impl Memory {
     }
 
     fn judge(&mut self, now: u64, age: Duration) -> Option<(u64, u64)> {
-        // A flood from the first moment on must not become the measure.
-        let before = *self.before.get_or_insert(now);
-        if age < SETTLED && now.saturating_sub(before) <= MOST_GROWTH {
-            self.before = Some(now.min(before + MOST_GROWTH / 2));
-            return None;
+        let first = *self.first.get_or_insert(now);
+        if age < SETTLED || self.settled == 0 {
+            self.settled = now.min(first + MOST_GROWTH / 2);
         }
-        (now.saturating_sub(before) > MOST_GROWTH).then_some((before, now))
+        (now > self.settled + MOST_GROWTH).then_some((self.settled, now))
     }
 }
 
