@@ -9,10 +9,12 @@
 
 mod assembler;
 #[cfg(test)]
+#[allow(clippy::panic)]
 mod interpreter;
 mod program;
 mod sockets;
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests;
 
 use std::collections::BTreeSet;
