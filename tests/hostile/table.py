@@ -15,7 +15,7 @@ PAGE = ROOT / "docs" / "faults.md"
 GROUPS = ["Commands", "Network", "Remote goals", "Files", "Recorder", "Pages and bridges"]
 INTRODUCTION = """# Faults that were tried
 
-Each row is a test in `tests/hostile`. The last column holds the figures of one run on a machine with two cores.
+Each row is a test in `tests/hostile` or `tests/rclpy`. The last column holds the figures of one run on a machine with two cores.
 `python3 tests/hostile/table.py` writes this page from the rows of the last run.
 """
 
