@@ -85,13 +85,7 @@ impl Endpoint for IdentifyAction {
 // Whoever asks hears nothing when an answer cannot be sent, and asks again: that is how services are.
 fn look(desk: &mut Desk, server: &Server, large: &LargeReplies) {
     let mut changed = false;
-    let goals = std::iter::from_fn(|| server.receive_goal().ok().flatten());
-    for (request, wanted) in goals.take(AT_ONCE) {
-        let now = Time::from_nanoseconds(system_nanoseconds()).unwrap_or_default();
-        let accepted = desk.take(*wanted.goal_id.uuid.as_bytes(), wanted.goal, now);
-        changed |= accepted;
-        let _ = server.send_goal_response(request, SendGoalResponse { accepted, stamp: library_time(now) });
-    }
+    // Cancelled goals make room for new ones.
     let cancels = std::iter::from_fn(|| server.receive_cancel_request().ok().flatten());
     for (request, wanted) in cancels.take(AT_ONCE) {
         // The library keeps the field of this type to itself; its bytes are the same as ours.
@@ -100,6 +94,13 @@ fn look(desk: &mut Desk, server: &Server, large: &LargeReplies) {
         let (answer, meant) = desk.cancel(info);
         changed |= !meant.is_empty();
         let _ = server.send_cancel_response(request, cancel_response(answer, &meant));
+    }
+    let goals = std::iter::from_fn(|| server.receive_goal().ok().flatten());
+    for (request, wanted) in goals.take(AT_ONCE) {
+        let now = Time::from_nanoseconds(system_nanoseconds()).unwrap_or_default();
+        let accepted = desk.take(*wanted.goal_id.uuid.as_bytes(), wanted.goal, now);
+        changed |= accepted;
+        let _ = server.send_goal_response(request, SendGoalResponse { accepted, stamp: library_time(now) });
     }
     let questions = std::iter::from_fn(|| server.receive_result_request().ok().flatten());
     for (request, wanted) in questions.take(AT_ONCE) {
