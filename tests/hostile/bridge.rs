@@ -13,8 +13,8 @@ use crate::live::{Network, folder, messages, sleep};
 
 /// The last values that a part of a node told.
 fn values(bag: &Path, part: &str) -> Vec<(String, String)> {
-    let statuses = messages::<DiagnosticArray>(bag, "/diagnostics").into_iter().flat_map(|(_, array)| array.status);
-    let last = statuses.filter(|status| status.name.ends_with(part)).next_back().expect("the part");
+    let mut statuses = messages::<DiagnosticArray>(bag, "/diagnostics").into_iter().flat_map(|(_, array)| array.status);
+    let last = statuses.rfind(|status| status.name.ends_with(part)).expect("the part");
     last.values.into_iter().map(|entry| (entry.key, entry.value)).collect()
 }
 
@@ -69,7 +69,8 @@ fn repeated_old_and_impossible_datagrams_are_not_measured() {
             sleep(0.01);
         }
     });
-    sleep(0.3);
+    // New values come with the next of the messages that come every second.
+    sleep(1.3);
     assert_eq!(recorder.interrupt().0, 0);
     assert_eq!(bridge.interrupt().0, 0);
     let pressures: Vec<f64> =
@@ -120,7 +121,8 @@ fn datagrams_of_other_machines_are_taken_only_from_those_named() {
                 sleep(0.01);
             }
         });
-        sleep(0.3);
+        // New values come with the next of the messages that come every second.
+        sleep(1.3);
         assert_eq!(recorder.interrupt().0, 0);
         assert_eq!(bridge.interrupt().0, 0);
         let states = messages::<ArmState>(&bag, "/arm/state");

@@ -211,7 +211,10 @@ fn too_large_and_too_many_goals_are_refused() {
             (0..300).filter(|_| client.send_within(&huge, Duration::from_millis(30)).is_some_and(|(_, yes)| yes));
         let large = large.count();
         let small = (0..300).filter(|_| client.send(&long_goal()).1).count();
-        let _ = client.action.cancel_all_goals();
+        let request = client.action.cancel_all_goals().unwrap();
+        until("the answer to a cancel request", ANSWER, || {
+            client.action.receive_cancel_response(request).unwrap_or(None)
+        });
         let (status, outcome) = client.run(&goal("zx30u-arm", "arm-swing"), Duration::from_secs(120));
         assert_eq!(status, GoalStatusEnum::Succeeded, "{}", outcome.message);
         (large, small)
