@@ -10,17 +10,25 @@ use nix::sched::{CloneFlags, setns};
 
 use crate::live::Network;
 
-/// Runs `work` on a thread in the namespace of `network`; threads that it starts are there too.
+/// Runs `work` on a thread in the namespace of `network` and waits for it; threads that it starts are there too.
 pub fn inside<T: Send + 'static>(network: &Network, work: impl FnOnce() -> T + Send + 'static) -> T {
-    let path = format!("/run/netns/{}", network.name());
-    let thread = std::thread::spawn(move || {
-        setns(File::open(path).unwrap(), CloneFlags::CLONE_NEWNET).unwrap();
-        work()
-    });
-    match thread.join() {
+    match start_inside(network, work).join() {
         Ok(result) => result,
         Err(panic) => std::panic::resume_unwind(panic),
     }
+}
+
+/// Starts `work` on a thread in the namespace of `network`.
+pub fn start_inside<T: Send + 'static>(
+    network: &Network,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> std::thread::JoinHandle<T> {
+    // Opened here: the name may be gone when the thread starts, the namespace is not.
+    let namespace = File::open(format!("/run/netns/{}", network.name())).unwrap();
+    std::thread::spawn(move || {
+        setns(namespace, CloneFlags::CLONE_NEWNET).unwrap();
+        work()
+    })
 }
 
 /// A command for the arm, stamped with the time of now: without a stamp the gate refuses it.

@@ -15,6 +15,7 @@ use rustdds::policy::{Durability, History, Reliability};
 use rustdds::{DomainParticipant, DomainParticipantBuilder, GUID, QosPolicyBuilder, TopicKind};
 
 use crate::fault::Fault;
+use crate::inside::start_inside;
 use crate::live::{Network, Program, folder, messages, sleep};
 
 /// Most memory that a node may ever need, MB.
@@ -25,19 +26,6 @@ const OPEN: f64 = 2e-5;
 pub const COMMANDS: &str = "rt/arm/orifice_command";
 /// Time for peers to find each other, s.
 const MEETING: f64 = 6.0;
-
-/// Runs `work` on a thread inside a network namespace; sockets and threads that it makes are there too.
-pub fn inside<T: Send + 'static>(
-    network: &Network,
-    work: impl FnOnce() -> T + Send + 'static,
-) -> std::thread::JoinHandle<T> {
-    let namespace = std::fs::File::open(Path::new("/run/netns").join(network.name())).unwrap();
-    std::thread::spawn(move || {
-        use rustix::thread::{LinkNameSpaceType, move_into_link_name_space};
-        move_into_link_name_space(std::os::fd::AsFd::as_fd(&namespace), Some(LinkNameSpaceType::Network)).unwrap();
-        work()
-    })
-}
 
 /// Most memory that a program ever had, MB.
 pub fn peak(program: &Program) -> f64 {
@@ -67,7 +55,7 @@ pub fn operator_with(
     options: ros2_client::ContextOptions,
 ) -> std::thread::JoinHandle<f64> {
     let stop = Arc::clone(stop);
-    inside(network, move || {
+    start_inside(network, move || {
         let context = ros2_client::Context::with_options(options).unwrap();
         let name = ros2_client::NodeName::new("/", "operator").unwrap();
         let mut node = context.new_node(name, ros2_client::NodeOptions::new().enable_rosout(false)).unwrap();
@@ -219,7 +207,7 @@ fn stranger(
     network: &Network,
     packets: impl Fn(&Seen) -> Vec<(Vec<u8>, Vec<SocketAddr>)> + Send + 'static,
 ) -> std::thread::JoinHandle<usize> {
-    inside(network, move || {
+    start_inside(network, move || {
         let participant = DomainParticipantBuilder::new(0).build().unwrap();
         std::thread::sleep(Duration::from_secs_f64(MEETING));
         let packets = packets(&look(&participant));

@@ -7,9 +7,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use excavator_msgs::ArmState;
 
 use crate::fault::Fault;
+use crate::inside::start_inside;
 use crate::keystore::{Enclave, Keystore};
 use crate::live::{Network, Program, folder, messages, sleep};
-use crate::network::{COMMANDS, MOST_MEMORY, heartbeat, inside, look, operator_with, pairs, peak};
+use crate::network::{COMMANDS, MOST_MEMORY, heartbeat, look, operator_with, pairs, peak};
 
 /// Time for peers to authenticate each other, s.
 const MEETING: f64 = 16.0;
@@ -96,7 +97,7 @@ fn a_heartbeat_without_keys_does_nothing_even_without_the_guard() {
     let operator = operator_with(&left, &stop, keys(&keystore, "/operator"));
     // Somebody who once had keys knows the identities; the packets are not protected.
     let options = keystore.folder("/recorder");
-    let sent = inside(&right, move || {
+    let sent = start_inside(&right, move || {
         let files = rustdds::DomainParticipantSecurityConfigFiles::with_ros_default_names(options, String::new());
         let participant = rustdds::DomainParticipantBuilder::new(0).builtin_security(files).build().unwrap();
         std::thread::sleep(std::time::Duration::from_secs_f64(MEETING));

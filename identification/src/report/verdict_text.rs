@@ -116,7 +116,7 @@ const TELLINGS: [Telling; 5] = [
     },
 ];
 
-/// What was fitted along up to the model `last`, with a space before it; nothing where that is nothing.
+/// The nuisance effects that were fitted up to the model `last`, with a space before them; empty where there are none.
 fn fitted_along(given: &Model, last: &Model) -> String {
     let told = |telling: &Telling| {
         let found = last.effects.iter().filter(|effect| effect.name() == telling.effect);
