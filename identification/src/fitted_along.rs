@@ -103,7 +103,7 @@ fn looks_like_more(physics: &dyn Effect) -> bool {
     physics.card().name == "spool_sensor_offset"
 }
 
-/// Typical loss of a fit up to which nothing is left but noise, as for [`crate::diagnosis::DiagnosisSettings::adequate_loss`].
+/// Loss of a fit up to which nothing is left but noise: 1.2 times its variance.
 const NOISE: f64 = 0.2;
 
 /// A fit of simulated outputs ([`crate::fit::fit`]), with those effects along that the recordings show. `watch` is told before each
@@ -147,7 +147,7 @@ pub fn found_along<'a>(given: &'a Model, fitted: &'a Model) -> impl Iterator<Ite
 
 fn refitted(fitted: Fit, behind: usize, recordings: &[&Recording], settings: &FitSettings, watch: Watch<'_>) -> Fit {
     let anew = |model: &Model| fit_watched(model, recordings, settings, watch).ok();
-    let is_all = |fitted: &Fit| fitted.typical_loss() <= NOISE;
+    let is_all = |fitted: &Fit| fitted.loss() <= NOISE;
     with_effects_along(fitted, IN_FITS, behind, recordings, |fitted| &fitted.model, anew, is_all)
 }
 

@@ -1,10 +1,11 @@
 //! What a recording says about a model: which parameters it has, how far it is from the measurement, where it fails, and
 //! which physical effect it is missing.
 //!
-//! Data flows one way: recording -> regression -> model -> simulation -> comparison -> diagnosis -> refinement ->
-//! report. This crate reads no files and knows no ROS.
+//! Data flows one way: recording -> regression -> model -> simulation -> hypotheses -> scores -> verdict ->
+//! refinement -> report. This crate reads no files and knows no ROS.
 
 pub mod characterisation;
+pub mod decision;
 pub mod design;
 pub mod diagnosis;
 pub mod energy;
@@ -15,4 +16,5 @@ pub mod plausibility;
 pub mod refinement;
 pub mod regression;
 pub mod report;
+pub mod search;
 pub mod validation;

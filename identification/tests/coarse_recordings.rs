@@ -1,7 +1,9 @@
 //! Recordings as a crane's logger makes them: 100 Hz or less, stamps that scatter, command, position and chamber pressures only.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, Verdict, diagnose, normalised_error};
+use excavator_identification::decision::Kind;
+use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
+use excavator_identification::fit::normalised_error;
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
@@ -66,25 +68,26 @@ fn diagnosed(rate: f64, dead_time: f64) -> (Diagnosis, f64) {
     let (first, second) = (measured(rate, dead_time, 1.0, 1), measured(rate, dead_time, 1.3, 2));
     let model = built_in("zx30u-arm").unwrap();
     let diagnosis = diagnose(&model, &[&first], &[&second], &DiagnosisSettings::default(), &|_, _| {}).unwrap();
-    let error = normalised_error(&diagnosis.nominal_validation, &[&second]);
+    let error = normalised_error(&diagnosis.given().validation, &[&second]);
     (diagnosis, error)
 }
 
 #[test]
 fn few_sensors_at_100_hz_give_the_right_name_or_none() {
     let (diagnosis, error) = diagnosed(100.0, 0.0);
-    let first = diagnosis.candidates.first();
-    let tied = diagnosis.candidates.iter().filter(|candidate| candidate.tied_with_first);
-    let names: Vec<&str> = tied.chain(first).map(|candidate| candidate.name()).collect();
-    println!("{}, NMSE {error}, {names:?}", diagnosis.verdict.name());
-    match diagnosis.verdict {
-        Verdict::MissingEffect => assert!(names.contains(&"valve_dead_zone"), "{error}: {names:?}"),
-        Verdict::Adequate => assert!(error < 0.03, "{error}"),
-        Verdict::Unexplained => {}
+    let candidates = diagnosis.candidates();
+    let named = candidates.iter().enumerate().filter(|(number, one)| *number == 0 || one.is_tied_with_first);
+    let names: Vec<&str> = named.map(|(_, one)| one.name()).collect();
+    println!("{}, NMSE {error}, {names:?}, {:?}", diagnosis.verdict.kind.name(), diagnosis.verdict.reasons);
+    match diagnosis.verdict.kind {
+        Kind::MissingEffect => assert!(names.contains(&"valve_dead_zone"), "{error}: {names:?}"),
+        Kind::Adequate => assert!(error < 0.03, "{error}"),
+        Kind::Unexplained => {}
     }
     // Whatever is said, nothing explains more than the dead zone.
-    let tried = diagnosis.candidates.iter().chain(&diagnosis.rejected);
-    let best = tried.max_by(|a, b| a.evidence.gain.total_cmp(&b.evidence.gain)).map(|candidate| candidate.name());
+    let rejected = diagnosis.rejected();
+    let tried = candidates.iter().chain(&rejected);
+    let best = tried.max_by(|a, b| a.improvement.total_cmp(&b.improvement)).map(|candidate| candidate.name());
     assert!(best.is_none_or(|name| name == "valve_dead_zone"), "{best:?}");
 }
 
@@ -92,7 +95,7 @@ fn few_sensors_at_100_hz_give_the_right_name_or_none() {
 fn nothing_is_never_said_to_be_missing_where_a_tenth_of_the_signal_is() {
     for rate in [50.0, 20.0] {
         let (diagnosis, error) = diagnosed(rate, 0.04);
-        println!("{rate} Hz: {}, NMSE {error}, too coarse: {}", diagnosis.verdict.name(), diagnosis.too_coarse);
-        assert!(error < 0.03 || diagnosis.verdict != Verdict::Adequate, "{rate} Hz: {error}");
+        println!("{rate} Hz: {}, NMSE {error}, {:?}", diagnosis.verdict.kind.name(), diagnosis.verdict.reasons);
+        assert!(error < 0.03 || diagnosis.verdict.kind != Kind::Adequate, "{rate} Hz: {error}");
     }
 }

@@ -4,7 +4,8 @@
 mod common;
 
 use common::{off_the_data_sheet, steered, with};
-use excavator_identification::diagnosis::{DiagnosisSettings, Verdict, diagnose};
+use excavator_identification::decision::Kind;
+use excavator_identification::diagnosis::{DiagnosisSettings, diagnose};
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::Site;
@@ -29,9 +30,9 @@ fn both_are_named() {
     let model = built_in("zx30u-arm").unwrap();
     let settings = DiagnosisSettings::default();
     let found = diagnose(&model, &[&identification], &[&validation], &settings, &|_, _| {}).unwrap();
-    let mut names: Vec<&str> = found.chain.iter().map(|link| link.name()).collect();
+    let mut names: Vec<&str> = found.selected().iter().map(|one| one.name()).collect();
     names.sort_unstable();
-    assert_eq!((found.verdict, &names[..]), (Verdict::MissingEffect, &["external_contact", "hose_loss"][..]));
-    let left = found.chain.last().unwrap().validation.loss();
+    assert_eq!((found.verdict.kind, &names[..]), (Kind::MissingEffect, &["external_contact", "hose_loss"][..]));
+    let left = found.best().validation.loss();
     assert!(left < 0.5, "{left}");
 }

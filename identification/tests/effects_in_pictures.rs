@@ -4,8 +4,9 @@
 mod common;
 
 use common::swing;
-use excavator_identification::diagnosis::{Candidate, Contribution, Evidence, Inclusion, contribution};
+use excavator_identification::diagnosis::{Contribution, contribution};
 use excavator_identification::fit::{FitSettings, evaluate};
+use excavator_identification::search::{Addition, Trial};
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
@@ -23,19 +24,9 @@ fn shown(name: &'static str, values: &[f64], found: &[f64]) -> Option<Contributi
     let recording = swing(&machine(name, values));
     let model = machine(name, found);
     let fit = evaluate(&model, &[&recording], &FitSettings::default()).unwrap();
-    let candidate = Candidate {
-        physics: find(name).unwrap(),
-        site: Site::Cylinder(0),
-        place: "arm".to_string(),
-        validation: fit.clone(),
-        fit,
-        evidence: Evidence { gain: 1.0, significance: 10.0 },
-        inclusion: Inclusion::default(),
-        identification_gain: 1.0,
-        accepted: true,
-        tied_with_first: false,
-    };
-    contribution(&candidate, &[&recording]).unwrap()
+    let addition = Addition { physics: find(name).unwrap(), site: Site::Cylinder(0) };
+    let trial = Trial { additions: vec![addition], validation: fit.clone(), fit, seconds: 0.0 };
+    contribution(&trial, &addition, &[&recording]).unwrap()
 }
 
 /// Largest distance of the data from the effect, as a part of the effect's size.

@@ -4,9 +4,11 @@
 mod common;
 
 use common::{off_the_data_sheet, steered, with};
-use excavator_identification::diagnosis::{DiagnosisSettings, Verdict};
+use excavator_identification::decision::Kind;
+use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Reason, Refinement, refine};
 use excavator_identification::report::refinement_sentence;
+use excavator_identification::search::Addition;
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
@@ -24,7 +26,8 @@ impl Machine {
 
     fn refined(&self, names: &[&str]) -> Refinement {
         let model = built_in("zx30u-arm").unwrap();
-        let added = names.iter().map(|name| (find(name).unwrap(), Site::Cylinder(0))).collect();
+        let added =
+            names.iter().map(|name| Addition { physics: find(name).unwrap(), site: Site::Cylinder(0) }).collect();
         let (identification, validation) = ([&self.identification], [&self.validation]);
         let settings = DiagnosisSettings::default();
         let additions = Additions::Named(added);
@@ -41,10 +44,10 @@ fn what_explains_nothing_is_told() {
     let arm = off_the_data_sheet("zx30u-arm", 0.1);
     let machine = Machine::record(&with(&arm, "valve_dead_zone", Site::Cylinder(0), &[4e-6, 4e-6]));
     let wrong = machine.refined(&["external_contact"]);
-    assert_eq!((wrong.verdict(), helps(&wrong)), (Verdict::Unexplained, false));
+    assert_eq!((wrong.verdict(), helps(&wrong)), (Kind::Unexplained, false));
     assert!(refinement_sentence(&wrong).contains("That does not help"), "{}", refinement_sentence(&wrong));
     let right = machine.refined(&["valve_dead_zone"]);
-    assert_eq!(right.verdict(), Verdict::MissingEffect);
+    assert_eq!(right.verdict(), Kind::MissingEffect);
     assert!(refinement_sentence(&right).contains("explains what the model was missing"));
 }
 
@@ -54,16 +57,16 @@ fn one_of_two_is_half_an_answer() {
     let dead_zone = with(&arm, "valve_dead_zone", Site::Cylinder(0), &[6e-6, 6e-6]);
     let machine = Machine::record(&with(&dead_zone, "asymmetric_friction", Site::Cylinder(0), &[400.0, 0.0]));
     let half = machine.refined(&["valve_dead_zone"]);
-    assert_eq!((half.verdict(), helps(&half)), (Verdict::Unexplained, true), "{}", refinement_sentence(&half));
+    assert_eq!((half.verdict(), helps(&half)), (Kind::Unexplained, true), "{}", refinement_sentence(&half));
     assert!(refinement_sentence(&half).contains("something is missing still"));
     let both = machine.refined(&["valve_dead_zone", "asymmetric_friction"]);
-    assert_eq!(both.verdict(), Verdict::MissingEffect, "{}", refinement_sentence(&both));
+    assert_eq!(both.verdict(), Kind::MissingEffect, "{}", refinement_sentence(&both));
 }
 
 #[test]
 fn where_nothing_is_missing_nothing_is_explained() {
     let machine = Machine::record(&off_the_data_sheet("zx30u-arm", 0.1));
     let superfluous = machine.refined(&["stribeck_friction"]);
-    assert_eq!((superfluous.verdict(), helps(&superfluous)), (Verdict::Adequate, false));
+    assert_eq!((superfluous.verdict(), helps(&superfluous)), (Kind::Adequate, false));
     assert!(refinement_sentence(&superfluous).contains("was adequate without it"));
 }

@@ -4,7 +4,8 @@
 mod common;
 
 use common::{off_the_data_sheet, steered, with};
-use excavator_identification::diagnosis::{Adequacy, Diagnosis, DiagnosisSettings, Verdict, diagnose};
+use excavator_identification::decision::{Kind, Reason};
+use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
 use excavator_model::document::built_in;
 use excavator_model::effects::Site;
 use excavator_model::recording::Recording;
@@ -28,15 +29,15 @@ fn diagnosed(begins: [f64; 2]) -> Diagnosis {
 #[test]
 fn a_load_that_is_picked_up_is_named() {
     let found = diagnosed([9.3, 5.6]);
-    let names: Vec<&str> = found.chain.iter().map(|link| link.name()).collect();
-    assert_eq!((found.verdict, &names[..]), (Verdict::MissingEffect, &["payload"][..]));
-    let link = &found.chain[0];
-    assert!(!link.tied_with_first);
-    assert!(link.validation.loss() < 0.1, "{}", link.validation.loss());
+    let names: Vec<&str> = found.selected().iter().map(|one| one.name()).collect();
+    assert_eq!((found.verdict.kind, &names[..]), (Kind::MissingEffect, &["payload"][..]));
+    assert_eq!(found.verdict.set.len(), 1);
+    let best = found.best();
+    assert!(best.validation.loss() < 0.1, "{}", best.validation.loss());
     for (parameter, wanted, margin) in
         [("arm.payload_mass", LOAD[0], 1.0), ("arm.payload_distance", LOAD[1], 0.03), ("arm.payload_start", 9.3, 0.05)]
     {
-        let value = link.fit.model.value_of(parameter).unwrap();
+        let value = best.fit.model.value_of(parameter).unwrap();
         assert!((value - wanted).abs() < margin, "{parameter} = {value}, not {wanted}");
     }
 }
@@ -44,8 +45,9 @@ fn a_load_that_is_picked_up_is_named() {
 #[test]
 fn a_load_that_is_always_there_is_a_heavier_arm() {
     let found = diagnosed([-1.0, -1.0]);
-    assert_eq!((found.verdict, found.adequacy), (Verdict::Adequate, Some(Adequacy::Noise)));
-    let inertia = found.nominal.model.value_of("arm.inertia").unwrap();
+    assert_eq!(found.verdict.kind, Kind::Adequate);
+    assert!(matches!(found.verdict.reasons[0], Reason::WithinNoise { .. }), "{:?}", found.verdict.reasons);
+    let inertia = found.given().fit.model.value_of("arm.inertia").unwrap();
     let wanted = off_the_data_sheet("zx30u-arm", 0.1).value_of("arm.inertia").unwrap() + LOAD[0] * LOAD[1] * LOAD[1];
     assert!((inertia / wanted - 1.0).abs() < 0.01, "{inertia} {wanted}");
 }

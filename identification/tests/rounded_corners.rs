@@ -12,6 +12,7 @@ use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::fit::{FitSettings, fit};
 use excavator_identification::fitted_along::{fit_with_effects_along, still_shows};
 use excavator_identification::refinement::{Additions, refine};
+use excavator_identification::search::Addition;
 use excavator_model::document::built_in;
 use excavator_model::effects::{Site, find};
 use excavator_model::recording::Recording;
@@ -89,7 +90,8 @@ fn an_added_friction_turns_round_as_the_machine_does() {
     let recording = recorded(&machine(3e-3));
     let mut given = built_in("zx30u-arm").unwrap();
     given.effects.retain(|effect| effect.name() != "coulomb_friction");
-    let additions = Additions::Named(given.parse_addition("coulomb_friction").unwrap());
+    let named = given.parse_addition("coulomb_friction").unwrap().into_iter();
+    let additions = Additions::Named(named.map(|(physics, site)| Addition { physics, site }).collect());
     let settings = DiagnosisSettings::default();
     let refined =
         refine(&given, &[&recording], &[&recording], &additions, &settings, "2000-01-01T00:00:00Z", &|_, _| {})

@@ -7,7 +7,8 @@
 mod common;
 
 use common::{measure, off_the_data_sheet, with};
-use excavator_identification::diagnosis::{Candidate, Diagnosis, DiagnosisSettings, Verdict, diagnose};
+use excavator_identification::decision::Kind;
+use excavator_identification::diagnosis::{Candidate, Diagnosis, DiagnosisSettings, diagnose};
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::Site;
@@ -109,26 +110,21 @@ fn diagnosed(hidden: &[Hidden]) -> Diagnosis {
         &|_, _| (),
     )
     .unwrap();
-    let tied: Vec<String> = tied(&diagnosis).map(found_label).collect();
-    let chain: Vec<String> = diagnosis.chain.iter().map(found_label).collect();
+    let tied: Vec<String> = diagnosis.alternatives().iter().map(|(other, _)| found_label(other)).collect();
+    let selected: Vec<String> = diagnosis.selected().iter().map(found_label).collect();
     println!(
-        "{hidden:?}\n  {}: chain {chain:?}, tied {tied:?}, loss {:.2} -> {:.2}, {:.0} s",
-        diagnosis.verdict.name(),
-        diagnosis.nominal_validation.loss(),
-        diagnosis.chain.last().map_or(f64::NAN, |link| link.validation.loss()),
+        "{hidden:?}\n  {}: {selected:?}, tied {tied:?}, log error ratio {:.2} -> {:.2}, {:.0} s",
+        diagnosis.verdict.kind.name(),
+        diagnosis.verdict.standings[0].log_error_ratio,
+        diagnosis.verdict.standings[diagnosis.verdict.best].log_error_ratio,
         begin.elapsed().as_secs_f64()
     );
     diagnosis
 }
 
-/// Candidates among which the recordings cannot tell.
-fn tied(diagnosis: &Diagnosis) -> impl Iterator<Item = &Candidate> {
-    diagnosis.candidates.iter().filter(|candidate| candidate.tied_with_first)
-}
-
 /// Name and place of what was found, as [`label`] has them of what is hidden.
-fn found_label(candidate: &Candidate) -> String {
-    format!("{}@{}", candidate.name(), candidate.place)
+fn found_label(candidate: &Candidate<'_>) -> String {
+    format!("{}@{}", candidate.name(), candidate.place())
 }
 
 /// Name and place, as `valve_dead_zone@boom`.
@@ -144,9 +140,9 @@ fn label((name, site, _): &Hidden) -> String {
 #[ignore = "minutes; tests/run --long"]
 fn nothing_is_missed_where_nothing_is_missing() {
     let diagnosis = diagnosed(&[]);
-    assert_eq!(diagnosis.verdict, Verdict::Adequate);
+    assert_eq!(diagnosis.verdict.kind, Kind::Adequate);
     // Noise, and nothing that has to be excused.
-    let left = diagnosis.nominal_validation.loss();
+    let left = diagnosis.verdict.standings[0].log_error_ratio;
     assert!(left.abs() < 0.1, "{left}");
 }
 
@@ -170,13 +166,13 @@ fn the_effect_and_its_cylinder_are_named() {
         .iter()
         .filter_map(|hidden| {
             let diagnosis = diagnosed(hidden);
-            let mut found: Vec<String> = diagnosis.chain.iter().map(found_label).collect();
+            let mut found: Vec<String> = diagnosis.selected().iter().map(found_label).collect();
             let mut wanted: Vec<String> = hidden.iter().map(label).collect();
             found.sort_unstable();
             wanted.sort_unstable();
-            let tied = tied(&diagnosis).count();
-            let right = diagnosis.verdict == Verdict::MissingEffect && found == wanted && tied <= 2;
-            (!right).then(|| format!("{wanted:?}: {} {found:?}, {tied} tied", diagnosis.verdict.name()))
+            let tied = diagnosis.verdict.set.len();
+            let right = diagnosis.verdict.kind == Kind::MissingEffect && found == wanted && tied <= 2;
+            (!right).then(|| format!("{wanted:?}: {} {found:?}, {tied} tied", diagnosis.verdict.kind.name()))
         })
         .collect();
     assert!(wrong.is_empty(), "{wrong:#?}");

@@ -25,7 +25,7 @@ struct Candidate {
 }
 
 #[derive(Debug, Deserialize)]
-struct Along {
+struct Nuisance {
     effect: String,
     cylinder: String,
 }
@@ -47,7 +47,7 @@ struct Text {
     #[serde(default)]
     instruments: Vec<Instrument>,
     #[serde(default)]
-    fitted_along: Vec<Along>,
+    nuisances: Vec<Nuisance>,
 }
 
 /// A diagnosis as far as a design needs it: rivals by name (`EFFECT@PLACE`, `none`) with the values of all parameters that
@@ -60,7 +60,7 @@ pub struct DiagnosisFile {
     named: Vec<String>,
     fitted: Vec<(String, Vec<(String, f64)>)>,
     noise: Vec<(String, f64)>,
-    fitted_along: Vec<String>,
+    nuisances: Vec<String>,
 }
 
 impl DiagnosisFile {
@@ -81,7 +81,7 @@ impl DiagnosisFile {
             tied: text.candidates.iter().filter(|candidate| candidate.tied_with_first).map(name).collect(),
             named: text.candidates.iter().map(name).collect(),
             fitted,
-            fitted_along: text.fitted_along.iter().map(|one| format!("{}@{}", one.effect, one.cylinder)).collect(),
+            nuisances: text.nuisances.iter().map(|one| format!("{}@{}", one.effect, one.cylinder)).collect(),
             noise: text.instruments.into_iter().filter_map(|one| Some((one.name, one.noise?))).collect(),
         })
     }
@@ -111,13 +111,13 @@ impl DiagnosisFile {
         self.fitted.iter().find(|(name, _)| name == rival).map_or(&[], |(_, values)| values)
     }
 
-    /// `model` with the effects that were fitted along: rivals whose values come from the diagnosis have them too.
+    /// `model` with the nuisance effects that were estimated: rivals whose values come from the diagnosis have them too.
     ///
     /// # Errors
     /// [`ModelError`] where the model has no such place.
-    pub fn with_fitted_along(&self, model: &Model) -> Result<Model, ModelError> {
+    pub fn with_nuisances(&self, model: &Model) -> Result<Model, ModelError> {
         let mut extended = model.clone();
-        for name in &self.fitted_along {
+        for name in &self.nuisances {
             for (physics, site) in model.parse_addition(name)? {
                 if !model.has(physics.card().name, site) {
                     extended = extended.with_effect(physics, site)?;

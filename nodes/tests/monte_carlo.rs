@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 use excavator::demo::{manoeuvre, plant, sealed::Sealed};
-use excavator_identification::diagnosis::{DiagnosisSettings, Verdict, diagnose};
+use excavator_identification::decision::Kind;
+use excavator_identification::diagnosis::{DiagnosisSettings, diagnose};
 use excavator_identification::regression::{WeakFormSettings, weak_form};
 use excavator_model::document::built_in;
 use rand::SeedableRng;
@@ -73,9 +74,10 @@ fn nothing_is_found_where_nothing_is_hidden() {
         let validation = plant::record(&sealed, &manoeuvre::validation(), &mut generator).unwrap();
         let settings = DiagnosisSettings::default();
         let diagnosis = diagnose(&model, &[&identification], &[&validation], &settings, &|_, _| ()).unwrap();
-        if diagnosis.verdict != Verdict::Adequate {
-            let first = diagnosis.candidates.first().map(|candidate| candidate.name());
-            println!("draw {draw}: {} {first:?}", diagnosis.verdict.name());
+        if diagnosis.verdict.kind != Kind::Adequate {
+            let candidates = diagnosis.candidates();
+            let first = candidates.first().map(|candidate| candidate.name());
+            println!("draw {draw}: {} {first:?}", diagnosis.verdict.kind.name());
             claims += 1;
         }
     }

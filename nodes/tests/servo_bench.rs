@@ -7,6 +7,7 @@
 
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
+use excavator_identification::search::Addition;
 use excavator_identification::validation::compare;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse};
@@ -175,7 +176,8 @@ fn assert_coefficients(model: &Model) {
 
 #[test]
 fn the_error_falls_with_each_effect_of_the_refined_model() {
-    let named = HIDDEN.iter().map(|(name, _)| (find(name).unwrap(), Site::Cylinder(0))).collect();
+    let named =
+        HIDDEN.iter().map(|(name, _)| Addition { physics: find(name).unwrap(), site: Site::Cylinder(0) }).collect();
     let refinement = story(&Additions::Named(named));
     assert_falls(&refinement);
     assert_coefficients(&refinement.model);

@@ -7,8 +7,9 @@ use rand_chacha::ChaCha8Rng;
 
 use super::ride::Rider;
 use super::{DesignError, DesignSettings, Rival};
-use crate::diagnosis::{CandidateError, Evidence, compare_losses, fit_addition};
+use crate::decision::{block_costs_of, improvement_on_blocks};
 use crate::fit::{Fit, FitError, evaluate, fit};
+use crate::search::{AdditionError, fit_addition, misfit, side};
 
 /// What a rehearsal says when one rival is the truth and another is held against it.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,8 +18,10 @@ pub struct Rehearsed {
     pub truth: String,
     /// Name of the rival that was fitted to them.
     pub other: String,
-    /// By how much the truth explains the recording that was not fitted better.
-    pub evidence: Evidence,
+    /// By how much less the log error ratio of the truth is on the recording that was not fitted.
+    pub improvement: f64,
+    /// That in its own standard errors, from stretch to stretch.
+    pub significance: f64,
 }
 
 /// Samples per second of the recordings, as usual recorders have.
@@ -56,13 +59,13 @@ pub(super) fn record(
 /// [`FitError`] when neither can be fitted.
 pub(super) fn best_fit(rival: &Rival, recording: &Recording, settings: &DesignSettings) -> Result<Fit, FitError> {
     let own = fit(&rival.model, &[recording], &settings.fit);
-    let Some((physics, site)) = rival.addition else { return own };
-    let fresh = fit_addition(&rival.base(), physics, site, &[recording], &settings.fit);
+    let Some(addition) = rival.addition else { return own };
+    let fresh = fit_addition(&rival.base(), addition, &[recording], &settings.fit);
     match (own, fresh) {
         (Ok(own), Ok(fresh)) => Ok(if fresh.loss() < own.loss() { fresh } else { own }),
         (Ok(one), Err(_)) | (Err(_), Ok(one)) => Ok(one),
-        (Err(error), Err(CandidateError::Model(_))) => Err(error),
-        (Err(_), Err(CandidateError::Fit(error))) => Err(error),
+        (Err(error), Err(AdditionError::Model(_))) => Err(error),
+        (Err(_), Err(AdditionError::Fit(error))) => Err(error),
     }
 }
 
@@ -86,11 +89,11 @@ pub(super) fn rehearse(
             progress("rehearsal", (number * rivals.len() + index) as f64 / total);
             let refitted = best_fit(other, &fitted, settings)?;
             let refitted = evaluate(&refitted.model, &[&kept], &settings.fit)?;
-            rehearsed.push(Rehearsed {
-                truth: truth.name.clone(),
-                other: other.name.clone(),
-                evidence: compare_losses(&refitted, &own),
-            });
+            let side = side(&own, &[&kept]);
+            let costs = |fit: &Fit| block_costs_of(&side, &misfit(fit));
+            let (improvement, significance) = improvement_on_blocks(&costs(&refitted), &costs(&own));
+            let (truth, other) = (truth.name.clone(), other.name.clone());
+            rehearsed.push(Rehearsed { truth, other, improvement, significance });
         }
     }
     Ok(rehearsed)

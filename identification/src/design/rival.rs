@@ -1,9 +1,10 @@
 //! Models that are to be told apart.
 
+use excavator_model::Model;
 use excavator_model::effects::{Effect, Site};
-use excavator_model::{Model, addition_name, site_name};
 
 use super::DesignError;
+use crate::search::Addition;
 
 /// One explanation: the model with one more effect, or as it is.
 #[derive(Debug, Clone)]
@@ -11,7 +12,7 @@ pub struct Rival {
     /// `EFFECT@PLACE`, or `none`.
     pub name: String,
     /// The effect and its place; `None` for the model as it is.
-    pub addition: Option<(&'static dyn Effect, Site)>,
+    pub addition: Option<Addition>,
     /// The model with it.
     pub model: Model,
 }
@@ -54,8 +55,8 @@ impl Rival {
                 parameter.value = parameter.card.typical.clamp(parameter.card.minimum, parameter.card.maximum);
             }
         }
-        let name = addition_name(physics, site_name(&model.machine, site));
-        Ok(Rival { name, addition: Some((physics, site)), model: extended })
+        let addition = Addition { physics, site };
+        Ok(Rival { name: addition.name(model), addition: Some(addition), model: extended })
     }
 
     /// Sets parameters by their contract names, as far as the rival has them as unknowns.

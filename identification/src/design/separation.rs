@@ -11,7 +11,7 @@ use super::ride::Rider;
 use super::rival::cylinders;
 use super::selection::{Screened, join, screen};
 use super::{DesignError, DesignSettings, Plan, Rehearsed, Rival, library};
-use crate::diagnosis::DiagnosisSettings;
+use crate::decision::Policy;
 use crate::fit::{FitError, FitSettings, LinearRefit, evaluate, fit};
 
 /// What is expected of a pair of rivals under the proposed profile. The worse of the two directions (either may be the
@@ -87,7 +87,7 @@ pub fn separate(
         [first, ..] => first,
     };
     let machine = first.model.machine.clone();
-    let sites: Vec<_> = rivals.iter().map(|rival| rival.addition.map(|(_, site)| site)).collect();
+    let sites: Vec<_> = rivals.iter().map(|rival| rival.addition.map(|addition| addition.site)).collect();
     let wanted = cylinders(&first.model, &sites);
     let manoeuvres = library(&machine, &wanted);
     if manoeuvres.is_empty() {
@@ -198,7 +198,7 @@ fn judged(
     refitted: &[Option<LinearRefit>],
     rehearsals: &[Rehearsed],
 ) -> Vec<PairSeparation> {
-    let rules = DiagnosisSettings::default();
+    let rules = Policy::default();
     let directed = directions(rivals.len());
     let mut pairs = Vec::new();
     for first in 0..rivals.len() {
@@ -213,8 +213,8 @@ fn judged(
                     linear_gain = linear_gain.min(left.gain());
                 }
                 // Rehearsals come in the order of the directions.
-                gain = gain.min(rehearsals[number].evidence.gain);
-                significance = significance.min(rehearsals[number].evidence.significance);
+                gain = gain.min(rehearsals[number].improvement);
+                significance = significance.min(rehearsals[number].significance);
             }
             pairs.push(PairSeparation {
                 first: rivals[first].name.clone(),
@@ -224,7 +224,7 @@ fn judged(
                 linear_gain,
                 expected_gain: gain,
                 expected_significance: significance,
-                settled: gain >= rules.tie_gain && significance >= rules.tie_significance,
+                settled: gain >= rules.least_improvement && significance >= rules.least_significance,
             });
         }
     }

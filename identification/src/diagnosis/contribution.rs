@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
-use super::Candidate;
 use super::residual_points::{Point, VARIABLES, Variable, bins, points, share_explained, unit_of};
 use crate::regression::{EquationKind, RegressionError};
+use crate::search::{Addition, Trial};
 
 /// An effect in the equation and along the variable in which it shows most clearly.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,15 +44,18 @@ pub struct ContributionBin {
 /// Least share of what an effect does that a curve must explain to be worth a picture.
 const LEAST_SHARE: f64 = 0.2;
 
-/// How a candidate shows on recordings. `None` where no equation is changed by it, or by nothing that one variable tells.
+/// How an addition to the fitted model of `trial` shows on the validation recordings. `None` where no equation is changed by it, or by nothing that one variable tells.
 ///
 /// # Errors
 /// [`RegressionError`] when the recordings lack inputs.
-pub fn contribution(candidate: &Candidate, recordings: &[&Recording]) -> Result<Option<Contribution>, RegressionError> {
-    let with = &candidate.model_on_validation();
+pub fn contribution(
+    trial: &Trial,
+    addition: &Addition,
+    recordings: &[&Recording],
+) -> Result<Option<Contribution>, RegressionError> {
+    let with = &trial.model_on_validation();
     let mut without = with.clone();
-    // A candidate is added after everything that the model had.
-    without.effects.pop();
+    without.effects.retain(|effect| !effect.is(addition.physics.card().name, addition.site));
     let with: BTreeMap<_, f64> =
         points(with, recordings)?.into_iter().map(|point| ((point.kind, point.place), point.residual)).collect();
     let pairs: Vec<(Point, f64)> = points(&without, recordings)?

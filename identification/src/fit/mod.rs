@@ -6,6 +6,7 @@ mod linear_refit;
 #[cfg(test)]
 pub(crate) mod made_up;
 mod normal_equations;
+mod normalised_error;
 mod output_error;
 mod prediction;
 mod problem;
@@ -14,13 +15,13 @@ mod reading_rows;
 mod segments;
 mod settings;
 mod trial;
-mod typical_loss;
 mod watch;
 
 pub use instruments::{Instrument, instruments};
 #[cfg(test)]
 pub(crate) use linear_refit::Remainder;
 pub(crate) use linear_refit::{LinearRefit, scales};
+pub use normalised_error::normalised_error;
 pub use output_error::{Fit, FitError, evaluate, fit, fit_watched};
 pub(crate) use prediction::fit_predicted;
 pub use prediction::{Prediction, predict};

@@ -39,7 +39,7 @@ pub enum FitError {
     TooShort,
     /// An effect acts in a window of time, and the recordings do not tell where to look for that.
     #[error("when it acts cannot be told: the force balance needs signals that the recordings lack")]
-    NoWindow,
+    NoActiveWindow,
     /// Whoever watched it wanted no more of it.
     #[error("stopped on request")]
     Stopped,
@@ -83,16 +83,6 @@ impl Fit {
         blocks
             .filter_map(|block| self.block_errors.get(block)?.get(instrument))
             .fold((0.0, 0), |(squares, count), (own, readings)| (squares + own, count + readings))
-    }
-
-    /// [`Fit::loss`] on some of the blocks.
-    pub(crate) fn loss_on(&self, blocks: &[usize]) -> f64 {
-        let noise: Vec<f64> = self.instruments.iter().map(|instrument| instrument.noise).collect();
-        let error = |instrument| {
-            let (squares, count) = self.squares_of(instrument, blocks.iter().copied());
-            (squares / count.max(1) as f64).sqrt()
-        };
-        loss_per_reading(&(0..noise.len()).map(error).collect::<Vec<f64>>(), &noise)
     }
 
     /// Indices of the fitted parameters whose 95 % intervals include zero: not even their sign is known.

@@ -1,16 +1,14 @@
 //! From a model that is missing something to one that is not.
 
-use excavator_model::effects::{Effect, Site};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::RunError;
 use excavator_model::{HistoryEntry, Model, ModelError, addition_name, site_name};
 
-use crate::diagnosis::{
-    CandidateError, Diagnosis, DiagnosisError, DiagnosisSettings, NamedVerdict, Verdict, addition_with_effects_along,
-    diagnose, fit_addition, fit_nominal, judge_named,
-};
+use crate::decision::Kind;
+use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisSettings, NamedVerdict, diagnose, judge_named};
 use crate::fit::{Fit, FitError};
 use crate::fitted_along::found_along;
+use crate::search::{Addition, AdditionError, fit_addition, fit_given, with_nuisances};
 use crate::validation::{Comparison, compare};
 
 /// What is to be added.
@@ -19,7 +17,7 @@ pub enum Additions {
     /// Whatever the diagnosis finds, one after the other.
     Auto,
     /// These effects, one after the other.
-    Named(Vec<(&'static dyn Effect, Site)>),
+    Named(Vec<Addition>),
 }
 
 /// The model after one addition.
@@ -66,10 +64,10 @@ pub enum Reason {
 
 impl Refinement {
     /// The verdict on the given model; for named additions, whether they explain what it was missing.
-    pub fn verdict(&self) -> Verdict {
+    pub fn verdict(&self) -> Kind {
         match &self.reason {
-            Reason::Found(diagnosis) => diagnosis.verdict,
-            Reason::Named(named) => named.verdict,
+            Reason::Found(diagnosis) => diagnosis.verdict.kind,
+            Reason::Named(named) => named.kind,
         }
     }
 
@@ -99,11 +97,11 @@ pub enum RefineError {
     Run(#[from] RunError),
 }
 
-impl From<CandidateError> for RefineError {
-    fn from(error: CandidateError) -> Self {
+impl From<AdditionError> for RefineError {
+    fn from(error: AdditionError) -> Self {
         match error {
-            CandidateError::Model(error) => RefineError::Model(error),
-            CandidateError::Fit(error) => RefineError::Fit(error),
+            AdditionError::Model(error) => RefineError::Model(error),
+            AdditionError::Fit(error) => RefineError::Fit(error),
         }
     }
 }
@@ -126,33 +124,9 @@ pub fn refine(
     }
     let given =
         validation.iter().map(|recording| compare(model, recording)).collect::<Result<_, _>>().unwrap_or_default();
-    let mut fits: Vec<(Option<String>, Fit)> = Vec::new();
-    let reason = match additions {
-        Additions::Auto => {
-            let diagnosis = diagnose(model, identification, validation, settings, progress)?;
-            fits.push((None, diagnosis.nominal.clone()));
-            for candidate in &diagnosis.chain {
-                fits.push((Some(addition_name(candidate.physics, &candidate.place)), candidate.fit.clone()));
-            }
-            Reason::Found(Box::new(diagnosis))
-        }
-        Additions::Named(named) => {
-            progress("fit of the given model", 0.0);
-            let nominal = fit_nominal(model, identification, settings)?;
-            let mut added = Vec::new();
-            let mut current = nominal.clone();
-            fits.push((None, current.clone()));
-            for (number, &(physics, site)) in named.iter().enumerate() {
-                let name = addition_name(physics, site_name(&model.machine, site));
-                progress(&name, (number + 1) as f64 / (named.len() + 1) as f64);
-                current = fit_addition(&current.model, physics, site, identification, &settings.fit)
-                    .map_err(RefineError::from)?;
-                current = addition_with_effects_along(current, identification, &settings.fit);
-                added.push((physics, site, current.clone()));
-                fits.push((Some(name), current.clone()));
-            }
-            Reason::Named(judge_named(&nominal, &added, identification, validation, settings)?)
-        }
+    let (fits, reason) = match additions {
+        Additions::Auto => found(model, identification, validation, settings, progress)?,
+        Additions::Named(named) => as_named(model, named, identification, validation, settings, progress)?,
     };
     let mut steps: Vec<Step> = Vec::new();
     for (added, fit) in fits {
@@ -177,6 +151,56 @@ pub fn refine(
         parameter.source = "identified".into();
     }
     Ok(Refinement { given_model: model.clone(), given, steps, model: final_model, reason })
+}
+
+/// Fits of a model, each with what was added last.
+type Fits = Vec<(Option<String>, Fit)>;
+
+/// The way of a diagnosis from the given model to the hypothesis that it supports.
+fn found(
+    model: &Model,
+    identification: &[&Recording],
+    validation: &[&Recording],
+    settings: &DiagnosisSettings,
+    progress: &(dyn Fn(&str, f64) + Sync),
+) -> Result<(Fits, Reason), RefineError> {
+    let diagnosis = diagnose(model, identification, validation, settings, progress)?;
+    let mut fits = vec![(None, diagnosis.given().fit.clone())];
+    let selected = diagnosis.selected();
+    for (number, candidate) in selected.iter().enumerate() {
+        // Of several effects that came together only the last has a model of its own.
+        let next = selected.get(number + 1);
+        if next.is_none_or(|next| !std::ptr::eq(next.trial, candidate.trial)) {
+            fits.push((Some(candidate.addition.name(model)), candidate.trial.fit.clone()));
+        }
+    }
+    Ok((fits, Reason::Found(Box::new(diagnosis))))
+}
+
+/// Named effects, one after the other.
+fn as_named(
+    model: &Model,
+    named: &[Addition],
+    identification: &[&Recording],
+    validation: &[&Recording],
+    settings: &DiagnosisSettings,
+    progress: &(dyn Fn(&str, f64) + Sync),
+) -> Result<(Fits, Reason), RefineError> {
+    let fitting = &settings.effort.fit;
+    progress("fit of the given model", 0.0);
+    let given = fit_given(model, identification, fitting)?;
+    let (mut added, mut current) = (Vec::new(), given.clone());
+    let mut fits = vec![(None, given.clone())];
+    for (number, &addition) in named.iter().enumerate() {
+        let name = addition.name(model);
+        progress(&name, (number + 1) as f64 / (named.len() + 1) as f64);
+        current = fit_addition(&current.model, addition, identification, fitting)?;
+        current = with_nuisances(current, identification, fitting);
+        added.push((addition, current.clone()));
+        fits.push((Some(name), current.clone()));
+    }
+    let verdict = judge_named(&given, &added, identification, validation, fitting, &settings.policy)?;
+    Ok((fits, Reason::Named(verdict)))
 }
 
 /// Words for a model's history: the step, and what was fitted along since the model `before`.

@@ -11,9 +11,10 @@ use super::evidence_tables::{evidence, regimes};
 use super::page::{Section, page};
 use super::time_plots::MODEL;
 use super::unexplained_plot::unexplained_plot;
-use super::verdict_text::{tied, verdict_sentence};
+use super::verdict_text::verdict_sentence;
 use super::{energy_tables, parameter_table};
-use crate::diagnosis::{Candidate, Diagnosis, Verdict};
+use crate::decision::Kind;
+use crate::diagnosis::{Candidate, Diagnosis, Part};
 use crate::energy::MissingPower;
 use crate::validation::Comparison;
 
@@ -48,7 +49,7 @@ pub fn diagnosis_page(
     sections.push(Section {
         anchor: "parameters",
         title: "Parameters of the refitted model".into(),
-        body: parameter_table::of_model(model, &diagnosis.nominal.model, &[]),
+        body: parameter_table::of_model(model, &diagnosis.given().fit.model, &[]),
     });
     page("Diagnosis", &model.machine.name, &lead, &sections)
 }
@@ -69,7 +70,7 @@ fn missing_power(missing: &[(String, Vec<MissingPower>)]) -> Markup {
 
 /// The verdict in its box.
 pub(super) fn verdict(model: &Model, diagnosis: &Diagnosis) -> Markup {
-    html! { p class={ "verdict " (diagnosis.verdict.name()) } { (verdict_sentence(model, diagnosis)) } }
+    html! { p class={ "verdict " (diagnosis.verdict.kind.name()) } { (verdict_sentence(model, diagnosis)) } }
 }
 
 /// Named effects, what is left, evidence, and where the model fails.
@@ -91,12 +92,10 @@ pub(super) fn diagnosis_sections(diagnosis: &Diagnosis, comparisons: &[Compariso
 }
 
 /// Effects that the verdict names: the first with its ties, then those added after it.
-fn named(diagnosis: &Diagnosis) -> Vec<&Candidate> {
-    if diagnosis.verdict == Verdict::Adequate {
+fn named(diagnosis: &Diagnosis) -> Vec<Candidate<'_>> {
+    if diagnosis.verdict.kind == Kind::Adequate {
         return Vec::new();
     }
-    let Some(first) = diagnosis.chain.first().or(diagnosis.candidates.first()) else { return Vec::new() };
-    let mut named = tied(diagnosis, first);
-    named.extend(diagnosis.chain.iter().skip(1));
-    named
+    let named = diagnosis.candidates().into_iter();
+    named.filter(|candidate| matches!(candidate.part, Part::Selected | Part::Tied)).collect()
 }

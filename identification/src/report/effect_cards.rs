@@ -9,13 +9,13 @@ use super::verdict_text::place_of;
 use crate::diagnosis::{Candidate, contribution};
 
 /// Card, picture on `recordings` and fitted parameters of a named candidate.
-pub(super) fn effect_card(candidate: &Candidate, recordings: &[&Recording]) -> Markup {
-    let card = candidate.physics.card();
+pub(super) fn effect_card(candidate: &Candidate<'_>, recordings: &[&Recording]) -> Markup {
+    let card = candidate.addition.physics.card();
     // A picture that cannot be made leaves its place empty; the words beside it stand without.
-    let shown = contribution(candidate, recordings).ok().flatten();
+    let shown = contribution(candidate.trial, &candidate.addition, recordings).ok().flatten();
     html! {
         div.card {
-            h3 { (capitalised(&place_of(candidate))) " " code.code-name { (card.name) "@" (candidate.place) } }
+            h3 { (capitalised(&place_of(candidate))) " " code.code-name { (card.name) "@" (candidate.place()) } }
             dl {
                 dt { "What it is" } dd { (card.summary) }
                 dt { "Equation" } dd { code { (card.equation) } }
@@ -25,7 +25,7 @@ pub(super) fn effect_card(candidate: &Candidate, recordings: &[&Recording]) -> M
                 dt { "Source" } dd { (card.source) }
             }
             @if let Some(shown) = &shown { (effect_plot(shown)) }
-            (parameter_table::of_effect(&candidate.fit.model, candidate.name(), candidate.site))
+            (parameter_table::of_effect(&candidate.trial.fit.model, candidate.name(), candidate.addition.site))
         }
     }
 }

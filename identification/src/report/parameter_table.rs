@@ -19,7 +19,7 @@ pub(super) fn of_model(given: &Model, model: &Model, added: &[String]) -> Markup
     let effects: Vec<&ModelEffect> = model.effects.iter().filter(|effect| !effect.parameters.is_empty()).collect();
     let marks = found_along(given, model)
         .map(|effect| addition_name(effect.physics, site_name(&model.machine, effect.site)))
-        .map(|name| (name, "fitted along"))
+        .map(|name| (name, "nuisance"))
         .chain(added.iter().map(|name| (name.clone(), "added")))
         .collect();
     table(model, &effects, Some(marks))

@@ -8,14 +8,13 @@ use excavator_model::effects::{self, Family, Site};
 use excavator_model::recording::Recording;
 
 use super::{comparison_page, diagnosis_page, refinement_page, verdict_sentence};
-use crate::diagnosis::{
-    Adequacy, Candidate, Diagnosis, Evidence, Inclusion, NamedVerdict, Share, Unexplained, Verdict,
-};
-
+use crate::decision::{Kind, Reason, Standing, Verdict};
+use crate::diagnosis::{Diagnosis, NamedVerdict, Share, Unexplained};
 use crate::energy::{MissingPower, Regime};
 use crate::fit::Fit;
 use crate::fit::made_up::made_up_fit;
-use crate::refinement::{Reason, Refinement, Step};
+use crate::refinement::{Reason as Cause, Refinement, Step};
+use crate::search::{Addition, Trial, score, scores_of_given};
 use crate::validation::{Comparison, SignalComparison};
 
 const HOSTILE: &str = "</script><b>bag & \"co\"</b>";
@@ -63,46 +62,50 @@ fn fit_of(model: &Model, error: f64) -> Fit {
     made_up_fit(model, 1e-4, error)
 }
 
-fn candidate(name: &str, gain: f64, accepted: bool, tied: bool) -> Candidate {
-    let physics = effects::find(name).unwrap();
-    let site = model().free_sites(physics)[0];
-    let extended = model().with_effect(physics, site).unwrap();
-    let place = if site == Site::PumpLine { "pump" } else { "arm" };
-    Candidate {
-        physics,
-        site,
-        place: place.into(),
-        fit: fit_of(&extended, 1e-3),
-        validation: fit_of(&extended, 1e-2 * (-0.5 * gain).exp()),
-        evidence: Evidence { gain, significance: 9.0 },
-        inclusion: Inclusion { gains: 1.0, is_first: 0.97 },
-        identification_gain: gain,
-        accepted,
-        tied_with_first: tied,
+/// A trial with these effects, whose squared error is `e^-improvement` of the given model's.
+fn trial(names: &[&str], improvement: f64) -> Trial {
+    let mut extended = model();
+    let mut additions = Vec::new();
+    for name in names {
+        let physics = effects::find(name).unwrap();
+        let site = extended.free_sites(physics)[0];
+        extended = extended.with_effect(physics, site).unwrap();
+        additions.push(Addition { physics, site });
     }
+    let validation = fit_of(&extended, 1e-2 * (-0.5 * improvement).exp());
+    Trial { additions, fit: fit_of(&extended, 1e-3), validation, seconds: 0.0 }
 }
 
-fn diagnosis(verdict: Verdict, candidates: Vec<Candidate>) -> Diagnosis {
+/// A diagnosis whose hypotheses are `trials` behind the given model; `set` are their numbers, from 1.
+fn diagnosis(kind: Kind, trials: Vec<Trial>, set: &[usize], reasons: Vec<Reason>) -> Diagnosis {
     let share = |equation: &str, share| Share {
         equation: equation.into(),
         regime: "valve closed",
         share_of_residual: share,
         share_of_time: 0.2,
     };
+    let given = trial(&[], 0.0);
+    let recording = recording("bag", 0.0);
+    let mut scores = scores_of_given(&given, &[&recording], &[&recording]);
+    scores.hypotheses.extend(trials.iter().map(|trial| score(trial, &given.fit.model, &[&recording])));
+    let standing = |trial: &Trial| Standing {
+        log_error_ratio: trial.validation.loss(),
+        improvement: given.validation.loss() - trial.validation.loss(),
+        identification_improvement: 1.0,
+        significance: 9.0,
+        is_admissible: trial.validation.loss() + 0.1 < given.validation.loss(),
+        set_p_value: None,
+        is_first: 0.97,
+    };
+    let standings = std::iter::once(&given).chain(&trials).map(standing).collect();
     Diagnosis {
-        verdict,
-        nominal: fit_of(&model(), 1e-2),
-        nominal_validation: fit_of(&model(), 1e-2),
-        chain: candidates.first().cloned().into_iter().collect(),
-        candidates,
-        rejected: vec![candidate("hose_loss", -0.01, false, false)],
+        verdict: Verdict { kind, best: set.first().copied().unwrap_or(0), set: set.to_vec(), reasons, standings },
+        scores,
+        trials: std::iter::once(given).chain(trials).collect(),
         unpromising: Vec::new(),
         failed: Vec::new(),
         map: vec![share("arm.cap_continuity", 0.7), share("arm.motion", 0.3)],
-        construction: None,
-        adequacy: (verdict == Verdict::Adequate).then_some(Adequacy::Noise),
-        too_coarse: false,
-        unexplained: (verdict == Verdict::Unexplained).then(|| Unexplained {
+        unexplained: (kind == Kind::Unexplained).then(|| Unexplained {
             equation: "arm.motion".into(),
             variable: "position",
             share_of_residual: 0.6,
@@ -112,8 +115,19 @@ fn diagnosis(verdict: Verdict, candidates: Vec<Candidate>) -> Diagnosis {
     }
 }
 
+fn adequate(reason: Reason) -> Diagnosis {
+    diagnosis(Kind::Adequate, Vec::new(), &[], vec![reason])
+}
+
+const NOISE: Reason = Reason::WithinNoise { log_error_ratio: 0.0, limit: 0.2 };
+
+/// A dead zone and a hose loss that is no answer.
+fn dead_zone() -> Vec<Trial> {
+    vec![trial(&["valve_dead_zone"], 2.0), trial(&["hose_loss"], -0.01)]
+}
+
 fn refinement() -> Refinement {
-    let found = candidate("valve_dead_zone", 2.0, true, false);
+    let found = trial(&["valve_dead_zone"], 2.0);
     let step = |added: Option<&str>, fit: Fit, error| Step {
         added: added.map(str::to_string),
         fit,
@@ -135,12 +149,12 @@ fn refinement() -> Refinement {
             step(Some("valve_dead_zone@arm"), found.fit.clone(), 0.01),
         ],
         model: last,
-        reason: Reason::Found(Box::new(diagnosis(Verdict::MissingEffect, vec![found]))),
+        reason: Cause::Found(Box::new(diagnosis(Kind::MissingEffect, vec![found], &[1], Vec::new()))),
     }
 }
 
 fn named_to_no_avail() -> NamedVerdict {
-    NamedVerdict { verdict: Verdict::Unexplained, evidence: Evidence { gain: -0.1, significance: -2.0 }, helps: false }
+    NamedVerdict { kind: Kind::Unexplained, improvement: -0.1, helps: false }
 }
 
 /// Every opened element is closed in order, nothing is loaded, and user text is escaped.
@@ -207,7 +221,7 @@ fn pages_without_data_are_sound() {
     empty.signals.clear();
     assert_sound(&comparison_page(&model(), &[empty]));
     let mut nothing = refinement();
-    (nothing.given, nothing.reason) = (Vec::new(), Reason::Named(named_to_no_avail()));
+    (nothing.given, nothing.reason) = (Vec::new(), Cause::Named(named_to_no_avail()));
     nothing.steps.truncate(1);
     nothing.steps[0].comparisons.clear();
     assert_sound(&refinement_page(&nothing));
@@ -215,55 +229,74 @@ fn pages_without_data_are_sound() {
     assert_sound(&refinement_page(&nothing));
 }
 
+fn sentence(diagnosis: &Diagnosis) -> String {
+    verdict_sentence(&model(), diagnosis)
+}
+
 #[test]
-fn verdicts_name_effect_and_place_and_admit_ties() {
-    let sentence = |diagnosis: &Diagnosis| verdict_sentence(&model(), diagnosis);
-    let named = diagnosis(Verdict::MissingEffect, vec![candidate("valve_dead_zone", 2.0, true, false)]);
+fn a_missing_effect_is_named_with_its_place_and_what_it_brings() {
+    let named = diagnosis(Kind::MissingEffect, dead_zone(), &[1], Vec::new());
     assert_eq!(
         sentence(&named),
-        "Missing in zx30u-arm: valve dead zone at the arm valve section. With it the squared error on recordings it was \
-         not fitted to becomes 7.39 times smaller."
+        "Missing in zx30u-arm: valve dead zone at the arm valve section. With it the squared error on recordings that were not fitted \
+         becomes 7.39 times smaller."
     );
-    let mut both = named.clone();
-    both.chain.push(candidate("hose_loss", 5.0, true, false));
-    assert!(sentence(&both).ends_with(
-        "becomes 7.39 times smaller. Beyond it: hose loss at the arm cylinder, with which it becomes 148 times smaller."
-    ));
-    let tied = diagnosis(
-        Verdict::MissingEffect,
-        vec![candidate("valve_dead_zone", 2.0, true, true), candidate("relief_valve", 1.9, true, true)],
-    );
-    assert!(sentence(&tied).contains("valve dead zone at the arm valve section or relief valve at the pump line: these recordings cannot tell the two apart"));
-    assert!(sentence(&diagnosis(Verdict::Adequate, vec![])).starts_with("Nothing is missing"));
-    let mut in_moments = diagnosis(Verdict::Adequate, vec![]);
-    for (worst, is_told) in [(1e3, true), (1.2, false)] {
-        // Noise of 0.1 mm in all of 40 blocks but one.
-        let squares = |block: usize| if block == 7 { worst * 1e-7 } else { 1e-7 };
-        let blocks: Vec<Vec<(f64, usize)>> = (0..40).map(|block| vec![(squares(block), 10)]).collect();
-        let total: f64 = blocks.iter().map(|block| block[0].0).sum();
-        in_moments.nominal_validation = Fit { block_errors: blocks, ..fit_of(&model(), (total / 400.0).sqrt()) };
-        assert_eq!(sentence(&in_moments).contains("but for a few moments"), is_told, "{}", sentence(&in_moments));
-    }
-    let left = sentence(&diagnosis(Verdict::Unexplained, vec![]));
-    assert!(left.contains("none of the effects in the catalogue"), "{left}");
-    assert!(left.contains("force balance of the arm does not close") && left.contains("piston position"), "{left}");
-    assert!(!left.contains("by hand"), "{left}");
-    let mut spring = diagnosis(Verdict::Unexplained, vec![]);
-    spring.construction = Some(candidate("joint_spring", 2.0, true, false));
-    let left = sentence(&spring);
+    let mut trials = dead_zone();
+    trials.push(trial(&["valve_dead_zone", "hose_loss"], 5.0));
+    let both = sentence(&diagnosis(Kind::MissingEffect, trials, &[3], Vec::new()));
+    assert!(both.contains("valve dead zone at the arm valve section; and hose loss at the arm cylinder."), "{both}");
     assert!(
-        left.contains("With a joint spring at the arm cylinder the squared error would become 7.39 times smaller"),
+        both.ends_with(
+            "With all of them the squared error on recordings that were not fitted becomes 148 times smaller."
+        )
+    );
+}
+
+#[test]
+fn effects_that_cannot_be_told_apart_are_all_named() {
+    let trials = vec![trial(&["valve_dead_zone"], 2.0), trial(&["relief_valve"], 1.9)];
+    let tied = sentence(&diagnosis(Kind::MissingEffect, trials, &[1, 2], Vec::new()));
+    assert!(tied.contains("valve dead zone at the arm valve section or relief valve at the pump line."), "{tied}");
+    assert!(tied.contains("cannot tell the alternatives apart"), "{tied}");
+}
+
+#[test]
+fn an_adequate_model_says_why() {
+    assert!(sentence(&adequate(NOISE)).starts_with("Nothing is missing"));
+    let mut in_moments = adequate(NOISE);
+    in_moments.verdict.reasons.push(Reason::ExceptMoments { share_of_time: 0.04 });
+    assert!(sentence(&in_moments).contains("In 4.0 % of the time"), "{}", sentence(&in_moments));
+    let small = adequate(Reason::SmallError { relative_error: 1e-4, limit: 1.5e-4 });
+    assert!(sentence(&small).contains("too small to act on"));
+    let inputs = adequate(Reason::WithinInputs { log_error_ratio: 0.1, limit: 0.2 });
+    assert!(sentence(&inputs).contains("readings of the inputs"));
+}
+
+#[test]
+fn what_is_unexplained_says_what_is_known_of_it() {
+    let nothing = Reason::NothingHelps { log_error_ratio: 2.0 };
+    let left = sentence(&diagnosis(Kind::Unexplained, Vec::new(), &[], vec![nothing]));
+    assert!(left.contains("no effect of the catalogue explains it"), "{left}");
+    assert!(left.contains("force balance of the arm; 60 % of it follows the piston position"), "{left}");
+    let partly = |after| Reason::PartlyExplained { before: 2.0, after, limit: 0.1 };
+    let mostly = sentence(&diagnosis(Kind::Unexplained, dead_zone(), &[1], vec![partly(0.4)]));
+    assert!(mostly.contains("mostly valve dead zone at the arm valve section"), "{mostly}");
+    assert!(mostly.contains("20 % of the misfit remain"), "{mostly}");
+    let half = sentence(&diagnosis(Kind::Unexplained, dead_zone(), &[1], vec![partly(1.0)]));
+    assert!(half.contains("With valve dead zone at the arm valve section the squared error"), "{half}");
+}
+
+#[test]
+fn a_structural_alternative_is_told_with_the_command_that_adds_it() {
+    let trials = vec![trial(&["displacement_sensor_offset"], 2.0), trial(&["joint_spring"], 2.0)];
+    let level = Reason::StructuralAlternative { hypothesis: 2, is_preferred: false };
+    let left = sentence(&diagnosis(Kind::Unexplained, trials, &[1], vec![level]));
+    assert!(left.contains("displacement sensor offset at the arm cylinder from how the machine is built"), "{left}");
+    assert!(
+        left.contains("With joint spring at the arm cylinder the squared error becomes 7.39 times smaller"),
         "{left}"
     );
-    assert!(left.ends_with("add joint_spring@arm by hand."), "{left}");
-    spring.candidates =
-        vec![candidate("displacement_sensor_offset", 2.0, true, true), candidate("joint_spring", 2.0, true, true)];
-    let level = sentence(&spring);
-    assert!(
-        level.contains("whether that is displacement sensor offset at the arm cylinder or how the machine is built"),
-        "{level}"
-    );
-    assert!(level.ends_with("add joint_spring@arm by hand."), "{level}");
+    assert!(left.ends_with("`excavator refine --add joint_spring@arm`."), "{left}");
 }
 
 fn missing() -> MissingPower {
@@ -282,10 +315,11 @@ fn missing() -> MissingPower {
 
 #[test]
 fn diagnosis_shows_evidence_cards_and_what_is_left() {
-    let first = candidate("valve_dead_zone", 2.0, true, true);
+    let mut trials = dead_zone();
+    trials.push(trial(&["valve_leakage"], 1.95));
     let page = diagnosis_page(
         &model(),
-        &diagnosis(Verdict::MissingEffect, vec![first, candidate("valve_leakage", 1.95, true, true)]),
+        &diagnosis(Kind::MissingEffect, trials, &[1, 3], Vec::new()),
         &[comparison(0.2)],
         &[(HOSTILE.into(), vec![missing()])],
     );
@@ -303,10 +337,10 @@ fn diagnosis_shows_evidence_cards_and_what_is_left() {
     }
     let experiment = effects::find("valve_dead_zone").unwrap().card().experiment;
     assert!(page.contains(experiment) && page.contains("arm.dead_zone_positive"));
-    let page = diagnosis_page(&model(), &diagnosis(Verdict::Unexplained, vec![]), &[], &[]);
+    let page = diagnosis_page(&model(), &diagnosis(Kind::Unexplained, Vec::new(), &[], Vec::new()), &[], &[]);
     assert_sound(&page);
     assert!(page.contains("piston position (mm)") && page.contains("residual (N m)"));
-    assert_sound(&diagnosis_page(&model(), &diagnosis(Verdict::Adequate, vec![]), &[comparison(0.0)], &[]));
+    assert_sound(&diagnosis_page(&model(), &adequate(NOISE), &[comparison(0.0)], &[]));
 }
 
 /// Gives the last effect of a model a value that a fit found.
@@ -316,50 +350,50 @@ fn found_value(model: &mut Model, value: f64) {
 }
 
 #[test]
-fn what_is_fitted_along_is_told_once_it_is_known() {
-    let mut found = diagnosis(Verdict::Adequate, vec![]);
+fn nuisances_are_told_once_they_are_known() {
+    let mut found = adequate(NOISE);
     assert!(!verdict_sentence(&model(), &found).contains("spool sensor"));
     let lead = effects::find("spool_sensor_lead").unwrap();
-    let mut known = found.nominal.model.with_effect(lead, Site::Cylinder(0)).unwrap();
+    let mut known = found.trials[0].fit.model.with_effect(lead, Site::Cylinder(0)).unwrap();
     found_value(&mut known, -4.5e-4);
-    found.nominal.model = known.clone();
+    found.trials[0].fit.model = known.clone();
     let sentence = verdict_sentence(&model(), &found);
     assert!(
         sentence.contains("The spool sensor is not read together") && sentence.contains("0.45 ms after"),
         "{sentence}"
     );
     let offset = effects::find("spool_sensor_offset").unwrap();
-    found.nominal.model = known.with_effect(offset, Site::Cylinder(0)).unwrap();
-    found_value(&mut found.nominal.model, 7e-8);
+    found.trials[0].fit.model = known.with_effect(offset, Site::Cylinder(0)).unwrap();
+    found_value(&mut found.trials[0].fit.model, 7e-8);
     let both = verdict_sentence(&model(), &found);
     assert!(both.contains("0.45 ms after") && both.contains("does not read zero where its valve is closed"), "{both}");
     assert!(both.contains("+0.070 mm2"), "{both}");
     let reversal = effects::find("friction_reversal").unwrap();
-    found.nominal.model = known.with_effect(reversal, Site::Cylinder(0)).unwrap();
-    found_value(&mut found.nominal.model, 2.14e-3);
+    found.trials[0].fit.model = known.with_effect(reversal, Site::Cylinder(0)).unwrap();
+    found_value(&mut found.trials[0].fit.model, 2.14e-3);
+    let sentence = verdict_sentence(&model(), &found);
+    assert!(sentence.contains("Friction reverses over another speed") && sentence.contains("2.1 mm/s"), "{sentence}");
+    let corner = effects::find("friction_corner").unwrap();
+    found.trials[0].fit.model = known.with_effect(corner, Site::Cylinder(0)).unwrap();
+    found_value(&mut found.trials[0].fit.model, -1.2);
     let sentence = verdict_sentence(&model(), &found);
     assert!(
-        sentence.contains("Friction turns round over another speed") && sentence.contains("2.1 mm/s"),
+        sentence.contains("reverses along another curve than the usual one (that of the arm a softer one)"),
         "{sentence}"
     );
-    let corner = effects::find("friction_corner").unwrap();
-    found.nominal.model = known.with_effect(corner, Site::Cylinder(0)).unwrap();
-    found_value(&mut found.nominal.model, -1.2);
-    let sentence = verdict_sentence(&model(), &found);
-    assert!(sentence.contains("turns another corner than the usual one (that of the arm a softer one)"), "{sentence}");
     let plain = built_in("zx30u-arm").unwrap();
     let is_along = |family| matches!(family, Family::Recording | Family::Rounding);
     for physics in effects::CATALOGUE.iter().copied().filter(|physics| is_along(physics.card().family)) {
-        found.nominal.model = plain.with_effect(physics, Site::Cylinder(0)).unwrap();
-        let start = found.nominal.model.effects.last().unwrap().parameters[0].value;
-        found_value(&mut found.nominal.model, 2.0 * start + 1.0);
+        found.trials[0].fit.model = plain.with_effect(physics, Site::Cylinder(0)).unwrap();
+        let start = found.trials[0].fit.model.effects.last().unwrap().parameters[0].value;
+        found_value(&mut found.trials[0].fit.model, 2.0 * start + 1.0);
         let sentence = verdict_sentence(&plain, &found);
-        assert!(sentence.contains("taken into account"), "{}: {sentence}", physics.card().name);
+        assert!(sentence.contains("takes this into account"), "{}: {sentence}", physics.card().name);
     }
     // What only stood in for what was missing is not told.
-    found.nominal.model.effects.last_mut().unwrap().parameters[0].standard_error = Some(1e9);
-    assert!(!verdict_sentence(&plain, &found).contains("taken into account"));
-    found.nominal.model = known.clone();
+    found.trials[0].fit.model.effects.last_mut().unwrap().parameters[0].standard_error = Some(1e9);
+    assert!(!verdict_sentence(&plain, &found).contains("takes this into account"));
+    found.trials[0].fit.model = known.clone();
     // Whoever says so in the model needs no telling.
     assert!(!verdict_sentence(&known, &found).contains("spool sensor"));
 }
@@ -378,16 +412,16 @@ fn refinement_tells_the_story() {
 }
 
 #[test]
-fn a_refined_model_tells_what_was_fitted_along_since_the_given_one() {
+fn a_refined_model_tells_the_nuisances_since_the_given_one() {
     let mut refinement = refinement();
-    assert!(!refinement_page(&refinement).contains("fitted along"));
-    let Reason::Found(found) = &mut refinement.reason else { unreachable!() };
+    assert!(!refinement_page(&refinement).contains("nuisance<"));
+    let Cause::Found(found) = &mut refinement.reason else { unreachable!() };
     let reversal = effects::find("friction_reversal").unwrap();
-    for model in [&mut refinement.model, &mut found.chain.last_mut().unwrap().fit.model] {
+    for model in [&mut refinement.model, &mut found.trials.last_mut().unwrap().fit.model] {
         *model = model.with_effect(reversal, Site::Cylinder(0)).unwrap();
         found_value(model, 2.14e-3);
     }
     let page = refinement_page(&refinement);
-    assert!(page.contains("Friction turns round over another speed than the usual 1 mm/s"));
-    assert_eq!(page.matches("fitted along").count(), 1);
+    assert!(page.contains("Friction reverses over another speed than the usual 1 mm/s"));
+    assert_eq!(page.matches("nuisance<").count(), 1);
 }

@@ -1,70 +1,200 @@
-//! The verdict in plain sentences.
+//! The verdict in plain sentences. They print the reasons of the decision and decide nothing.
 
-use excavator_model::effects::Family;
 use excavator_model::{Model, site_name};
 
 use super::numbers::{percent, ratio, significant};
 use super::plausibility_text::implausible_sentence;
 use super::words;
-use crate::diagnosis::{Adequacy, Candidate, Diagnosis, Verdict};
-use crate::fit::Fit;
+use crate::decision::{Kind, Reason};
+use crate::diagnosis::{Candidate, Diagnosis};
 use crate::fitted_along::still_shows;
+use crate::search::Trial;
 
-/// What a diagnosis found, in one or two plain sentences. Effects that the recordings cannot tell apart are all named.
+/// What a diagnosis found, in a few plain sentences. Effects that the recordings cannot tell apart are all named.
 pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
     let machine = &model.machine.name;
-    let verdict = match diagnosis.verdict {
-        Verdict::Adequate => format!(
-            "Nothing is missing in {machine} that these recordings can show: what is left of the error is {}.",
-            match diagnosis.adequacy {
-                Some(Adequacy::SmallError) => "about a hundredth of each signal's own size, too small to act on",
-                Some(Adequacy::Inputs) =>
-                    "no more than the readings of the inputs leave open, by their noise and by what happens between samples",
-                Some(Adequacy::Noise) if is_off_in_moments(&diagnosis.nominal_validation) =>
-                    "the noise of the sensors, but for a few moments in which the model is off; record more of these to learn what \
-                     happens then",
-                Some(Adequacy::Noise) | None => "the noise of the sensors",
-            }
-        ),
-        Verdict::MissingEffect => missing(machine, diagnosis),
-        Verdict::Unexplained => unexplained(machine, diagnosis),
-    };
-    let verdict = if diagnosis.too_coarse && diagnosis.verdict != Verdict::Adequate {
-        format!(
-            "{verdict} Beware: the readings of the inputs leave as much open; record command and opening faster, or with less noise, \
-             before acting on this."
-        )
-    } else {
-        verdict
-    };
-    let last = diagnosis.chain.last().map_or(&diagnosis.nominal.model, |link| &link.fit.model);
-    let implausible = implausible_sentence(model, last).map_or(String::new(), |sentence| format!(" {sentence}"));
-    let verdict = format!("{verdict}{}{implausible}", fitted_along(model, last));
-    let (undetermined, fitted) = (diagnosis.nominal.undetermined(), diagnosis.nominal.fitted.len());
-    if 2 * undetermined.len() <= fitted {
-        return verdict;
+    let mut sentences = vec![match diagnosis.verdict.kind {
+        Kind::Adequate => adequate(machine, diagnosis),
+        Kind::MissingEffect => missing(machine, diagnosis),
+        Kind::Unexplained => unexplained(machine, diagnosis),
+    }];
+    if diagnosis.verdict.is_too_coarse() {
+        sentences.push(TOO_COARSE.to_string());
     }
-    format!(
-        "{verdict} Beware: the 95 % intervals of {} of {fitted} parameters include zero ({}), so these recordings say \
-         little about the model.",
-        undetermined.len(),
-        names_of(&diagnosis.nominal.model, &undetermined).join(", ")
-    )
+    let last = &diagnosis.supported().fit.model;
+    sentences.extend(nuisances(model, last));
+    sentences.extend(implausible_sentence(model, last));
+    sentences.extend(undetermined(diagnosis));
+    sentences.join(" ")
 }
 
-/// Loss beyond that of the typical moments from which on a twentieth of the recordings is worth a word: half as much squared error
-/// again as the sensors' noise, all of it there.
-const IN_MOMENTS: f64 = 0.4;
-
-fn is_off_in_moments(fit: &Fit) -> bool {
-    fit.loss() - fit.typical_loss() > IN_MOMENTS
-}
+const TOO_COARSE: &str = "The recordings are coarse: the readings of the inputs alone could cause an error of this size. Record command and \
+                          opening faster, or with less noise, before acting on this.";
 
 /// What is said where no effect was tried.
 pub const NONE_TRIED: &str =
-    "The model leaves nothing but the sensors' noise: there was nothing for an effect to explain, so none was tried.";
+    "The model leaves only sensor noise. There was nothing for an effect to explain, so none was tried.";
 
-/// What is said of an effect that was fitted along.
+fn adequate(machine: &str, diagnosis: &Diagnosis) -> String {
+    let mut text = format!("Nothing is missing in {machine} that these recordings can show.");
+    for reason in &diagnosis.verdict.reasons {
+        text += &match reason {
+            Reason::WithinNoise { .. } => " What is left of the error is sensor noise.".to_string(),
+            Reason::ExceptMoments { share_of_time } => format!(
+                " In {} of the time the model is off by more than that; record more of these moments to learn what happens then.",
+                percent(*share_of_time)
+            ),
+            Reason::SmallError { .. } => {
+                " What is left of the error is about a hundredth of each signal's own size, too small to act on.".to_string()
+            }
+            Reason::WithinInputs { .. } => {
+                " What is left of the error is no more than the readings of the inputs cause, by their noise and by what happens between \
+                 samples."
+                    .to_string()
+            }
+            _ => String::new(),
+        };
+    }
+    text
+}
+
+fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
+    let selected = diagnosis.selected();
+    let alternatives = diagnosis.alternatives();
+    let named = |candidate: &Candidate<'_>| {
+        let others = alternatives.iter().filter(|(_, replaced)| *replaced == candidate.addition);
+        let names: Vec<String> =
+            std::iter::once(place_of(candidate)).chain(others.map(|(other, _)| place_of(other))).collect();
+        words::list(&names, "or")
+    };
+    let names: Vec<String> = selected.iter().map(named).collect();
+    let mut text = match names.as_slice() {
+        [] => format!("An effect of the catalogue is missing in {machine}."),
+        [only] => format!("Missing in {machine}: {only}."),
+        several => format!("Missing in {machine}: {}.", several.join("; and ")),
+    };
+    if !alternatives.is_empty() {
+        text += " These recordings cannot tell the alternatives apart.";
+    }
+    let with = match (names.len(), alternatives.is_empty()) {
+        (1, true) => "With it",
+        (1, false) => "With the first of them",
+        (_, true) => "With all of them",
+        (_, false) => "With the first of each",
+    };
+    text + &format!(
+        " {with} the squared error on recordings that were not fitted becomes {} times smaller.",
+        times_smaller(diagnosis, diagnosis.best())
+    )
+}
+
+/// By what the squared error on the validation recordings is smaller with this hypothesis.
+fn times_smaller(diagnosis: &Diagnosis, trial: &Trial) -> String {
+    ratio((diagnosis.given().validation.loss() - trial.validation.loss()).exp())
+}
+
+/// Share of a residual that a variable must explain to be mentioned.
+const LEAST_SHARE: f64 = 0.1;
+
+fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
+    let structural = diagnosis.verdict.structural_alternative();
+    let selected = diagnosis.selected();
+    let mut text = match structural {
+        Some(_) => {
+            let rivals: Vec<String> = diagnosis.verdict.set.iter().map(|&number| names_of(diagnosis, number)).collect();
+            format!(
+                "Something is missing in {machine}, and these recordings cannot tell {} from how the machine is built.",
+                words::list(&rivals, "or")
+            )
+        }
+        None if selected.is_empty() => {
+            format!("Something is missing in {machine}, and no effect of the catalogue explains it.")
+        }
+        None => format!("Something is missing in {machine} that no effect of the catalogue explains completely."),
+    };
+    if structural.is_none() {
+        text += &partly(diagnosis, &selected);
+    }
+    if let Some(left) = &diagnosis.unexplained {
+        text += &format!(" The largest residual is in the {}", words::equation(&left.equation));
+        text += &if left.share_of_residual < LEAST_SHARE {
+            "; it follows no single variable.".to_string()
+        } else {
+            format!("; {} of it follows the {}.", percent(left.share_of_residual), words::variable(left.variable))
+        };
+    }
+    text + &construction(diagnosis)
+}
+
+/// What the favoured hypothesis does explain.
+fn partly(diagnosis: &Diagnosis, selected: &[Candidate<'_>]) -> String {
+    let Some(Reason::PartlyExplained { before, after, .. }) =
+        diagnosis.verdict.reasons.iter().find(|reason| matches!(reason, Reason::PartlyExplained { .. }))
+    else {
+        return String::new();
+    };
+    let names: Vec<String> = selected.iter().map(place_of).collect();
+    let (names, share) = (words::list(&names, "and"), 1.0 - after.max(0.0) / before);
+    let times = times_smaller(diagnosis, diagnosis.best());
+    let smaller = format!("the squared error on recordings that were not fitted becomes {times} times smaller");
+    if share >= MOSTLY {
+        format!(
+            " It is mostly {names}, in a form that differs from the catalogue's: {smaller}, and {} of the misfit remain.",
+            percent(1.0 - share)
+        )
+    } else {
+        format!(" With {names} {smaller}, but {} of the misfit remain.", percent(1.0 - share))
+    }
+}
+
+/// Share of the misfit from which on an effect is said to be most of what is missing.
+const MOSTLY: f64 = 0.7;
+
+/// What explains the recordings if the machine is built so, with a space before it.
+fn construction(diagnosis: &Diagnosis) -> String {
+    let Some(number) = diagnosis.verdict.structural_alternative() else { return String::new() };
+    let trial = &diagnosis.trials[number];
+    let command: Vec<String> =
+        trial.additions.iter().map(|addition| format!("--add {}", addition.name(&trial.fit.model))).collect();
+    format!(
+        " With {} the squared error becomes {} times smaller. A diagnosis cannot see how a machine is built: if this one has that, add it \
+         with `excavator refine {}`.",
+        names_of(diagnosis, number),
+        times_smaller(diagnosis, trial),
+        command.join(" ")
+    )
+}
+
+/// Effects of a hypothesis in words.
+fn names_of(diagnosis: &Diagnosis, number: usize) -> String {
+    let trial = &diagnosis.trials[number];
+    let name = |addition: &crate::search::Addition| {
+        words::effect_at(addition.physics.card(), site_name(&trial.fit.model.machine, addition.site))
+    };
+    words::list(&trial.additions.iter().map(name).collect::<Vec<_>>(), "and")
+}
+
+/// "valve dead zone at the arm valve section".
+pub(super) fn place_of(candidate: &Candidate<'_>) -> String {
+    words::effect_at(candidate.addition.physics.card(), candidate.place())
+}
+
+fn undetermined(diagnosis: &Diagnosis) -> Option<String> {
+    let given = &diagnosis.given().fit;
+    let (undetermined, fitted) = (given.undetermined(), given.fitted.len());
+    if 2 * undetermined.len() <= fitted {
+        return None;
+    }
+    let names = given.model.parameter_names();
+    let names: Vec<&str> = undetermined.iter().filter_map(|&index| Some(names.get(index)?.as_str())).collect();
+    Some(format!(
+        "These recordings say little about the model: the 95 % intervals of {} of {fitted} parameters include zero ({}).",
+        names.len(),
+        names.join(", ")
+    ))
+}
+
+/// What is said of a nuisance effect.
 struct Telling {
     effect: &'static str,
     /// Of one, and of several.
@@ -93,32 +223,32 @@ const TELLINGS: [Telling; 5] = [
     Telling {
         effect: "friction_reversal",
         sentences: [
-            "Friction turns round over another speed than the usual 1 mm/s",
-            "Friction turns round over other speeds than the usual 1 mm/s",
+            "Friction reverses over another speed than the usual 1 mm/s",
+            "Friction reverses over other speeds than the usual 1 mm/s",
         ],
         value: |speed| format!("over {} mm/s", significant(1e3 * speed, 2)),
     },
     Telling {
         effect: "friction_corner",
         sentences: [
-            "Friction turns another corner than the usual one",
-            "Friction turns other corners than the usual one",
+            "Friction reverses along another curve than the usual one",
+            "Friction reverses along other curves than the usual one",
         ],
         value: |sharpness| if sharpness > 0.0 { "a sharper one".into() } else { "a softer one".into() },
     },
     Telling {
         effect: "orifice_transition",
         sentences: [
-            "The valve's flow turns turbulent at another pressure drop than the usual 2 kPa",
-            "The valves' flows turn turbulent at other pressure drops than the usual 2 kPa",
+            "The valve's flow becomes turbulent at another pressure drop than the usual 2 kPa",
+            "The valves' flows become turbulent at other pressure drops than the usual 2 kPa",
         ],
         value: |drop| format!("at {} kPa", significant(1e-3 * drop, 2)),
     },
 ];
 
-/// The nuisance effects that were fitted up to the model `last`, with a space before them; empty where there are none.
-fn fitted_along(given: &Model, last: &Model) -> String {
-    let told = |telling: &Telling| {
+/// The nuisance effects that were estimated up to the model `last`.
+fn nuisances(given: &Model, last: &Model) -> Vec<String> {
+    let said = |telling: &Telling| {
         let found = last.effects.iter().filter(|effect| effect.name() == telling.effect);
         let found: Vec<String> = found
             .filter(|effect| !given.has(effect.name(), effect.site) && still_shows(effect))
@@ -129,119 +259,7 @@ fn fitted_along(given: &Model, last: &Model) -> String {
             .collect();
         let sentence = telling.sentences[usize::from(found.len() > 1)];
         let values = words::list(&found, "and");
-        if found.is_empty() { String::new() } else { format!(" {sentence} ({values}); this is taken into account.") }
+        (!found.is_empty()).then(|| format!("{sentence} ({values}); the fit takes this into account."))
     };
-    TELLINGS.iter().map(told).collect()
-}
-
-fn names_of(model: &Model, parameters: &[usize]) -> Vec<String> {
-    let names = model.parameter_names();
-    parameters.iter().filter_map(|&index| names.get(index).cloned()).collect()
-}
-
-fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
-    let Some(first) = diagnosis.chain.first().or(diagnosis.candidates.first()) else {
-        return format!("An effect of the catalogue is missing in {machine}.");
-    };
-    let names: Vec<String> = tied(diagnosis, first).into_iter().map(place_of).collect();
-    let mut text = format!("Missing in {machine}: {}", words::list(&names, "or"));
-    text += match names.len() {
-        1 => ". ",
-        2 => ": these recordings cannot tell the two apart. ",
-        _ => ": these recordings cannot tell them apart. ",
-    };
-    let times = times_smaller(diagnosis, first);
-    let found = format!("the squared error on recordings it was not fitted to becomes {times} times smaller");
-    text += &match names.len() {
-        1 => format!("With it {found}."),
-        _ => format!("With the first of them {found}."),
-    };
-    let further: Vec<String> = diagnosis.chain.iter().skip(1).map(place_of).collect();
-    if let (Some(last), false) = (diagnosis.chain.last(), further.is_empty()) {
-        let (names, times) = (words::list(&further, "and"), times_smaller(diagnosis, last));
-        text += &format!(" Beyond it: {names}, with which it becomes {times} times smaller.");
-    }
-    text
-}
-
-/// By what the squared error on the validation recordings is smaller with everything up to this link. The gain of its evidence
-/// may be less: it is that of a few steps, or the smaller one of several recordings.
-fn times_smaller(diagnosis: &Diagnosis, link: &Candidate) -> String {
-    ratio((diagnosis.nominal_validation.loss() - link.validation.loss()).exp())
-}
-
-/// Share of a residual that a variable must explain to be named.
-const LEAST_SHARE: f64 = 0.1;
-
-fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
-    let helpful: Vec<String> = diagnosis.chain.iter().map(place_of).collect();
-    let level = level_with_construction(diagnosis);
-    let mut text = if !level.is_empty() {
-        format!(
-            "Something is missing in {machine}, and these recordings cannot tell whether that is {} or how the machine is built",
-            words::list(&level, "or")
-        )
-    } else if helpful.is_empty() {
-        format!("Something is missing in {machine}, and it is none of the effects in the catalogue")
-    } else {
-        format!("Something is missing in {machine} that no effect in the catalogue explains wholly")
-    };
-    if let Some(left) = &diagnosis.unexplained {
-        text += &format!(": the {} does not close; ", words::equation(&left.equation));
-        text += &if left.share_of_residual < LEAST_SHARE {
-            "its residual follows no single variable".to_string()
-        } else {
-            let share = percent(left.share_of_residual);
-            format!("{share} of its residual follows the {}", words::variable(left.variable))
-        };
-    }
-    text += ".";
-    if let Some(last) = diagnosis.chain.last() {
-        let (verb, explain) = if helpful.len() == 1 { ("makes", "does") } else { ("make", "do") };
-        let times = times_smaller(diagnosis, last);
-        text += &format!(
-            " Of the catalogue, {} {verb} the squared error on recordings it was not fitted to {times} times smaller, but \
-             {explain} not explain all of it.",
-            words::list(&helpful, "and")
-        );
-    }
-    text + &construction(diagnosis)
-}
-
-/// Candidates that explain as much as a machine that is built otherwise.
-fn level_with_construction(diagnosis: &Diagnosis) -> Vec<String> {
-    let Some(built) = &diagnosis.construction else { return Vec::new() };
-    let tied = diagnosis.candidates.iter().filter(|candidate| candidate.tied_with_first);
-    let (construction, level): (Vec<_>, Vec<_>) =
-        tied.partition(|candidate| candidate.physics.card().family == Family::Construction);
-    if construction.iter().any(|candidate| candidate.is_same_addition(built)) {
-        level.into_iter().map(place_of).collect()
-    } else {
-        Vec::new()
-    }
-}
-
-/// What explains the recordings if the machine is built so, with a space before it.
-fn construction(diagnosis: &Diagnosis) -> String {
-    diagnosis.construction.as_ref().map_or(String::new(), |built| {
-        format!(
-            " With a {} the squared error would become {} times smaller. How a machine is built no diagnosis says: if this one has \
-             that, add {}@{} by hand.",
-            place_of(built),
-            times_smaller(diagnosis, built),
-            built.name(),
-            built.place
-        )
-    })
-}
-
-/// The first candidate and those tied with it.
-pub(super) fn tied<'a>(diagnosis: &'a Diagnosis, first: &'a Candidate) -> Vec<&'a Candidate> {
-    let others = diagnosis.candidates.iter().filter(|other| other.tied_with_first && !other.is_same_addition(first));
-    std::iter::once(first).chain(others).collect()
-}
-
-/// "valve dead zone at the arm valve section".
-pub(super) fn place_of(candidate: &Candidate) -> String {
-    words::effect_at(candidate.physics.card(), &candidate.place)
+    TELLINGS.iter().filter_map(said).collect()
 }

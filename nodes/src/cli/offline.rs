@@ -173,6 +173,9 @@ pub struct DiagnoseArguments {
     /// Write a page with the evidence.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
+    /// Write what the verdict was decided from: errors of every hypothesis in every block of time, as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub scores: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
     #[command(flatten)]

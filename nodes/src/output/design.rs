@@ -76,8 +76,8 @@ pub fn separation_json(design: &SeparationDesign, profile: Option<&Path>) -> Val
             json!({
                 "truth": one.truth,
                 "other": one.other,
-                "gain": finite(one.evidence.gain),
-                "significance": finite(one.evidence.significance),
+                "gain": finite(one.improvement),
+                "significance": finite(one.significance),
             })
         })
         .collect();

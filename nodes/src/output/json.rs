@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use excavator_identification::diagnosis::{Adequacy, Candidate, Diagnosis, normalised_error};
+use excavator_identification::diagnosis::{Candidate, Diagnosis, Share};
+use excavator_identification::fit::normalised_error;
 use excavator_identification::fitted_along::found_along;
 use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
@@ -114,27 +115,30 @@ fn own_parameters(model: &Model, name: &str, site: Site) -> Vec<Value> {
     parameters(model, &indices)
 }
 
-/// One candidate. `found` is the model with all effects that were found: where the candidate is among them its parameters are
-/// those beside the others, which one alone had to stand in for.
-fn candidate_json(candidate: &Candidate, before: f64, validation: &[&Recording], found: Option<&Model>) -> Value {
-    let alone = &candidate.fit.model;
-    let model = found.filter(|model| model.has(candidate.name(), candidate.site)).unwrap_or(alone);
+/// One candidate. `found` is the favoured model: where the candidate is a part of it its parameters are those beside the others, which
+/// one alone had to stand in for.
+fn candidate_json(candidate: &Candidate<'_>, validation: &[&Recording], found: &Model) -> Value {
+    let (alone, site) = (&candidate.trial.fit.model, candidate.addition.site);
+    let model = Some(found).filter(|model| model.has(candidate.name(), site)).unwrap_or(alone);
+    let standing = candidate.standing;
     json!({
         "effect": candidate.name(),
-        "cylinder": candidate.place,
-        "validation_error_before": finite(before),
-        "validation_error_after": finite(normalised_error(&candidate.validation, validation)),
-        "evidence": finite(candidate.evidence.gain),
-        "significance": finite(candidate.evidence.significance),
-        "bootstrap": {"gains": finite(candidate.inclusion.gains), "is_first": finite(candidate.inclusion.is_first)},
-        "tied_with_first": candidate.tied_with_first,
-        "parameters": own_parameters(model, candidate.name(), candidate.site),
+        "cylinder": candidate.place(),
+        "validation_error_before": finite(normalised_error(&candidate.before.validation, validation)),
+        "validation_error_after": finite(normalised_error(&candidate.trial.validation, validation)),
+        "evidence": finite(candidate.improvement),
+        "significance": finite(standing.significance),
+        "set_p_value": standing.set_p_value.map(finite),
+        "bootstrap": {"is_first": finite(standing.is_first)},
+        "log_error_ratio": finite(standing.log_error_ratio),
+        "tied_with_first": candidate.is_tied_with_first,
+        "parameters": own_parameters(model, candidate.name(), site),
         "refitted": parameters(model, &model.unknown_parameters()),
     })
 }
 
-/// What was fitted along in `fitted`, a model that began as `given`.
-fn along_json(given: &Model, fitted: &Model) -> Vec<Value> {
+/// Nuisance effects that were estimated in `fitted`, a model that began as `given`.
+fn nuisances_json(given: &Model, fitted: &Model) -> Vec<Value> {
     found_along(given, fitted)
         .map(|effect| {
             json!({
@@ -148,58 +152,33 @@ fn along_json(given: &Model, fitted: &Model) -> Vec<Value> {
 
 /// Result of `diagnose` for the model `given`.
 pub fn diagnosis_json(given: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) -> Value {
-    let before = normalised_error(&diagnosis.nominal_validation, validation);
-    let found = diagnosis.chain.last().map(|last| &last.fit.model);
-    let candidates = |list: &[Candidate]| -> Vec<Value> {
-        list.iter().map(|candidate| candidate_json(candidate, before, validation, found)).collect()
+    let found = &diagnosis.best().fit.model;
+    let supported = &diagnosis.supported().fit.model;
+    let listed = |list: &[Candidate<'_>]| -> Vec<Value> {
+        list.iter().map(|candidate| candidate_json(candidate, validation, found)).collect()
     };
-    let mut with_evidence = candidates(&diagnosis.candidates);
-    // What has evidence beside the first only is a candidate too; its errors are before and after it was added there.
-    let is_listed = |link: &Candidate| diagnosis.candidates.iter().any(|listed| listed.is_same_addition(link));
-    let further = diagnosis.chain.windows(2).filter(|pair| !is_listed(&pair[1])).map(|pair| {
-        let before = normalised_error(&pair[0].validation, validation);
-        candidate_json(&pair[1], before, validation, found)
+    // A structural alternative is no candidate: a verdict does not name it.
+    let is_candidate = |one: &Candidate<'_>| one.addition.physics.card().family.is_candidate();
+    let candidates: Vec<Candidate<'_>> = diagnosis.candidates().into_iter().filter(is_candidate).collect();
+    let construction = diagnosis.verdict.structural_alternative().and_then(|number| {
+        let trial = &diagnosis.trials[number];
+        let structural = trial.additions.iter().find(|one| !one.physics.card().family.is_candidate())?;
+        Some(json!({
+            "effect": structural.physics.card().name,
+            "cylinder": site_name(&trial.fit.model.machine, structural.site),
+            "validation_error_after": finite(normalised_error(&trial.validation, validation)),
+            "parameters": own_parameters(&trial.fit.model, structural.physics.card().name, structural.site),
+        }))
     });
-    let after_the_first = with_evidence.len().min(1);
-    with_evidence.splice(after_the_first..after_the_first, further);
-    let places: Vec<Value> = diagnosis
-        .map
-        .iter()
-        .map(|share| {
-            json!({
-                "equation": share.equation,
-                "regime": share.regime,
-                "share_of_residual": finite(share.share_of_residual),
-                "share_of_time": finite(share.share_of_time),
-            })
-        })
-        .collect();
-    let chain: Vec<Value> = diagnosis
-        .chain
-        .iter()
-        .map(|c| {
-            json!({
-                "effect": c.name(),
-                "cylinder": c.place,
-                "loss_after": finite(c.validation.loss()),
-                "typical_loss_after": finite(c.validation.typical_loss()),
-                "parameters": own_parameters(found.unwrap_or(&c.fit.model), c.name(), c.site),
-            })
-        })
-        .collect();
-    let instruments: Vec<Value> = diagnosis
-        .nominal
-        .instruments
-        .iter()
-        .map(|one| json!({"name": one.name, "noise": finite(one.noise), "unit": one.unit}))
-        .collect();
+    let given_trial = diagnosis.given();
     json!({
-        "verdict": diagnosis.verdict.name(),
-        "candidates": with_evidence,
-        "rejected": candidates(&diagnosis.rejected),
-        "together": chain,
-        "fitted_along": along_json(given, found.unwrap_or(&diagnosis.nominal.model)),
-        "where": places,
+        "verdict": diagnosis.verdict.kind.name(),
+        "reasons": diagnosis.verdict.reasons,
+        "candidates": listed(&candidates),
+        "rejected": listed(&diagnosis.rejected()),
+        "together": together_json(diagnosis),
+        "nuisances": nuisances_json(given, supported),
+        "where": where_json(diagnosis),
         "unexplained": diagnosis.unexplained.as_ref().map(|rest| json!({
             "equation": rest.equation,
             "variable": rest.variable,
@@ -207,16 +186,45 @@ pub fn diagnosis_json(given: &Model, diagnosis: &Diagnosis, validation: &[&Recor
             "unit": rest.unit,
             "curve": rest.curve,
         })),
-        "construction": diagnosis.construction.as_ref().map(|built| candidate_json(built, before, validation, None)),
-        "adequate_by": diagnosis.adequacy.map(Adequacy::name),
-        "too_coarse": diagnosis.too_coarse,
-        "loss": {
-            "nominal": finite(diagnosis.nominal_validation.loss()),
-            "nominal_typical": finite(diagnosis.nominal_validation.typical_loss()),
-        },
-        "refitted": parameters(&diagnosis.nominal.model, &diagnosis.nominal.model.unknown_parameters()),
-        "instruments": instruments,
+        "construction": construction,
+        "too_coarse": diagnosis.verdict.is_too_coarse(),
+        "log_error_ratio": finite(diagnosis.verdict.standings[0].log_error_ratio),
+        "refitted": parameters(&given_trial.fit.model, &given_trial.fit.model.unknown_parameters()),
+        "instruments": instruments_json(diagnosis),
     })
+}
+
+/// The selected effects, one after the other, with their parameters in the model that has them all.
+fn together_json(diagnosis: &Diagnosis) -> Vec<Value> {
+    let model = &diagnosis.supported().fit.model;
+    let selected = diagnosis.selected().into_iter();
+    selected
+        .map(|one| {
+            json!({
+                "effect": one.name(),
+                "cylinder": one.place(),
+                "log_error_ratio_after": finite(one.standing.log_error_ratio),
+                "parameters": own_parameters(model, one.name(), one.addition.site),
+            })
+        })
+        .collect()
+}
+
+fn where_json(diagnosis: &Diagnosis) -> Vec<Value> {
+    let share = |share: &Share| {
+        json!({
+            "equation": share.equation,
+            "regime": share.regime,
+            "share_of_residual": finite(share.share_of_residual),
+            "share_of_time": finite(share.share_of_time),
+        })
+    };
+    diagnosis.map.iter().map(share).collect()
+}
+
+fn instruments_json(diagnosis: &Diagnosis) -> Vec<Value> {
+    let instruments = diagnosis.given().fit.instruments.iter();
+    instruments.map(|one| json!({"name": one.name, "noise": finite(one.noise), "unit": one.unit})).collect()
 }
 
 /// Result of `refine`.

@@ -2,9 +2,10 @@
 
 use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
 use comfy_table::{Attribute, Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
-use excavator_identification::diagnosis::{Candidate, Diagnosis, normalised_error};
-use excavator_identification::fit::Fit;
+use excavator_identification::diagnosis::{Diagnosis, Part};
+use excavator_identification::fit::normalised_error;
 use excavator_identification::refinement::Refinement;
+use excavator_identification::search::Trial;
 use excavator_identification::validation::{Comparison, Correlation};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -93,31 +94,29 @@ fn correlation(found: Option<Correlation>) -> String {
     }
 }
 
-/// Candidates with what they gain on the validation recordings, then what was found beside the first, then the rest.
+/// Effects with what they improve on the validation recordings: those of the verdict, others with evidence, the rest.
 pub fn candidate_table(diagnosis: &Diagnosis, validation: &[&Recording]) -> Table {
     let mut table =
-        table(&["effect", "at", "error before", "error after", "gain", "significance", "first in", "verdict"]);
-    let mut row = |candidate: &Candidate, before: &Fit, verdict: &str| {
+        table(&["effect", "at", "error before", "error after", "improvement", "significance", "first in", "verdict"]);
+    for candidate in diagnosis.candidates().iter().chain(&diagnosis.rejected()) {
+        let error = |trial: &Trial| right(number(normalised_error(&trial.validation, validation)));
         table.add_row([
             Cell::new(candidate.name()),
-            Cell::new(&candidate.place),
-            right(number(normalised_error(before, validation))),
-            right(number(normalised_error(&candidate.validation, validation))),
-            right(format!("{:.2}", candidate.evidence.gain)),
-            right(format!("{:.1}", candidate.evidence.significance)),
-            right(format!("{:.0} %", 100.0 * candidate.inclusion.is_first)),
-            Cell::new(verdict),
+            Cell::new(candidate.place()),
+            error(candidate.before),
+            error(candidate.trial),
+            right(format!("{:.2}", candidate.improvement)),
+            right(format!("{:.1}", candidate.standing.significance)),
+            right(format!("{:.0} %", 100.0 * candidate.standing.is_first)),
+            Cell::new(match candidate.part {
+                _ if candidate.is_tied_with_first => "tied",
+                Part::Tied => "tied",
+                Part::Selected if candidate.before.additions.is_empty() => "selected",
+                Part::Selected => "selected beside the above",
+                Part::Improves => "helps, but less",
+                Part::NoEvidence => "no evidence",
+            }),
         ]);
-    };
-    for candidate in &diagnosis.candidates {
-        row(candidate, &diagnosis.nominal_validation, if candidate.tied_with_first { "tied" } else { "evidence" });
-    }
-    for pair in diagnosis.chain.windows(2) {
-        row(&pair[1], &pair[0].validation, "evidence beside the first");
-    }
-    let is_in_chain = |one: &Candidate| diagnosis.chain.iter().any(|link| link.is_same_addition(one));
-    for candidate in diagnosis.rejected.iter().filter(|one| !is_in_chain(one)) {
-        row(candidate, &diagnosis.nominal_validation, "no evidence");
     }
     table
 }

@@ -23,7 +23,7 @@ pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let diagnosis = arguments.diagnosis.as_deref().map(DiagnosisFile::read).transpose()?;
-    let model = diagnosis.as_ref().map_or_else(|| Ok(model.clone()), |file| file.with_fitted_along(&model))?;
+    let model = diagnosis.as_ref().map_or_else(|| Ok(model.clone()), |file| file.with_nuisances(&model))?;
     let mut settings = DesignSettings::usual(&model.machine);
     settings.duration = arguments.duration;
     settings.limits.stroke_margin = arguments.stroke_margin;

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, Unpromising, diagnose};
+use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
 use excavator_identification::energy::{EnergySettings, MissingPower, analyse, missing_power};
 use excavator_identification::report::{NONE_TRIED, diagnosis_page, verdict_sentence};
+use excavator_identification::search::Unpromising;
 use excavator_identification::validation::{Comparison, compare};
+use excavator_model::Model;
 use excavator_model::recording::Recording;
-use excavator_model::{Model, addition_name};
 
 use super::print;
 use crate::cli::DiagnoseArguments;
@@ -17,7 +18,11 @@ use crate::outputs::{self, Inputs};
 use crate::sources;
 
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
-    let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let outputs = [
+        ("--report", arguments.report.as_deref()),
+        ("--scores", arguments.scores.as_deref()),
+        ("--json", arguments.json.json.as_deref()),
+    ];
     let inputs = Inputs::recordings(arguments.recordings.bags(), &arguments.recordings.mapping).and(&arguments.model);
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
@@ -31,16 +36,20 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&model, &diagnosis, &validation);
     }
-    let missing = ledgers(&diagnosis.nominal.model, &validation);
+    let missing = ledgers(&diagnosis.given().fit.model, &validation);
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         for (source, found) in &missing {
             found.iter().for_each(|one| print(&format!("Energy in {source}: {}", one.sentence)));
         }
     }
+    if let Some(path) = &arguments.scores {
+        let text = serde_json::to_string(&diagnosis.scores).map_err(VerbError::from)?;
+        outputs::write(path, &text, arguments.overwriting)?;
+    }
     if let Some(path) = &arguments.report {
         let comparisons = validation
             .iter()
-            .map(|recording| compare(&diagnosis.nominal.model, recording))
+            .map(|recording| compare(&diagnosis.given().fit.model, recording))
             .collect::<Result<Vec<Comparison>, _>>()?;
         outputs::write(path, &diagnosis_page(&model, &diagnosis, &comparisons, &missing), arguments.overwriting)?;
     }
@@ -75,16 +84,15 @@ pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
         print(&candidate_table(diagnosis, validation).to_string());
     }
     if !diagnosis.unpromising.is_empty() {
-        let same = |effect: &Unpromising| {
-            diagnosis.unpromising.iter().filter(|other| other.physics.card().name == effect.physics.card().name).count()
-        };
+        let same =
+            |effect: &Unpromising| diagnosis.unpromising.iter().filter(|other| other.effect == effect.effect).count();
         // The place only where it tells two apart.
         let names: Vec<String> = diagnosis
             .unpromising
             .iter()
             .map(|effect| match same(effect) {
-                1 => effect.physics.card().name.to_string(),
-                _ => addition_name(effect.physics, &effect.place),
+                1 => effect.effect.to_string(),
+                _ => effect.name.clone(),
             })
             .collect();
         print(&format!("Left behind after a few steps: {}.", names.join(", ")));

@@ -5,6 +5,7 @@ use std::path::Path;
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
 use excavator_identification::report::{refinement_page, refinement_sentence};
+use excavator_identification::search::Addition;
 use excavator_model::Model;
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
@@ -54,12 +55,11 @@ fn named(model: &Model, names: &[String]) -> Result<Additions, VerbError> {
     let mut additions = Vec::new();
     for name in names {
         for (physics, site) in model.parse_addition(name)? {
-            if additions.iter().any(|&(other, place): &(&dyn excavator_model::effects::Effect, _)| {
-                other.card().name == physics.card().name && place == site
-            }) {
+            let addition = Addition { physics, site };
+            if additions.contains(&addition) {
                 return Err(VerbError::AddedTwice(name.clone()));
             }
-            additions.push((physics, site));
+            additions.push(addition);
         }
     }
     Ok(Additions::Named(additions))

@@ -4,13 +4,14 @@ use excavator_model::simulation::Profile;
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 
 use crate::manoeuvres::Manoeuvre;
 use crate::plant::{Base, CATALOGUE, Effects, Extras, FOREIGN, Kind, Plant, Reversal, Shape};
 use crate::strength::{Strength, size};
 
 /// What sort of secret a case has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Sort {
     /// Nothing is hidden.
     Nothing,

@@ -5,12 +5,15 @@
 //! twice and cancel. Only its `Recording` is used, as the container of what the instruments saw.
 //!
 //! A case goes one way: [`cases`] draws it, [`strength`] sizes the effect, [`run`] moves the [`plant`] through the
-//! [`manoeuvres`], [`instruments`] record it, [`scoring`] asks the diagnosis and compares, [`table`] prints.
+//! [`manoeuvres`], [`instruments`] record it, [`scoring`] asks the diagnosis, [`answer`] compares, [`table`] prints; [`replay`] judges
+//! stored scores again.
 
+pub mod answer;
 pub mod cases;
 pub mod instruments;
 pub mod manoeuvres;
 pub mod plant;
+pub mod replay;
 pub mod run;
 pub mod scoring;
 pub mod storing;

@@ -7,7 +7,8 @@ use std::process::ExitCode;
 use clap::{Parser, ValueEnum};
 use excavator_blind::cases::{Case, Sort, Wish};
 use excavator_blind::plant::{CATALOGUE, FOREIGN, Kind, kind};
-use excavator_blind::scoring::{Score, make, score};
+use excavator_blind::replay::{Stored, replayed};
+use excavator_blind::scoring::{Score, Secret, make, score};
 use excavator_blind::storing::store;
 use excavator_blind::strength::Strength;
 use excavator_blind::table::{Judged, line, summary};
@@ -50,6 +51,15 @@ struct Words {
     /// Store each case in this folder, as two bags and an answer
     #[arg(long)]
     write: Option<PathBuf>,
+    /// Store the scores of each case in this folder, for --replay
+    #[arg(long)]
+    scores: Option<PathBuf>,
+    /// Judge the scores stored in these folders again, without a fit; with --against a table of what changed
+    #[arg(long, num_args = 1..)]
+    replay: Vec<PathBuf>,
+    /// Verdicts of an earlier replay to compare with; written there where there are none
+    #[arg(long, requires = "replay")]
+    against: Option<PathBuf>,
     /// Draw and store the cases without asking the diagnosis
     #[arg(long)]
     only_draw: bool,
@@ -72,6 +82,18 @@ enum StrengthName {
 
 fn main() -> ExitCode {
     let words = Words::parse();
+    if !words.replay.is_empty() {
+        return match replayed(&words.replay, words.against.as_deref()) {
+            Ok(text) => {
+                say(&text);
+                ExitCode::SUCCESS
+            }
+            Err(reason) => {
+                eprintln!("{reason}");
+                ExitCode::FAILURE
+            }
+        };
+    }
     let mut effects: Vec<&'static Kind> = Vec::new();
     for name in &words.effect {
         let Some(kind) = kind(name) else {
@@ -185,7 +207,14 @@ fn judge(words: &Words, case: &mut Case) -> Result<(String, Option<Result<Score,
         return Ok((line, None));
     }
     Ok(match score(case, &evidence) {
-        Ok(score) => (line(case, &evidence, &score), Some(Ok(score))),
+        Ok(score) => {
+            if let Some(folder) = &words.scores {
+                let (secret, scores) = (Secret::of(case), score.scores.clone());
+                let source = format!("{}-{number:03}-{}", words.seed, secret.words.replace(' ', "-"));
+                Stored { source, secret, scores }.write(folder).map_err(|error| error.to_string())?;
+            }
+            (line(case, &evidence, &score), Some(Ok(score)))
+        }
         Err(error) => failed("no score", error.to_string()),
     })
 }

@@ -2,78 +2,37 @@
 
 use std::time::Instant;
 
-use excavator_identification::diagnosis::{Diagnosis, DiagnosisError, DiagnosisSettings, Verdict, diagnose};
-use excavator_identification::fit::Fit;
+use excavator_identification::decision::Scores;
+use excavator_identification::diagnosis::{Diagnosis, DiagnosisError, DiagnosisSettings, diagnose};
+use excavator_identification::fit::normalised_error;
 use excavator_model::Model;
 use excavator_model::document::{DocumentError, built_in};
 use excavator_model::recording::Recording;
+use serde::{Deserialize, Serialize};
 
+use crate::answer::{Answer, Outcome};
 use crate::cases::{Case, Sort};
 use crate::instruments::{Instruments, record};
 use crate::run::Diverged;
 use crate::strength::{Change, run_and_compare};
 
-/// How the answer compares with the secret.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
-    /// The right verdict, and the right name alone.
-    Right,
-    /// The right name in a tied set.
-    Tied,
-    /// One of two names.
-    Partial,
-    /// Something was found, under a wrong name.
-    WrongName,
-    /// A catalogue effect was found, and called unexplained.
-    CalledUnexplained,
-    /// Something is hidden, and nothing was found.
-    Missed,
-    /// Nothing can be seen, and something was found.
-    FalseAlarm,
-}
-
-impl Outcome {
-    /// Name in the table.
-    pub fn name(self) -> &'static str {
-        match self {
-            Outcome::Right => "right",
-            Outcome::Tied => "right, tied",
-            Outcome::Partial => "one of two",
-            Outcome::WrongName => "WRONG NAME",
-            Outcome::CalledUnexplained => "called unexplained",
-            Outcome::Missed => "MISSED",
-            Outcome::FalseAlarm => "FALSE ALARM",
-        }
-    }
-}
-
 /// The diagnosis of one case.
 #[derive(Debug, Clone)]
 pub struct Score {
-    /// Verdict.
-    pub verdict: Verdict,
-    /// Name of the first candidate with evidence.
-    pub first: Option<&'static str>,
-    /// Names tied with it, itself included.
-    pub tied: Vec<&'static str>,
-    /// Names added one after the other.
-    pub chain: Vec<&'static str>,
+    /// What was said.
+    pub answer: Answer,
     /// Against the secret.
     pub outcome: Outcome,
     /// Median relative error of the hidden effects' parameters that the catalogue knows by name.
     pub coefficient_error: Option<f64>,
     /// Mean NMSE over instruments on validation, before anything is added and after.
     pub nmse: [f64; 2],
-    /// Loss on validation: of the nominal model, then after each effect of the chain; 0 is sensor noise alone.
-    pub losses: Vec<f64>,
-    /// The same but for the worst moments, before anything is added and after.
-    pub typical: [f64; 2],
-    /// Name, gain and significance of the best candidates for the first place.
-    pub gains: Vec<(&'static str, f64, f64)>,
     /// Base parameters of the last model that have an interval.
     pub estimates: Vec<Estimate>,
     /// Wall-clock time of the diagnosis, s.
     pub seconds: f64,
+    /// What the verdict was decided from.
+    pub scores: Scores,
 }
 
 /// A base parameter of the last model against the truth.
@@ -154,100 +113,49 @@ pub fn score(case: &Case, evidence: &Evidence) -> Result<Score, ScoreError> {
     let settings = DiagnosisSettings::default();
     let diagnosis = diagnose(&model, &[&evidence.identification], &[&evidence.validation], &settings, &|_, _| ())?;
     let seconds = begin.elapsed().as_secs_f64();
-    let first = diagnosis.candidates.first().map(|candidate| candidate.name());
-    let tied = diagnosis.candidates.iter().filter(|candidate| candidate.tied_with_first);
-    let tied: Vec<&'static str> = tied.map(|candidate| candidate.name()).collect();
-    let chain: Vec<&'static str> = diagnosis.chain.iter().map(|candidate| candidate.name()).collect();
-    let hidden: Vec<&'static str> = case.hidden.iter().map(|kind| kind.answer).collect();
-    let visible = case.hidden.iter().all(|kind| kind.identifiable);
-    let sort = if visible { case.sort } else { Sort::Nothing };
-    let (last, last_validation) = last_fit(&diagnosis);
+    let answer = Answer::of(&diagnosis.scores, &diagnosis.verdict);
+    let error =
+        |trial: &excavator_identification::search::Trial| normalised_error(&trial.validation, &[&evidence.validation]);
     Ok(Score {
-        outcome: outcome(sort, diagnosis.verdict, &hidden, &tied, &chain, first),
+        outcome: answer.against(&Secret::of(case)),
         coefficient_error: coefficient_error(case, &diagnosis),
-        nmse: [nmse(&diagnosis.nominal_validation, evidence), nmse(last_validation, evidence)],
-        losses: std::iter::once(&diagnosis.nominal_validation)
-            .chain(diagnosis.chain.iter().map(|step| &step.validation))
-            .map(Fit::loss)
-            .collect(),
-        typical: [diagnosis.nominal_validation.typical_loss(), last_validation.typical_loss()],
-        gains: diagnosis
-            .candidates
-            .iter()
-            .chain(&diagnosis.rejected)
-            .take(3)
-            .map(|candidate| (candidate.name(), candidate.evidence.gain, candidate.evidence.significance))
-            .collect(),
-        estimates: estimates(case, &last.model),
-        verdict: diagnosis.verdict,
-        first,
-        tied,
-        chain,
+        nmse: [error(diagnosis.given()), error(diagnosis.supported())],
+        estimates: estimates(case, &diagnosis.supported().fit.model),
         seconds,
+        answer,
+        scores: diagnosis.scores,
     })
 }
 
-/// Judges an answer. `tied` names the set that shares the first place (empty when it is alone), `chain` what was added.
-pub fn outcome(
-    sort: Sort,
-    verdict: Verdict,
-    hidden: &[&str],
-    tied: &[&str],
-    chain: &[&str],
-    first: Option<&str>,
-) -> Outcome {
-    let found = |name: &&str| first == Some(*name) || tied.contains(name) || chain.contains(name);
-    match (sort, verdict) {
-        (Sort::Nothing, Verdict::Adequate) | (Sort::Unknown, Verdict::Unexplained) => Outcome::Right,
-        (Sort::Nothing, _) => Outcome::FalseAlarm,
-        (_, Verdict::Adequate) => Outcome::Missed,
-        (Sort::Unknown, Verdict::MissingEffect) => Outcome::WrongName,
-        (_, Verdict::Unexplained) => Outcome::CalledUnexplained,
-        (Sort::Single, _) => match hidden.first() {
-            Some(name) if first == Some(*name) && tied.is_empty() => Outcome::Right,
-            Some(name) if first == Some(*name) || tied.contains(name) => Outcome::Tied,
-            _ => Outcome::WrongName,
-        },
-        (Sort::Pair, _) => match hidden.iter().filter(|name| found(name)).count() {
-            0 => Outcome::WrongName,
-            number if number == hidden.len() => Outcome::Right,
-            _ => Outcome::Partial,
-        },
+/// What a case hides, as far as an answer is compared with it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Secret {
+    /// What sort of secret, as far as it can be seen.
+    pub sort: Sort,
+    /// Names that an answer should have.
+    pub effects: Vec<String>,
+    /// The secret and its strength in words.
+    pub words: String,
+}
+
+impl Secret {
+    /// Of a case.
+    pub fn of(case: &Case) -> Self {
+        let is_visible = case.hidden.iter().all(|kind| kind.identifiable);
+        Secret {
+            sort: if is_visible { case.sort } else { Sort::Nothing },
+            effects: case.hidden.iter().map(|kind| kind.answer.to_string()).collect(),
+            words: format!("{} {}", case.secret(), case.strength.name()),
+        }
     }
 }
 
-fn last_fit(diagnosis: &Diagnosis) -> (&Fit, &Fit) {
-    let nominal = (&diagnosis.nominal, &diagnosis.nominal_validation);
-    diagnosis.chain.last().map_or(nominal, |last| (&last.fit, &last.validation))
-}
-
-/// Mean over instruments of squared error over the signal's variance on validation.
-fn nmse(fit: &Fit, evidence: &Evidence) -> f64 {
-    let each: Vec<f64> = fit
-        .instruments
-        .iter()
-        .zip(&fit.errors)
-        .filter_map(|(instrument, error)| {
-            let signal = evidence.validation.signal(&instrument.name)?;
-            let count = signal.len() as f64;
-            let mean = signal.iter().sum::<f64>() / count;
-            let variance = signal.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count;
-            (variance > 0.0).then(|| error * error / variance)
-        })
-        .collect();
-    each.iter().sum::<f64>() / each.len() as f64
-}
-
-/// Of the hidden effects' parameters, in the candidates that bear their names.
+/// Of the hidden effects' parameters, in the favoured model and in the candidates that bear their names.
 fn coefficient_error(case: &Case, diagnosis: &Diagnosis) -> Option<f64> {
-    let models: Vec<&Model> = diagnosis
-        .chain
-        .last()
-        .into_iter()
-        .chain(&diagnosis.candidates)
-        .filter(|candidate| case.hidden.iter().any(|kind| kind.answer == candidate.name()))
-        .map(|candidate| &candidate.fit.model)
-        .collect();
+    let candidates = diagnosis.candidates();
+    let named = candidates.iter().filter(|one| case.hidden.iter().any(|kind| kind.answer == one.name()));
+    let models: Vec<&Model> =
+        std::iter::once(&diagnosis.best().fit.model).chain(named.map(|one| &one.trial.fit.model)).collect();
     let error = |(name, truth): (&str, f64)| {
         let value = models.iter().find_map(|model| model.value_of(name))?;
         Some((value / truth - 1.0).abs())

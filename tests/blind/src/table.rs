@@ -2,8 +2,9 @@
 
 use comfy_table::{Table, presets};
 
+use crate::answer::Outcome;
 use crate::cases::{Case, Sort};
-use crate::scoring::{Estimate, Evidence, Outcome, Score, median};
+use crate::scoring::{Estimate, Evidence, Score, median};
 
 /// A case with its score, or why it has none.
 pub type Judged = (Case, Result<Score, String>);
@@ -20,28 +21,18 @@ pub fn line(case: &Case, evidence: &Evidence, score: &Score) -> String {
         let share = format!("changes {identification:.2}/{validation:.2} %");
         format!("{} {strength} ({share}; {}{limits})", case.secret(), truth.join(" "))
     };
-    let named = if score.chain.is_empty() { "-".to_string() } else { score.chain.join(" then ") };
-    let tied = if score.tied.is_empty() { String::new() } else { format!(" [tied: {}]", score.tied.join(", ")) };
     let error =
         score.coefficient_error.map_or(String::new(), |error| format!(", coefficients off by {:.1} %", 100.0 * error));
-    let losses: Vec<String> = score.losses.iter().map(|loss| format!("{loss:.2}")).collect();
-    let gains: Vec<String> =
-        score.gains.iter().map(|(name, gain, deviations)| format!("{name} {gain:.2} ({deviations:.1})")).collect();
     format!(
-        "{:>4}  {:18}  hidden {hidden}\n      {}: {named}{tied}, NMSE {:.2e} -> {:.2e}{error}, covered {}/{}, {:.0} s\n      \
-         loss {} (typical {:.2} -> {:.2}); gains {}",
+        "{:>4}  {:18}  hidden {hidden}\n      {}\n      NMSE {:.2e} -> {:.2e}{error}, covered {}/{}, {:.0} s",
         case.number,
         score.outcome.name(),
-        score.verdict.name(),
+        score.answer.words(),
         score.nmse[0],
         score.nmse[1],
         score.estimates.iter().filter(|estimate| estimate.is_covered()).count(),
         score.estimates.len(),
         score.seconds,
-        losses.join(" -> "),
-        score.typical[0],
-        score.typical[1],
-        gains.join(", ")
     )
 }
 

@@ -1,33 +1,32 @@
-//! Models with effects that act in a window of time, on recordings that they were not fitted to.
+//! Transient effects, on recordings that they were not fitted to.
 //!
-//! A contact at 21 s of one recording says nothing about another. What it leaves of a model is judged with the window that
-//! the other recording has itself: three numbers of a fit are no evidence against thousands of readings; whether they lower
-//! the loss is.
+//! A contact at 21 s of one recording says nothing about another. A model with a transient effect is judged with the active window
+//! that the other recording shows itself.
 
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelEffect};
 
-use super::candidate::{CandidateError, best_start};
+use super::addition::{Addition, AdditionError, best_start};
 use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, fit_predicted};
 
 /// `model` on `recordings`, nothing fitted but the windows of its effects. Where these are says `known`, the model of an
 /// evaluation on the same recordings; the window of a last effect that it does not have is looked for.
 ///
 /// # Errors
-/// [`CandidateError`].
-pub(super) fn evaluate_in_own_windows(
+/// [`AdditionError`].
+pub(super) fn evaluate_on_others(
     model: &Model,
     known: &Model,
     recordings: &[&Recording],
     settings: &FitSettings,
-) -> Result<Fit, CandidateError> {
-    let is_new = |last: &&ModelEffect| !known.has(last.name(), last.site) && has_window(last);
+) -> Result<Fit, AdditionError> {
+    let is_new = |last: &&ModelEffect| !known.has(last.name(), last.site) && is_transient(last);
     let Some(added) = model.effects.last().filter(is_new) else {
-        return Ok(evaluate_in_known_windows(model, known, recordings, settings)?);
+        return Ok(evaluate_in_windows_of(model, known, recordings, settings)?);
     };
     let (mut without, _) = in_windows_of(model, known);
     without.effects.pop();
-    let start = best_start(&without, added.physics, added.site, recordings, settings)?;
+    let start = best_start(&without, Addition { physics: added.physics, site: added.site }, recordings, settings)?;
     Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
 }
 
@@ -35,14 +34,14 @@ pub(super) fn evaluate_in_own_windows(
 ///
 /// # Errors
 /// [`FitError`].
-pub(super) fn evaluate_in_known_windows(
+pub(super) fn evaluate_in_windows_of(
     model: &Model,
     known: &Model,
     recordings: &[&Recording],
     settings: &FitSettings,
 ) -> Result<Fit, FitError> {
-    let (model, has_windows) = in_windows_of(model, known);
-    if has_windows { fit(&model, recordings, settings) } else { evaluate(&model, recordings, settings) }
+    let (model, any_transient) = in_windows_of(model, known);
+    if any_transient { fit(&model, recordings, settings) } else { evaluate(&model, recordings, settings) }
 }
 
 /// `model` with the windows of `known`, nothing but these effects free; and whether there are any.
@@ -51,7 +50,8 @@ fn in_windows_of(model: &Model, known: &Model) -> (Model, bool) {
     in_windows.parameters_mut().for_each(|parameter| parameter.known = true);
     let mut any = false;
     for (effect, fitted) in in_windows.effects.iter_mut().zip(&model.effects) {
-        let Some(same) = known.effect(effect.name(), effect.site).filter(|same| has_window(fitted) && has_window(same))
+        let Some(same) =
+            known.effect(effect.name(), effect.site).filter(|same| is_transient(fitted) && is_transient(same))
         else {
             continue;
         };
@@ -62,6 +62,6 @@ fn in_windows_of(model: &Model, known: &Model) -> (Model, bool) {
 }
 
 /// Whether the effect acts in a window that was looked for.
-pub(super) fn has_window(effect: &ModelEffect) -> bool {
+pub(super) fn is_transient(effect: &ModelEffect) -> bool {
     effect.parameters.iter().any(|parameter| parameter.card.start.is_a_time() && !parameter.known)
 }

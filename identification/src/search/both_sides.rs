@@ -1,8 +1,8 @@
 //! Whether recordings have seen an effect come and go, which acts only beyond a threshold or in a window of time.
 
+use excavator_model::ModelEffect;
 use excavator_model::effects::Start;
 use excavator_model::recording::Recording;
-use excavator_model::{Model, ModelEffect};
 
 use super::starts::pump_pressure;
 
@@ -12,15 +12,14 @@ const VISITED: f64 = 0.02;
 /// Part of the recordings that a window may fill and still be one: of 40 s, 2 s are outside.
 const MOST_OF_THE_TIME: f64 = 0.95;
 
-/// Whether the recordings have been on both sides of where the model's last effect begins to act. A relief valve that is open
-/// at all pressures is a leak of the pump under another name, a contact that never ends a constant force.
-pub(super) fn has_seen_both_sides(model: &Model, recordings: &[&Recording]) -> bool {
-    let Some(last) = model.effects.last() else { return true };
+/// Whether the recordings have been on both sides of where the effect begins to act. A relief valve that is open at all pressures
+/// is a leak of the pump, a contact that never ends a constant force.
+pub(super) fn is_seen_from_both_sides(effect: &ModelEffect, recordings: &[&Recording]) -> bool {
     let mut thresholds =
-        last.parameters.iter().filter(|parameter| matches!(parameter.card.start, Start::PumpPressureQuantiles(_)));
+        effect.parameters.iter().filter(|parameter| matches!(parameter.card.start, Start::PumpPressureQuantiles(_)));
     let lowest = pump_pressure(recordings, VISITED);
     let is_visited = lowest.is_nan() || thresholds.all(|threshold| threshold.value > lowest);
-    is_visited && share_inside(last, recordings).is_none_or(|share| share <= MOST_OF_THE_TIME)
+    is_visited && share_inside(effect, recordings).is_none_or(|share| share <= MOST_OF_THE_TIME)
 }
 
 /// Part of the time of the recordings that lies inside the effect's window; `None` for an effect without one, or that acts
@@ -40,6 +39,7 @@ fn share_inside(effect: &ModelEffect, recordings: &[&Recording]) -> Option<f64> 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
+    use excavator_model::Model;
     use excavator_model::document::built_in;
     use excavator_model::effects::{Site, find};
 
@@ -55,6 +55,10 @@ mod tests {
         model
     }
 
+    fn both_sides(model: &Model, recordings: &[&Recording]) -> bool {
+        is_seen_from_both_sides(model.effects.last().unwrap(), recordings)
+    }
+
     /// 20 s, the pump pressure from 50 to 150 bar.
     fn recording() -> Recording {
         let time: Vec<f64> = (0..201).map(|index| f64::from(index) * 0.1).collect();
@@ -67,7 +71,7 @@ mod tests {
     fn a_contact_has_to_begin_or_end() {
         let recording = recording();
         let seen = |begin, duration| {
-            has_seen_both_sides(&with("external_contact", &[begin, duration, 100.0]), &[&recording, &recording])
+            both_sides(&with("external_contact", &[begin, duration, 100.0]), &[&recording, &recording])
         };
         assert!(seen(5.0, 4.0));
         assert!(seen(12.0, 100.0), "it begins");
@@ -80,9 +84,9 @@ mod tests {
     fn a_load_may_be_there_always() {
         let recording = recording();
         let always = with("payload", &[50.0, 2.0]);
-        assert!(has_seen_both_sides(&always, &[&recording]));
-        assert!(has_seen_both_sides(&with("payload", &[50.0, 2.0, 7.0, 1e9]), &[&recording]));
-        assert!(!has_seen_both_sides(&with("payload", &[50.0, 2.0, 0.2, 1e9]), &[&recording]), "is there always");
+        assert!(both_sides(&always, &[&recording]));
+        assert!(both_sides(&with("payload", &[50.0, 2.0, 7.0, 1e9]), &[&recording]));
+        assert!(!both_sides(&with("payload", &[50.0, 2.0, 0.2, 1e9]), &[&recording]), "is there always");
     }
 
     #[test]
@@ -95,11 +99,11 @@ mod tests {
                     parameter.value = pressure;
                 }
             }
-            has_seen_both_sides(&model, &[&recording])
+            both_sides(&model, &[&recording])
         };
         assert!(relief(1.2e7));
         assert!(!relief(4e6));
         let unmeasured = Recording::unmeasured("bag", recording.time.clone(), &["arm"]);
-        assert!(has_seen_both_sides(&with("relief_valve", &[]), &[&unmeasured]), "nothing is known against it");
+        assert!(both_sides(&with("relief_valve", &[]), &[&unmeasured]), "nothing is known against it");
     }
 }

@@ -8,25 +8,26 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::fit::{Fit, FitSettings, evaluate};
+use crate::fit::{Fit, FitSettings, Instrument, evaluate};
 
-/// `fit`, with the noise of each instrument raised by what the readings of the inputs leave open on `recordings`.
+/// Error variance that the readings of the inputs alone leave in each instrument of `evaluated`, a model on `recordings`, over the
+/// variance of the instrument's noise; `None` when that cannot be simulated.
 ///
-/// When a valve moved between two samples nobody knows: anywhere in the interval, each time anew; and where it was, its sensor
-/// knows but for noise, which a pump that feeds two nearly open valves magnifies. How far outputs go wrong by that is found by
-/// fitting the model to its own outputs for inputs that were read once more: with another moment for each move, as far as it is
-/// more than its neighbours', and with noise once more. `None` when that cannot be simulated.
-pub(super) fn with_input_floor(fit: &Fit, recordings: &[&Recording], settings: &FitSettings) -> Option<Fit> {
+/// When a valve moved between two samples is not known: anywhere in the interval, each time anew. Where it was, its sensor knows but for
+/// noise, which a pump that feeds two nearly open valves magnifies. How far outputs go wrong by that is found by fitting the model to its
+/// own outputs for inputs that were read once more: with another moment for each move, as far as it is more than its neighbours', and
+/// with noise once more.
+pub(super) fn input_floor(evaluated: &Fit, recordings: &[&Recording], settings: &FitSettings) -> Option<Vec<f64>> {
+    let model = &evaluated.model;
     let disturbed: Option<Vec<Recording>> =
-        recordings.iter().map(|recording| answer_to_other_readings(&fit.model, recording)).collect();
+        recordings.iter().map(|recording| answer_to_other_readings(model, recording)).collect();
     let disturbed = disturbed?;
-    let left = evaluate(&fit.model, &disturbed.iter().collect::<Vec<_>>(), settings).ok()?;
-    let mut raised = fit.clone();
-    for instrument in &mut raised.instruments {
+    let left = evaluate(model, &disturbed.iter().collect::<Vec<_>>(), settings).ok()?;
+    let floor = |instrument: &Instrument| {
         let position = left.instruments.iter().position(|own| own.name == instrument.name)?;
-        instrument.noise = (instrument.noise.powi(2) + left.errors[position].powi(2)).sqrt();
-    }
-    Some(raised)
+        Some((left.errors[position] / instrument.noise).powi(2))
+    };
+    evaluated.instruments.iter().map(floor).collect()
 }
 
 /// What the model's instruments report for inputs that were read once more, beside the inputs as they are.

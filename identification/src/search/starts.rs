@@ -20,7 +20,7 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
         WeakFormSettings { rounds: 1, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
     let regressed = |start: &Model| Some(within_bounds(weak_form(start, &thinned, &quick).ok()?.model));
     let last = model.effects.last();
-    if last.is_some_and(|last| acts_in_a_window(last.physics, &model.machine, last.site)) {
+    if last.is_some_and(|last| can_be_transient(last.physics, &model.machine, last.site)) {
         // There are many windows, and how strong something is follows from when it is.
         let with_strength = |start: &Model| Some(with_shape_of(start, regressed(&with_shape_held(start))?));
         return plain.into_iter().map(|start| with_strength(&start).unwrap_or(start)).collect();
@@ -62,7 +62,7 @@ pub(super) fn within_bounds(mut model: Model) -> Model {
 }
 
 /// Whether an effect can act in a window of time, which belongs to one recording and says nothing about another.
-pub(super) fn acts_in_a_window(physics: &dyn Effect, machine: &Machine, site: Site) -> bool {
+pub(super) fn can_be_transient(physics: &dyn Effect, machine: &Machine, site: Site) -> bool {
     physics.parameters(machine, site).iter().any(|card| card.start.is_a_time())
 }
 
@@ -134,7 +134,7 @@ const SHORTEST: f64 = 0.2;
 
 fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let Some(last) = model.effects.last() else { return vec![model.clone()] };
-    let mut starts = if acts_in_a_window(last.physics, &model.machine, last.site) {
+    let mut starts = if can_be_transient(last.physics, &model.machine, last.site) {
         windows(model, recordings)
     } else {
         vec![model.clone()]

@@ -1,0 +1,110 @@
+//! How each hypothesis stands against the given model and against the hypotheses with fewer effects.
+
+use super::resampling::{Resampled, Resampling};
+use super::scores::{Bound, EffectScore, Hypothesis, Scores};
+use super::statistic::{block_costs, log_error_ratio_beyond_inputs};
+use super::{Policy, Standing};
+
+/// One hypothesis, assessed.
+pub(super) struct Assessed<'a> {
+    /// The hypothesis.
+    pub hypothesis: &'a Hypothesis,
+    /// Mean of its block costs, and in resampled recordings.
+    pub resampled: Resampled,
+    /// Log error ratio on the validation recordings, beyond what the readings of the inputs leave.
+    pub validation: f64,
+    /// The same on the identification recordings.
+    pub identification: f64,
+    /// Whether each of its effects is needed, shows, and has a sensible size.
+    pub is_admissible: bool,
+}
+
+/// All hypotheses, assessed, in the order of the scores.
+pub(super) fn assess<'a>(scores: &'a Scores, policy: &Policy, given_is_adequate: bool) -> Vec<Assessed<'a>> {
+    let resampling = Resampling::new(scores.identification.blocks.len(), scores.validation.blocks.len());
+    let mut assessed: Vec<Assessed<'a>> = scores
+        .hypotheses
+        .iter()
+        .map(|hypothesis| Assessed {
+            hypothesis,
+            resampled: resampling.of(&block_costs(scores, hypothesis)),
+            validation: log_error_ratio_beyond_inputs(&scores.validation, &hypothesis.validation),
+            identification: log_error_ratio_beyond_inputs(&scores.identification, &hypothesis.identification),
+            is_admissible: false,
+        })
+        .collect();
+    let admissible: Vec<bool> =
+        (0..assessed.len()).map(|number| is_admissible(&assessed, number, policy, given_is_adequate)).collect();
+    assessed.iter_mut().zip(admissible).for_each(|(one, is_admissible)| one.is_admissible = is_admissible);
+    assessed
+}
+
+fn is_admissible(all: &[Assessed<'_>], number: usize, policy: &Policy, given_is_adequate: bool) -> bool {
+    let own = &all[number];
+    let effects = &own.hypothesis.effects;
+    !effects.is_empty()
+        && effects.iter().all(is_sensible)
+        && all.iter().filter(|less| own.hypothesis.extends(less.hypothesis)).all(|less| {
+            let is_given = less.hypothesis.effects.is_empty();
+            let least = if is_given && given_is_adequate {
+                policy.least_improvement_when_adequate
+            } else {
+                policy.least_improvement
+            };
+            improves(less, own, least, policy.least_significance)
+        })
+}
+
+/// Whether `more` explains what `less` does not: by at least this much on the validation recordings, half as much on the others, where
+/// parameters were fitted, and by so many standard errors on all together.
+fn improves(less: &Assessed<'_>, more: &Assessed<'_>, least: f64, least_significance: f64) -> bool {
+    let (_, significance) = less.resampled.improvement(&more.resampled);
+    less.improvement(more) >= least
+        && less.identification - more.identification >= 0.5 * least
+        && significance >= least_significance
+}
+
+/// Whether an effect acts as it says, in these recordings and by this much.
+fn is_sensible(effect: &EffectScore) -> bool {
+    let at = |bound: Bound| effect.parameters.iter().filter(|one| one.at_bound == Some(bound)).count();
+    let fitted = effect.parameters.iter().filter(|one| one.at_bound.is_some() || one.margin_95.is_some()).count();
+    // Some of several coefficients may be nothing; none may be more than is plausible.
+    let is_at_its_bounds = at(Bound::Upper) > 0 || fitted > 0 && at(Bound::Lower) == fitted;
+    effect.is_practically_significant && effect.is_seen_from_both_sides && !is_at_its_bounds
+}
+
+impl Assessed<'_> {
+    /// By how much `other` is better on the validation recordings. A transient effect is fitted to each recording and predicts none: of
+    /// that the smaller improvement of both kinds of recordings counts.
+    pub fn improvement(&self, other: &Assessed<'_>) -> f64 {
+        let (validation, identification) =
+            (self.validation - other.validation, self.identification - other.identification);
+        let is_transient = other.hypothesis.effects.iter().any(|one| one.is_transient && !self.hypothesis.has(one));
+        if is_transient { validation.min(identification) } else { validation }
+    }
+
+    /// Mean of both kinds of recordings.
+    pub fn mean(&self) -> f64 {
+        0.5 * (self.validation + self.identification)
+    }
+
+    /// Whether the recordings determine at least one parameter of its effects. A payload whose mass they do not show, on an incline that
+    /// they do not show either, is a constant force.
+    pub fn is_determined(&self) -> bool {
+        let parameters = self.hypothesis.effects.iter().flat_map(|effect| &effect.parameters);
+        parameters.into_iter().any(|one| one.margin_95.is_some_and(|margin| margin < one.value.abs()))
+    }
+
+    /// Its standing against the given model.
+    pub fn standing(&self, given: &Assessed<'_>) -> Standing {
+        Standing {
+            log_error_ratio: self.validation,
+            improvement: given.improvement(self),
+            identification_improvement: given.identification - self.identification,
+            significance: given.resampled.improvement(&self.resampled).1,
+            is_admissible: self.is_admissible,
+            set_p_value: None,
+            is_first: 0.0,
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! What the scores of a search say: a verdict with its reasons. Pure functions; no model is fitted here.
+
+mod adequacy;
+mod assessment;
+mod confidence_set;
+mod decide;
+#[cfg(test)]
+mod made_scores;
+mod policy;
+mod resampling;
+pub mod scores;
+mod statistic;
+#[cfg(test)]
+mod tests;
+mod verdict;
+
+pub use decide::{decide, leaves_nothing};
+pub use policy::Policy;
+pub use resampling::improvement_on_blocks;
+pub use scores::{Hypothesis, Scores, ScoresError};
+pub use statistic::{block_cost, block_costs_of, log_error_ratio, relative_error};
+pub use verdict::{Kind, Reason, Standing, Verdict};

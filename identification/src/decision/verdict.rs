@@ -1,0 +1,155 @@
+//! A verdict and its reasons.
+
+use serde::{Deserialize, Serialize};
+
+/// What is to be thought of a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// An effect of the catalogue is missing (or one of a set that cannot be told apart).
+    MissingEffect,
+    /// Nothing that matters is missing.
+    Adequate,
+    /// Something is missing, and it is none of those in the catalogue.
+    Unexplained,
+}
+
+impl Kind {
+    /// Name in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::MissingEffect => "missing_effect",
+            Kind::Adequate => "adequate",
+            Kind::Unexplained => "unexplained",
+        }
+    }
+}
+
+/// The verdict on the scores of a search. Hypotheses are given by their numbers in [`super::Scores::hypotheses`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// What is to be thought of the given model.
+    pub kind: Kind,
+    /// The hypothesis that the scores favour; 0, the given model, where none is better.
+    pub best: usize,
+    /// The hypotheses that cannot be told from the best and have no more effects, that one first; empty where the given model is best.
+    pub set: Vec<usize>,
+    /// Why, the deciding one first.
+    pub reasons: Vec<Reason>,
+    /// How each hypothesis stands, in the order of the scores.
+    pub standings: Vec<Standing>,
+}
+
+/// How a hypothesis stands.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Standing {
+    /// Its log error ratio on the validation recordings.
+    pub log_error_ratio: f64,
+    /// By how much that is less than the given model's; of a transient effect, which predicts no other recording, the smaller one of both kinds
+    /// of recordings.
+    pub improvement: f64,
+    /// By how much the log error ratio on the identification recordings is less than the given model's.
+    pub identification_improvement: f64,
+    /// The improvement on all recordings in its own standard errors, from stretch to stretch.
+    pub significance: f64,
+    /// Whether it could be attributed: each of its effects is needed, shows, and has a sensible size.
+    pub is_admissible: bool,
+    /// The chance of error at which it leaves the model confidence set; none where it is not admissible.
+    pub set_p_value: Option<f64>,
+    /// Share of resampled recordings on which it is the best of the admissible ones.
+    pub is_first: f64,
+}
+
+/// Why a verdict is what it is, with the figures that decided.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "reason", rename_all = "snake_case")]
+pub enum Reason {
+    /// What the given model leaves is the noise of the sensors.
+    WithinNoise {
+        /// Log error ratio.
+        log_error_ratio: f64,
+        /// [`super::Policy::noise_margin`].
+        limit: f64,
+    },
+    /// It is noise but for a few moments.
+    ExceptMoments {
+        /// Share of the blocks of half a second in which the error is more than twice the noise.
+        share_of_time: f64,
+    },
+    /// What the given model leaves is too small to act on.
+    SmallError {
+        /// Error beyond the noise, over the signal's variance.
+        relative_error: f64,
+        /// [`super::Policy::small_error`].
+        limit: f64,
+    },
+    /// What the given model leaves is no more than the readings of the inputs leave open.
+    WithinInputs {
+        /// Log error ratio beyond noise and input readings.
+        log_error_ratio: f64,
+        /// [`super::Policy::noise_margin`].
+        limit: f64,
+    },
+    /// The readings of the inputs leave as much open as the given model is off, and that is too much to call it adequate.
+    TooCoarse {
+        /// Error beyond the noise, over the signal's variance.
+        relative_error: f64,
+        /// [`super::Policy::largest_error`].
+        limit: f64,
+    },
+    /// The best hypothesis explains what the given model leaves.
+    Explained {
+        /// Log error ratio of the given model.
+        before: f64,
+        /// Log error ratio of the best hypothesis.
+        after: f64,
+        /// [`super::Policy::largest_remainder`] for each of its effects.
+        limit: f64,
+    },
+    /// The best hypothesis explains a part of what the given model leaves, and too much remains for an attribution.
+    PartlyExplained {
+        /// Log error ratio of the given model.
+        before: f64,
+        /// Log error ratio of the best hypothesis.
+        after: f64,
+        /// [`super::Policy::largest_remainder`] for each of its effects.
+        limit: f64,
+    },
+    /// No hypothesis improves on the given model.
+    NothingHelps {
+        /// Log error ratio of the given model.
+        log_error_ratio: f64,
+    },
+    /// The set has more than one hypothesis.
+    Indistinguishable {
+        /// Their numbers, the best first.
+        hypotheses: Vec<usize>,
+    },
+    /// A machine that is built otherwise explains the recordings as well or better.
+    StructuralAlternative {
+        /// The hypothesis with the structural effect.
+        hypothesis: usize,
+        /// Whether it is better beyond chance.
+        is_preferred: bool,
+    },
+}
+
+impl Verdict {
+    /// Whether a structural alternative forbids an attribution.
+    pub fn structural_alternative(&self) -> Option<usize> {
+        self.reasons.iter().find_map(|reason| match reason {
+            Reason::StructuralAlternative { hypothesis, .. } => Some(*hypothesis),
+            _ => None,
+        })
+    }
+
+    /// Whether the recordings are too coarse to act on the verdict.
+    pub fn is_too_coarse(&self) -> bool {
+        self.reasons.iter().any(|reason| matches!(reason, Reason::TooCoarse { .. }))
+    }
+
+    /// The hypothesis whose effects a refinement adds: the best one, where no structural alternative stands beside it.
+    pub fn supported(&self) -> usize {
+        if self.structural_alternative().is_some() { 0 } else { self.best }
+    }
+}

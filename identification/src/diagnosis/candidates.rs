@@ -1,0 +1,193 @@
+//! The hypotheses of a diagnosis as people read them: one effect after the other.
+
+use excavator_model::{ModelEffect, site_name};
+
+use super::Diagnosis;
+use crate::decision::Standing;
+use crate::search::{Addition, Trial};
+
+/// What an effect is in a verdict.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The first effect of the favoured hypothesis, or a further one.
+    Selected,
+    /// It stands in a hypothesis that cannot be told from the favoured one.
+    Tied,
+    /// It improves the given model, but less.
+    Improves,
+    /// There is no evidence for it.
+    NoEvidence,
+}
+
+/// An effect that was tried.
+#[derive(Debug, Clone, Copy)]
+pub struct Candidate<'a> {
+    /// The effect and its place.
+    pub addition: Addition,
+    /// The fit that it is a part of.
+    pub trial: &'a Trial,
+    /// The fit that this is compared with.
+    pub before: &'a Trial,
+    /// How the hypothesis of its fit stands against the given model.
+    pub standing: Standing,
+    /// By how much the log error ratio falls from one to the other.
+    pub improvement: f64,
+    /// What it is in the verdict.
+    pub part: Part,
+    /// Whether it shares the first place with others.
+    pub is_tied_with_first: bool,
+}
+
+impl Candidate<'_> {
+    /// Name in the catalogue.
+    pub fn name(&self) -> &'static str {
+        self.addition.physics.card().name
+    }
+
+    /// Name of the place.
+    pub fn place(&self) -> &str {
+        site_name(&self.trial.fit.model.machine, self.addition.site)
+    }
+
+    /// The effect with its fitted parameters.
+    pub fn effect(&self) -> Option<&ModelEffect> {
+        self.trial.effect(&self.addition)
+    }
+}
+
+impl Diagnosis {
+    /// The given model, refitted.
+    pub fn given(&self) -> &Trial {
+        &self.trials[0]
+    }
+
+    /// The favoured hypothesis; the given model where there is none.
+    pub fn best(&self) -> &Trial {
+        &self.trials[self.verdict.best]
+    }
+
+    /// The hypothesis whose effects a refinement adds; the given model where there is none.
+    pub fn supported(&self) -> &Trial {
+        &self.trials[self.verdict.supported()]
+    }
+
+    /// Number of effects that were tried; none where the given model leaves nothing but noise.
+    pub fn tried(&self) -> usize {
+        let singles = self.trials.iter().filter(|trial| trial.additions.len() == 1).count();
+        singles + self.unpromising.len() + self.failed.len()
+    }
+
+    /// From the first effect to the hypothesis `number`, each with one effect more than the one before.
+    pub fn path(&self, number: usize) -> Vec<&Trial> {
+        let mut path = Vec::new();
+        let mut next = Some(number).filter(|&number| number != 0);
+        while let Some(number) = next {
+            path.insert(0, &self.trials[number]);
+            let own = &self.scores.hypotheses[number];
+            next = (1..self.trials.len())
+                .filter(|&less| {
+                    let other = &self.scores.hypotheses[less];
+                    own.extends(other) && other.effects.len() + 1 == own.effects.len() && !other.is_structural()
+                })
+                .min_by(|&a, &b| self.ratio(a).total_cmp(&self.ratio(b)));
+        }
+        path
+    }
+
+    /// Effects of the supported hypothesis, in the order of its path.
+    pub fn selected(&self) -> Vec<Candidate<'_>> {
+        self.selected_of(self.verdict.supported())
+    }
+
+    fn selected_of(&self, number: usize) -> Vec<Candidate<'_>> {
+        let path = self.path(number);
+        let befores = std::iter::once(self.given()).chain(path.iter().copied());
+        let each = path.iter().zip(befores);
+        each.flat_map(|(&trial, before)| {
+            let new = trial.additions.iter().filter(|addition| !before.adds(addition));
+            new.map(move |addition| self.candidate(*addition, trial, before, Part::Selected))
+        })
+        .collect()
+    }
+
+    /// Effects that stand in the place of another one in hypotheses that cannot be told from the favoured one, with the effect that they stand
+    /// for. An alternative without a counterpart stands for the first.
+    pub fn alternatives(&self) -> Vec<(Candidate<'_>, Addition)> {
+        let best = self.best();
+        let order: Vec<Addition> = self.selected_of(self.verdict.best).iter().map(|one| one.addition).collect();
+        let others = self.verdict.set.iter().filter(|&&number| number != self.verdict.best);
+        let structural = self.verdict.structural_alternative();
+        let mut found: Vec<(Candidate<'_>, Addition)> = Vec::new();
+        for &number in others.chain(structural.iter()) {
+            let trial = &self.trials[number];
+            let replaced = order.iter().find(|&&one| !trial.adds(&one)).or(order.first());
+            let Some(&replaced) = replaced else { continue };
+            for addition in trial.additions.iter().filter(|addition| !best.adds(addition)) {
+                if !found.iter().any(|(known, _)| known.addition == *addition) {
+                    found.push((self.candidate(*addition, trial, self.given(), Part::Tied), replaced));
+                }
+            }
+        }
+        found
+    }
+
+    /// Everything with evidence: the selected effects, those tied with the first of them, and others that improve the given model, best
+    /// first.
+    pub fn candidates(&self) -> Vec<Candidate<'_>> {
+        let mut listed: Vec<Candidate<'_>> = self.selected_of(self.verdict.best);
+        let first = listed.first().map(|first| first.addition);
+        let tied: Vec<Candidate<'_>> = self
+            .alternatives()
+            .into_iter()
+            .filter(|(_, replaced)| Some(*replaced) == first)
+            .map(|(candidate, _)| Candidate { is_tied_with_first: true, ..candidate })
+            .collect();
+        if let Some(first) = listed.first_mut() {
+            first.is_tied_with_first = !tied.is_empty();
+        }
+        let after_the_first = listed.len().min(1);
+        listed.splice(after_the_first..after_the_first, tied);
+        let others = self.singles().into_iter().filter(|one| one.part == Part::Improves);
+        let others: Vec<Candidate<'_>> =
+            others.filter(|one| !listed.iter().any(|other| other.addition == one.addition)).collect();
+        listed.extend(others);
+        listed
+    }
+
+    /// Effects that were fitted to the end alone and have no evidence, the best first.
+    pub fn rejected(&self) -> Vec<Candidate<'_>> {
+        let listed = self.candidates();
+        let others = self.singles().into_iter().filter(|one| one.part == Part::NoEvidence);
+        others.filter(|one| !listed.iter().any(|other| other.addition == one.addition)).collect()
+    }
+
+    /// Single candidates of the catalogue, best first.
+    fn singles(&self) -> Vec<Candidate<'_>> {
+        let mut singles: Vec<Candidate<'_>> = (1..self.trials.len())
+            .filter(|&number| {
+                self.trials[number].additions.len() == 1 && !self.scores.hypotheses[number].is_structural()
+            })
+            .map(|number| {
+                let part = if self.verdict.standings[number].is_admissible { Part::Improves } else { Part::NoEvidence };
+                let trial = &self.trials[number];
+                self.candidate(trial.additions[0], trial, self.given(), part)
+            })
+            .collect();
+        singles.sort_by(|a, b| b.improvement.total_cmp(&a.improvement));
+        singles
+    }
+
+    fn candidate<'a>(&'a self, addition: Addition, trial: &'a Trial, before: &'a Trial, part: Part) -> Candidate<'a> {
+        let standing = self.verdict.standings[self.number(trial)];
+        let improvement = self.verdict.standings[self.number(before)].log_error_ratio - standing.log_error_ratio;
+        Candidate { addition, trial, before, standing, improvement, part, is_tied_with_first: false }
+    }
+
+    fn number(&self, trial: &Trial) -> usize {
+        self.trials.iter().position(|one| std::ptr::eq(one, trial)).unwrap_or(0)
+    }
+
+    fn ratio(&self, number: usize) -> f64 {
+        self.verdict.standings[number].log_error_ratio
+    }
+}

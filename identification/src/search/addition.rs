@@ -1,0 +1,146 @@
+//! What can be added to a model.
+
+use excavator_model::effects::{CATALOGUE, Effect, Family, Site};
+use excavator_model::recording::Recording;
+use excavator_model::{Model, ModelError, addition_name, site_name};
+
+use super::starts::{can_be_transient, half_open, starts};
+use crate::fit::{Fit, FitError, FitSettings, Prediction, fit_predicted, predict};
+use crate::fitted_along::refitted_with_effects_along;
+
+/// An effect at a place.
+#[derive(Debug, Clone, Copy)]
+pub struct Addition {
+    /// The effect.
+    pub physics: &'static dyn Effect,
+    /// Where.
+    pub site: Site,
+}
+
+impl PartialEq for Addition {
+    fn eq(&self, other: &Self) -> bool {
+        self.physics.card().name == other.physics.card().name && self.site == other.site
+    }
+}
+
+impl Addition {
+    /// `effect@place` on the machine of `model`.
+    pub fn name(&self, model: &Model) -> String {
+        addition_name(self.physics, site_name(&model.machine, self.site))
+    }
+}
+
+/// Every candidate effect, and every loss of the given model, at every place of the machine where it can act and is not yet.
+pub fn additions(model: &Model) -> Vec<Addition> {
+    of_families(model, Family::is_candidate)
+}
+
+/// Every structural effect at every place where it can act and is not yet.
+pub(super) fn structural_additions(model: &Model) -> Vec<Addition> {
+    of_families(model, |family| family == Family::Construction)
+}
+
+fn of_families(model: &Model, wanted: impl Fn(Family) -> bool) -> Vec<Addition> {
+    CATALOGUE
+        .iter()
+        .copied()
+        .filter(|effect| wanted(effect.card().family))
+        .flat_map(|physics| model.free_sites(physics).into_iter().map(move |site| Addition { physics, site }))
+        .collect()
+}
+
+/// Why an addition could not be fitted.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AdditionError {
+    /// The effect does not fit the model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// It could not be fitted.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+}
+
+/// Fits `model` with one more effect, from the start that promises most.
+///
+/// # Errors
+/// [`AdditionError`].
+pub(crate) fn fit_addition(
+    model: &Model,
+    addition: Addition,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+) -> Result<Fit, AdditionError> {
+    let start = best_start(model, addition, recordings, settings)?;
+    Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
+}
+
+/// A fit of a model whose last effect is an addition, with the nuisance effects that the recordings show beside it: without it they were
+/// hidden under what was missing. A transient effect keeps its place.
+pub(crate) fn with_nuisances(fitted: Fit, recordings: &[&Recording], settings: &FitSettings) -> Fit {
+    let model = &fitted.model;
+    let Some(last) = model.effects.last() else { return fitted };
+    if can_be_transient(last.physics, &model.machine, last.site) {
+        return fitted;
+    }
+    let behind = model.effects.len() - 1;
+    refitted_with_effects_along(fitted, behind, recordings, settings)
+}
+
+/// Where the fit of an addition starts.
+pub(super) struct PromisingStart {
+    /// The model with the effect, at the start.
+    pub model: Model,
+    /// What one step from there promises.
+    pub promise: Prediction,
+}
+
+/// The start of an addition whose first step promises most.
+///
+/// # Errors
+/// [`AdditionError`].
+pub(super) fn best_start(
+    model: &Model,
+    addition: Addition,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+) -> Result<PromisingStart, AdditionError> {
+    let extended = model.with_effect(addition.physics, addition.site)?;
+    let mut best: Option<PromisingStart> = None;
+    let mut failure = None;
+    let mut try_one = |start: Model, best: &mut Option<PromisingStart>| match predict(&start, recordings, settings) {
+        Ok(promise) if best.as_ref().is_none_or(|best| promise.loss_after < best.promise.loss_after) => {
+            *best = Some(PromisingStart { model: start, promise });
+        }
+        Ok(_) => {}
+        Err(error) => failure = Some(error),
+    };
+    for start in starts(&extended, recordings) {
+        try_one(start, &mut best);
+    }
+    let half_open = best.as_ref().map_or_else(Vec::new, |best| half_open(&best.model));
+    for start in half_open {
+        try_one(start, &mut best);
+    }
+    match (best, failure) {
+        (Some(best), _) => Ok(best),
+        (None, Some(error)) => Err(error.into()),
+        (None, None) => Err(FitError::NoActiveWindow.into()),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use excavator_model::document::built_in;
+
+    #[test]
+    fn a_structural_effect_is_no_candidate() {
+        let model = built_in("zx30u-arm").unwrap();
+        let names: Vec<&str> = additions(&model).iter().map(|addition| addition.physics.card().name).collect();
+        assert!(names.contains(&"valve_dead_zone"), "{names:?}");
+        assert!(!names.contains(&"pressure_compensation"), "{names:?}");
+        assert!(structural_additions(&model).iter().any(|one| one.physics.card().name == "pressure_compensation"));
+        assert_eq!(model.parse_addition("pressure_compensation@arm").unwrap().len(), 1);
+    }
+}

@@ -1,0 +1,33 @@
+//! Proposes hypotheses: the given model with some effects added, each fitted and scored. Judges nothing.
+
+mod addition;
+mod both_sides;
+mod effort;
+mod given;
+mod hard_stretches;
+mod input_floor;
+mod named;
+mod pool;
+mod progress;
+mod scoring;
+mod screening;
+#[expect(clippy::module_inception, reason = "the folder is named after what it does, the file after its function")]
+mod search;
+mod starts;
+mod stepwise;
+mod track;
+mod transient;
+mod trial;
+mod worst_stretch;
+
+pub use addition::{Addition, AdditionError, additions};
+pub(crate) use addition::{fit_addition, with_nuisances};
+pub use effort::Effort;
+pub(crate) use given::fit_given;
+pub(crate) use named::score_named;
+pub use pool::{Pool, Unpromising};
+#[cfg(test)]
+pub(crate) use scoring::{begin as scores_of_given, score};
+pub(crate) use scoring::{misfit, side};
+pub use search::search;
+pub use trial::Trial;

@@ -1,0 +1,37 @@
+//! Scores of effects that somebody named.
+
+use excavator_model::recording::Recording;
+
+use super::given::given_trial;
+use super::pool::Pool;
+use super::transient::evaluate_on_others;
+use super::{Addition, AdditionError, Effort, Trial};
+use crate::decision::{Policy, Scores};
+use crate::fit::{Fit, FitSettings};
+
+/// Scores of `given` and of each model that `added` makes of it, one after the other.
+///
+/// # Errors
+/// [`AdditionError`] when a model cannot be evaluated on the validation recordings.
+pub(crate) fn score_named(
+    given: &Fit,
+    added: &[(Addition, Fit)],
+    identification: &[&Recording],
+    validation: &[&Recording],
+    settings: &FitSettings,
+    policy: &Policy,
+) -> Result<Scores, AdditionError> {
+    let first = given_trial(given.clone(), validation, settings)?;
+    let mut known = first.validation.model.clone();
+    let mut pool = Pool::new(first, identification, validation);
+    pool.look_at_inputs(&Effort { fit: *settings, ..Effort::default() }, policy);
+    let mut additions = Vec::new();
+    for (addition, fit) in added {
+        additions.push(*addition);
+        let evaluated = evaluate_on_others(&fit.model, &known, validation, settings)?;
+        known = evaluated.model.clone();
+        let additions = additions.clone();
+        pool.put(Trial { additions, fit: fit.clone(), validation: evaluated, seconds: 0.0 });
+    }
+    Ok(pool.scores)
+}

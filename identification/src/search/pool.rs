@@ -1,0 +1,143 @@
+//! Everything that was tried so far.
+
+use std::collections::BTreeSet;
+
+use excavator_model::recording::Recording;
+
+use super::input_floor::input_floor;
+use super::trial::key_of;
+use super::{Addition, AdditionError, Effort, Trial, scoring};
+use crate::decision::{Policy, Scores, Verdict, decide, log_error_ratio};
+
+/// An effect that was not worth a fit to the end.
+#[derive(Debug, Clone)]
+pub struct Unpromising {
+    /// `effect@place`.
+    pub name: String,
+    /// Name of the effect.
+    pub effect: &'static str,
+    /// Name of its place.
+    pub place: String,
+    /// Fall of the loss on the identification recordings that its first step promised, or its first steps brought.
+    pub promised_improvement: f64,
+}
+
+/// What a search does with a hypothesis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Move {
+    /// Fit it again with the nuisance effects that show beside it.
+    Settle,
+    /// Take out each of its effects in turn.
+    Prune,
+    /// Add every other effect to it.
+    Extend,
+    /// Put rivals in the place of its effects.
+    Exchange,
+    /// Put structural effects in the place of its effects.
+    Structural,
+}
+
+/// Trials, their scores (one each, in the same order), and what was done with them.
+pub struct Pool<'a> {
+    identification: &'a [&'a Recording],
+    validation: &'a [&'a Recording],
+    /// The given model first.
+    pub trials: Vec<Trial>,
+    /// One hypothesis for each trial.
+    pub scores: Scores,
+    /// Effects that were left behind in the screening of additions to the given model, the most promising first.
+    pub unpromising: Vec<Unpromising>,
+    /// Additions to the given model that could not be fitted, with the reason.
+    pub failed: Vec<(String, AdditionError)>,
+    done: BTreeSet<(Move, Vec<String>)>,
+}
+
+impl<'a> Pool<'a> {
+    /// With the given model, fitted.
+    pub(super) fn new(given: Trial, identification: &'a [&'a Recording], validation: &'a [&'a Recording]) -> Self {
+        let scores = scoring::begin(&given, identification, validation);
+        Pool {
+            identification,
+            validation,
+            trials: vec![given],
+            scores,
+            unpromising: Vec::new(),
+            failed: Vec::new(),
+            done: BTreeSet::new(),
+        }
+    }
+
+    /// Asks what the readings of the inputs leave open, where the given model leaves more than noise.
+    pub(super) fn look_at_inputs(&mut self, effort: &Effort, policy: &Policy) {
+        let (given, settings) = (&self.trials[0], &effort.fit);
+        if log_error_ratio(&self.scores.validation, &self.scores.given().validation) <= policy.noise_margin {
+            return;
+        }
+        let floor = input_floor(&given.validation, self.validation, settings).unwrap_or_default();
+        self.scores.identification.input_floor.clone_from(&floor);
+        self.scores.validation.input_floor = floor;
+    }
+
+    /// The given model.
+    pub fn given(&self) -> &Trial {
+        &self.trials[0]
+    }
+
+    /// Recordings that are fitted.
+    pub(super) fn identification(&self) -> &'a [&'a Recording] {
+        self.identification
+    }
+
+    /// Recordings that evidence is taken from.
+    pub(super) fn validation(&self) -> &'a [&'a Recording] {
+        self.validation
+    }
+
+    /// Adds a trial, or puts it in the place of one with the same additions where its fit is better.
+    pub(super) fn put(&mut self, trial: Trial) {
+        let key = trial.key();
+        match self.find(&key) {
+            Some(known) if self.trials[known].fit.loss() <= trial.fit.loss() => {}
+            Some(known) => self.replace(known, trial),
+            None => {
+                self.scores.hypotheses.push(self.score(&trial));
+                self.trials.push(trial);
+            }
+        }
+    }
+
+    /// Puts a trial in the place of another, whichever is better.
+    pub(super) fn replace(&mut self, known: usize, trial: Trial) {
+        self.scores.hypotheses[known] = self.score(&trial);
+        self.trials[known] = trial;
+    }
+
+    fn score(&self, trial: &Trial) -> crate::decision::Hypothesis {
+        scoring::score(trial, &self.given().fit.model, self.identification)
+    }
+
+    /// Number of the trial with these names, sorted.
+    pub(super) fn find(&self, key: &[String]) -> Option<usize> {
+        self.trials.iter().position(|trial| trial.key() == key)
+    }
+
+    /// Number of the trial with these additions, in whatever order.
+    pub(super) fn find_additions(&self, additions: &[Addition]) -> Option<usize> {
+        self.find(&key_of(additions, &self.given().fit.model))
+    }
+
+    /// Whether this was done with the trial; from now on it is.
+    pub(super) fn is_done(&mut self, what: Move, number: usize) -> bool {
+        !self.done.insert((what, self.trials[number].key()))
+    }
+
+    /// Whether this was done with the trial.
+    pub(super) fn was_done(&self, what: Move, number: usize) -> bool {
+        self.done.contains(&(what, self.trials[number].key()))
+    }
+
+    /// The verdict on what was tried so far.
+    pub(super) fn verdict(&self, policy: &Policy) -> Verdict {
+        decide(&self.scores, policy)
+    }
+}

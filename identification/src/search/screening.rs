@@ -1,0 +1,164 @@
+//! Successive halving of the additions to one hypothesis.
+//!
+//! A full fit of every effect at every place would take minutes. One simulation with sensitivities tells which effects promise
+//! nothing; three steps of a fit on the hardest stretches tell how much of the error the others can explain. The best are fitted to
+//! the end, on everything. Evidence is from full fits only.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use excavator_model::site_name;
+use rayon::prelude::*;
+
+use super::addition::{Addition, AdditionError, best_start};
+use super::pool::Unpromising;
+use super::starts::can_be_transient;
+use super::track::{Track, few_steps};
+use super::transient::evaluate_on_others;
+use super::{Effort, Trial};
+use crate::fit::{Fit, fit, fit_predicted};
+
+/// The screening of additions to `base`.
+pub(super) struct Screening<'a> {
+    /// What they are added to.
+    pub base: &'a Trial,
+    /// Recordings that are fitted.
+    pub identification: &'a [&'a excavator_model::recording::Recording],
+    /// Recordings that evidence is taken from.
+    pub validation: &'a [&'a excavator_model::recording::Recording],
+    /// Improvement that an attribution needs; a quarter of it is what a first step must promise.
+    pub least_improvement: f64,
+    /// How much is tried.
+    pub effort: &'a Effort,
+}
+
+/// What became of all additions.
+#[derive(Default)]
+pub(super) struct Screened {
+    /// Best first, after a few steps.
+    pub candidates: Vec<Screen>,
+    /// Those not worth a fit to the end.
+    pub unpromising: Vec<Unpromising>,
+    /// Those that could not be fitted, with the reason.
+    pub failed: Vec<(String, AdditionError)>,
+}
+
+/// A candidate after a few steps.
+pub(super) struct Screen {
+    addition: Addition,
+    name: String,
+    fit: Fit,
+    /// Fall of the loss on the stretches it was screened on.
+    pub improvement: f64,
+}
+
+impl Screen {
+    /// Whether more steps could improve it.
+    pub fn is_unfinished(&self) -> bool {
+        !self.fit.converged
+    }
+
+    /// The candidate as one that is not fitted to the end.
+    pub fn left_behind(self) -> Unpromising {
+        let place = site_name(&self.fit.model.machine, self.addition.site).to_string();
+        let (name, effect) = (self.name, self.addition.physics.card().name);
+        Unpromising { name, effect, place, promised_improvement: self.improvement }
+    }
+}
+
+enum Outcome {
+    Screened(Box<Screen>),
+    Unpromising(Unpromising),
+    Failed(AdditionError),
+}
+
+impl Screening<'_> {
+    /// A few steps of every addition, the best first. `advance` is told each name when it is done.
+    pub fn run(&self, mut wanted: Vec<Addition>, advance: &(dyn Fn(&str, f64) + Sync)) -> Screened {
+        let hard = Track::hard(self);
+        // A transient effect acts in a window of a whole recording.
+        let whole = Track::whole(self);
+        let machine = &self.base.fit.model.machine;
+        let needs_all = |one: &Addition| can_be_transient(one.physics, machine, one.site);
+        let (done, total) = (AtomicUsize::new(0), wanted.len().max(1) as f64);
+        // The longest first, or one core ends with it alone.
+        wanted.sort_by_key(|addition| !needs_all(addition));
+        let outcomes: Vec<(String, Outcome)> = wanted
+            .into_par_iter()
+            .map(|addition| {
+                let name = addition.name(&self.base.fit.model);
+                let track = hard.as_ref().filter(|_| !needs_all(&addition)).unwrap_or(&whole);
+                let outcome = self.screened(addition, track).unwrap_or_else(Outcome::Failed);
+                advance(&name, (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / total);
+                (name, outcome)
+            })
+            .collect();
+        let mut screened = Screened::default();
+        for (name, outcome) in outcomes {
+            match outcome {
+                Outcome::Screened(screen) => screened.candidates.push(*screen),
+                Outcome::Unpromising(effect) => screened.unpromising.push(effect),
+                Outcome::Failed(error) => screened.failed.push((name, error)),
+            }
+        }
+        screened.candidates.sort_by(|a, b| b.improvement.total_cmp(&a.improvement));
+        screened
+    }
+
+    /// Number of the first candidates that are fitted to the end in any case.
+    pub fn finalists(&self, candidates: &[Screen]) -> usize {
+        let best = candidates.first().map_or(0.0, |screen| screen.improvement);
+        let is_finalist = |(position, screen): (usize, &Screen)| {
+            screen.improvement >= self.least_improvement / 4.0
+                && (position < self.effort.finalists || best - screen.improvement < self.effort.finalist_margin)
+        };
+        candidates.iter().enumerate().filter(|&entry| is_finalist(entry)).count()
+    }
+
+    /// Candidates fitted to the end and evaluated on the validation recordings.
+    pub fn to_the_end(
+        &self,
+        candidates: Vec<Screen>,
+        advance: &(dyn Fn(&str, f64) + Sync),
+    ) -> Vec<(String, Result<Trial, AdditionError>)> {
+        let (done, total) = (AtomicUsize::new(0), candidates.len().max(1) as f64);
+        candidates
+            .into_par_iter()
+            .map(|screen| {
+                let name = screen.name.clone();
+                let trial = self.trial(screen);
+                advance(&name, (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / total);
+                (name, trial)
+            })
+            .collect()
+    }
+
+    /// A few steps from the start that promises most.
+    fn screened(&self, addition: Addition, track: &Track) -> Result<Outcome, AdditionError> {
+        let recordings: Vec<_> = track.recordings.iter().collect();
+        let base = &track.base.model;
+        let start = best_start(base, addition, &recordings, &self.effort.fit)?;
+        let promised_improvement = track.base.loss() - start.promise.loss_after;
+        let name = addition.name(base);
+        // Only from a start next to the base can the promise of one step be trusted.
+        let is_trusted = (start.promise.loss_before - track.start_loss).abs() < self.effort.trusted_distance;
+        if is_trusted && promised_improvement < self.least_improvement / 4.0 {
+            let place = site_name(&base.machine, addition.site).to_string();
+            let effect = addition.physics.card().name;
+            return Ok(Outcome::Unpromising(Unpromising { name, effect, place, promised_improvement }));
+        }
+        let fit = fit_predicted(&start.model, start.promise, &recordings, &few_steps(self.effort))?;
+        let improvement = track.base.loss() - fit.loss();
+        Ok(Outcome::Screened(Box::new(Screen { addition, name, fit, improvement })))
+    }
+
+    fn trial(&self, screen: Screen) -> Result<Trial, AdditionError> {
+        let begin = Instant::now();
+        let fit = fit(&screen.fit.model, self.identification, &self.effort.fit)?;
+        let known = &self.base.validation.model;
+        let validation = evaluate_on_others(&fit.model, known, self.validation, &self.effort.fit)?;
+        let mut additions = self.base.additions.clone();
+        additions.push(screen.addition);
+        Ok(Trial { additions, fit, validation, seconds: begin.elapsed().as_secs_f64() })
+    }
+}

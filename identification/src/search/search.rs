@@ -1,0 +1,106 @@
+//! From a model and its recordings to hypotheses with scores.
+//!
+//! A local search over sets of effects. It asks [`crate::decision::decide`] which hypothesis the scores so far favour, and tries its
+//! neighbours: one effect more, one effect less, one effect exchanged. It ends when all neighbours of the favoured one were tried, or when
+//! nothing is left that another effect could explain. The effect that lowers the error most need not be one that is missing: where
+//! two are, something in between may look better than either. That is why effects are taken out and exchanged, too.
+
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+
+use super::given::{better_given, fit_given, given_trial};
+use super::pool::{Move, Pool};
+use super::stepwise::Stepwise;
+use super::{Effort, progress::Milestones};
+use crate::decision::{Kind, Policy, Verdict, leaves_nothing};
+use crate::fit::FitError;
+
+/// Tries what `model` may be missing. Parameters are fitted to `identification`, scores are also of `validation`. `progress` is told
+/// what is being done, with the fraction done.
+///
+/// # Errors
+/// [`FitError`] when the given model cannot be fitted or evaluated.
+pub fn search<'a>(
+    model: &Model,
+    identification: &'a [&'a Recording],
+    validation: &'a [&'a Recording],
+    effort: &Effort,
+    policy: &Policy,
+    progress: &(dyn Fn(&str, f64) + Sync),
+) -> Result<Pool<'a>, FitError> {
+    let milestones = Milestones::new(progress);
+    milestones.tell("fit of the given model", 0.0);
+    let mut fit = fit_given(model, identification, &effort.fit)?;
+    milestones.pass();
+    for restart in 0.. {
+        let given = given_trial(fit, validation, &effort.fit)?;
+        let mut pool = Pool::new(given, identification, validation);
+        pool.look_at_inputs(effort, policy);
+        let steps = Stepwise { effort, policy, milestones: &milestones };
+        if leaves_nothing(&pool.scores, 0, policy) {
+            return Ok(pool);
+        }
+        steps.take(Move::Extend, 0, &mut pool);
+        match better_given(&pool, effort) {
+            Some(better) if restart < effort.most_restarts => fit = better,
+            _ => {
+                while let Some((next, number)) = next_move(&mut pool, effort, policy) {
+                    steps.take(next, number, &mut pool);
+                    milestones.pass();
+                }
+                steps.complete_path(&mut pool);
+                return Ok(pool);
+            }
+        }
+    }
+    unreachable!("the loop ends by returning")
+}
+
+/// What to try next, and of which hypothesis; none when all was tried that could change the verdict.
+fn next_move(pool: &mut Pool<'_>, effort: &Effort, policy: &Policy) -> Option<(Move, usize)> {
+    let verdict = pool.verdict(policy);
+    let wanted = moves_of(&verdict, pool, effort, policy);
+    wanted.into_iter().find(|&(what, number)| !pool.is_done(what, number))
+}
+
+fn moves_of(verdict: &Verdict, pool: &Pool<'_>, effort: &Effort, policy: &Policy) -> Vec<(Move, usize)> {
+    let (best, mut moves) = (verdict.best, Vec::new());
+    let effects = pool.trials[best].additions.len();
+    if best != 0 {
+        moves.push((Move::Settle, best));
+        if effects > 1 {
+            moves.push((Move::Prune, best));
+        }
+        if effects < effort.most_effects && !leaves_nothing(&pool.scores, best, policy) {
+            moves.push((Move::Extend, best));
+        }
+    }
+    if verdict.kind == Kind::Unexplained {
+        moves.extend(second_beginnings(verdict, pool, effort));
+        moves.push((Move::Structural, 0));
+    }
+    if best != 0 && verdict.kind == Kind::MissingEffect {
+        moves.push((Move::Exchange, best));
+        moves.push((Move::Structural, best));
+    }
+    moves
+}
+
+/// Single effects that did nearly as well as the best one and are not part of the best hypothesis.
+fn second_beginnings(verdict: &Verdict, pool: &Pool<'_>, effort: &Effort) -> Vec<(Move, usize)> {
+    let best = &pool.trials[verdict.best];
+    let mut singles: Vec<usize> = (1..pool.trials.len())
+        .filter(|&number| pool.trials[number].additions.len() == 1 && verdict.standings[number].is_admissible)
+        .collect();
+    singles.sort_by(|&a, &b| verdict.standings[b].improvement.total_cmp(&verdict.standings[a].improvement));
+    let Some(&first) = singles.first() else { return Vec::new() };
+    let least = effort.rival_share * verdict.standings[first].improvement;
+    let other = |number: &usize| {
+        verdict.standings[*number].improvement >= least
+            && !pool.trials[*number].additions.iter().all(|one| best.adds(one))
+    };
+    let begun = singles.iter().filter(|&&number| other(&number) && pool.was_done(Move::Extend, number)).count();
+    let left = effort.most_second_beginnings.saturating_sub(begun);
+    let open = singles.into_iter().filter(other).filter(|&number| !pool.was_done(Move::Extend, number));
+    open.take(left).map(|number| (Move::Extend, number)).collect()
+}

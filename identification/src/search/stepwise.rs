@@ -1,0 +1,268 @@
+//! The moves of the search: extend, prune, exchange, structural alternatives.
+
+use std::time::Instant;
+
+use super::addition::{AdditionError, additions, best_start, structural_additions, with_nuisances};
+use super::pool::{Move, Pool};
+use super::progress::Milestones;
+use super::screening::{Screen, Screened, Screening};
+use super::transient::evaluate_in_windows_of;
+use super::{Addition, Effort, Trial};
+use crate::decision::{Policy, log_error_ratio};
+use crate::fit::{fit, fit_predicted};
+use crate::fitted_along::found_along;
+
+/// How moves are made.
+pub(super) struct Stepwise<'a> {
+    /// How much is tried.
+    pub effort: &'a Effort,
+    /// Only to ask which hypothesis is favoured.
+    pub policy: &'a Policy,
+    /// Told what is being done.
+    pub milestones: &'a Milestones<'a>,
+}
+
+impl Stepwise<'_> {
+    /// Makes a move of trial `number`; what it leads to joins the pool.
+    pub fn take(&self, what: Move, number: usize, pool: &mut Pool<'_>) {
+        pool.is_done(what, number);
+        match what {
+            Move::Settle => self.settle(number, pool),
+            Move::Prune => self.prune(number, pool),
+            Move::Extend => self.extend(number, pool),
+            Move::Exchange => self.exchange(number, pool),
+            Move::Structural => self.structural(number, pool),
+        }
+    }
+
+    fn settle(&self, number: usize, pool: &mut Pool<'_>) {
+        let trial = &pool.trials[number];
+        if let Some(settled) = self.with_nuisances(trial, pool) {
+            pool.replace(number, settled);
+        }
+    }
+
+    /// The trial with the nuisance effects that show beside its additions; none where no more show. Without the additions they were hidden
+    /// under what was missing.
+    fn with_nuisances(&self, trial: &Trial, pool: &Pool<'_>) -> Option<Trial> {
+        let begin = Instant::now();
+        let settings = &self.effort.fit;
+        let fit = with_nuisances(trial.fit.clone(), pool.identification(), settings);
+        if fit.model.effects.len() == trial.fit.model.effects.len() {
+            return None;
+        }
+        let validation =
+            evaluate_in_windows_of(&fit.model, &trial.validation.model, pool.validation(), settings).ok()?;
+        let seconds = trial.seconds + begin.elapsed().as_secs_f64();
+        Some(Trial { additions: trial.additions.clone(), fit, validation, seconds })
+    }
+
+    fn prune(&self, number: usize, pool: &mut Pool<'_>) {
+        for addition in pool.trials[number].additions.clone() {
+            self.without(number, &addition, pool);
+        }
+    }
+
+    /// Number of the trial that has all additions of another but one, fitted if need be.
+    fn without(&self, number: usize, addition: &Addition, pool: &mut Pool<'_>) -> Option<usize> {
+        let begin = Instant::now();
+        let trial = &pool.trials[number];
+        let rest: Vec<Addition> = trial.additions.iter().copied().filter(|other| other != addition).collect();
+        if let Some(known) = pool.find_additions(&rest) {
+            return Some(known);
+        }
+        let settings = &self.effort.fit;
+        let fit = fit(&trial.model_without(addition), pool.identification(), settings).ok()?;
+        let validation =
+            evaluate_in_windows_of(&fit.model, &trial.validation.model, pool.validation(), settings).ok()?;
+        let seconds = begin.elapsed().as_secs_f64();
+        pool.put(Trial { additions: rest.clone(), fit, validation, seconds });
+        pool.find_additions(&rest)
+    }
+
+    fn extend(&self, number: usize, pool: &mut Pool<'_>) {
+        let wanted = additions(&pool.trials[number].fit.model);
+        self.screen(number, wanted, pool);
+    }
+
+    /// Screens additions to a trial and fits the best to the end.
+    fn screen(&self, number: usize, wanted: Vec<Addition>, pool: &mut Pool<'_>) {
+        let base = pool.trials[number].clone();
+        let screening = Screening {
+            base: &base,
+            identification: pool.identification(),
+            validation: pool.validation(),
+            least_improvement: self.policy.least_improvement,
+            effort: self.effort,
+        };
+        let advance =
+            |from: f64, to: f64| move |name: &str, done: f64| self.milestones.tell(name, from + (to - from) * done);
+        let Screened { mut candidates, unpromising, failed } = screening.run(wanted, &advance(0.0, 0.6));
+        let best = candidates.first().map_or(0.0, |screen| screen.improvement);
+        let others = candidates.split_off(screening.finalists(&candidates));
+        let mut fitted = screening.to_the_end(candidates, &advance(0.6, 0.8));
+        let mut failed: Vec<(String, AdditionError)> = failed;
+        self.put_all(&mut fitted, &mut failed, pool);
+        // An effect with a threshold may need a dozen steps until it explains what it can: before another is attributed in its place, or
+        // nothing is said to explain the error, those that were not finished are.
+        let (mut unfinished, finished): (Vec<Screen>, Vec<Screen>) =
+            others.into_iter().partition(Screen::is_unfinished);
+        let left = unfinished.split_off(self.further_finalists(number, &unfinished, best, pool));
+        let mut fitted = screening.to_the_end(unfinished, &advance(0.8, 1.0));
+        self.put_all(&mut fitted, &mut failed, pool);
+        if number == 0 {
+            pool.unpromising = unpromising;
+            pool.unpromising.extend(left.into_iter().chain(finished).map(Screen::left_behind));
+            pool.unpromising.sort_by(|a, b| b.promised_improvement.total_cmp(&a.promised_improvement));
+            pool.failed = failed;
+        }
+    }
+
+    fn put_all(
+        &self,
+        fitted: &mut Vec<(String, Result<Trial, AdditionError>)>,
+        failed: &mut Vec<(String, AdditionError)>,
+        pool: &mut Pool<'_>,
+    ) {
+        for (name, trial) in fitted.drain(..) {
+            match trial {
+                Ok(trial) => pool.put(trial),
+                Err(error) => failed.push((name, error)),
+            }
+        }
+    }
+
+    /// How many more candidates deserve a full fit: of the `unfinished`, best first, in a screening whose best improved by `best`.
+    fn further_finalists(&self, number: usize, unfinished: &[Screen], best: f64, pool: &Pool<'_>) -> usize {
+        let (effort, verdict) = (self.effort, pool.verdict(self.policy));
+        let misfit = |number: usize| {
+            let hypothesis = &pool.scores.hypotheses[number];
+            log_error_ratio(&pool.scores.validation, &hypothesis.validation)
+        };
+        let before = misfit(number);
+        let is_extension = pool.scores.hypotheses[verdict.best].extends(&pool.scores.hypotheses[number]);
+        let after = if is_extension { misfit(verdict.best) } else { before };
+        let share = if before > 0.0 { 1.0 - after / before } else { 0.0 };
+        let some = effort.further_finalists.min(unfinished.len());
+        if before <= self.policy.noise_margin {
+            0
+        } else if share < effort.little_share {
+            unfinished.len()
+        } else if share < effort.most_share {
+            some
+        } else if after > self.policy.least_improvement {
+            unfinished[..some].iter().filter(|screen| screen.improvement > effort.little_share * best).count()
+        } else {
+            0
+        }
+    }
+
+    /// Puts rivals in the place of each effect: single effects that improved nearly as much as the one that is there. They were compared
+    /// with it while the other effects, or the nuisance effects that were found with it, still spoiled the picture.
+    fn exchange(&self, number: usize, pool: &mut Pool<'_>) {
+        let verdict = pool.verdict(self.policy);
+        let trial = pool.trials[number].clone();
+        let is_alone = trial.additions.len() == 1;
+        if is_alone && found_along(&pool.given().fit.model, &trial.fit.model).next().is_none() {
+            return;
+        }
+        let improvement = |addition: &Addition, pool: &Pool<'_>| {
+            pool.find_additions(&[*addition]).map_or(0.0, |single| verdict.standings[single].improvement)
+        };
+        for addition in &trial.additions {
+            let least = self.effort.rival_share * improvement(addition, pool);
+            let singles = pool.trials.iter().filter(|one| one.additions.len() == 1).map(|one| one.additions[0]);
+            let mut rivals: Vec<Addition> = singles.filter(|rival| !trial.adds(rival)).collect();
+            rivals.retain(|rival| rival.physics.card().family.is_candidate());
+            rivals.retain(|rival| improvement(rival, pool) >= least.max(self.policy.least_improvement));
+            rivals.sort_by(|a, b| improvement(b, pool).total_cmp(&improvement(a, pool)));
+            rivals.truncate(self.effort.most_rivals);
+            if rivals.is_empty() {
+                continue;
+            }
+            let base =
+                if is_alone { self.bare(&trial, addition, pool) } else { self.trial_without(number, addition, pool) };
+            let Some(base) = base else { continue };
+            for rival in rivals {
+                self.milestones.tell(&rival.name(&base.fit.model), 0.5);
+                if let Ok(exchanged) = self.added(&base, rival, f64::INFINITY, pool) {
+                    pool.put(exchanged);
+                }
+            }
+        }
+    }
+
+    /// The only addition of `trial` taken out, its nuisance effects kept: not one of the pool, where the given model has those that show
+    /// without it.
+    fn bare(&self, trial: &Trial, addition: &Addition, pool: &Pool<'_>) -> Option<Trial> {
+        let settings = &self.effort.fit;
+        let fit = fit(&trial.model_without(addition), pool.identification(), settings).ok()?;
+        let validation =
+            evaluate_in_windows_of(&fit.model, &trial.validation.model, pool.validation(), settings).ok()?;
+        Some(Trial { additions: Vec::new(), fit, validation, seconds: 0.0 })
+    }
+
+    fn trial_without(&self, number: usize, addition: &Addition, pool: &mut Pool<'_>) -> Option<Trial> {
+        self.without(number, addition, pool).map(|without| pool.trials[without].clone())
+    }
+
+    /// A trial with one more addition, fitted to the end; an error where its first step promises a loss above `worst`.
+    fn added(&self, base: &Trial, addition: Addition, worst: f64, pool: &Pool<'_>) -> Result<Trial, AdditionError> {
+        let begin = Instant::now();
+        let settings = &self.effort.fit;
+        let start = best_start(&base.fit.model, addition, pool.identification(), settings)?;
+        if start.promise.loss_after > worst {
+            return Err(crate::fit::FitError::Stopped.into());
+        }
+        let fit = fit_predicted(&start.model, start.promise, pool.identification(), settings)?;
+        let validation =
+            super::transient::evaluate_on_others(&fit.model, &base.validation.model, pool.validation(), settings)?;
+        let mut additions = base.additions.clone();
+        additions.push(addition);
+        Ok(Trial { additions, fit, validation, seconds: begin.elapsed().as_secs_f64() })
+    }
+
+    /// Puts structural effects in the place of each effect, at its site; of the given model, at every site.
+    fn structural(&self, number: usize, pool: &mut Pool<'_>) {
+        let trial = pool.trials[number].clone();
+        if trial.additions.is_empty() {
+            let worst = trial.fit.loss();
+            self.structural_beside(&trial, None, worst, pool);
+        }
+        for addition in &trial.additions {
+            let base = match trial.additions.len() {
+                1 => self.bare(&trial, addition, pool),
+                _ => self.trial_without(number, addition, pool),
+            };
+            let Some(base) = base else { continue };
+            let explained = base.fit.loss() - trial.fit.loss();
+            let worst = trial.fit.loss() + self.effort.structural_distance.max(0.5 * explained);
+            self.structural_beside(&base, Some(addition), worst, pool);
+        }
+    }
+
+    fn structural_beside(&self, base: &Trial, in_place_of: Option<&Addition>, worst: f64, pool: &mut Pool<'_>) {
+        for addition in structural_additions(&base.fit.model) {
+            if in_place_of.is_some_and(|replaced| replaced.site != addition.site) {
+                continue;
+            }
+            self.milestones.tell("how the machine is built", 0.5);
+            if let Ok(trial) = self.added(base, addition, worst, pool) {
+                pool.put(trial);
+            }
+        }
+    }
+
+    /// Fits what is missing on the way from the given model to the favoured hypothesis, one effect after the other.
+    pub fn complete_path(&self, pool: &mut Pool<'_>) {
+        let mut number = pool.verdict(self.policy).best;
+        while pool.trials[number].additions.len() > 1 {
+            let additions = pool.trials[number].additions.clone();
+            let without: Vec<usize> = additions.iter().filter_map(|one| self.without(number, one, pool)).collect();
+            let loss =
+                |number: &usize| log_error_ratio(&pool.scores.validation, &pool.scores.hypotheses[*number].validation);
+            let Some(next) = without.into_iter().min_by(|a, b| loss(a).total_cmp(&loss(b))) else { return };
+            number = next;
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! A hypothesis with its fits.
+
+use excavator_model::{Model, ModelEffect};
+
+use super::Addition;
+use super::transient::is_transient;
+use crate::fit::Fit;
+
+/// A model that was tried: the given one with some additions, fitted to the identification recordings and evaluated on the
+/// validation recordings.
+#[derive(Debug, Clone)]
+pub struct Trial {
+    /// What the given model has not, in the order in which it was selected.
+    pub additions: Vec<Addition>,
+    /// Fitted to the identification recordings.
+    pub fit: Fit,
+    /// The same model on the validation recordings; transient effects have their own windows there.
+    pub validation: Fit,
+    /// Wall-clock time of the fit, s.
+    pub seconds: f64,
+}
+
+impl Trial {
+    /// Names of the additions, sorted: the same for every order of selection.
+    pub fn key(&self) -> Vec<String> {
+        key_of(&self.additions, &self.fit.model)
+    }
+
+    /// Whether `addition` is one of its own.
+    pub fn adds(&self, addition: &Addition) -> bool {
+        self.additions.contains(addition)
+    }
+
+    /// The effect of the fitted model that `addition` is.
+    pub fn effect(&self, addition: &Addition) -> Option<&ModelEffect> {
+        self.fit.model.effect(addition.physics.card().name, addition.site)
+    }
+
+    /// The fitted model without one of its additions, nothing fitted again.
+    pub fn model_without(&self, addition: &Addition) -> Model {
+        let mut model = self.fit.model.clone();
+        model.effects.retain(|effect| !effect.is(addition.physics.card().name, addition.site));
+        model
+    }
+
+    /// The fitted model, its transient effects in the windows of the validation recordings.
+    pub fn model_on_validation(&self) -> Model {
+        let mut model = self.fit.model.clone();
+        if model.effects.iter().any(is_transient) {
+            model.set_parameter_values(&self.validation.model.parameter_values());
+        }
+        model
+    }
+}
+
+/// Names of some additions to `model`, sorted.
+pub(super) fn key_of(additions: &[Addition], model: &Model) -> Vec<String> {
+    let mut names: Vec<String> = additions.iter().map(|addition| addition.name(model)).collect();
+    names.sort();
+    names
+}
