@@ -17,7 +17,7 @@ impl Progress {
     pub fn new() -> Self {
         let bar = if std::io::stderr().is_terminal() { ProgressBar::new(1000) } else { ProgressBar::hidden() };
         // The template is constant; should it ever be wrong, the default style still shows progress.
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:30} {percent:>3} %  {msg}") {
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:30} {percent:>3} %  about {eta} left  {msg}") {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(200));
