@@ -10,7 +10,6 @@ pub mod design;
 pub mod diagnosis;
 pub mod energy;
 pub mod fit;
-pub mod fitted_along;
 pub mod gate;
 pub mod plausibility;
 pub mod refinement;

@@ -63,7 +63,7 @@ pub struct Block {
 pub struct Hypothesis {
     /// Effects that the given model has not, in the order in which they were selected.
     pub effects: Vec<EffectScore>,
-    /// Nuisance effects that were estimated along, `effect@place`.
+    /// Nuisance effects that differ from nothing, `effect@place`.
     pub nuisances: Vec<String>,
     /// On the recordings it was fitted to.
     pub identification: Misfit,

@@ -63,6 +63,7 @@ impl LinearRefit {
         let Free { fitted, scales } = Free::of(model);
         let values = model.parameter_values();
         let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card).collect();
+        let bounds: Vec<[f64; 2]> = cards.iter().map(|card| [card.minimum, card.maximum]).collect();
         let mut counts = vec![0; noise.len()];
         for sums in &raw {
             for (total, count) in counts.iter_mut().zip(sums.counts()) {
@@ -73,10 +74,10 @@ impl LinearRefit {
         let mut squares = vec![0.0; noise.len()];
         for _ in 0..ROUNDS {
             let sums: Vec<_> = raw.iter().map(|segment| segment.weighed(&factors)).collect();
-            let held = held_at_bounds(&sums, &values, &fitted, &cards);
+            let held = held_at_bounds(&sums, &values, &fitted, &bounds);
             let taken = parameter_step(&sums, &held, DAMPING).map_or_else(
                 || DVector::zeros(fitted.len()),
-                |step| bounded_step(&values, &step, &fitted, &scales, &cards).1,
+                |step| bounded_step(&values, &step, &fitted, &scales, &cards, &bounds).1,
             );
             squares = vec![0.0; noise.len()];
             for (raw, sums) in raw.iter().zip(&sums) {

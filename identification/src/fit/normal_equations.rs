@@ -252,6 +252,29 @@ impl RawSums {
 }
 
 impl SegmentSums {
+    /// Sums that come from no reading: of what is known beforehand.
+    pub fn without_readings(
+        information: DMatrix<f64>,
+        gradient: DVector<f64>,
+        block_gradients: Vec<DVector<f64>>,
+        prior_loss: f64,
+        instruments: usize,
+    ) -> Self {
+        let fitted = gradient.len();
+        SegmentSums {
+            information,
+            gradient,
+            squared_errors: vec![0.0; instruments],
+            counts: vec![0; instruments],
+            block_gradients,
+            block_errors: Vec::new(),
+            prior_loss,
+            state_information: DMatrix::zeros(0, 0),
+            cross_information: DMatrix::zeros(0, fitted),
+            state_gradient: DVector::zeros(0),
+        }
+    }
+
     fn eliminate(
         fitted: usize,
         information: &DMatrix<f64>,

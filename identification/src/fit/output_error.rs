@@ -131,6 +131,7 @@ pub fn evaluate(model: &Model, recordings: &[&Recording], settings: &FitSettings
 
 struct State {
     values: Vec<f64>,
+    /// Of each segment, then of the priors.
     sums: Vec<SegmentSums>,
     loss: f64,
 }
@@ -147,12 +148,12 @@ pub(super) fn run(
 ) -> Result<Fit, FitError> {
     let system = System::new(model);
     let problem = Problem::new(model, &system, recordings, settings, fitted)?;
-    let Problem { fitted, scales, cards, noise, .. } = &problem;
+    let Problem { fitted, scales, cards, bounds, noise, .. } = &problem;
     let mut segments = problem.segments.clone();
     let values = model.parameter_values();
     let raw = first.map_or_else(|| problem.sums_at(&values, &segments), Ok)?;
     let mut weights = error_sizes(&raw, noise);
-    let sums = problem.weighed(&raw, &weights);
+    let sums = problem.weighed_with_priors(&raw, &weights, &values);
     let loss = loss_of(&sums, &weights);
     let mut current = State { values, sums, loss };
     let mut damping = 1e-3;
@@ -163,9 +164,9 @@ pub(super) fn run(
             return Err(FitError::Stopped);
         }
         steps += 1;
-        let held = held_at_bounds(&current.sums, &current.values, fitted, cards);
+        let held = held_at_bounds(&current.sums, &current.values, fitted, bounds);
         let Some(step) = parameter_step(&current.sums, &held, damping) else { break };
-        let (trial_values, taken) = bounded_step(&current.values, &step, fitted, scales, cards);
+        let (trial_values, taken) = bounded_step(&current.values, &step, fitted, scales, cards, bounds);
         let mut trial = segments.clone();
         for (segment, sums) in trial.iter_mut().zip(&current.sums) {
             let change = sums.state_step(&taken, damping);
@@ -187,7 +188,7 @@ pub(super) fn run(
         let reweighting = new_weights.iter().zip(&weights).map(|(new, old)| (new / old).ln().abs()).fold(0.0, f64::max);
         let remaining = loss_per_reading(&new_weights, noise);
         weights = new_weights;
-        let sums = problem.weighed(&raw, &weights);
+        let sums = problem.weighed_with_priors(&raw, &weights, &trial_values);
         let loss = loss_of(&sums, &weights);
         current = State { values: trial_values, sums, loss };
         damping = (damping / 10.0).max(1e-9);
@@ -222,19 +223,14 @@ pub(super) fn error_sizes(sums: &[RawSums], noise: &[f64]) -> Vec<f64> {
 }
 
 /// Which fitted parameters sit at a bound that the loss would push them through; they take no part in the step.
-pub(super) fn held_at_bounds(
-    sums: &[SegmentSums],
-    values: &[f64],
-    fitted: &[usize],
-    cards: &[&'static ParameterCard],
-) -> Vec<bool> {
+pub(super) fn held_at_bounds(sums: &[SegmentSums], values: &[f64], fitted: &[usize], bounds: &[[f64; 2]]) -> Vec<bool> {
     fitted
         .iter()
         .enumerate()
         .map(|(number, &index)| {
             let downhill: f64 = sums.iter().map(|segment| segment.gradient[number]).sum();
-            (values[index] <= cards[index].minimum && downhill < 0.0)
-                || (values[index] >= cards[index].maximum && downhill > 0.0)
+            let [lowest, highest] = bounds[index];
+            (values[index] <= lowest && downhill < 0.0) || (values[index] >= highest && downhill > 0.0)
         })
         .collect()
 }
@@ -275,6 +271,7 @@ pub(super) fn bounded_step(
     fitted: &[usize],
     scales: &[f64],
     cards: &[&'static ParameterCard],
+    bounds: &[[f64; 2]],
 ) -> (Vec<f64>, DVector<f64>) {
     let mut stepped = values.to_vec();
     let mut taken = DVector::zeros(fitted.len());
@@ -282,7 +279,8 @@ pub(super) fn bounded_step(
         let card = cards[index];
         let most = if card.start.is_a_time() { LONGEST_SHIFT } else { f64::INFINITY };
         let wanted = values[index] + (step[number] * scales[number]).clamp(-most, most);
-        stepped[index] = wanted.clamp(card.minimum, card.maximum);
+        let [lowest, highest] = bounds[index];
+        stepped[index] = wanted.clamp(lowest, highest);
         taken[number] = (stepped[index] - values[index]) / scales[number];
     }
     (stepped, taken)

@@ -8,6 +8,7 @@ use excavator_model::simulation::Tolerances;
 use rayon::prelude::*;
 
 use super::normal_equations::{BLOCK_DURATION, InitialStatePrior, RawSums, SegmentSums, Shared};
+use super::priors::ParameterPriors;
 use super::{FitError, FitSettings, Instrument, Segment, SegmentedRecording, instruments, scales};
 
 /// A model, recordings, and which parameters are free.
@@ -30,6 +31,10 @@ pub(super) struct Problem<'s, 'm> {
     pub scales: Vec<f64>,
     /// Card of every parameter of the model.
     pub cards: Vec<&'static ParameterCard>,
+    /// Least and largest value of every parameter of the model, in its unit.
+    pub bounds: Vec<[f64; 2]>,
+    /// What is known of nuisance parameters beforehand.
+    pub priors: ParameterPriors,
 }
 
 impl<'s, 'm> Problem<'s, 'm> {
@@ -43,6 +48,8 @@ impl<'s, 'm> Problem<'s, 'm> {
         fitted: Vec<usize>,
     ) -> Result<Self, FitError> {
         let instruments = instruments(system, recordings);
+        let bounds = ParameterPriors::bounds(model, recordings);
+        let priors = ParameterPriors::of(model, &fitted, recordings, instruments.len());
         if instruments.is_empty() {
             return Err(FitError::NothingMeasured { machine: model.machine.name.clone() });
         }
@@ -61,7 +68,20 @@ impl<'s, 'm> Problem<'s, 'm> {
         let scales = scales(model, &fitted);
         let noise = instruments.iter().map(|instrument| instrument.noise).collect();
         let prior = InitialStatePrior::of(system);
-        Ok(Problem { system, prior, recordings, owners, segments, instruments, noise, fitted, scales, cards })
+        Ok(Problem {
+            system,
+            prior,
+            recordings,
+            owners,
+            segments,
+            instruments,
+            noise,
+            fitted,
+            scales,
+            cards,
+            bounds,
+            priors,
+        })
     }
 
     /// Normal equations of every segment with these parameter values, each started from its state in `segments`.
@@ -114,6 +134,13 @@ impl<'s, 'm> Problem<'s, 'm> {
             (0..sums.block_errors.len()).map(move |block| (recording, begin + block as f64 * BLOCK_DURATION))
         });
         blocks.collect()
+    }
+
+    /// [`Problem::weighed`] sums of all segments, then those of the priors at these parameter values.
+    pub fn weighed_with_priors(&self, raw: &[RawSums], weights: &[f64], values: &[f64]) -> Vec<SegmentSums> {
+        let mut sums = self.weighed(raw, weights);
+        sums.push(self.priors.sums(values, &self.scales));
+        sums
     }
 
     /// Sums with each instrument's errors divided by its weight, initial states eliminated.

@@ -41,7 +41,7 @@ pub(super) fn loss_of<'s>(sums: impl IntoIterator<Item = &'s SegmentSums>, weigh
 
 impl Problem<'_, '_> {
     /// Simulates all segments at `values` from their states in `trial`; where a few are worse than before the step, theirs
-    /// are found anew. `before` holds the segments and their sums before the step. None where the loss grows.
+    /// are found anew. `before` holds the segments and their sums, those of the priors last, before the step. None where the loss grows.
     pub fn tried(
         &self,
         values: &[f64],
@@ -50,14 +50,17 @@ impl Problem<'_, '_> {
         weights: &[f64],
     ) -> Option<Reached> {
         let (segments_before, sums_before) = before;
+        let (sums_before, priors_before) = sums_before.split_at(segments_before.len());
         let losses_before: Vec<f64> = sums_before.iter().map(|sums| loss_of([sums], weights)).collect();
+        let prior_loss = self.priors.loss(values);
+        let prior_growth = prior_loss - loss_of(priors_before, weights);
         let own_loss = |raw: &RawSums| loss_of(&self.weighed(std::slice::from_ref(raw), weights), weights);
         let simulated = self.each_at(values, &trial);
         let mut raw: Vec<Option<RawSums>> = simulated.into_iter().map(Result::ok).collect();
         let loss_or_infinite =
             |raw: &Option<RawSums>| raw.as_ref().map(own_loss).filter(|loss| loss.is_finite()).unwrap_or(f64::INFINITY);
         let mut losses: Vec<f64> = raw.iter().map(loss_or_infinite).collect();
-        let mended: Vec<(usize, Option<(Segment, RawSums)>)> = astray(&losses, &losses_before)?
+        let mended: Vec<(usize, Option<(Segment, RawSums)>)> = astray(&losses, &losses_before, prior_growth)?
             .into_par_iter()
             .map(|number| (number, self.segment_refit(values, number, &segments_before[number], weights)))
             .collect();
@@ -69,10 +72,10 @@ impl Problem<'_, '_> {
             }
         }
         let loss: f64 = losses.iter().sum();
-        if loss > losses_before.iter().sum() {
+        if loss + prior_growth > losses_before.iter().sum() {
             return None;
         }
-        Some(Reached { segments: trial, raw: raw.into_iter().collect::<Option<_>>()?, loss })
+        Some(Reached { segments: trial, raw: raw.into_iter().collect::<Option<_>>()?, loss: loss + prior_loss })
     }
 
     /// The initial state of one segment that fits best at these parameter values, sought from `start`, and the sums there.
@@ -116,13 +119,14 @@ impl Problem<'_, '_> {
 }
 
 /// The segments whose losses have grown most: so many that without their growth the sum would not have grown. None where
-/// those are too many; empty where the sum has not grown.
-fn astray(losses: &[f64], before: &[f64]) -> Option<Vec<usize>> {
+/// those are too many; empty where the sum has not grown. `further` is by how much the loss grows elsewhere.
+fn astray(losses: &[f64], before: &[f64], further: f64) -> Option<Vec<usize>> {
     let growth = |&number: &usize| losses[number] - before[number];
     let mut worst: Vec<usize> = (0..losses.len()).collect();
     worst.sort_by(|a, b| growth(b).total_cmp(&growth(a)));
     let most = (MOST_ASTRAY * losses.len() as f64).floor().max(1.0) as usize;
-    let count = (0..=most.min(worst.len())).find(|&count| worst[count..].iter().map(growth).sum::<f64>() <= 0.0)?;
+    let count =
+        (0..=most.min(worst.len())).find(|&count| worst[count..].iter().map(growth).sum::<f64>() + further <= 0.0)?;
     worst.truncate(count);
     Some(worst)
 }
@@ -144,14 +148,14 @@ mod tests {
         let with = |changes: &[(usize, f64)]| {
             let mut losses = before;
             changes.iter().for_each(|&(number, loss)| losses[number] = loss);
-            astray(&losses, &before)
+            astray(&losses, &before, 0.0)
         };
         assert_eq!(with(&[(0, 0.5), (1, 1.4)]), Some(vec![]), "the sum falls");
         assert_eq!(with(&[(0, 0.5), (1, 1.4), (2, 9.0)]), Some(vec![2]));
         assert_eq!(with(&[(0, 0.5), (1, f64::INFINITY), (2, 9.0)]), Some(vec![1, 2]));
         assert_eq!(with(&[(0, 5.0), (1, f64::INFINITY), (2, 9.0)]), None, "three of eight");
         assert_eq!(with(&[(0, 1.5)]), Some(vec![0]));
-        assert_eq!(astray(&[2.0], &[1.0]), Some(vec![0]), "of a single segment too");
+        assert_eq!(astray(&[2.0], &[1.0], 0.0), Some(vec![0]), "of a single segment too");
     }
 
     #[test]

@@ -6,9 +6,8 @@ use excavator_model::{HistoryEntry, Model, ModelError, addition_name, site_name}
 
 use crate::decision::Kind;
 use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisSettings, NamedVerdict, diagnose, judge_named};
-use crate::fit::{Fit, FitError};
-use crate::fitted_along::found_along;
-use crate::search::{Addition, AdditionError, fit_addition, fit_given, with_nuisances};
+use crate::fit::{Fit, FitError, Simplified, nuisances_shown};
+use crate::search::{Addition, AdditionError, fit_addition, fit_given};
 use crate::validation::{Comparison, compare};
 
 /// What is to be added.
@@ -130,6 +129,7 @@ pub fn refine(
     };
     let mut steps: Vec<Step> = Vec::new();
     for (added, fit) in fits {
+        let fit = Simplified::fit(model, &fit);
         let comparisons =
             validation.iter().map(|recording| compare(&fit.model, recording)).collect::<Result<Vec<_>, _>>()?;
         steps.push(Step { added, fit, comparisons });
@@ -195,7 +195,6 @@ fn as_named(
         let name = addition.name(model);
         progress(&name, (number + 1) as f64 / (named.len() + 1) as f64);
         current = fit_addition(&current.model, addition, identification, fitting)?;
-        current = with_nuisances(current, identification, fitting);
         added.push((addition, current.clone()));
         fits.push((Some(name), current.clone()));
     }
@@ -203,11 +202,11 @@ fn as_named(
     Ok((fits, Reason::Named(verdict)))
 }
 
-/// Words for a model's history: the step, and what was fitted along since the model `before`.
+/// Words for a model's history: the step, and the nuisances that show since the model `before`.
 fn what_was_done(before: &Model, step: &Step) -> String {
-    let along: Vec<String> = found_along(before, &step.fit.model)
+    let nuisances: Vec<String> = nuisances_shown(before, &step.fit.model)
         .map(|effect| addition_name(effect.physics, site_name(&before.machine, effect.site)))
         .collect();
     let done = step.added.as_ref().map_or_else(|| "parameters identified".to_string(), |name| format!("added {name}"));
-    if along.is_empty() { done } else { format!("{done}; fitted along: {}", along.join(", ")) }
+    if nuisances.is_empty() { done } else { format!("{done}; nuisances: {}", nuisances.join(", ")) }
 }

@@ -3,6 +3,8 @@
 use excavator_model::Model;
 use nalgebra::DMatrix;
 
+use crate::fit::Simplified;
+
 /// Result of a regression.
 #[derive(Debug, Clone)]
 pub struct Regression {
@@ -20,6 +22,20 @@ pub struct Regression {
     pub equations: Vec<EquationGauge>,
     /// Parameters that take part in no equation whose signals are measured, with the reason.
     pub not_identified: Vec<(usize, String)>,
+}
+
+impl Regression {
+    /// Without the nuisance effects that `given` has not and that do not differ from nothing.
+    pub fn simplified(self, given: &Model) -> Self {
+        let simple = Simplified::of(given, &self.model);
+        let (places, fitted): (Vec<usize>, Vec<usize>) =
+            self.fitted.iter().enumerate().filter_map(|(place, &index)| Some((place, simple.index(index)?))).unzip();
+        let covariance = self.covariance.select_rows(&places).select_columns(&places);
+        let not_identified = self.not_identified.iter();
+        let not_identified =
+            not_identified.filter_map(|(index, reason)| Some((simple.index(*index)?, reason.clone()))).collect();
+        Regression { model: simple.model, fitted, covariance, not_identified, ..self }
+    }
 }
 
 /// Condition number of a group of equations.

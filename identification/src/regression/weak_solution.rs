@@ -11,6 +11,7 @@ use super::weak_covariance::jackknife;
 use super::weak_form::sources;
 use super::weak_rows::Row;
 use super::{EquationGauge, Regression, RegressionError, WeakFormSettings};
+use crate::fit::ParameterPriors;
 
 /// Parameters that meet the rows best, from instruments times residuals.
 pub(super) fn solve(
@@ -73,12 +74,24 @@ pub(super) fn solve(
         }
     }
     let lengths: Vec<f64> = regressors.column_iter().map(|column| column.norm()).collect();
+    let mut own_lengths = Vec::new();
     for (column, &length) in lengths.iter().enumerate() {
         regressors.column_mut(column).scale_mut(1.0 / length);
         let own = instruments.column(column).norm();
+        own_lengths.push(own);
         instruments.column_mut(column).scale_mut(if own > 0.0 { 1.0 / own } else { 0.0 });
     }
-    let matrix = instruments.transpose() * &regressors;
+    let mut matrix = instruments.transpose() * &regressors;
+    let mut right = instruments.transpose() * &residuals;
+    // What is known of nuisance parameters counts as one more row of each.
+    let fitted: Vec<usize> = seen.iter().map(|&index| unknown[index]).collect();
+    let priors = ParameterPriors::of(model, &fitted, recordings, 0).equations(&values, &vec![1.0; fitted.len()]);
+    for (column, (information, gradient)) in priors.into_iter().enumerate() {
+        let scale = 1.0 / lengths[column];
+        let instrument_scale = if own_lengths[column] > 0.0 { 1.0 / own_lengths[column] } else { scale };
+        matrix[(column, column)] += information * scale * instrument_scale;
+        right[column] -= gradient * instrument_scale;
+    }
     // Bounded: on a matrix with a value that is not a number the plain decomposition never ends.
     let Some(svd) = matrix.clone().try_svd(true, true, f64::EPSILON, 10_000) else {
         let names = seen.iter().map(|&index| names[unknown[index]].clone()).collect();
@@ -97,7 +110,7 @@ pub(super) fn solve(
         let names = seen.iter().map(|&index| names[unknown[index]].clone()).collect();
         return Err(RegressionError::NotIdentifiable { source_name: sources(recordings), names });
     };
-    let step = -(&inverse * (instruments.transpose() * &residuals));
+    let step = -(&inverse * right);
     let remaining = &residuals + &regressors * &step;
 
     let mut improved = model.clone();

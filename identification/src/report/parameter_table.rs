@@ -8,7 +8,7 @@ use maud::{Markup, html};
 
 use super::numbers::{NOTHING, percent, with_error};
 use super::{units, words};
-use crate::fitted_along::found_along;
+use crate::fit::nuisances_shown;
 
 /// Standard error over value from which on a number is called poorly known.
 const POORLY_KNOWN: f64 = 0.5;
@@ -17,7 +17,7 @@ const POORLY_KNOWN: f64 = 0.5;
 /// since the model `given`.
 pub(super) fn of_model(given: &Model, model: &Model, added: &[String]) -> Markup {
     let effects: Vec<&ModelEffect> = model.effects.iter().filter(|effect| !effect.parameters.is_empty()).collect();
-    let marks = found_along(given, model)
+    let marks = nuisances_shown(given, model)
         .map(|effect| addition_name(effect.physics, site_name(&model.machine, effect.site)))
         .map(|name| (name, "nuisance"))
         .chain(added.iter().map(|name| (name.clone(), "added")))

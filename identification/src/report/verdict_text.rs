@@ -7,7 +7,7 @@ use super::plausibility_text::implausible_sentence;
 use super::words;
 use crate::decision::{Kind, Reason};
 use crate::diagnosis::{Candidate, Diagnosis};
-use crate::fitted_along::still_shows;
+use crate::fit::nuisances_shown;
 use crate::search::Trial;
 
 /// What a diagnosis found, in a few plain sentences. Effects that the recordings cannot tell apart are all named.
@@ -249,9 +249,8 @@ const TELLINGS: [Telling; 5] = [
 /// The nuisance effects that were estimated up to the model `last`.
 fn nuisances(given: &Model, last: &Model) -> Vec<String> {
     let said = |telling: &Telling| {
-        let found = last.effects.iter().filter(|effect| effect.name() == telling.effect);
-        let found: Vec<String> = found
-            .filter(|effect| !given.has(effect.name(), effect.site) && still_shows(effect))
+        let found: Vec<String> = nuisances_shown(given, last)
+            .filter(|effect| effect.name() == telling.effect)
             .filter_map(|effect| {
                 let place = site_name(&last.machine, effect.site);
                 Some(format!("that of the {place} {}", (telling.value)(effect.parameters.first()?.value)))

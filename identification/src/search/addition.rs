@@ -4,9 +4,8 @@ use excavator_model::effects::{CATALOGUE, Effect, Family, Site};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelError, addition_name, site_name};
 
-use super::starts::{can_be_transient, half_open, starts};
+use super::starts::{half_open, starts};
 use crate::fit::{Fit, FitError, FitSettings, Prediction, fit_predicted, predict};
-use crate::fitted_along::refitted_with_effects_along;
 
 /// An effect at a place.
 #[derive(Debug, Clone, Copy)]
@@ -72,18 +71,6 @@ pub(crate) fn fit_addition(
 ) -> Result<Fit, AdditionError> {
     let start = best_start(model, addition, recordings, settings)?;
     Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
-}
-
-/// A fit of a model whose last effect is an addition, with the nuisance effects that the recordings show beside it: without it they were
-/// hidden under what was missing. A transient effect keeps its place.
-pub(crate) fn with_nuisances(fitted: Fit, recordings: &[&Recording], settings: &FitSettings) -> Fit {
-    let model = &fitted.model;
-    let Some(last) = model.effects.last() else { return fitted };
-    if can_be_transient(last.physics, &model.machine, last.site) {
-        return fitted;
-    }
-    let behind = model.effects.len() - 1;
-    refitted_with_effects_along(fitted, behind, recordings, settings)
 }
 
 /// Where the fit of an addition starts.

@@ -8,8 +8,7 @@ use excavator_model::recording::Recording;
 use super::pool::Pool;
 use super::starts::within_bounds;
 use super::{Effort, Trial};
-use crate::fit::{Fit, FitError, FitSettings, evaluate, fit};
-use crate::fitted_along::refitted_with_effects_along;
+use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, with_nuisances};
 use crate::regression::{WeakFormSettings, weak_form};
 
 /// Trials of which the next one is looked at for a better fit of the given model.
@@ -19,26 +18,26 @@ const LOOKED_AT: usize = 3;
 /// instrument that is far off may have led the regression astray, and the given values are tried as a start too.
 const TRUSTED_LOSS: f64 = 0.2;
 
-/// Fits a model's unknown parameters, starting from a regression where one is possible.
+/// Fits a model's unknown parameters and its nuisances, starting from a regression where one is possible.
 ///
 /// # Errors
 /// [`FitError`].
 pub(crate) fn fit_given(model: &Model, identification: &[&Recording], settings: &FitSettings) -> Result<Fit, FitError> {
+    let model = &with_nuisances(model, identification);
     let quick =
         WeakFormSettings { rounds: 2, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
     let regressed = weak_form(model, identification, &quick)
         .map(|regression| within_bounds(regression.model))
         .ok()
         .and_then(|start| fit(&start, identification, settings).ok());
-    let fitted = match regressed {
-        Some(fitted) if fitted.loss() <= TRUSTED_LOSS => fitted,
+    match regressed {
+        Some(fitted) if fitted.loss() <= TRUSTED_LOSS => Ok(fitted),
         regressed => match (regressed, fit(model, identification, settings)) {
-            (Some(first), Ok(second)) if first.loss() <= second.loss() => first,
-            (Some(first), Err(_)) => first,
-            (_, second) => second?,
+            (Some(first), Ok(second)) if first.loss() <= second.loss() => Ok(first),
+            (Some(first), Err(_)) => Ok(first),
+            (_, second) => second,
         },
-    };
-    Ok(refitted_with_effects_along(fitted, model.effects.len(), identification, settings))
+    }
 }
 
 /// A fit of the given model as the first trial.

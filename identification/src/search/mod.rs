@@ -20,8 +20,8 @@ mod transient;
 mod trial;
 mod worst_stretch;
 
+pub(crate) use addition::fit_addition;
 pub use addition::{Addition, AdditionError, additions};
-pub(crate) use addition::{fit_addition, with_nuisances};
 pub use effort::Effort;
 pub(crate) use given::fit_given;
 pub(crate) use named::score_named;

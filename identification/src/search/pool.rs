@@ -25,8 +25,6 @@ pub struct Unpromising {
 /// What a search does with a hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Move {
-    /// Fit it again with the nuisance effects that show beside it.
-    Settle,
     /// Take out each of its effects in turn.
     Prune,
     /// Add every other effect to it.

@@ -10,8 +10,7 @@ use super::transient::is_transient;
 use crate::decision::scores::{
     Block, Bound, EffectScore, FORMAT, Hypothesis, InstrumentScale, Misfit, ParameterScore, Role, Scores, Side,
 };
-use crate::fit::Fit;
-use crate::fitted_along::found_along;
+use crate::fit::{Fit, nuisances_shown};
 
 /// Scores that hold the given model only.
 pub(crate) fn begin(given: &Trial, identification: &[&Recording], validation: &[&Recording]) -> Scores {
@@ -63,7 +62,7 @@ pub(crate) fn score(trial: &Trial, given: &Model, identification: &[&Recording])
     };
     Hypothesis {
         effects: trial.additions.iter().filter_map(|addition| trial.effect(addition)).map(effect).collect(),
-        nuisances: found_along(given, model)
+        nuisances: nuisances_shown(given, model)
             .map(|effect| addition_name(effect.physics, site_name(&model.machine, effect.site)))
             .collect(),
         identification: misfit(&trial.fit),

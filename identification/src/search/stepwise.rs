@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::addition::{AdditionError, additions, best_start, structural_additions, with_nuisances};
+use super::addition::{AdditionError, additions, best_start, structural_additions};
 use super::pool::{Move, Pool};
 use super::progress::Milestones;
 use super::screening::{Screen, Screened, Screening};
@@ -10,7 +10,6 @@ use super::transient::evaluate_in_windows_of;
 use super::{Addition, Effort, Trial};
 use crate::decision::{Policy, log_error_ratio};
 use crate::fit::{fit, fit_predicted};
-use crate::fitted_along::found_along;
 
 /// How moves are made.
 pub(super) struct Stepwise<'a> {
@@ -27,34 +26,11 @@ impl Stepwise<'_> {
     pub fn take(&self, what: Move, number: usize, pool: &mut Pool<'_>) {
         pool.is_done(what, number);
         match what {
-            Move::Settle => self.settle(number, pool),
             Move::Prune => self.prune(number, pool),
             Move::Extend => self.extend(number, pool),
             Move::Exchange => self.exchange(number, pool),
             Move::Structural => self.structural(number, pool),
         }
-    }
-
-    fn settle(&self, number: usize, pool: &mut Pool<'_>) {
-        let trial = &pool.trials[number];
-        if let Some(settled) = self.with_nuisances(trial, pool) {
-            pool.replace(number, settled);
-        }
-    }
-
-    /// The trial with the nuisance effects that show beside its additions; none where no more show. Without the additions they were hidden
-    /// under what was missing.
-    fn with_nuisances(&self, trial: &Trial, pool: &Pool<'_>) -> Option<Trial> {
-        let begin = Instant::now();
-        let settings = &self.effort.fit;
-        let fit = with_nuisances(trial.fit.clone(), pool.identification(), settings);
-        if fit.model.effects.len() == trial.fit.model.effects.len() {
-            return None;
-        }
-        let validation =
-            evaluate_in_windows_of(&fit.model, &trial.validation.model, pool.validation(), settings).ok()?;
-        let seconds = trial.seconds + begin.elapsed().as_secs_f64();
-        Some(Trial { additions: trial.additions.clone(), fit, validation, seconds })
     }
 
     fn prune(&self, number: usize, pool: &mut Pool<'_>) {
@@ -158,12 +134,12 @@ impl Stepwise<'_> {
     }
 
     /// Puts rivals in the place of each effect: single effects that improved nearly as much as the one that is there. They were compared
-    /// with it while the other effects, or the nuisance effects that were found with it, still spoiled the picture.
+    /// with it while the other effects still spoiled the picture.
     fn exchange(&self, number: usize, pool: &mut Pool<'_>) {
         let verdict = pool.verdict(self.policy);
         let trial = pool.trials[number].clone();
-        let is_alone = trial.additions.len() == 1;
-        if is_alone && found_along(&pool.given().fit.model, &trial.fit.model).next().is_none() {
+        if trial.additions.len() == 1 {
+            // Its rivals were additions to the same model.
             return;
         }
         let improvement = |addition: &Addition, pool: &Pool<'_>| {
@@ -180,8 +156,7 @@ impl Stepwise<'_> {
             if rivals.is_empty() {
                 continue;
             }
-            let base =
-                if is_alone { self.bare(&trial, addition, pool) } else { self.trial_without(number, addition, pool) };
+            let base = self.trial_without(number, addition, pool);
             let Some(base) = base else { continue };
             for rival in rivals {
                 self.milestones.tell(&rival.name(&base.fit.model), 0.5);
@@ -190,16 +165,6 @@ impl Stepwise<'_> {
                 }
             }
         }
-    }
-
-    /// The only addition of `trial` taken out, its nuisance effects kept: not one of the pool, where the given model has those that show
-    /// without it.
-    fn bare(&self, trial: &Trial, addition: &Addition, pool: &Pool<'_>) -> Option<Trial> {
-        let settings = &self.effort.fit;
-        let fit = fit(&trial.model_without(addition), pool.identification(), settings).ok()?;
-        let validation =
-            evaluate_in_windows_of(&fit.model, &trial.validation.model, pool.validation(), settings).ok()?;
-        Some(Trial { additions: Vec::new(), fit, validation, seconds: 0.0 })
     }
 
     fn trial_without(&self, number: usize, addition: &Addition, pool: &mut Pool<'_>) -> Option<Trial> {
@@ -230,11 +195,7 @@ impl Stepwise<'_> {
             self.structural_beside(&trial, None, worst, pool);
         }
         for addition in &trial.additions {
-            let base = match trial.additions.len() {
-                1 => self.bare(&trial, addition, pool),
-                _ => self.trial_without(number, addition, pool),
-            };
-            let Some(base) = base else { continue };
+            let Some(base) = self.trial_without(number, addition, pool) else { continue };
             let explained = base.fit.loss() - trial.fit.loss();
             let worst = trial.fit.loss() + self.effort.structural_distance.max(0.5 * explained);
             self.structural_beside(&base, Some(addition), worst, pool);

@@ -28,7 +28,7 @@ static CARD: Card = Card {
 
 /// Shapes reach from softer than `x / sqrt(1 + x^2)`, at minus one, to nearly straight, at four: one standard deviation. Below minus two it
 /// would be a friction that grows at working speeds. From about twelve, three deviations, no recording tells how straight.
-const PRIOR: Prior = Prior { spread: Spread::Fixed(4.0), scale: PriorScale::Linear };
+const PRIOR: Prior = Prior { spread: Spread::Fixed(4.0), scale: PriorScale::Linear, range: [-0.5, 5.0] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     name: "corner_sharpness",

@@ -30,7 +30,7 @@ static CARD: Card = Card {
 /// Velocity reversals over 0.2 mm/s to 6 mm/s are rounded and no more: each end is about one and a half standard deviations of a
 /// factor of 3 away from 1 mm/s. Sharper ones no recording shows. Seals at their slowest have 6 mm/s; from there on it is a friction
 /// with a shape of its own.
-const PRIOR: Prior = Prior { spread: Spread::Fixed(3.0), scale: PriorScale::Logarithmic };
+const PRIOR: Prior = Prior { spread: Spread::Fixed(3.0), scale: PriorScale::Logarithmic, range: [-1.46, 1.63] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     name: "reversal_speed",

@@ -29,7 +29,7 @@ static CARD: Card = Card {
 
 /// Metering slots turn turbulent between 0.2 kPa and 300 kPa: a slot of 0.1 mm in cold oil reaches the upper end. That is one standard
 /// deviation of a factor of 8 below 2 kPa and two and a half above.
-const PRIOR: Prior = Prior { spread: Spread::Fixed(8.0), scale: PriorScale::Logarithmic };
+const PRIOR: Prior = Prior { spread: Spread::Fixed(8.0), scale: PriorScale::Logarithmic, range: [-1.1, 2.4] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     name: "transition_pressure",

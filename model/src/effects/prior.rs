@@ -10,6 +10,9 @@ pub struct Prior {
     pub spread: Spread,
     /// On which scale the distribution is normal.
     pub scale: PriorScale,
+    /// How many standard deviations below (negative) and above the centre a value may be. What is farther off is no nuisance: it has a
+    /// cause that a diagnosis should look for.
+    pub range: [f64; 2],
 }
 
 /// On which scale a [`Prior`] is normal.
@@ -57,6 +60,15 @@ impl Prior {
             Spread::OfSampleInterval { part, at_least_s } => (part * scales.sample_interval_s).max(at_least_s),
             Spread::OfLargestOpening { part } => part * scales.largest_opening_m2,
         }
+    }
+
+    /// Least and largest value, in the parameter's unit.
+    pub fn bounds(&self, centre: f64, scales: &RecordingScales) -> [f64; 2] {
+        let deviation = self.standard_deviation(scales);
+        self.range.map(|deviations| match self.scale {
+            PriorScale::Linear => centre + deviations * deviation,
+            PriorScale::Logarithmic => centre * deviation.powf(deviations),
+        })
     }
 
     /// How many standard deviations `value` is above `centre`, the value at which the effect changes nothing. On the logarithmic

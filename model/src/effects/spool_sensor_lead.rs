@@ -34,8 +34,11 @@ static CARD: Card = Card {
 /// interval is one standard deviation, and 0.65 intervals are two. Where recordings are fast a controller's cycle of 1 ms is the
 /// longer time: 1.3 ms are three deviations of 0.4 ms. A spool sensor with a filter is late by up to 5 ms; recordings must show that
 /// against the prior.
-const PRIOR: Prior =
-    Prior { spread: Spread::OfSampleInterval { part: 1.0 / 3.0, at_least_s: 4e-4 }, scale: PriorScale::Linear };
+const PRIOR: Prior = Prior {
+    spread: Spread::OfSampleInterval { part: 1.0 / 3.0, at_least_s: 6.5e-4 },
+    scale: PriorScale::Linear,
+    range: [-8.0, 2.0],
+};
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     name: "spool_lead_time",

@@ -25,7 +25,8 @@ static CARD: Card = Card {
 };
 
 /// An ordinary position transducer is good to 0.5 % of the largest opening, which are two standard deviations.
-const PRIOR: Prior = Prior { spread: Spread::OfLargestOpening { part: 2.5e-3 }, scale: PriorScale::Linear };
+const PRIOR: Prior =
+    Prior { spread: Spread::OfLargestOpening { part: 2.5e-3 }, scale: PriorScale::Linear, range: [-2.0, 2.0] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     name: "spool_offset",

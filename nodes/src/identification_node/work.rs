@@ -4,11 +4,13 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use excavator_identification::fit::{FitError, FitSettings};
-use excavator_identification::fitted_along::{IN_REGRESSION, fit_with_effects_along, with_effects_along};
+use excavator_identification::fit::{
+    FitError, FitSettings, Simplified, fit_watched, with_nuisances, with_nuisances_of,
+};
 use excavator_identification::regression::{RegressionError, WeakFormSettings, weak_form_watched};
 use excavator_identification::validation::compare;
 use excavator_model::document::to_text;
+use excavator_model::effects::Family;
 use excavator_model::recording::Recording;
 use excavator_model::{HistoryEntry, Model};
 
@@ -109,26 +111,16 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
         }
     };
     let settings = WeakFormSettings::default();
-    let plain =
-        weak_form_watched(&wanted, &recordings, &settings, &part("identifying", 0.3, 0.45)).map_err(VerbError::from)?;
-    let timing = part("identifying with the sensors' timing", 0.45, 0.45);
-    let anew = |model: &Model| weak_form_watched(model, &recordings, &settings, &timing).ok();
-    let mut identified = with_effects_along(
-        plain,
-        IN_REGRESSION,
-        wanted.effects.len(),
-        &recordings,
-        |solved| &solved.model,
-        anew,
-        |_| false,
-    )
-    .model;
+    let extended = with_nuisances_of(&wanted, &[Family::Recording], &recordings);
+    let regression = weak_form_watched(&extended, &recordings, &settings, &part("identifying", 0.3, 0.5))
+        .map_err(VerbError::from)?;
+    let mut identified = regression.simplified(&wanted).model;
     if !goal.effects.is_empty() {
         // Effects that were added start far from their values, and some enter nonlinearly: outputs are fitted too.
         let fitting = part("fitting outputs", 0.5, 0.7);
-        identified = fit_with_effects_along(&identified, &recordings, &FitSettings::default(), &fitting)
-            .map_err(VerbError::from)?
-            .model;
+        let start = with_nuisances(&identified, &recordings);
+        let fitted = fit_watched(&start, &recordings, &FitSettings::default(), &fitting).map_err(VerbError::from)?;
+        identified = Simplified::of(&wanted, &fitted.model).model;
     }
     let (mut signals, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
     for (index, recording) in recordings.iter().enumerate() {

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use excavator_identification::diagnosis::{Candidate, Diagnosis, Share};
-use excavator_identification::fit::normalised_error;
-use excavator_identification::fitted_along::found_along;
+use excavator_identification::fit::{normalised_error, nuisances_shown};
 use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
 use excavator_identification::validation::{Comparison, Correlation};
@@ -139,7 +138,7 @@ fn candidate_json(candidate: &Candidate<'_>, validation: &[&Recording], found: &
 
 /// Nuisance effects that were estimated in `fitted`, a model that began as `given`.
 fn nuisances_json(given: &Model, fitted: &Model) -> Vec<Value> {
-    found_along(given, fitted)
+    nuisances_shown(given, fitted)
         .map(|effect| {
             json!({
                 "effect": effect.name(),

@@ -1,15 +1,16 @@
 //! `excavator identify`
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
-use excavator_identification::fit::{FitSettings, ProfileInterval, profile};
-use excavator_identification::fitted_along::{IN_REGRESSION, fit_with_effects_along, with_effects_along};
+use excavator_identification::fit::{
+    FitSettings, ProfileInterval, Simplified, fit, profile, with_nuisances, with_nuisances_of,
+};
 use excavator_identification::regression::{
     ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form,
 };
 use excavator_identification::report::implausible_sentence;
 use excavator_model::document::to_text;
+use excavator_model::effects::Family;
 use excavator_model::recording::Recording;
 use excavator_model::{HistoryEntry, Model};
 use serde_json::{Value, json};
@@ -118,7 +119,8 @@ fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<
     };
     if method == Method::OutputError {
         let settings = FitSettings { sample_rate: f64::INFINITY, ..FitSettings::default() };
-        let fitted = fit_with_effects_along(&result.model, recordings, &settings, &|_| ControlFlow::Continue(()))?;
+        let fitted = fit(&with_nuisances(&result.model, recordings), recordings, &settings)?;
+        let fitted = Simplified::fit(model, &fitted);
         result.profiles = fitted
             .undetermined()
             .into_iter()
@@ -132,18 +134,8 @@ fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<
 }
 
 fn in_weak_form(model: &Model, recordings: &[&Recording]) -> Result<Regression, RegressionError> {
-    let estimate = |model: &Model| weak_form(model, recordings, &WeakFormSettings::default());
-    let plain = estimate(model)?;
-    let anew = |model: &Model| estimate(model).ok();
-    Ok(with_effects_along(
-        plain,
-        IN_REGRESSION,
-        model.effects.len(),
-        recordings,
-        |solved| &solved.model,
-        anew,
-        |_| false,
-    ))
+    let extended = with_nuisances_of(model, &[Family::Recording], recordings);
+    Ok(weak_form(&extended, recordings, &WeakFormSettings::default())?.simplified(model))
 }
 
 fn profiles_json(result: &Identified) -> Value {

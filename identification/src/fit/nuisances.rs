@@ -1,0 +1,158 @@
+//! Nuisance effects: how recordings were made, and how the equations round a corner.
+//!
+//! They are estimated with every model, each with the prior of its card, and never attributed: a spool sensor that is read half a
+//! millisecond early, or a friction that reverses over 3 mm/s instead of 1 mm/s, looks like a little of many other effects.
+
+use excavator_model::effects::{CATALOGUE, Effect, Family, Site};
+use excavator_model::recording::{Recording, is_measured};
+use excavator_model::{Model, ModelEffect, Parameter};
+
+use super::Fit;
+use super::priors::centre;
+
+/// Whether an effect of this family is a nuisance.
+pub fn is_nuisance(family: Family) -> bool {
+    matches!(family, Family::Recording | Family::Rounding)
+}
+
+/// `model` with every nuisance effect that it has not and that these recordings can have.
+pub fn with_nuisances(model: &Model, recordings: &[&Recording]) -> Model {
+    with_nuisances_of(model, &[Family::Recording, Family::Rounding], recordings)
+}
+
+/// The same of these families. A regression sees no [`Family::Rounding`]: a smoothed velocity reverses slower than the piston.
+pub fn with_nuisances_of(model: &Model, families: &[Family], recordings: &[&Recording]) -> Model {
+    let mut extended = model.clone();
+    for physics in CATALOGUE.iter().copied().filter(|physics| families.contains(&physics.card().family)) {
+        for site in model.free_sites(physics).into_iter().filter(|site| can_have(model, physics, *site, recordings)) {
+            extended.effects.extend(ModelEffect::new(physics, &model.machine, site));
+        }
+    }
+    extended
+}
+
+/// Only a measured opening can be read at another time than the rest, or from another zero; a command acts when it is given.
+fn can_have(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Recording]) -> bool {
+    match site {
+        Site::Cylinder(index) if physics.card().family == Family::Recording => {
+            let name = &model.machine.cylinders[index].name;
+            recordings.iter().all(|one| one.cylinder(name).is_ok_and(|signals| is_measured(&signals.orifice_area)))
+        }
+        _ => true,
+    }
+}
+
+/// Nuisance effects of `fitted` that `given` has not and that differ from nothing, in the order of `fitted`.
+pub fn nuisances_shown<'a>(given: &'a Model, fitted: &'a Model) -> impl Iterator<Item = &'a ModelEffect> {
+    fitted.effects.iter().filter(|effect| is_added(given, effect) && effect.parameters.iter().all(differs))
+}
+
+/// A model without the nuisance effects that `given` has not and that do not differ from nothing: as simple as it can be.
+#[derive(Debug, Clone)]
+pub struct Simplified {
+    /// The model.
+    pub model: Model,
+    /// Indices of its parameters in the model that it was.
+    kept: Vec<usize>,
+}
+
+impl Simplified {
+    /// Of a fitted model.
+    pub fn of(given: &Model, fitted: &Model) -> Self {
+        let is_idle = |effect: &ModelEffect| is_added(given, effect) && !effect.parameters.iter().all(differs);
+        let mut model = fitted.clone();
+        model.effects.retain(|effect| !is_idle(effect));
+        let parameters = fitted.parameters().enumerate();
+        let kept = parameters.filter(|(_, (effect, _))| !is_idle(&fitted.effects[*effect])).map(|(index, _)| index);
+        Simplified { kept: kept.collect(), model }
+    }
+
+    /// The index of a parameter of the model that it was; none where its effect is gone.
+    pub fn index(&self, before: usize) -> Option<usize> {
+        self.kept.iter().position(|&kept| kept == before)
+    }
+
+    /// The same of a fit whose model it was made of.
+    pub fn fit(given: &Model, fit: &Fit) -> Fit {
+        let simple = Simplified::of(given, &fit.model);
+        let (places, fitted): (Vec<usize>, Vec<usize>) =
+            fit.fitted.iter().enumerate().filter_map(|(place, &index)| Some((place, simple.index(index)?))).unzip();
+        let covariance = fit.covariance.select_rows(&places).select_columns(&places);
+        let inflation = places.iter().map(|&place| fit.inflation[place]).collect();
+        Fit { model: simple.model, fitted, covariance, inflation, ..fit.clone() }
+    }
+}
+
+fn is_added(given: &Model, effect: &ModelEffect) -> bool {
+    is_nuisance(effect.physics.card().family) && !given.has(effect.name(), effect.site)
+}
+
+/// Standard errors by which a nuisance parameter must differ from nothing to be mentioned.
+const LEAST_SIGNIFICANCE: f64 = 3.0;
+
+/// Part of the value that changes nothing by which it must differ: a tenth more or less is the same convention.
+const LEAST_DIFFERENCE: f64 = 0.1;
+
+fn differs(parameter: &Parameter) -> bool {
+    let least = LEAST_SIGNIFICANCE * parameter.standard_error.unwrap_or(f64::INFINITY);
+    // A shift or a lead starts from zero, of which any part is none.
+    (parameter.value - centre(parameter)).abs() >= least.max(LEAST_DIFFERENCE * centre(parameter))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use excavator_model::document::built_in;
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::fit::made_up::made_up_fit;
+
+    fn recording(is_spool_measured: bool) -> Recording {
+        let time: Vec<f64> = (0..100).map(|index| f64::from(index) * 2e-3).collect();
+        let mut recording = Recording::unmeasured("bag", time, &["arm"]);
+        if is_spool_measured {
+            recording.cylinders[0].orifice_area = vec![1e-5; 100];
+        }
+        recording
+    }
+
+    #[test]
+    fn a_spool_that_nobody_measures_has_no_sensor() {
+        let given = built_in("zx30u-arm").unwrap();
+        let families = |measured| -> Vec<Family> {
+            let model = with_nuisances(&given, &[&recording(measured)]);
+            model.effects[given.effects.len()..].iter().map(|effect| effect.physics.card().family).collect()
+        };
+        assert!(families(true).contains(&Family::Recording) && families(true).contains(&Family::Rounding));
+        assert!(!families(false).contains(&Family::Recording) && families(false).contains(&Family::Rounding));
+        let once = with_nuisances(&given, &[&recording(true)]);
+        assert_eq!(with_nuisances(&once, &[&recording(true)]).effects.len(), once.effects.len());
+    }
+
+    #[test]
+    fn what_does_not_differ_is_left_out_with_its_parameters() {
+        let given = built_in("zx30u-arm").unwrap();
+        let mut model = with_nuisances(&given, &[&recording(true)]);
+        for parameter in model.parameters_mut() {
+            parameter.standard_error = Some(1e-9);
+        }
+        let speed = model.effects.iter_mut().find(|effect| effect.name() == "friction_reversal").unwrap();
+        speed.parameters[0].value = 3e-3;
+        let fitted = model.unknown_parameters();
+        let count = fitted.len();
+        let covariance = DMatrix::from_fn(count, count, |row, column| if row == column { row as f64 } else { 0.0 });
+        let fit = Fit { fitted, covariance, inflation: vec![1.0; count], ..made_up_fit(model.clone(), 1.0, 1.0) };
+        let simple = Simplified::fit(&given, &fit);
+        let shown: Vec<&str> = nuisances_shown(&given, &model).map(ModelEffect::name).collect();
+        assert_eq!(shown, ["friction_reversal"]);
+        assert_eq!(simple.model.effects.len(), given.effects.len() + 1);
+        let own = given.unknown_parameters().len();
+        assert_eq!((simple.fitted.len(), simple.inflation.len()), (own + 1, own + 1));
+        let names = simple.model.parameter_names();
+        assert_eq!(names[*simple.fitted.last().unwrap()], "arm.reversal_speed");
+        // The variance is that of the same parameter before.
+        let before = fit.fitted.iter().position(|&index| model.parameter_names()[index] == "arm.reversal_speed");
+        assert_eq!(simple.covariance[(own, own)], before.unwrap() as f64);
+    }
+}

@@ -1,0 +1,176 @@
+//! What is known of nuisance parameters beforehand: for a fit, one more reading of each.
+
+use excavator_model::effects::{PriorScale, RecordingScales, Site, Start};
+use excavator_model::recording::Recording;
+use excavator_model::{Model, Parameter};
+use nalgebra::{DMatrix, DVector};
+
+use super::normal_equations::SegmentSums;
+
+/// The priors of the fitted parameters, in their order; none for a parameter of the machine.
+pub(crate) struct ParameterPriors {
+    each: Vec<Option<Known>>,
+    instruments: usize,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    /// Index of the parameter in the model.
+    parameter: usize,
+    /// The value at which its effect changes nothing, in its unit.
+    centre: f64,
+    /// One standard deviation: in its unit, or the logarithm of a factor.
+    deviation: f64,
+    scale: PriorScale,
+}
+
+impl Known {
+    fn of(model: &Model, index: usize, recordings: &[&Recording]) -> Option<Self> {
+        let (effect, parameter) = model.parameters().nth(index)?;
+        let prior = parameter.card.prior?;
+        let spread = prior.standard_deviation(&scales_of(model, model.effects[effect].site, recordings));
+        let deviation = if prior.scale == PriorScale::Logarithmic { spread.ln() } else { spread };
+        let known = Known { parameter: index, centre: centre(parameter), deviation, scale: prior.scale };
+        // Where the recordings give no scale, as an opening that never leaves zero, nothing is known.
+        (known.deviation > 0.0 && known.deviation.is_finite()).then_some(known)
+    }
+
+    /// Standard deviations above the centre, and the slope of that, in one over the parameter's unit.
+    fn standardised(&self, value: f64) -> (f64, f64) {
+        match self.scale {
+            PriorScale::Linear => ((value - self.centre) / self.deviation, 1.0 / self.deviation),
+            PriorScale::Logarithmic => ((value / self.centre).ln() / self.deviation, 1.0 / (value * self.deviation)),
+        }
+    }
+}
+
+/// The value of a nuisance parameter at which its effect changes nothing: that from which it is searched.
+pub(crate) fn centre(parameter: &Parameter) -> f64 {
+    match parameter.card.start {
+        Start::At([start, ..]) => *start,
+        _ => 0.0,
+    }
+}
+
+/// What spreads are taken from: sample interval, and the largest opening at a site.
+fn scales_of(model: &Model, site: Site, recordings: &[&Recording]) -> RecordingScales {
+    let intervals = recordings.iter().map(|recording| recording.sample_interval());
+    let name = match site {
+        Site::Cylinder(index) => model.machine.cylinders.get(index).map(|cylinder| cylinder.name.as_str()),
+        Site::PumpLine | Site::Machine => None,
+    };
+    let openings = recordings.iter().filter_map(|recording| recording.cylinder(name?).ok());
+    let areas = openings.flat_map(|signals| &signals.orifice_area).filter(|area| area.is_finite());
+    RecordingScales {
+        sample_interval_s: intervals.fold(0.0, f64::max),
+        largest_opening_m2: areas.fold(0.0, |largest, area| largest.max(area.abs())),
+    }
+}
+
+impl ParameterPriors {
+    /// Of the parameters `fitted` of a model, for recordings with so many instruments.
+    pub fn of(model: &Model, fitted: &[usize], recordings: &[&Recording], instruments: usize) -> Self {
+        let each = fitted.iter().map(|&index| Known::of(model, index, recordings)).collect();
+        ParameterPriors { each, instruments }
+    }
+
+    /// Least and largest value of every parameter of a model: those of its card, within the range of its prior.
+    pub fn bounds(model: &Model, recordings: &[&Recording]) -> Vec<[f64; 2]> {
+        let bounds = |(effect, parameter): (usize, &Parameter)| {
+            let card = parameter.card;
+            let Some(prior) = card.prior else { return [card.minimum, card.maximum] };
+            let scales = scales_of(model, model.effects[effect].site, recordings);
+            let [lowest, highest] = prior.bounds(centre(parameter), &scales);
+            [lowest.max(card.minimum), highest.min(card.maximum)]
+        };
+        model.parameters().map(bounds).collect()
+    }
+
+    /// Sum of squares of how many standard deviations each parameter is off, for all values of the model.
+    pub fn loss(&self, values: &[f64]) -> f64 {
+        self.each.iter().flatten().map(|known| known.standardised(values[known.parameter]).0.powi(2)).sum()
+    }
+
+    /// Information of each parameter and its gradient, for parameters in units of these scales; zero where nothing is known.
+    pub fn equations(&self, values: &[f64], scales: &[f64]) -> Vec<(f64, f64)> {
+        let equation = |(known, scale): (&Option<Known>, &f64)| {
+            known.as_ref().map_or((0.0, 0.0), |known| {
+                let (off, slope) = known.standardised(values[known.parameter]);
+                let slope = slope * scale;
+                (slope * slope, -off * slope)
+            })
+        };
+        self.each.iter().zip(scales).map(equation).collect()
+    }
+
+    /// The same as sums of a fit.
+    pub(super) fn sums(&self, values: &[f64], scales: &[f64]) -> SegmentSums {
+        let fitted = self.each.len();
+        let (mut information, mut gradient) = (DMatrix::zeros(fitted, fitted), DVector::zeros(fitted));
+        let mut blocks = Vec::new();
+        for (number, (own, downhill)) in self.equations(values, scales).into_iter().enumerate() {
+            information[(number, number)] = own;
+            gradient[number] = downhill;
+            if own > 0.0 {
+                // Its own scatter is one standard deviation, whatever came out.
+                let mut block = DVector::zeros(fitted);
+                block[number] = own.sqrt();
+                blocks.push(block);
+            }
+        }
+        SegmentSums::without_readings(information, gradient, blocks, self.loss(values), self.instruments)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use excavator_model::document::built_in;
+    use excavator_model::effects::find;
+
+    use super::*;
+
+    fn with(effect: &str) -> Model {
+        built_in("zx30u-arm").unwrap().with_effect(find(effect).unwrap(), Site::Cylinder(0)).unwrap()
+    }
+
+    fn recording() -> Recording {
+        let time: Vec<f64> = (0..100).map(|index| f64::from(index) * 2e-3).collect();
+        let mut recording = Recording::unmeasured("bag", time, &["arm"]);
+        recording.cylinders[0].orifice_area = vec![-4e-5; 100];
+        recording
+    }
+
+    #[test]
+    fn the_loss_is_quadratic_about_the_centre_and_its_equations_lead_there() {
+        for effect in ["spool_sensor_lead", "spool_sensor_offset", "friction_reversal", "friction_corner"] {
+            let model = with(effect);
+            let fitted = vec![model.parameters().count() - 1];
+            let priors = ParameterPriors::of(&model, &fitted, &[&recording()], 4);
+            let mut values = model.parameter_values();
+            assert_eq!(priors.loss(&values), 0.0, "{effect}");
+            let known = priors.each[0].unwrap();
+            let up = |deviations: f64| match known.scale {
+                PriorScale::Linear => known.centre + deviations * known.deviation,
+                PriorScale::Logarithmic => known.centre * (deviations * known.deviation).exp(),
+            };
+            values[fitted[0]] = up(2.0);
+            assert!((priors.loss(&values) - 4.0).abs() < 1e-9, "{effect}");
+            let sums = priors.sums(&values, &[up(2.0)]);
+            let step = sums.gradient[0] / sums.information[(0, 0)] * up(2.0);
+            let there = match known.scale {
+                PriorScale::Linear => known.centre - up(2.0),
+                PriorScale::Logarithmic => -2.0 * known.deviation * up(2.0),
+            };
+            assert!((step / there - 1.0).abs() < 1e-9, "{effect}: {step} {there}");
+        }
+    }
+
+    #[test]
+    fn a_parameter_of_the_machine_has_none() {
+        let model = built_in("zx30u-arm").unwrap();
+        let fitted = model.unknown_parameters();
+        let priors = ParameterPriors::of(&model, &fitted, &[&recording()], 4);
+        assert!(priors.each.iter().all(Option::is_none));
+    }
+}
