@@ -22,7 +22,10 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
         sentences.push(TOO_COARSE.to_string());
     }
     let last = &diagnosis.supported().fit.model;
-    sentences.extend(nuisances(model, last));
+    // A wrong model bends its nuisances too.
+    if diagnosis.verdict.kind != Kind::Unexplained {
+        sentences.extend(nuisances(model, last));
+    }
     sentences.extend(implausible_sentence(model, last));
     sentences.extend(undetermined(diagnosis));
     sentences.join(" ")

@@ -112,8 +112,8 @@ pub fn candidate_table(diagnosis: &Diagnosis, validation: &[&Recording]) -> Tabl
                 _ if candidate.is_tied_with_first => "tied",
                 Part::Tied => "tied",
                 Part::Selected if candidate.before.additions.is_empty() => "selected",
-                Part::Selected => "selected beside the above",
-                Part::Improves => "helps, but less",
+                Part::Selected => "+ selected",
+                Part::Improves => "helps less",
                 Part::NoEvidence => "no evidence",
             }),
         ]);
