@@ -56,7 +56,7 @@ mod valve_leakage;
 mod viscous_damping;
 
 pub use card::{ActsOn, Card, Family, Kind, ParameterCard, Site, Start};
-pub use physics::{Effect, Number, Physics};
+pub use physics::{Effect, Hooks, Number, Physics};
 
 use crate::equations::Rows;
 use crate::scalar::Scalar;

@@ -1,4 +1,7 @@
 //! The interface between an effect and the equations.
+//!
+//! To add a hook: write it with its default in [`Physics`], and its signature in the list of `hooks!`. Everything else follows from
+//! the list.
 
 use super::{Card, ParameterCard, Rows, Scalar, Site};
 use crate::equations::{Instruments, Situation};
@@ -74,96 +77,62 @@ pub trait Physics: Sync {
     fn contribute<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>, _rows: &mut Rows<T>) {}
 }
 
-/// [`Physics`] for the two number types that the program uses, so that a model can hold a list of unlike effects.
-/// Implemented for every `Physics`; not to be implemented by hand.
-#[allow(missing_docs)]
-pub trait Effect: Sync {
-    fn card(&self) -> &'static Card;
-    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard];
-    fn value_where_left_out(&self, parameter: &str) -> Option<f64>;
-    fn is_worth_a_name(&self, parameters: &[f64]) -> bool;
-    fn has_power(&self) -> bool;
-    fn states(&self) -> usize;
-    fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> [f64; 2];
-    fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> [Dual; 2];
-    fn reads_course(&self) -> bool;
-    fn read_plain(&self, parameters: &[f64], reading: f64, course: [f64; 2]) -> f64;
-    fn read_dual(&self, parameters: &[Dual], reading: Dual, course: [Dual; 2]) -> Dual;
-    fn opening_plain(&self, parameters: &[f64], opening: f64, maximum: f64) -> f64;
-    fn opening_dual(&self, parameters: &[Dual], opening: Dual, maximum: f64) -> Dual;
-    fn adjust_plain(&self, site: Site, parameters: &[f64], now: &mut Situation<f64>);
-    fn adjust_dual(&self, site: Site, parameters: &[Dual], now: &mut Situation<Dual>);
-    fn distort_plain(&self, site: Site, parameters: &[f64], instruments: &mut Instruments<f64>);
-    fn distort_dual(&self, site: Site, parameters: &[Dual], instruments: &mut Instruments<Dual>);
-    fn potential_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>) -> Option<f64>;
-    fn potential_dual(&self, site: Site, parameters: &[Dual], now: &Situation<Dual>) -> Option<Dual>;
-    fn contribute_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>, rows: &mut Rows<f64>);
-    fn contribute_dual(&self, site: Site, parameters: &[Dual], now: &Situation<Dual>, rows: &mut Rows<Dual>);
+/// The traits through which a model uses unlike effects, from the list of the hooks of [`Physics`]: those that are the same for every
+/// number type, and those in a number type `T`.
+macro_rules! hooks {
+    (
+        same for every number type {
+            $(fn $plain:ident($($plain_name:ident: $plain_type:ty),*) $(-> $plain_result:ty)?;)*
+        }
+        in number type T {
+            $(fn $hook:ident($($name:ident: $type:ty),*) $(-> $result:ty)?;)*
+        }
+    ) => {
+        /// [`Physics`] as a model holds it: one list of unlike effects, for the number types that the program uses.
+        /// Implemented for every `Physics`; not to be implemented by hand.
+        #[allow(missing_docs)]
+        pub trait Effect: Hooks<f64> + Hooks<Dual> + Sync {
+            $(fn $plain(&self, $($plain_name: $plain_type),*) $(-> $plain_result)?;)*
+        }
+
+        impl<P: Physics> Effect for P {
+            $(fn $plain(&self, $($plain_name: $plain_type),*) $(-> $plain_result)? {
+                Physics::$plain(self, $($plain_name),*)
+            })*
+        }
+
+        /// The hooks of [`Physics`] in one number type. Implemented for every `Physics`; not to be implemented by hand.
+        #[allow(missing_docs)]
+        pub trait Hooks<T> {
+            $(fn $hook(&self, $($name: $type),*) $(-> $result)?;)*
+        }
+
+        impl<P: Physics, T: Scalar> Hooks<T> for P {
+            $(fn $hook(&self, $($name: $type),*) $(-> $result)? {
+                Physics::$hook(self, $($name),*)
+            })*
+        }
+    };
 }
 
-impl<P: Physics> Effect for P {
-    fn card(&self) -> &'static Card {
-        Physics::card(self)
+hooks! {
+    same for every number type {
+        fn card() -> &'static Card;
+        fn parameters(machine: &Machine, site: Site) -> &'static [ParameterCard];
+        fn value_where_left_out(parameter: &str) -> Option<f64>;
+        fn is_worth_a_name(parameters: &[f64]) -> bool;
+        fn has_power() -> bool;
+        fn states() -> usize;
+        fn reads_course() -> bool;
     }
-    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
-        Physics::parameters(self, machine, site)
-    }
-    fn value_where_left_out(&self, parameter: &str) -> Option<f64> {
-        Physics::value_where_left_out(self, parameter)
-    }
-    fn is_worth_a_name(&self, parameters: &[f64]) -> bool {
-        Physics::is_worth_a_name(self, parameters)
-    }
-    fn has_power(&self) -> bool {
-        Physics::has_power(self)
-    }
-    fn states(&self) -> usize {
-        Physics::states(self)
-    }
-    fn spool_plain(&self, parameters: &[f64], states: &[f64], rates: &mut [f64], spool: f64) -> [f64; 2] {
-        self.spool(parameters, states, rates, spool)
-    }
-    fn spool_dual(&self, parameters: &[Dual], states: &[Dual], rates: &mut [Dual], spool: Dual) -> [Dual; 2] {
-        self.spool(parameters, states, rates, spool)
-    }
-    fn reads_course(&self) -> bool {
-        Physics::reads_course(self)
-    }
-    fn read_plain(&self, parameters: &[f64], reading: f64, course: [f64; 2]) -> f64 {
-        self.read(parameters, reading, course)
-    }
-    fn read_dual(&self, parameters: &[Dual], reading: Dual, course: [Dual; 2]) -> Dual {
-        self.read(parameters, reading, course)
-    }
-    fn opening_plain(&self, parameters: &[f64], opening: f64, maximum: f64) -> f64 {
-        self.opening(parameters, opening, maximum)
-    }
-    fn opening_dual(&self, parameters: &[Dual], opening: Dual, maximum: f64) -> Dual {
-        self.opening(parameters, opening, maximum)
-    }
-    fn adjust_plain(&self, site: Site, parameters: &[f64], now: &mut Situation<f64>) {
-        self.adjust(site, parameters, now);
-    }
-    fn adjust_dual(&self, site: Site, parameters: &[Dual], now: &mut Situation<Dual>) {
-        self.adjust(site, parameters, now);
-    }
-    fn distort_plain(&self, site: Site, parameters: &[f64], instruments: &mut Instruments<f64>) {
-        self.distort(site, parameters, instruments);
-    }
-    fn distort_dual(&self, site: Site, parameters: &[Dual], instruments: &mut Instruments<Dual>) {
-        self.distort(site, parameters, instruments);
-    }
-    fn potential_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>) -> Option<f64> {
-        self.potential(site, parameters, now)
-    }
-    fn potential_dual(&self, site: Site, parameters: &[Dual], now: &Situation<Dual>) -> Option<Dual> {
-        self.potential(site, parameters, now)
-    }
-    fn contribute_plain(&self, site: Site, parameters: &[f64], now: &Situation<f64>, rows: &mut Rows<f64>) {
-        self.contribute(site, parameters, now, rows);
-    }
-    fn contribute_dual(&self, site: Site, parameters: &[Dual], now: &Situation<Dual>, rows: &mut Rows<Dual>) {
-        self.contribute(site, parameters, now, rows);
+    in number type T {
+        fn spool(parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2];
+        fn read(parameters: &[T], reading: T, course: [T; 2]) -> T;
+        fn opening(parameters: &[T], opening: T, maximum: f64) -> T;
+        fn adjust(site: Site, parameters: &[T], now: &mut Situation<T>);
+        fn distort(site: Site, parameters: &[T], instruments: &mut Instruments<T>);
+        fn potential(site: Site, parameters: &[T], now: &Situation<T>) -> Option<T>;
+        fn contribute(site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>);
     }
 }
 
@@ -174,61 +143,21 @@ impl std::fmt::Debug for dyn Effect {
 }
 
 /// A number type that effects can be evaluated with.
-#[allow(missing_docs)]
 pub trait Number: Scalar {
-    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> [Self; 2];
-    fn read(effect: &dyn Effect, parameters: &[Self], reading: Self, course: [Self; 2]) -> Self;
-    fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self;
-    fn adjust(effect: &dyn Effect, site: Site, parameters: &[Self], now: &mut Situation<Self>);
-    fn distort(effect: &dyn Effect, site: Site, parameters: &[Self], instruments: &mut Instruments<Self>);
-    fn potential(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>) -> Option<Self>;
-    fn contribute(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>, rows: &mut Rows<Self>);
+    /// The hooks of an effect in this number type: `T::hooks(effect).contribute(...)`.
+    fn hooks(effect: &dyn Effect) -> &dyn Hooks<Self>;
 }
 
 impl Number for f64 {
-    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> [Self; 2] {
-        effect.spool_plain(parameters, states, rates, spool)
-    }
-    fn read(effect: &dyn Effect, parameters: &[Self], reading: Self, course: [Self; 2]) -> Self {
-        effect.read_plain(parameters, reading, course)
-    }
-    fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self {
-        effect.opening_plain(parameters, opening, maximum)
-    }
-    fn adjust(effect: &dyn Effect, site: Site, parameters: &[Self], now: &mut Situation<Self>) {
-        effect.adjust_plain(site, parameters, now);
-    }
-    fn distort(effect: &dyn Effect, site: Site, parameters: &[Self], instruments: &mut Instruments<Self>) {
-        effect.distort_plain(site, parameters, instruments);
-    }
-    fn potential(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>) -> Option<Self> {
-        effect.potential_plain(site, parameters, now)
-    }
-    fn contribute(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>, rows: &mut Rows<Self>) {
-        effect.contribute_plain(site, parameters, now, rows);
+    #[inline]
+    fn hooks(effect: &dyn Effect) -> &dyn Hooks<f64> {
+        effect
     }
 }
 
 impl Number for Dual {
-    fn spool(effect: &dyn Effect, parameters: &[Self], states: &[Self], rates: &mut [Self], spool: Self) -> [Self; 2] {
-        effect.spool_dual(parameters, states, rates, spool)
-    }
-    fn read(effect: &dyn Effect, parameters: &[Self], reading: Self, course: [Self; 2]) -> Self {
-        effect.read_dual(parameters, reading, course)
-    }
-    fn opening(effect: &dyn Effect, parameters: &[Self], opening: Self, maximum: f64) -> Self {
-        effect.opening_dual(parameters, opening, maximum)
-    }
-    fn adjust(effect: &dyn Effect, site: Site, parameters: &[Self], now: &mut Situation<Self>) {
-        effect.adjust_dual(site, parameters, now);
-    }
-    fn distort(effect: &dyn Effect, site: Site, parameters: &[Self], instruments: &mut Instruments<Self>) {
-        effect.distort_dual(site, parameters, instruments);
-    }
-    fn potential(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>) -> Option<Self> {
-        effect.potential_dual(site, parameters, now)
-    }
-    fn contribute(effect: &dyn Effect, site: Site, parameters: &[Self], now: &Situation<Self>, rows: &mut Rows<Self>) {
-        effect.contribute_dual(site, parameters, now, rows);
+    #[inline]
+    fn hooks(effect: &dyn Effect) -> &dyn Hooks<Dual> {
+        effect
     }
 }

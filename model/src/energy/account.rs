@@ -82,7 +82,7 @@ impl<T: Number> Account<'_, '_, T> {
         let effect = &self.system.model().effects[number];
         let (first, last) = self.system.parameter_ranges()[number];
         let Workspace { situation, rows, .. } = &mut self.workspace;
-        T::contribute(effect.physics, effect.site, &self.parameters[first..last], situation, rows);
+        T::hooks(effect.physics).contribute(effect.site, &self.parameters[first..last], situation, rows);
     }
 
     /// Kinetic and potential energy of each joint, \[A\] Eq. 9, from rows that all effects have added to.
@@ -93,7 +93,7 @@ impl<T: Number> Account<'_, '_, T> {
             .map(|kinetic| CylinderStorage { kinetic, potential: zero, cap_internal: zero, rod_internal: zero })
             .collect();
         for (effect, &(first, last)) in self.system.model().effects.iter().zip(self.system.parameter_ranges()) {
-            let stored = T::potential(effect.physics, effect.site, &self.parameters[first..last], situation);
+            let stored = T::hooks(effect.physics).potential(effect.site, &self.parameters[first..last], situation);
             if let (Some(potential), Site::Cylinder(index)) = (stored, effect.site) {
                 storage[index].potential += potential;
             }
@@ -149,7 +149,7 @@ impl<T: Number> Account<'_, '_, T> {
                 let parameters = &self.parameters[first..last];
                 // The torque of what has mass is its Coriolis torque, whose power is the change of the mass matrix.
                 let has_mass = rows.mass.iter().any(|entry| entry.value() != 0.0);
-                let has_weight = T::potential(effect.physics, effect.site, parameters, situation).is_some();
+                let has_weight = T::hooks(effect.physics).potential(effect.site, parameters, situation).is_some();
                 let has_spring = rows.cap_compliance.iter().chain(&rows.rod_compliance).any(|c| c.value() != 0.0)
                     || rows.pump_compliance.value() != 0.0;
                 let (mut mechanical, mut cap, mut rod) = (zero, zero, zero);
@@ -190,7 +190,7 @@ impl<T: Number> Account<'_, '_, T> {
             let effect = &self.system.model().effects[number];
             let (first, last) = self.system.parameter_ranges()[number];
             let Workspace { situation, rows, .. } = &self.workspace;
-            let potential = T::potential(effect.physics, effect.site, &self.parameters[first..last], situation);
+            let potential = T::hooks(effect.physics).potential(effect.site, &self.parameters[first..last], situation);
             kinetic_energies(situation, rows).fold(potential.unwrap_or(T::from(0.0)), |sum, part| sum + part)
         };
         let near = stored_at(now + INSTANT) - stored_at(now - INSTANT);

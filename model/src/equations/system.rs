@@ -106,8 +106,7 @@ impl<'m> System<'m> {
             workspace.rows.pump_flow = workspace.situation.pump_flow;
         }
         for (effect, &(first, last)) in self.model.effects.iter().zip(&self.parameter_ranges) {
-            T::contribute(
-                effect.physics,
+            T::hooks(effect.physics).contribute(
                 effect.site,
                 &parameters[first..last],
                 &workspace.situation,
@@ -169,7 +168,7 @@ impl<'m> System<'m> {
             let (first, last) = self.parameter_ranges[number];
             let piston = &mut situation.pistons[index];
             let course = inputs.orifice_course[index];
-            piston.spool = T::read(effect.physics, &parameters[first..last], piston.spool, course);
+            piston.spool = T::hooks(effect.physics).read(&parameters[first..last], piston.spool, course);
         }
         self.observe_valves(situation, parameters, state, rates);
     }
@@ -194,7 +193,7 @@ impl<'m> System<'m> {
             let own_rates = &mut rates[state_first..state_first + states];
             let piston = &mut situation.pistons[index];
             let [metering, bypass] =
-                T::spool(effect.physics, &parameters[first..last], own_states, own_rates, piston.spool);
+                T::hooks(effect.physics).spool(&parameters[first..last], own_states, own_rates, piston.spool);
             piston.bypass_closing += bypass - piston.spool;
             piston.spool = metering;
         }
@@ -217,9 +216,9 @@ impl<'m> System<'m> {
             {
                 let opening = situation.pistons[index].opening;
                 situation.pistons[index].opening =
-                    T::opening(effect.physics, own, opening, chambers.maximum_orifice_area);
+                    T::hooks(effect.physics).opening(own, opening, chambers.maximum_orifice_area);
             }
-            T::adjust(effect.physics, effect.site, own, situation);
+            T::hooks(effect.physics).adjust(effect.site, own, situation);
         }
     }
 
@@ -233,7 +232,7 @@ impl<'m> System<'m> {
     pub fn instruments<T: Number>(&self, parameters: &[T]) -> Instruments<T> {
         let mut instruments = Instruments::true_ones(self.model.machine.cylinders.len());
         for (effect, &(first, last)) in self.model.effects.iter().zip(&self.parameter_ranges) {
-            T::distort(effect.physics, effect.site, &parameters[first..last], &mut instruments);
+            T::hooks(effect.physics).distort(effect.site, &parameters[first..last], &mut instruments);
         }
         instruments
     }
