@@ -1,6 +1,6 @@
 //! A model: a machine plus a list of physical effects.
 
-use crate::effects::{self, ActsOn, Effect, ParameterCard, Site, UnknownEffect};
+use crate::effects::{self, ActsOn, Corner, Effect, Needs, ParameterCard, Site, UnknownEffect};
 use crate::machine::{Machine, Supply};
 
 /// A machine plus a list of physical effects with parameter values.
@@ -179,8 +179,16 @@ impl ModelEffect {
 
     /// Whether it is large enough to say anything about a machine.
     pub fn is_worth_a_name(&self) -> bool {
-        let values: Vec<f64> = self.parameters.iter().map(|parameter| parameter.value).collect();
-        self.physics.is_worth_a_name(&values)
+        self.physics.is_worth_a_name(&self.values())
+    }
+
+    /// The corner of its law that others can round, at its parameter values.
+    pub fn corner(&self) -> Option<Corner> {
+        self.physics.corner(&self.values())
+    }
+
+    fn values(&self) -> Vec<f64> {
+        self.parameters.iter().map(|parameter| parameter.value).collect()
     }
 
     /// Whether this is the effect of that name at that site.
@@ -207,11 +215,14 @@ fn why_not(physics: &dyn Effect, machine: &Machine, site: Site) -> Option<&'stat
     match (physics.card().acts_on, site) {
         (ActsOn::Cylinder | ActsOn::Valve | ActsOn::CylinderOrPumpLine, Site::Cylinder(index)) => {
             let Some(cylinder) = machine.cylinders.get(index) else { return Some("no such cylinder") };
-            let oil = cylinder.chambers.is_some();
-            // Friction of seals needs pressures only, which are measured where the motion is imposed.
-            let seals = cylinder.imposed_motion.is_some() && effects::needs_pressures_only(physics);
-            (effects::needs_chambers(physics) && !oil && !seals)
-                .then_some("it acts on oil, and this cylinder has no chambers")
+            let has_oil = cylinder.chambers.is_some();
+            let has_what_it_needs = match physics.card().needs {
+                Needs::Nothing => true,
+                // They are measured where the motion is imposed.
+                Needs::Pressures => has_oil || cylinder.imposed_motion.is_some(),
+                Needs::Oil => has_oil,
+            };
+            (!has_what_it_needs).then_some("it acts on oil, and this cylinder has no chambers")
         }
         (ActsOn::PumpLine | ActsOn::CylinderOrPumpLine, Site::PumpLine) => {
             (!pump_line).then_some("the machine has no pump line")
@@ -275,6 +286,11 @@ impl Model {
     /// The effect of this name at this site, where the model has it.
     pub fn effect(&self, name: &str, site: Site) -> Option<&ModelEffect> {
         self.effects.iter().find(|present| present.is(name, site))
+    }
+
+    /// Whether the model has an effect with this corner at this site, so that there is something to round.
+    pub fn has_corner(&self, corner: Corner, site: Site) -> bool {
+        self.effects.iter().any(|effect| effect.site == site && effect.corner() == Some(corner))
     }
 
     /// Sites of the machine where `physics` can act and is not yet, in order.

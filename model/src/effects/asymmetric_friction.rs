@@ -1,6 +1,6 @@
 //! Friction that differs by direction.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -13,6 +13,7 @@ pub struct AsymmetricFriction;
 static CARD: Card = Card {
     name: "asymmetric_friction",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Candidate,
     summary: "The friction level of extension differs from that of retraction: lip seals, a bent rod, a wiper that bites one way.",
     equation: "force -dFc max(s, 0), s = sgn(v) rounded (friction_reversal): dFc more against extension, nothing against retraction",
@@ -32,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e5,
     typical: 200.0,
     start: Start::At(&[0.0]),
+    prior: None,
 }];
 
 impl Physics for AsymmetricFriction {
@@ -41,6 +43,11 @@ impl Physics for AsymmetricFriction {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn corner(&self, parameters: &[f64]) -> Option<Corner> {
+        // A friction of zero has no corner.
+        parameters.first().is_some_and(|level| *level > 0.0).then_some(Corner::Friction)
     }
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {

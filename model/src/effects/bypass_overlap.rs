@@ -1,6 +1,6 @@
 //! A bypass that starts to close late.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -13,6 +13,7 @@ pub struct BypassOverlap;
 static CARD: Card = Card {
     name: "bypass_overlap",
     acts_on: ActsOn::PumpLine,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "The open centre stays fully open until the spool has travelled some way.",
     equation: "section of the bypass umax - max(0, |u| - o) in place of umax - |u|: travel past the edge counts",
@@ -32,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e-4,
     typical: 1e-5,
     start: Start::At(&[3e-6]),
+    prior: None,
 }];
 
 impl Physics for BypassOverlap {

@@ -1,5 +1,7 @@
 //! What is said about an effect: the fourth face.
 
+use super::Prior;
+
 /// Which part of the machine an effect belongs to; decides where it can be added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ActsOn {
@@ -13,6 +15,17 @@ pub enum ActsOn {
     CylinderOrPumpLine,
 }
 
+/// What an effect needs of the cylinder at which it acts, beyond a piston that moves. A pump line has all of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needs {
+    /// Nothing: a cylinder that is driven by a measured force can have it.
+    Nothing,
+    /// Pressures, but no flows: chambers, or an imposed motion with measured pressures.
+    Pressures,
+    /// Oil that flows: chambers.
+    Oil,
+}
+
 /// Where one instance of an effect sits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Site {
@@ -20,6 +33,15 @@ pub enum Site {
     Cylinder(usize),
     /// At the pump line.
     PumpLine,
+}
+
+/// A corner in a law, which the equations round and an effect of family [`Family::Rounding`] rounds otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Corner {
+    /// The sign of the velocity in the friction of a piston.
+    Friction,
+    /// The root of the pressure drop in the flow through the valve's edges.
+    OrificeFlow,
 }
 
 /// Whether the nominal model of \[A\] has the effect.
@@ -98,6 +120,8 @@ pub struct ParameterCard {
     pub typical: f64,
     /// Where a search begins.
     pub start: Start,
+    /// What is known of a nuisance parameter before a recording is read; `None` for a property of the machine.
+    pub prior: Option<Prior>,
 }
 
 /// What is said about an effect.
@@ -107,6 +131,8 @@ pub struct Card {
     pub name: &'static str,
     /// Where it acts.
     pub acts_on: ActsOn,
+    /// What a cylinder must have for it.
+    pub needs: Needs,
     /// Base or candidate.
     pub family: Family,
     /// One sentence.

@@ -1,6 +1,6 @@
 //! Oil boils instead of stretching.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct Cavitation;
 static CARD: Card = Card {
     name: "cavitation",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Oil,
     family: Family::Base,
     summary: "Pressure cannot fall below the vapour pressure: vapour makes up the missing flow.",
     equation: "Q+ = km max(0, pv - p+), likewise on the rod side",
@@ -30,6 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 0.0,
         typical: -9e4,
         start: Start::At(&[-9e4]),
+        prior: None,
     },
     ParameterCard {
         name: "make_up_gain",
@@ -41,6 +43,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-3,
         typical: 1e-7,
         start: Start::At(&[1e-7]),
+        prior: None,
     },
 ];
 

@@ -1,6 +1,6 @@
 //! Coulomb friction of the piston.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct CoulombFriction;
 static CARD: Card = Card {
     name: "coulomb_friction",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Loss,
     summary: "Friction force of constant size against the motion.",
     equation: "force -Fc sgn(v), the sign rounded (friction_reversal)",
@@ -30,6 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e6,
     typical: 200.0,
     start: Start::At(&[200.0]),
+    prior: None,
 }];
 
 impl Physics for CoulombFriction {
@@ -39,6 +41,11 @@ impl Physics for CoulombFriction {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn corner(&self, parameters: &[f64]) -> Option<Corner> {
+        // A friction of zero has no corner.
+        parameters.first().is_some_and(|level| *level > 0.0).then_some(Corner::Friction)
     }
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {

@@ -1,6 +1,6 @@
 //! A displacement sensor whose zero is not at mid-stroke.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::equations::{Channel, Instruments};
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct DisplacementSensorOffset;
 static CARD: Card = Card {
     name: "displacement_sensor_offset",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Candidate,
     summary: "The displacement sensor reads the same amount too much or too little at all times; the machine feels nothing of it.",
     equation: "reported s = s + o; joint angle and velocity are other instruments' or do not change",
@@ -29,6 +30,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 0.5,
     typical: 5e-3,
     start: Start::At(&[0.0]),
+    prior: None,
 }];
 
 impl Physics for DisplacementSensorOffset {

@@ -1,6 +1,6 @@
 //! Cushions at the ends of the stroke.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct EndCushion;
 static CARD: Card = Card {
     name: "end_cushion",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Candidate,
     summary: "Near either end the oil left in the chamber leaves through a throttle that brakes the piston.",
     equation: "within l of an end, moving towards it: force -c (depth/l) v; free on the way back (check valve)",
@@ -30,6 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 0.5,
         typical: 0.03,
         start: Start::At(&[0.04, 0.08, 0.16]),
+        prior: None,
     },
     ParameterCard {
         name: "cushion_damping",
@@ -41,6 +43,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e8,
         typical: 1e5,
         start: Start::At(&[2e4]),
+        prior: None,
     },
 ];
 

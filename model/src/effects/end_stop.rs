@@ -1,6 +1,6 @@
 //! The piston meets the ends of the cylinder.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct EndStop;
 static CARD: Card = Card {
     name: "end_stop",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Base,
     summary: "Stiff one-sided contact with damping outside the stroke.",
     equation: "outside |s| < L/2: force -k x (1 + c v) against the penetration x with speed of approach v, \
@@ -32,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e12,
         typical: 5e7,
         start: Start::At(&[5e7]),
+        prior: None,
     },
     ParameterCard {
         name: "end_stop_damping",
@@ -43,6 +45,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e3,
         typical: 5.0,
         start: Start::At(&[5.0]),
+        prior: None,
     },
 ];
 

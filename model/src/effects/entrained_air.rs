@@ -1,6 +1,6 @@
 //! Air bubbles in the oil.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct EntrainedAir;
 static CARD: Card = Card {
     name: "entrained_air",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "Undissolved air makes the oil soft at low pressure.",
     equation: "compliance V (alpha/n) p0^(1/n) / (p0 + p)^(1 + 1/n) on top of V/b, p0 = 101325 Pa, n = 1.4: bubbles \
@@ -30,6 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 0.5,
     typical: 0.02,
     start: Start::At(&[5e-3]),
+    prior: None,
 }];
 
 impl Physics for EntrainedAir {

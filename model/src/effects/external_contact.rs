@@ -1,6 +1,6 @@
 //! Something outside pushes for a while.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::equations::smooth::window;
 use crate::machine::{Machine, Mechanism};
@@ -14,6 +14,7 @@ pub struct ExternalContact;
 static CARD: Card = Card {
     name: "external_contact",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Candidate,
     summary: "A force from outside acts on the link in a part of the recording: ground, an obstacle, a person.",
     equation: "torque tau w(t), w = s(t - t0) s(t0 + d - t), s(x) = 1/(1 + exp(-2 x/e)), e = 30 ms; linear load: force F w(t)",
@@ -33,6 +34,7 @@ const START: ParameterCard = ParameterCard {
     maximum: 1e5,
     typical: 1.0,
     start: Start::WorstStretchBegin,
+    prior: None,
 };
 
 const DURATION: ParameterCard = ParameterCard {
@@ -45,6 +47,7 @@ const DURATION: ParameterCard = ParameterCard {
     maximum: 1e5,
     typical: 1.0,
     start: Start::WorstStretchDuration,
+    prior: None,
 };
 
 static LINK: &[ParameterCard] = &[
@@ -60,6 +63,7 @@ static LINK: &[ParameterCard] = &[
         maximum: 1e6,
         typical: 300.0,
         start: Start::At(&[300.0]),
+        prior: None,
     },
 ];
 
@@ -76,6 +80,7 @@ static LOAD: &[ParameterCard] = &[
         maximum: 1e6,
         typical: 100.0,
         start: Start::At(&[50.0]),
+        prior: None,
     },
 ];
 

@@ -1,6 +1,6 @@
 //! Leakage out of the chambers.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct ExternalLeakage;
 static CARD: Card = Card {
     name: "external_leakage",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Oil,
     family: Family::Loss,
     summary: "Laminar leakage from each chamber to the outside.",
     equation: "Q+ = -Ce+ p+, Q- = -Ce- p-",
@@ -30,6 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-6,
         typical: 3e-12,
         start: Start::At(&[3e-12]),
+        prior: None,
     },
     ParameterCard {
         name: "external_leakage_rod",
@@ -41,6 +43,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-6,
         typical: 3e-12,
         start: Start::At(&[3e-12]),
+        prior: None,
     },
 ];
 

@@ -1,6 +1,6 @@
 //! A constant part of the resisting force.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct ForceOffset;
 static CARD: Card = Card {
     name: "force_offset",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Base,
     summary: "Constant resisting force: offset of the force measurement or friction that differs by \
         direction.",
@@ -30,6 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e6,
     typical: 10.0,
     start: Start::At(&[0.0]),
+    prior: None,
 }];
 
 impl Physics for ForceOffset {

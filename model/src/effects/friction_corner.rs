@@ -1,6 +1,8 @@
 //! How sharp a corner friction turns.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{
+    ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
+};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -14,6 +16,7 @@ pub struct FrictionCorner;
 static CARD: Card = Card {
     name: "friction_corner",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Rounding,
     summary: "The friction of a piston turns round along another curve than the hyperbolic tangent of the equations.",
     equation: "sgn(v) = tanh(sinh(sqrt(q) x)/sqrt(q)), x = v/vr; q < 0: tanh(asinh(sqrt(-q) x)/sqrt(-q)), in all friction of the piston",
@@ -22,6 +25,10 @@ static CARD: Card = Card {
     experiment: "Slow reversals, and holds with the valve nearly closed.",
     energy: "None of its own: it rounds what other effects dissipate.",
 };
+
+/// Shapes reach from softer than `x / sqrt(1 + x^2)`, at minus one, to nearly straight, at four: one standard deviation. Below minus two it
+/// would be a friction that grows at working speeds. From about twelve, three deviations, no recording tells how straight.
+const PRIOR: Prior = Prior { spread: Spread::Fixed(4.0), scale: PriorScale::Linear };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     name: "corner_sharpness",
@@ -33,6 +40,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 20.0,
     typical: 1.0,
     start: Start::At(&[0.0]),
+    prior: Some(PRIOR),
 }];
 
 impl Physics for FrictionCorner {
@@ -48,8 +56,12 @@ impl Physics for FrictionCorner {
         false
     }
 
+    fn rounds(&self) -> Option<Corner> {
+        Some(Corner::Friction)
+    }
+
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
-        now.pistons[cylinder].corner_sharpness = Some(parameters[0]);
+        now.pistons[cylinder].rounding.corner_sharpness = Some(parameters[0]);
     }
 }

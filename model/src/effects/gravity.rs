@@ -1,6 +1,6 @@
 //! Weight of the links.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::equations::planar_chain::{absolute_angle, add_weight};
 use crate::machine::Machine;
@@ -12,6 +12,7 @@ pub struct Gravity;
 static CARD: Card = Card {
     name: "gravity",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Base,
     summary: "Weight of the link that the cylinder carries.",
     equation: "torque -W1 g sin q1 on the first joint, -W2 g sin(q1 + q2) on both; one link: -W2 g sin(q1const \
@@ -32,6 +33,7 @@ static LINK: &[ParameterCard] = &[ParameterCard {
     maximum: 1e6,
     typical: 200.0,
     start: Start::At(&[200.0]),
+    prior: None,
 }];
 
 static LOAD: &[ParameterCard] = &[ParameterCard {
@@ -44,6 +46,7 @@ static LOAD: &[ParameterCard] = &[ParameterCard {
     maximum: 1e6,
     typical: 1000.0,
     start: Start::At(&[1000.0]),
+    prior: None,
 }];
 
 impl Physics for Gravity {

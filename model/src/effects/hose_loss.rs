@@ -1,6 +1,6 @@
 //! Pressure loss in hoses and pipes.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct HoseLoss;
 static CARD: Card = Card {
     name: "hose_loss",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Candidate,
     summary: "Force against the motion that grows with the square of speed.",
     equation: "force -zeta v |v|",
@@ -29,6 +30,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e9,
     typical: 3e5,
     start: Start::At(&[1e5]),
+    prior: None,
 }];
 
 impl Physics for HoseLoss {

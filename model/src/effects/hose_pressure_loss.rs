@@ -1,6 +1,6 @@
 //! Pressure loss between valve and chamber.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -15,6 +15,7 @@ pub struct HosePressureLoss;
 static CARD: Card = Card {
     name: "hose_pressure_loss",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "The hose between valve and chamber takes pressure in proportion to the square of the flow, before the sensor at the chamber.",
     equation: "q = C a sqrt(dp) / sqrt(1 + R (C a)^2) for each metering edge, from dp = R q^2 + (q / (C a))^2",
@@ -34,6 +35,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e15,
     typical: 1e12,
     start: Start::At(&[1e11]),
+    prior: None,
 }];
 
 impl Physics for HosePressureLoss {

@@ -1,6 +1,6 @@
 //! Inertia of the links, or the mass of a linear load.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::equations::planar_chain::{add_composite_inertia, add_first_moment};
 use crate::machine::Machine;
@@ -12,6 +12,7 @@ pub struct Inertia;
 static CARD: Card = Card {
     name: "inertia",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Base,
     summary: "Inertia of the link that the cylinder moves.",
     equation: "mass matrix J(q) = [[J1 + 2 R12 cos q2, J2 + R12 cos q2], [., J2]] with the Coriolis torque \
@@ -33,6 +34,7 @@ static SINGLE: &[ParameterCard] = &[ParameterCard {
     maximum: 1e7,
     typical: 200.0,
     start: Start::At(&[200.0]),
+    prior: None,
 }];
 
 static FIRST_OF_TWO: &[ParameterCard] = &[
@@ -46,6 +48,7 @@ static FIRST_OF_TWO: &[ParameterCard] = &[
         maximum: 1e7,
         typical: 2000.0,
         start: Start::At(&[2000.0]),
+        prior: None,
     },
     ParameterCard {
         name: "coupling_inertia",
@@ -57,6 +60,7 @@ static FIRST_OF_TWO: &[ParameterCard] = &[
         maximum: 1e7,
         typical: 500.0,
         start: Start::At(&[500.0]),
+        prior: None,
     },
 ];
 
@@ -71,6 +75,7 @@ const CHAIN_INERTIA: ParameterCard = ParameterCard {
     maximum: 1e7,
     typical: 500.0,
     start: Start::At(&[500.0]),
+    prior: None,
 };
 
 static FIRST_OF_CHAIN: &[ParameterCard] = &[CHAIN_INERTIA];
@@ -89,6 +94,7 @@ static LATER_OF_CHAIN: &[ParameterCard] = &[
         maximum: 1e6,
         typical: 100.0,
         start: Start::At(&[100.0]),
+        prior: None,
     },
 ];
 
@@ -102,6 +108,7 @@ static LOAD: &[ParameterCard] = &[ParameterCard {
     maximum: 1e6,
     typical: 100.0,
     start: Start::At(&[100.0]),
+    prior: None,
 }];
 
 impl Physics for Inertia {

@@ -1,6 +1,6 @@
 //! Leakage past the piston seal.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct InternalLeakage;
 static CARD: Card = Card {
     name: "internal_leakage",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Oil,
     family: Family::Loss,
     summary: "Laminar leakage from one chamber to the other.",
     equation: "Q+ = -Ci (p+ - p-), Q- = +Ci (p+ - p-)",
@@ -29,6 +30,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e-6,
     typical: 1e-11,
     start: Start::At(&[1e-11]),
+    prior: None,
 }];
 
 impl Physics for InternalLeakage {

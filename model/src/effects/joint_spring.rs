@@ -1,6 +1,6 @@
 //! A spring at the joint.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::{Machine, Mechanism};
 
@@ -14,6 +14,7 @@ pub struct JointSpring;
 static CARD: Card = Card {
     name: "joint_spring",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Construction,
     summary: "A balance spring, a gas strut, or hoses and cables that are stiff: a torque on the joint that falls as its angle grows.",
     equation: "torque tau0 - k (q - qm), qm the angle at mid-stroke; linear load: force F0 - k s",
@@ -33,6 +34,7 @@ const STIFFNESS: ParameterCard = ParameterCard {
     maximum: 1e6,
     typical: 300.0,
     start: Start::At(&[0.0]),
+    prior: None,
 };
 
 const TORQUE: ParameterCard = ParameterCard {
@@ -45,6 +47,7 @@ const TORQUE: ParameterCard = ParameterCard {
     maximum: 1e6,
     typical: 100.0,
     start: Start::At(&[0.0]),
+    prior: None,
 };
 
 static LINK: &[ParameterCard] = &[STIFFNESS, TORQUE];

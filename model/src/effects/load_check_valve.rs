@@ -1,6 +1,6 @@
 //! Check valve between pump line and metering edge.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -13,6 +13,7 @@ pub struct LoadCheckValve;
 static CARD: Card = Card {
     name: "load_check_valve",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "No oil runs back from a chamber to the pump while the pump pressure is below the chamber's: the load does not sag as the valve opens.",
     equation: "flow from pump to chamber times (1 - c) while the pump is below the chamber; c = 1: tight",
@@ -32,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1.0,
     typical: 0.9,
     start: Start::At(&[0.5]),
+    prior: None,
 }];
 
 impl Physics for LoadCheckValve {

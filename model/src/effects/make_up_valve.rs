@@ -1,7 +1,7 @@
 //! Valves that let oil from the tank line into a chamber that is drawn empty.
 
 use super::cavitation::fill_below;
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -11,6 +11,7 @@ pub struct MakeUpValve;
 static CARD: Card = Card {
     name: "make_up_valve",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "A check valve lets oil from the tank line into a chamber that is drawn below its pressure: the load runs ahead without the chamber boiling.",
     equation: "Q+ = k max(0, pt - pm - p+), likewise on the rod side",
@@ -31,6 +32,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 2e6,
         typical: 2e4,
         start: Start::At(&[2e4, 1e5]),
+        prior: None,
     },
     ParameterCard {
         name: "make_up_valve_gain",
@@ -42,6 +44,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-6,
         typical: 3e-9,
         start: Start::At(&[3e-10]),
+        prior: None,
     },
 ];
 

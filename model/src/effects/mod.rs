@@ -10,6 +10,7 @@
 
 mod card;
 mod physics;
+mod prior;
 
 mod asymmetric_friction;
 mod bypass_overlap;
@@ -55,8 +56,9 @@ mod valve_lag;
 mod valve_leakage;
 mod viscous_damping;
 
-pub use card::{ActsOn, Card, Family, Kind, ParameterCard, Site, Start};
+pub use card::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Site, Start};
 pub use physics::{Effect, Hooks, Number, Physics};
+pub use prior::{Prior, PriorScale, RecordingScales, Spread};
 
 use crate::equations::Rows;
 use crate::scalar::Scalar;
@@ -141,30 +143,3 @@ pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| candidate.to_string())
 }
-
-/// Whether an effect acts on oil, so that a cylinder driven by a measured force cannot have it.
-pub fn needs_chambers(effect: &dyn Effect) -> bool {
-    let name = effect.card().name;
-    if WITHOUT_OIL.contains(&name) {
-        return false;
-    }
-    effect.card().acts_on != ActsOn::Cylinder || OIL_EFFECTS.contains(&name)
-}
-
-/// Whether an effect of oil needs pressures but no flows, so that measured pressures do.
-pub(crate) fn needs_pressures_only(effect: &dyn Effect) -> bool {
-    effect.card().name == "pressure_dependent_friction"
-}
-
-/// Effects that act on cylinders, but only on their oil.
-const OIL_EFFECTS: &[&str] = &[
-    "internal_leakage",
-    "external_leakage",
-    "entrained_air",
-    "cavitation",
-    "make_up_valve",
-    "pressure_dependent_friction",
-];
-
-/// Effects that act on cylinders and pump line alike, and on cylinders without oil too.
-const WITHOUT_OIL: &[&str] = &["sensor_delay"];

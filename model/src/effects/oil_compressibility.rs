@@ -1,6 +1,6 @@
 //! Compressibility of the oil, with the walls and hoses around it.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 use crate::machine::Supply;
@@ -11,6 +11,7 @@ pub struct OilCompressibility;
 static CARD: Card = Card {
     name: "oil_compressibility",
     acts_on: ActsOn::CylinderOrPumpLine,
+    needs: Needs::Oil,
     family: Family::Base,
     summary: "Oil springs: pressure rises with the oil squeezed in.",
     equation: "compliance V/b in V/b dp/dt = net flow; pump line Vp/bp",
@@ -30,6 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e11,
     typical: 1e9,
     start: Start::At(&[1e9]),
+    prior: None,
 }];
 
 impl Physics for OilCompressibility {
@@ -39,6 +41,10 @@ impl Physics for OilCompressibility {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn has_constant_compliance(&self) -> bool {
+        true
     }
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {

@@ -1,6 +1,6 @@
 //! Open-centre bypass from pump to tank.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::equations::smooth::{LAMINAR_PRESSURE, orifice_root};
 use crate::machine::Machine;
@@ -11,6 +11,7 @@ pub struct OpenCentreBypass;
 static CARD: Card = Card {
     name: "open_centre_bypass",
     acts_on: ActsOn::PumpLine,
+    needs: Needs::Oil,
     family: Family::Base,
     summary: "Pump flow that returns to tank through the open centre, closing as spools move.",
     equation: "pump line loses Cft phi(pp - pt) usum, usum = (sum_i (umax_i - |u_i|)^-2)^-1/2: sections in \
@@ -32,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1.0,
     typical: 1e-2,
     start: Start::At(&[1e-2]),
+    prior: None,
 }];
 
 impl Physics for OpenCentreBypass {

@@ -1,6 +1,6 @@
 //! A full opening that is not what was assumed.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -13,6 +13,7 @@ pub struct OpeningScale;
 static CARD: Card = Card {
     name: "opening_scale",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "The bypass closes sooner or later than recorded openings say: the full scale of the command or of the spool sensor is not what was assumed.",
     equation: "section of the bypass umax - (1 + k) |u| in place of umax - |u|; flow gains are those of the opening as recorded",
@@ -32,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 4.0,
     typical: 0.1,
     start: Start::At(&[0.0, -0.2]),
+    prior: None,
 }];
 
 /// Relative error of the full scale that good spool sensors have. A linkage worn by 1.6 mm looks like a scale that is 0.7 % off.

@@ -1,6 +1,6 @@
 //! Turbulent flow through the metering edges of the valve.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct OrificeFlow;
 static CARD: Card = Card {
     name: "orifice_flow",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Base,
     summary: "Flow through the open metering edges.",
     equation: "u > 0: Q+ = Cf+ u phi(pp - p+), Q- = -Cf- u phi(p- - pt), pump gives Q+; u < 0: Q+ = Cf+ u \
@@ -33,6 +34,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1.0,
         typical: 4e-3,
         start: Start::At(&[4e-3]),
+        prior: None,
     },
     ParameterCard {
         name: "flow_gain_rod",
@@ -44,6 +46,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1.0,
         typical: 4e-3,
         start: Start::At(&[4e-3]),
+        prior: None,
     },
 ];
 
@@ -54,6 +57,10 @@ impl Physics for OrificeFlow {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn corner(&self, _parameters: &[f64]) -> Option<Corner> {
+        Some(Corner::OrificeFlow)
     }
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {

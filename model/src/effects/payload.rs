@@ -1,6 +1,6 @@
 //! A mass that the link carries.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::equations::planar_chain::{absolute_angle, add_first_moment, add_inertia, add_weight};
 use crate::equations::smooth::window;
@@ -16,6 +16,7 @@ pub struct Payload;
 static CARD: Card = Card {
     name: "payload",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Candidate,
     summary: "Added mass at the tip, always or while it is carried: inertia and weight grow together, by mass times distance squared and mass times distance.",
     equation: "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; link of a chain: the same with the known lengths; linear load: M += m, Fg += m g i; m times w(t), w = s(t - t0) s(t0 + d - t), s(x) = 1/(1 + exp(-2 x/e)), e = 30 ms",
@@ -35,6 +36,7 @@ const MASS: ParameterCard = ParameterCard {
     maximum: 1e5,
     typical: 100.0,
     start: Start::At(&[20.0]),
+    prior: None,
 };
 
 const DISTANCE: ParameterCard = ParameterCard {
@@ -47,6 +49,7 @@ const DISTANCE: ParameterCard = ParameterCard {
     maximum: 20.0,
     typical: 1.5,
     start: Start::At(&[1.5]),
+    prior: None,
 };
 
 const START: ParameterCard = ParameterCard {
@@ -59,6 +62,7 @@ const START: ParameterCard = ParameterCard {
     maximum: FOREVER,
     typical: 5.0,
     start: Start::WorstStretchBegin,
+    prior: None,
 };
 
 const DURATION: ParameterCard = ParameterCard {
@@ -71,6 +75,7 @@ const DURATION: ParameterCard = ParameterCard {
     maximum: FOREVER,
     typical: 5.0,
     start: Start::WorstStretchDuration,
+    prior: None,
 };
 
 /// A time before every recording, s; later than that by more than a window takes to open.
@@ -94,6 +99,7 @@ static SECOND_OF_TWO: &[ParameterCard] = &[
         maximum: 20.0,
         typical: 2.5,
         start: Start::At(&[2.5]),
+        prior: None,
     },
     START,
     DURATION,
@@ -111,6 +117,7 @@ static LOAD: &[ParameterCard] = &[
         maximum: 1.0,
         typical: 0.5,
         start: Start::At(&[0.0]),
+        prior: None,
     },
     START,
     DURATION,

@@ -3,7 +3,7 @@
 //! To add a hook: write it with its default in [`Physics`], and its signature in the list of `hooks!`. Everything else follows from
 //! the list.
 
-use super::{Card, ParameterCard, Rows, Scalar, Site};
+use super::{Card, Corner, ParameterCard, Rows, Scalar, Site};
 use crate::equations::{Instruments, Situation};
 use crate::machine::Machine;
 use crate::scalar::Dual;
@@ -31,6 +31,21 @@ pub trait Physics: Sync {
     /// instrument has none, and no line in an energy balance.
     fn has_power(&self) -> bool {
         true
+    }
+
+    /// Whether what it adds to a compliance does not depend on pressure, so that the energy stored there is known without integrating.
+    fn has_constant_compliance(&self) -> bool {
+        false
+    }
+
+    /// What it rounds, for an effect that only rounds the corner of another effect's law.
+    fn rounds(&self) -> Option<Corner> {
+        None
+    }
+
+    /// The corner that its law has with these parameters, for others to round.
+    fn corner(&self, _parameters: &[f64]) -> Option<Corner> {
+        None
     }
 
     /// Number of states that it adds to the model.
@@ -122,6 +137,9 @@ hooks! {
         fn value_where_left_out(parameter: &str) -> Option<f64>;
         fn is_worth_a_name(parameters: &[f64]) -> bool;
         fn has_power() -> bool;
+        fn has_constant_compliance() -> bool;
+        fn rounds() -> Option<Corner>;
+        fn corner(parameters: &[f64]) -> Option<Corner>;
         fn states() -> usize;
         fn reads_course() -> bool;
     }

@@ -1,6 +1,6 @@
 //! Pressure compensator in front of the metering edges.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -14,6 +14,7 @@ pub struct PressureCompensation;
 static CARD: Card = Card {
     name: "pressure_compensation",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Construction,
     summary: "A compensator between pump and metering edge holds flow, not opening: the edge sees no more than the compensator's margin of pressure drop.",
     equation: "flow from the pump Cf u phi(x), x = d / (1 + (d/pm)^8)^(1/8) for a drop d > 0: the orifice law well below pm, Cf u sqrt(pm) well above; edges to tank keep the orifice law",
@@ -33,6 +34,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 5e6,
     typical: 1e6,
     start: Start::At(&[7e5, 2e6]),
+    prior: None,
 }];
 
 impl Physics for PressureCompensation {

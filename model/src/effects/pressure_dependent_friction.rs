@@ -1,6 +1,6 @@
 //! Friction of seals that pressure pushes against the wall.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct PressureDependentFriction;
 static CARD: Card = Card {
     name: "pressure_dependent_friction",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Pressures,
     family: Family::Candidate,
     summary: "Friction grows with the pressures in the chambers.",
     equation: "force -mu (max(0, p+) + max(0, p-)) sgn(v), the sign rounded (friction_reversal); a chamber under vacuum pushes no seal",
@@ -29,6 +30,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e-2,
     typical: 1e-4,
     start: Start::At(&[5e-5]),
+    prior: None,
 }];
 
 impl Physics for PressureDependentFriction {
@@ -38,6 +40,11 @@ impl Physics for PressureDependentFriction {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn corner(&self, parameters: &[f64]) -> Option<Corner> {
+        // A friction of zero has no corner.
+        parameters.first().is_some_and(|level| *level > 0.0).then_some(Corner::Friction)
     }
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {

@@ -1,6 +1,6 @@
 //! Pressure sensors that do not read zero at ambient pressure.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::equations::{Channel, Instruments};
 use crate::machine::Machine;
 
@@ -12,6 +12,7 @@ pub struct PressureSensorOffset;
 static CARD: Card = Card {
     name: "pressure_sensor_offset",
     acts_on: ActsOn::CylinderOrPumpLine,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "A pressure sensor reads the same amount too much or too little at all times; the machine feels nothing of it.",
     equation: "reported p = p + o, for cap side, rod side or pump",
@@ -32,6 +33,7 @@ static CYLINDER: &[ParameterCard] = &[
         maximum: 1e7,
         typical: 5e4,
         start: Start::At(&[0.0]),
+        prior: None,
     },
     ParameterCard {
         name: "pressure_offset_rod",
@@ -43,6 +45,7 @@ static CYLINDER: &[ParameterCard] = &[
         maximum: 1e7,
         typical: 5e4,
         start: Start::At(&[0.0]),
+        prior: None,
     },
 ];
 
@@ -56,6 +59,7 @@ static PUMP_LINE: &[ParameterCard] = &[ParameterCard {
     maximum: 1e7,
     typical: 5e4,
     start: Start::At(&[0.0]),
+    prior: None,
 }];
 
 impl Physics for PressureSensorOffset {

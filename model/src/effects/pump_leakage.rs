@@ -1,6 +1,6 @@
 //! Leakage inside the pump.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct PumpLeakage;
 static CARD: Card = Card {
     name: "pump_leakage",
     acts_on: ActsOn::PumpLine,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "The pump gives less flow the higher its pressure.",
     equation: "pump line loses kp pp",
@@ -29,6 +30,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e-8,
     typical: 1e-11,
     start: Start::At(&[1e-12]),
+    prior: None,
 }];
 
 impl Physics for PumpLeakage {

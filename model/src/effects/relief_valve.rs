@@ -1,6 +1,6 @@
 //! Relief valve of the pump line.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct ReliefValve;
 static CARD: Card = Card {
     name: "relief_valve",
     acts_on: ActsOn::PumpLine,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "Opens above its cracking pressure and returns flow to tank.",
     equation: "pump line loses k max(0, pp - pr)",
@@ -30,6 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e8,
         typical: 2e6,
         start: Start::PumpPressureQuantiles(&[0.97, 0.85]),
+        prior: None,
     },
     ParameterCard {
         name: "relief_gain",
@@ -41,6 +43,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-6,
         typical: 1e-9,
         start: Start::At(&[3e-10]),
+        prior: None,
     },
 ];
 

@@ -1,6 +1,6 @@
 //! Instruments that report late.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::equations::{Channel, Instruments};
 use crate::machine::Machine;
 
@@ -12,6 +12,7 @@ pub struct SensorDelay;
 static CARD: Card = Card {
     name: "sensor_delay",
     acts_on: ActsOn::CylinderOrPumpLine,
+    needs: Needs::Nothing,
     family: Family::Candidate,
     summary: "Readings arrive later than they are stamped: filters, converters and buses on the way; the machine feels nothing of it.",
     equation: "reported y(t) = y(t - T), one T for position (displacement, angle, velocity), one for the pressures",
@@ -31,6 +32,7 @@ const DISPLACEMENT_DELAY: ParameterCard = ParameterCard {
     maximum: 0.5,
     typical: 0.01,
     start: Start::At(&[5e-3]),
+    prior: None,
 };
 
 static CYLINDER: &[ParameterCard] = &[
@@ -45,6 +47,7 @@ static CYLINDER: &[ParameterCard] = &[
         maximum: 0.5,
         typical: 0.01,
         start: Start::At(&[5e-3]),
+        prior: None,
     },
 ];
 
@@ -60,6 +63,7 @@ static PUMP_LINE: &[ParameterCard] = &[ParameterCard {
     maximum: 0.5,
     typical: 0.01,
     start: Start::At(&[5e-3]),
+    prior: None,
 }];
 
 impl Physics for SensorDelay {

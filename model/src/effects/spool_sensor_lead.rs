@@ -1,6 +1,8 @@
 //! A spool sensor that is read earlier than the other instruments.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{
+    ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
+};
 use crate::machine::Machine;
 
 /// A spool sensor that is read earlier than the other instruments, by less than a sample.
@@ -18,6 +20,7 @@ pub struct SpoolSensorLead;
 static CARD: Card = Card {
     name: "spool_sensor_lead",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Recording,
     summary: "The spool's sensor is read a little earlier (or later) than the other instruments, or its opening is held between samples.",
     equation: "u(t) = reading(t) - T d(reading)/dt; where reading jumps, with its rate before t for T > 0 and after t for T < 0",
@@ -26,6 +29,13 @@ static CARD: Card = Card {
     experiment: "Steps and fast sines of the spool.",
     energy: "None: it acts on the instrument.",
 };
+
+/// An opening that is held between samples acts half a sample interval late, and converters take turns within one. So a third of the
+/// interval is one standard deviation, and 0.65 intervals are two. Where recordings are fast a controller's cycle of 1 ms is the
+/// longer time: 1.3 ms are three deviations of 0.4 ms. A spool sensor with a filter is late by up to 5 ms; recordings must show that
+/// against the prior.
+const PRIOR: Prior =
+    Prior { spread: Spread::OfSampleInterval { part: 1.0 / 3.0, at_least_s: 4e-4 }, scale: PriorScale::Linear };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     name: "spool_lead_time",
@@ -37,6 +47,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 2e-2,
     typical: 5e-4,
     start: Start::At(&[0.0]),
+    prior: Some(PRIOR),
 }];
 
 impl Physics for SpoolSensorLead {

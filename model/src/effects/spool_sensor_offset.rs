@@ -1,6 +1,8 @@
 //! A spool sensor that does not read zero where the valve closes.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{
+    ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
+};
 use crate::machine::Machine;
 
 /// A spool sensor that does not read zero where the valve closes, by a part of its noise or of its converter's step.
@@ -12,6 +14,7 @@ pub struct SpoolSensorOffset;
 static CARD: Card = Card {
     name: "spool_sensor_offset",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Recording,
     summary: "The spool's sensor reads a little more or less than the opening, everywhere the same.",
     equation: "u(t) = reading(t) - u0",
@@ -20,6 +23,9 @@ static CARD: Card = Card {
     experiment: "Hold a load with the valve closed, then meter slowly to both sides.",
     energy: "None: it acts on the instrument.",
 };
+
+/// An ordinary position transducer is good to 0.5 % of the largest opening, which are two standard deviations.
+const PRIOR: Prior = Prior { spread: Spread::OfLargestOpening { part: 2.5e-3 }, scale: PriorScale::Linear };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     name: "spool_offset",
@@ -31,6 +37,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e-5,
     typical: 1e-7,
     start: Start::At(&[0.0]),
+    prior: Some(PRIOR),
 }];
 
 impl Physics for SpoolSensorOffset {

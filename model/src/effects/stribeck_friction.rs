@@ -1,6 +1,6 @@
 //! Stribeck friction.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct StribeckFriction;
 static CARD: Card = Card {
     name: "stribeck_friction",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Candidate,
     summary: "Extra friction near standstill that fades as the seal floats up on its oil film.",
     equation: "force -Fs exp(-(v/vs)^2) sgn(v), the sign rounded (friction_reversal)",
@@ -30,6 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e6,
         typical: 500.0,
         start: Start::At(&[300.0]),
+        prior: None,
     },
     ParameterCard {
         name: "stribeck_speed",
@@ -41,6 +43,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 0.2,
         typical: 0.015,
         start: Start::At(&[6e-3, 2.5e-2]),
+        prior: None,
     },
 ];
 
@@ -59,6 +62,11 @@ impl Physics for StribeckFriction {
 
     fn is_worth_a_name(&self, parameters: &[f64]) -> bool {
         parameters.get(1).is_some_and(|speed| *speed >= SLOWEST)
+    }
+
+    fn corner(&self, parameters: &[f64]) -> Option<Corner> {
+        // A friction of zero has no corner.
+        parameters.first().is_some_and(|level| *level > 0.0).then_some(Corner::Friction)
     }
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {

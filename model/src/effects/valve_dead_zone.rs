@@ -1,6 +1,6 @@
 //! Overlap of the spool.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::machine::Machine;
 
 /// Overlap of the spool.
@@ -9,6 +9,7 @@ pub struct ValveDeadZone;
 static CARD: Card = Card {
     name: "valve_dead_zone",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "No flow until the spool has travelled past its overlap.",
     equation: "opening = u - dz+ for u > dz+, u + dz- for u < -dz-, else 0: the area past the edge counts",
@@ -29,6 +30,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-4,
         typical: 1e-5,
         start: Start::At(&[3e-6]),
+        prior: None,
     },
     ParameterCard {
         name: "dead_zone_negative",
@@ -40,6 +42,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-4,
         typical: 1e-5,
         start: Start::At(&[3e-6]),
+        prior: None,
     },
 ];
 

@@ -1,6 +1,6 @@
 //! A valve that meters differently in the two directions.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -13,6 +13,7 @@ pub struct ValveDirectionalGain;
 static CARD: Card = Card {
     name: "valve_directional_gain",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "The flow gains for u < 0 differ from those for u > 0, on the cap side and on the rod side.",
     equation: "u < 0: Q+ += dCf+ u phi(p+ - pt), Q- += -dCf- u phi(pp - p-), the pump gives the second; nothing for u > 0: gains of orifice_flow hold there",
@@ -33,6 +34,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 0.02,
         typical: 1e-3,
         start: Start::At(&[0.0]),
+        prior: None,
     },
     ParameterCard {
         name: "negative_gain_change_rod",
@@ -44,6 +46,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 0.02,
         typical: 1e-3,
         start: Start::At(&[0.0]),
+        prior: None,
     },
 ];
 

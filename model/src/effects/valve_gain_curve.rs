@@ -1,6 +1,6 @@
 //! An area law that bends.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::machine::Machine;
 
 /// An area law that bends.
@@ -12,6 +12,7 @@ pub struct ValveGainCurve;
 static CARD: Card = Card {
     name: "valve_gain_curve",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "The open area is not in proportion to spool travel: the gain depends on how far the valve is open.",
     equation: "opening = u (1 + c1 x + c2 x^2), x = |u|/umax",
@@ -32,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 5.0,
         typical: 0.3,
         start: Start::At(&[0.0]),
+        prior: None,
     },
     ParameterCard {
         name: "gain_curve_second",
@@ -43,6 +45,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 5.0,
         typical: 0.3,
         start: Start::At(&[0.0]),
+        prior: None,
     },
 ];
 

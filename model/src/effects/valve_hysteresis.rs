@@ -1,6 +1,6 @@
 //! Play between spool and opening.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::machine::{Machine, Supply};
 
 /// Play between spool and opening.
@@ -20,6 +20,7 @@ pub struct ValveHysteresis;
 static CARD: Card = Card {
     name: "valve_hysteresis",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "The opening follows the measured spool only after some play has been taken up: backlash, or friction in a pilot stage.",
     equation: "T dz/dt = y - z, y = z where |u - z| < w/2, else the edge u - w/2 or u + w/2; opening from y, bypass from u + c (y - u); T = 1 ms",
@@ -40,6 +41,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 5e-5,
         typical: 1e-5,
         start: Start::At(&[4e-6, 5e-7]),
+        prior: None,
     },
     ParameterCard {
         name: "bypass_share",
@@ -51,6 +53,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1.0,
         typical: 1.0,
         start: Start::At(&[0.5]),
+        prior: None,
     },
 ];
 

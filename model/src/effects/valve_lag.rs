@@ -1,6 +1,6 @@
 //! Lag of the spool.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
 use crate::machine::Machine;
 
 /// Lag of the spool.
@@ -14,6 +14,7 @@ pub struct ValveLag;
 static CARD: Card = Card {
     name: "valve_lag",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "The opening follows the command (or the measured spool) with a lag of first or second order, or late.",
     equation: "tau dz/dt = y - z, (r tau + T) d(y - z)/dt = u - y, opening from z; z/u = 1/(1 + tau s + (r tau + T) tau s^2), T = 0.2 ms",
@@ -34,6 +35,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 2.0,
         typical: 0.02,
         start: Start::At(&[0.01]),
+        prior: None,
     },
     ParameterCard {
         name: "second_order_share",
@@ -45,6 +47,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 2.0,
         typical: 0.3,
         start: Start::At(&[0.0]),
+        prior: None,
     },
 ];
 

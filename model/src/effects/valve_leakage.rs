@@ -1,6 +1,6 @@
 //! Leakage across the lands of the spool.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct ValveLeakage;
 static CARD: Card = Card {
     name: "valve_leakage",
     acts_on: ActsOn::Valve,
+    needs: Needs::Oil,
     family: Family::Candidate,
     summary: "Laminar leakage between pump, chambers and tank across the spool's lands.",
     equation: "Q+ = Cpa (pp - p+) - Cat (p+ - pt), Q- = Cpb (pp - p-) - Cbt (p- - pt); the pump gives the \
@@ -32,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-8,
         typical: 2e-11,
         start: Start::At(&[2e-12]),
+        prior: None,
     },
     ParameterCard {
         name: "valve_leakage_cap_tank",
@@ -43,6 +45,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-8,
         typical: 2e-11,
         start: Start::At(&[2e-12]),
+        prior: None,
     },
     ParameterCard {
         name: "valve_leakage_pump_rod",
@@ -54,6 +57,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-8,
         typical: 2e-11,
         start: Start::At(&[2e-12]),
+        prior: None,
     },
     ParameterCard {
         name: "valve_leakage_rod_tank",
@@ -65,6 +69,7 @@ static PARAMETERS: &[ParameterCard] = &[
         maximum: 1e-8,
         typical: 2e-11,
         start: Start::At(&[2e-12]),
+        prior: None,
     },
 ];
 

@@ -1,6 +1,6 @@
 //! Viscous damping of the piston.
 
-use super::{ActsOn, Card, Family, Kind, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -10,6 +10,7 @@ pub struct ViscousDamping;
 static CARD: Card = Card {
     name: "viscous_damping",
     acts_on: ActsOn::Cylinder,
+    needs: Needs::Nothing,
     family: Family::Loss,
     summary: "Friction force that grows with speed.",
     equation: "force -Fd v",
@@ -29,6 +30,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     maximum: 1e7,
     typical: 1e4,
     start: Start::At(&[1e4]),
+    prior: None,
 }];
 
 impl Physics for ViscousDamping {

@@ -111,7 +111,7 @@ impl<T: Number> Account<'_, '_, T> {
             }
         }
         let constant =
-            springs.iter().all(|&number| self.system.model().effects[number].name() == "oil_compressibility");
+            springs.iter().all(|&number| self.system.model().effects[number].physics.has_constant_compliance());
         let mut compressibility = |pressure: T| {
             oil.set_pressure(&mut self.workspace.situation, pressure);
             springs.iter().fold(T::from(0.0), |sum, &number| {

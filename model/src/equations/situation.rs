@@ -1,6 +1,7 @@
 //! Everything an effect may look at.
 
-use super::smooth::{LAMINAR_PRESSURE, SLIP_SPEED, at_most, orifice_root, rounded_sign, sign_with_corner};
+use super::Rounding;
+use super::smooth::at_most;
 use crate::machine::{Chambers, Machine};
 use crate::scalar::Scalar;
 
@@ -37,12 +38,8 @@ pub struct Piston<T> {
     pub compensator_margin: Option<T>,
     /// Pressure loss per square of the flow in each hose between valve and chamber, Pa s²/m⁶; `None` without.
     pub hose_resistance: Option<T>,
-    /// Speed over which friction turns round, m/s.
-    pub reversal_speed: T,
-    /// How sharp a corner it turns ([`sign_with_corner`]); `None` for the hyperbolic tangent's.
-    pub corner_sharpness: Option<T>,
-    /// Pressure drop below which the flow of the valve's edges is laminar, Pa.
-    pub transition_pressure: T,
+    /// How the corners of friction and of flow are rounded.
+    pub rounding: Rounding<T>,
     /// Force that drives a cylinder without chambers, N: measured on the rod, and with the pressures' where the motion is
     /// imposed.
     pub rod_force: T,
@@ -51,8 +48,7 @@ pub struct Piston<T> {
 impl<T: Scalar> Piston<T> {
     /// `sgn(v)`, as far as friction knows it.
     pub fn direction(&self) -> T {
-        let ratio = self.velocity / self.reversal_speed;
-        self.corner_sharpness.map_or_else(|| rounded_sign(ratio), |sharpness| sign_with_corner(ratio, sharpness))
+        self.rounding.sign(self.velocity)
     }
 
     /// Gain of an edge (m³/(s sqrt(Pa))) in series with its hose.
@@ -62,7 +58,7 @@ impl<T: Scalar> Piston<T> {
 
     /// `phi` of a pressure drop (Pa) over one of the valve's edges.
     pub fn root(&self, pressure_drop: T) -> T {
-        orifice_root(pressure_drop, self.transition_pressure)
+        self.rounding.root(pressure_drop)
     }
 
     /// `phi` of the pressure drop (Pa) from pump to chamber over a metering edge, as far as a compensator leaves it and flow
@@ -110,9 +106,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             backflow: T::from(1.0),
             compensator_margin: None,
             hose_resistance: None,
-            reversal_speed: T::from(SLIP_SPEED),
-            corner_sharpness: None,
-            transition_pressure: T::from(LAMINAR_PRESSURE),
+            rounding: Rounding::of_the_equations(),
             rod_force: zero,
         };
         Situation {

@@ -1,7 +1,6 @@
 //! The equations of motion of a model, for any number type.
 
-use super::smooth::{LAMINAR_PRESSURE, SLIP_SPEED};
-use super::{Inputs, Instruments, Layout, Rows, Situation};
+use super::{Inputs, Instruments, Layout, Rounding, Rows, Situation};
 use crate::Model;
 use crate::effects::{ActsOn, Family, Number, Site};
 use crate::machine::Supply;
@@ -203,9 +202,7 @@ impl<'m> System<'m> {
             piston.backflow = T::from(1.0);
             piston.compensator_margin = None;
             piston.hose_resistance = None;
-            piston.reversal_speed = T::from(SLIP_SPEED);
-            piston.corner_sharpness = None;
-            piston.transition_pressure = T::from(LAMINAR_PRESSURE);
+            piston.rounding = Rounding::of_the_equations();
         }
         for &number in &self.adjusting {
             let effect = &self.model.effects[number];

@@ -1,0 +1,71 @@
+//! What is known of a nuisance parameter before a recording is read.
+
+/// A normal distribution of a nuisance parameter about the value at which its effect changes nothing: its first start value.
+///
+/// A nuisance parameter says how a recording was made or how the equations round a corner. It is estimated with every model, and what
+/// is known of it beforehand keeps it from standing in for a property of the machine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prior {
+    /// One standard deviation.
+    pub spread: Spread,
+    /// On which scale the distribution is normal.
+    pub scale: PriorScale,
+}
+
+/// On which scale a [`Prior`] is normal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PriorScale {
+    /// The parameter itself; the spread is in its unit.
+    Linear,
+    /// The logarithm of a parameter above zero; the spread is a factor above one.
+    Logarithmic,
+}
+
+/// One standard deviation of a [`Prior`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spread {
+    /// The same for every recording: in the parameter's unit, or a factor on the logarithmic scale.
+    Fixed(f64),
+    /// A part of the longest sample interval, and at least so many seconds.
+    OfSampleInterval {
+        /// Part of the sample interval, a pure number.
+        part: f64,
+        /// Least spread, s.
+        at_least_s: f64,
+    },
+    /// A part of the largest opening that the recordings show at the effect's site.
+    OfLargestOpening {
+        /// Part of the opening, a pure number.
+        part: f64,
+    },
+}
+
+/// What spreads are taken from, as the recordings of a fit have it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RecordingScales {
+    /// Longest sample interval of the recordings, s.
+    pub sample_interval_s: f64,
+    /// Largest opening at the effect's site, without its sign, m².
+    pub largest_opening_m2: f64,
+}
+
+impl Prior {
+    /// One standard deviation for recordings of these scales: in the parameter's unit, or a factor on the logarithmic scale.
+    pub fn standard_deviation(&self, scales: &RecordingScales) -> f64 {
+        match self.spread {
+            Spread::Fixed(spread) => spread,
+            Spread::OfSampleInterval { part, at_least_s } => (part * scales.sample_interval_s).max(at_least_s),
+            Spread::OfLargestOpening { part } => part * scales.largest_opening_m2,
+        }
+    }
+
+    /// How many standard deviations `value` is above `centre`, the value at which the effect changes nothing. On the logarithmic
+    /// scale both are above zero.
+    pub fn standardised(&self, value: f64, centre: f64, scales: &RecordingScales) -> f64 {
+        let deviation = self.standard_deviation(scales);
+        match self.scale {
+            PriorScale::Linear => (value - centre) / deviation,
+            PriorScale::Logarithmic => (value / centre).ln() / deviation.ln(),
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! How widely the corners of the physics are rounded.
+
+use super::smooth::{LAMINAR_PRESSURE, SLIP_SPEED, orifice_root, rounded_sign, sign_with_corner};
+use crate::scalar::Scalar;
+
+/// Widths and shapes of the corners at one cylinder. Effects that round otherwise than the equations set them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rounding<T> {
+    /// Regularisation velocity of friction, m/s.
+    pub reversal_speed: T,
+    /// Sharpness of friction's sign function ([`sign_with_corner`]); `None` for the hyperbolic tangent.
+    pub corner_sharpness: Option<T>,
+    /// Pressure drop below which the flow of the valve's edges is laminar, Pa.
+    pub transition_pressure: T,
+}
+
+impl<T: Scalar> Rounding<T> {
+    /// The convention of the equations, where no effect rounds otherwise.
+    pub fn of_the_equations() -> Self {
+        Rounding {
+            reversal_speed: T::from(SLIP_SPEED),
+            corner_sharpness: None,
+            transition_pressure: T::from(LAMINAR_PRESSURE),
+        }
+    }
+
+    /// `sgn(v)` of a velocity in m/s.
+    pub fn sign(&self, velocity: T) -> T {
+        let ratio = velocity / self.reversal_speed;
+        self.corner_sharpness.map_or_else(|| rounded_sign(ratio), |sharpness| sign_with_corner(ratio, sharpness))
+    }
+
+    /// `phi` of a pressure drop in Pa.
+    pub fn root(&self, pressure_drop: T) -> T {
+        orifice_root(pressure_drop, self.transition_pressure)
+    }
+}
