@@ -159,7 +159,7 @@ fn shown_by(model: &Model, families: &[Family], recordings: &[&Recording]) -> Ve
             let name = &model.machine.cylinders[index].name;
             recording.cylinder(name).is_ok_and(|signals| is_measured(&signals.orifice_area))
         }),
-        Site::PumpLine => false,
+        Site::PumpLine | Site::Machine => false,
     };
     CATALOGUE
         .iter()

@@ -136,6 +136,7 @@ fn label((name, site, _): &Hidden) -> String {
     let place = match site {
         Site::Cylinder(index) => ["boom", "arm"][*index],
         Site::PumpLine => "pump",
+        Site::Machine => "machine",
     };
     format!("{name}@{place}")
 }

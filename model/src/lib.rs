@@ -18,4 +18,6 @@ pub mod recording;
 pub mod scalar;
 pub mod simulation;
 
-pub use model::{HistoryEntry, Model, ModelEffect, ModelError, Parameter, SignalError, addition_name, site_name};
+pub use model::{
+    HistoryEntry, Model, ModelEffect, ModelError, Parameter, SignalError, addition_name, site_name, site_named,
+};

@@ -197,11 +197,30 @@ impl ModelEffect {
     }
 }
 
-/// Name of a site: the cylinder's, or "pump".
+/// Name of the pump line as a place of effects.
+const PUMP: &str = "pump";
+
+/// Name of the whole machine as a place of effects.
+const MACHINE: &str = "machine";
+
+/// Names of places that no cylinder can have.
+pub(crate) const PLACES_BESIDE_CYLINDERS: [&str; 2] = [PUMP, MACHINE];
+
+/// Name of a site: the cylinder's, "pump" or "machine".
 pub fn site_name(machine: &Machine, site: Site) -> &str {
     match site {
         Site::Cylinder(index) => machine.cylinders.get(index).map_or("?", |cylinder| cylinder.name.as_str()),
-        Site::PumpLine => "pump",
+        Site::PumpLine => PUMP,
+        Site::Machine => MACHINE,
+    }
+}
+
+/// The site of this name, as [`site_name`] writes it; `None` where the machine has no such place.
+pub fn site_named(machine: &Machine, name: &str) -> Option<Site> {
+    match name {
+        PUMP => Some(Site::PumpLine),
+        MACHINE => Some(Site::Machine),
+        cylinder => machine.cylinder_index(cylinder).map(Site::Cylinder),
     }
 }
 
@@ -211,12 +230,14 @@ pub fn addition_name(physics: &dyn Effect, place: &str) -> String {
 }
 
 fn why_not(physics: &dyn Effect, machine: &Machine, site: Site) -> Option<&'static str> {
+    let card = physics.card();
     let pump_line = matches!(machine.supply, Supply::PumpLine(_));
-    match (physics.card().acts_on, site) {
-        (ActsOn::Cylinder | ActsOn::Valve | ActsOn::CylinderOrPumpLine, Site::Cylinder(index)) => {
+    match (card.acts_on, site) {
+        (ActsOn::PumpLine, Site::Cylinder(_)) => Some("it acts on the pump line; leave out the cylinder or say @pump"),
+        (_, Site::Cylinder(index)) => {
             let Some(cylinder) = machine.cylinders.get(index) else { return Some("no such cylinder") };
             let has_oil = cylinder.chambers.is_some();
-            let has_what_it_needs = match physics.card().needs {
+            let has_what_it_needs = match card.needs {
                 Needs::Nothing => true,
                 // They are measured where the motion is imposed.
                 Needs::Pressures => has_oil || cylinder.imposed_motion.is_some(),
@@ -224,11 +245,15 @@ fn why_not(physics: &dyn Effect, machine: &Machine, site: Site) -> Option<&'stat
             };
             (!has_what_it_needs).then_some("it acts on oil, and this cylinder has no chambers")
         }
-        (ActsOn::PumpLine | ActsOn::CylinderOrPumpLine, Site::PumpLine) => {
+        (ActsOn::PumpLine | ActsOn::CylinderOrPumpLine | ActsOn::Instruments, Site::PumpLine) => {
             (!pump_line).then_some("the machine has no pump line")
         }
-        (ActsOn::PumpLine, Site::Cylinder(_)) => Some("it acts on the pump line; leave out the cylinder or say @pump"),
-        (_, Site::PumpLine) => Some("it acts on a cylinder; say which, as in EFFECT@arm"),
+        (ActsOn::Cylinder | ActsOn::Valve, Site::PumpLine) => {
+            Some("it acts on a cylinder; say which, as in EFFECT@arm")
+        }
+        (ActsOn::Instruments, Site::Machine) => None,
+        (ActsOn::PumpLine, Site::Machine) => Some("it acts on the pump line; say EFFECT@pump"),
+        (_, Site::Machine) => Some("it acts on one place at a time; say which, as in EFFECT@arm"),
     }
 }
 
@@ -293,13 +318,21 @@ impl Model {
         self.effects.iter().any(|effect| effect.site == site && effect.corner() == Some(corner))
     }
 
-    /// Sites of the machine where `physics` can act and is not yet, in order.
+    /// Sites of the machine where `physics` can act and is not yet: cylinders in order, the pump line, the whole machine.
+    ///
+    /// An effect that acts everywhere at once is at every place. So the whole machine is free only where the effect is at no place, and
+    /// no place is free where it is on the whole machine. A machine with one place is that place, and is not offered twice.
     pub fn free_sites(&self, physics: &'static dyn Effect) -> Vec<Site> {
-        (0..self.machine.cylinders.len())
-            .map(Site::Cylinder)
-            .chain([Site::PumpLine])
-            .filter(|&site| why_not(physics, &self.machine, site).is_none() && !self.has(physics.card().name, site))
-            .collect()
+        let name = physics.card().name;
+        if self.has(name, Site::Machine) {
+            return Vec::new();
+        }
+        let can_act = |site: &Site| why_not(physics, &self.machine, *site).is_none();
+        let is_free = |site: &Site| !self.has(name, *site);
+        let places = (0..self.machine.cylinders.len()).map(Site::Cylinder).chain([Site::PumpLine]);
+        let places: Vec<Site> = places.filter(can_act).collect();
+        let everywhere = (places.len() > 1 && places.iter().all(is_free)).then_some(Site::Machine).filter(can_act);
+        places.into_iter().filter(is_free).chain(everywhere).collect()
     }
 
     /// A copy of the model with one more effect at its start values.
@@ -319,7 +352,8 @@ impl Model {
         Ok(model)
     }
 
-    /// Sites named by a person: `EFFECT` (everywhere it can act) or `EFFECT@CYLINDER`, `EFFECT@pump`.
+    /// Sites named by a person: `EFFECT` (at each place where it can act), `EFFECT@CYLINDER`, `EFFECT@pump`, or `EFFECT@machine` (one
+    /// effect on all instruments).
     ///
     /// # Errors
     /// [`ModelError`] when effect or site do not exist or do not fit.
@@ -333,21 +367,21 @@ impl Model {
             reason,
         };
         let Some(place) = place else {
-            let sites = self.free_sites(physics);
+            // Each place by itself covers the whole machine already.
+            let mut sites = self.free_sites(physics);
+            sites.retain(|site| *site != Site::Machine);
             if sites.is_empty() {
                 return Err(wrong_site("any place", "it is there already, or nothing it could act on".into()));
             }
             return Ok(sites.into_iter().map(|site| (physics, site)).collect());
         };
-        let site = if place == "pump" {
-            Site::PumpLine
-        } else {
-            let index = self.machine.cylinder_index(place).ok_or_else(|| {
-                let names: Vec<&str> = self.machine.cylinders.iter().map(|c| c.name.as_str()).collect();
-                wrong_site(place, format!("the machine's cylinders are {}", names.join(", ")))
-            })?;
-            Site::Cylinder(index)
-        };
+        let site = site_named(&self.machine, place).ok_or_else(|| {
+            let names: Vec<&str> = self.machine.cylinders.iter().map(|c| c.name.as_str()).collect();
+            wrong_site(
+                place,
+                format!("the machine's cylinders are {}; other places are pump and machine", names.join(", ")),
+            )
+        })?;
         Ok(vec![(physics, site)])
     }
 }

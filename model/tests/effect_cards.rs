@@ -210,3 +210,33 @@ fn an_imposed_motion_can_have_what_needs_pressures() {
     assert_eq!([needs("coulomb_friction"), needs("sensor_delay")], [Needs::Nothing; 2]);
     assert_eq!([needs("orifice_flow"), needs("cavitation"), needs("pressure_sensor_offset")], [Needs::Oil; 3]);
 }
+
+#[test]
+fn one_effect_can_act_on_the_whole_machine() {
+    let delay = find("sensor_delay").unwrap();
+    let arm = &common::machines()[0];
+    assert_eq!(arm.free_sites(delay), [Site::Cylinder(0), Site::PumpLine, Site::Machine]);
+    // Each place by itself covers the machine already.
+    assert_eq!(arm.parse_addition("sensor_delay").unwrap().len(), 2);
+    let [(physics, site)] = arm.parse_addition("sensor_delay@machine").unwrap()[..] else { panic!("one addition") };
+    let late = arm.with_effect(physics, site).unwrap();
+    let names = late.parameter_names();
+    assert_eq!(names[names.len() - 2..], ["machine.displacement_delay", "machine.pressure_delay"]);
+    assert!(late.free_sites(delay).is_empty(), "every place is late already");
+    let one_place = arm.with_effect(delay, Site::Cylinder(0)).unwrap();
+    assert_eq!(one_place.free_sites(delay), [Site::PumpLine]);
+
+    // A load driven by a measured force is one place, and has no pressures.
+    let load = excavator_model::document::built_in("emps").unwrap();
+    assert_eq!(load.free_sites(delay), [Site::Cylinder(0)]);
+    assert_eq!(load.with_effect(delay, Site::Machine).unwrap().effects.last().unwrap().parameters.len(), 1);
+
+    for name in ["coulomb_friction", "valve_lag", "pump_leakage", "pressure_sensor_offset"] {
+        let effect = find(name).unwrap();
+        assert!(!arm.free_sites(effect).contains(&Site::Machine), "{name}");
+        let error = arm.with_effect(effect, Site::Machine).unwrap_err().to_string();
+        assert!(error.contains("\"machine\"") && error.contains("EFFECT@"), "{error}");
+    }
+    let error = arm.parse_addition("sensor_delay@tower").unwrap_err().to_string();
+    assert!(error.contains("pump and machine"), "{error}");
+}

@@ -87,7 +87,7 @@ pub(super) fn cylinders(model: &Model, sites: &[Option<Site>]) -> Vec<usize> {
     for site in sites {
         match site {
             Some(Site::Cylinder(cylinder)) => wanted.push(*cylinder),
-            Some(Site::PumpLine) => return all,
+            Some(Site::PumpLine | Site::Machine) => return all,
             None => {}
         }
     }

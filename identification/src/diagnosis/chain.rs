@@ -91,7 +91,7 @@ impl Chains<'_> {
         let least = EVERYWHERE * accepted.first().map_or(0.0, |first| first.evidence.gain);
         let is_shared = |one: &Candidate| {
             // A pump pressure that is late may gain nothing before late pressures at the cylinder are there.
-            one.physics.card().acts_on == ActsOn::CylinderOrPumpLine
+            matches!(one.physics.card().acts_on, ActsOn::CylinderOrPumpLine | ActsOn::Instruments)
                 || accepted.iter().any(|other| other.name() == one.name() && other.place != one.place)
         };
         let is_in_chain = |name: &str| chain.iter().any(|link| link.name() == name);

@@ -11,6 +11,7 @@ pub(super) fn spoken(name: &str) -> String {
 pub(super) fn effect_at(card: &Card, place: &str) -> String {
     let place = match (place, card.acts_on) {
         ("pump", _) => "the pump line".to_string(),
+        ("machine", _) => "the whole machine".to_string(),
         (cylinder, ActsOn::Valve) => format!("the {cylinder} valve section"),
         (cylinder, _) => format!("the {cylinder} cylinder"),
     };

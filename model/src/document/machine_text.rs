@@ -7,6 +7,7 @@ use super::quantity::{Must, Quantity};
 use crate::machine::{
     Chambers, Cylinder, ImposedMotion, Linkage, Machine, Mechanism, PressureSource, PumpLine, Supply,
 };
+use crate::model::PLACES_BESIDE_CYLINDERS;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -124,7 +125,8 @@ impl MachineText {
             ));
         }
         for (index, cylinder) in cylinders.iter().enumerate() {
-            if cylinder.name == "pump" || cylinders[..index].iter().any(|other| other.name == cylinder.name) {
+            let is_reserved = PLACES_BESIDE_CYLINDERS.contains(&cylinder.name.as_str());
+            if is_reserved || cylinders[..index].iter().any(|other| other.name == cylinder.name) {
                 return Err(inconsistent(format!("cylinder name \"{}\" is taken; names are unique", cylinder.name)));
             }
         }

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::DocumentError;
 use super::machine_text::MachineText;
-use crate::effects::{self, Kind, ParameterCard, Site};
-use crate::model::site_name;
+use crate::effects::{self, Kind, ParameterCard};
+use crate::model::{site_name, site_named};
 use crate::{HistoryEntry, Model, ModelEffect};
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,7 +24,7 @@ struct ModelText {
 #[serde(deny_unknown_fields)]
 struct EffectText {
     effect: String,
-    /// A cylinder's name, or "pump".
+    /// A cylinder's name, "pump" or "machine".
     at: String,
     #[serde(default)]
     parameters: BTreeMap<String, ParameterText>,
@@ -59,14 +59,12 @@ pub fn parse(name: &str, text: &str) -> Result<Model, DocumentError> {
     for effect in &parsed.effects {
         let inconsistent = |reason: String| DocumentError::Inconsistent { name: name.to_string(), reason };
         let physics = effects::find(&effect.effect).map_err(|error| inconsistent(error.to_string()))?;
-        let site = if effect.at == "pump" {
-            Site::PumpLine
-        } else {
-            let index = model.machine.cylinder_index(&effect.at).ok_or_else(|| {
-                inconsistent(format!("effect {} is at \"{}\", which is no cylinder", effect.effect, effect.at))
-            })?;
-            Site::Cylinder(index)
-        };
+        let site = site_named(&model.machine, &effect.at).ok_or_else(|| {
+            inconsistent(format!(
+                "effect {} is at \"{}\", which is no cylinder, pump or machine",
+                effect.effect, effect.at
+            ))
+        })?;
         model = model.with_effect(physics, site).map_err(|error| inconsistent(error.to_string()))?;
         if let Some(added) = model.effects.last_mut() {
             fill_parameters(name, effect, added)?;

@@ -13,6 +13,8 @@ pub enum ActsOn {
     PumpLine,
     /// Cylinders with chambers and the pump line alike.
     CylinderOrPumpLine,
+    /// Instruments: those of a cylinder, that of the pump line, or all of the machine at once.
+    Instruments,
 }
 
 /// What an effect needs of the cylinder at which it acts, beyond a piston that moves. A pump line has all of it.
@@ -33,6 +35,8 @@ pub enum Site {
     Cylinder(usize),
     /// At the pump line.
     PumpLine,
+    /// Everywhere at once: one effect with one set of parameters for all cylinders and the pump line.
+    Machine,
 }
 
 /// A corner in a law, which the equations round and an effect of family [`Family::Rounding`] rounds otherwise.

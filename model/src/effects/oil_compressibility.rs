@@ -59,6 +59,7 @@ impl Physics for OilCompressibility {
                     rows.pump_compliance += parameters[0].recip() * line.volume;
                 }
             }
+            Site::Machine => {}
         }
     }
 }

@@ -71,6 +71,7 @@ impl Physics for PressureSensorOffset {
         match site {
             Site::Cylinder(_) => CYLINDER,
             Site::PumpLine => PUMP_LINE,
+            Site::Machine => &[],
         }
     }
 
@@ -85,6 +86,7 @@ impl Physics for PressureSensorOffset {
                 instruments.of_mut(Channel::RodPressure(cylinder)).offset += parameters[1];
             }
             Site::PumpLine => instruments.of_mut(Channel::PumpPressure).offset += parameters[0],
+            Site::Machine => {}
         }
     }
 }

@@ -11,11 +11,11 @@ pub struct SensorDelay;
 
 static CARD: Card = Card {
     name: "sensor_delay",
-    acts_on: ActsOn::CylinderOrPumpLine,
+    acts_on: ActsOn::Instruments,
     needs: Needs::Nothing,
     family: Family::Candidate,
     summary: "Readings arrive later than they are stamped: filters, converters and buses on the way; the machine feels nothing of it.",
-    equation: "reported y(t) = y(t - T), one T for position (displacement, angle, velocity), one for the pressures",
+    equation: "reported y(t) = y(t - T), one T for position (displacement, angle, velocity), one for the pressures: of a cylinder, of the pump line, or of the whole machine",
     source: "practice (group delay of filters, cycle time of field buses)",
     shows: "Error in proportion to the rate of the signal, by the same time at all frequencies, in the late signals only: against valve_lag, pump pressure is not late.",
     experiment: "Sines of two frequencies: phase that grows in proportion to frequency. Knock on the boom: all sensors should see it at once.",
@@ -35,36 +35,32 @@ const DISPLACEMENT_DELAY: ParameterCard = ParameterCard {
     prior: None,
 };
 
-static CYLINDER: &[ParameterCard] = &[
-    DISPLACEMENT_DELAY,
-    ParameterCard {
-        name: "pressure_delay",
-        symbol: "Tp",
-        unit: "s",
-        meaning: "delay of both chamber pressures",
-        kind: Kind::Shape,
-        minimum: 0.0,
-        maximum: 0.5,
-        typical: 0.01,
-        start: Start::At(&[5e-3]),
-        prior: None,
-    },
-];
-
-static LOAD: &[ParameterCard] = &[DISPLACEMENT_DELAY];
-
-static PUMP_LINE: &[ParameterCard] = &[ParameterCard {
+const PRESSURE_DELAY: ParameterCard = ParameterCard {
     name: "pressure_delay",
     symbol: "Tp",
     unit: "s",
-    meaning: "delay of the pump pressure",
+    meaning: "delay of both chamber pressures",
     kind: Kind::Shape,
     minimum: 0.0,
     maximum: 0.5,
     typical: 0.01,
     start: Start::At(&[5e-3]),
     prior: None,
-}];
+};
+
+static CYLINDER: &[ParameterCard] = &[DISPLACEMENT_DELAY, PRESSURE_DELAY];
+
+static MACHINE: &[ParameterCard] = &[
+    ParameterCard {
+        meaning: "delay of displacement, velocity and joint angle of every cylinder",
+        ..DISPLACEMENT_DELAY
+    },
+    ParameterCard { meaning: "delay of all chamber pressures and of the pump pressure", ..PRESSURE_DELAY },
+];
+
+static LOAD: &[ParameterCard] = &[DISPLACEMENT_DELAY];
+
+static PUMP_LINE: &[ParameterCard] = &[ParameterCard { meaning: "delay of the pump pressure", ..PRESSURE_DELAY }];
 
 impl Physics for SensorDelay {
     fn card(&self) -> &'static Card {
@@ -74,7 +70,9 @@ impl Physics for SensorDelay {
     fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
         match site {
             Site::Cylinder(index) if machine.cylinders.get(index).is_some_and(|c| c.chambers.is_some()) => CYLINDER,
-            Site::Cylinder(_) => LOAD,
+            Site::Machine if machine.has_chambers() => MACHINE,
+            // Without chambers there are no pressures that could be late, and no pump line either.
+            Site::Cylinder(_) | Site::Machine => LOAD,
             Site::PumpLine => PUMP_LINE,
         }
     }
@@ -85,18 +83,27 @@ impl Physics for SensorDelay {
 
     fn distort<T: Scalar>(&self, site: Site, parameters: &[T], instruments: &mut Instruments<T>) {
         match site {
-            Site::Cylinder(cylinder) => {
-                let position =
-                    [Channel::JointAngle(cylinder), Channel::Displacement(cylinder), Channel::Velocity(cylinder)];
-                for channel in position {
-                    instruments.of_mut(channel).delay += parameters[0];
+            Site::Cylinder(cylinder) => delay_cylinder(cylinder, parameters, instruments),
+            Site::PumpLine => instruments.of_mut(Channel::PumpPressure).delay += parameters[0],
+            Site::Machine => {
+                for cylinder in 0..instruments.cylinders() {
+                    delay_cylinder(cylinder, parameters, instruments);
                 }
                 if let Some(&late) = parameters.get(1) {
-                    instruments.of_mut(Channel::CapPressure(cylinder)).delay += late;
-                    instruments.of_mut(Channel::RodPressure(cylinder)).delay += late;
+                    instruments.of_mut(Channel::PumpPressure).delay += late;
                 }
             }
-            Site::PumpLine => instruments.of_mut(Channel::PumpPressure).delay += parameters[0],
         }
+    }
+}
+
+/// Delays what the instruments of one cylinder report; parameters are the delay of the position and, with chambers, of the pressures.
+fn delay_cylinder<T: Scalar>(cylinder: usize, parameters: &[T], instruments: &mut Instruments<T>) {
+    for channel in [Channel::JointAngle(cylinder), Channel::Displacement(cylinder), Channel::Velocity(cylinder)] {
+        instruments.of_mut(channel).delay += parameters[0];
+    }
+    if let Some(&late) = parameters.get(1) {
+        instruments.of_mut(Channel::CapPressure(cylinder)).delay += late;
+        instruments.of_mut(Channel::RodPressure(cylinder)).delay += late;
     }
 }

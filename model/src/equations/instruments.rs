@@ -43,6 +43,11 @@ impl<T: Scalar> Instruments<T> {
         Instruments { cylinders: vec![[Distortion::none(); 6]; cylinders], pump_pressure: Distortion::none() }
     }
 
+    /// Number of cylinders.
+    pub fn cylinders(&self) -> usize {
+        self.cylinders.len()
+    }
+
     /// What the instrument of a channel does.
     pub fn of(&self, channel: Channel) -> Distortion<T> {
         match place(channel) {

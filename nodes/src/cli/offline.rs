@@ -187,7 +187,7 @@ pub struct RefineArguments {
     pub model: String,
     #[command(flatten)]
     pub recordings: Recordings,
-    /// Effects to add, one after the other: EFFECT, EFFECT@CYLINDER or EFFECT@pump.
+    /// Effects to add, one after the other: EFFECT, EFFECT@CYLINDER, EFFECT@pump or EFFECT@machine.
     #[arg(long, num_args = 1.., value_name = "EFFECT[@PLACE]")]
     pub add: Vec<String>,
     /// Add what the diagnosis finds, until nothing more is gained.
@@ -211,7 +211,7 @@ pub struct DesignArguments {
     /// Model: built-in name or TOML file.
     #[arg(long)]
     pub model: String,
-    /// Effects to be told apart, with commas: EFFECT, EFFECT@CYLINDER, EFFECT@pump, or none for the model as it is. With
+    /// Effects to be told apart, with commas: EFFECT, EFFECT@CYLINDER, EFFECT@pump, EFFECT@machine, or none for the model as it is. With
     /// --parameter: effects that the model is to have besides.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "EFFECT[@PLACE],...")]
     pub between: Vec<String>,

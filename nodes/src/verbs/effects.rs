@@ -38,6 +38,7 @@ fn place(acts_on: ActsOn) -> &'static str {
         ActsOn::Valve => "valve",
         ActsOn::PumpLine => "pump line",
         ActsOn::CylinderOrPumpLine => "chambers, pump line",
+        ActsOn::Instruments => "instruments",
     }
 }
 
