@@ -144,3 +144,12 @@ fn effects_twice_or_in_the_wrong_place_are_refused() {
     let text = error_with(&ARM[start..end], &format!("{0}{0}", &ARM[start..end])).to_string();
     assert!(text.contains("already has"), "{text}");
 }
+
+#[test]
+fn places_beside_cylinders_are_no_names_of_cylinders() {
+    for taken in ["pump", "machine"] {
+        let text = ARM.replace("name = \"arm\"", &format!("name = \"{taken}\""));
+        let error = parse("arm.toml", &text).unwrap_err().to_string();
+        assert!(error.contains("is taken"), "{error}");
+    }
+}

@@ -5,7 +5,9 @@ mod common;
 
 use std::collections::HashSet;
 
-use excavator_model::effects::{CATALOGUE, Family, Site, Start, find};
+use excavator_model::effects::{
+    CATALOGUE, Corner, Family, Needs, Prior, PriorScale, RecordingScales, Site, Spread, Start, find,
+};
 
 #[test]
 fn every_card_says_something() {
@@ -142,4 +144,99 @@ fn sizes_that_say_nothing_are_no_name() {
     }
     let small = common::machines()[0].with_effect(find("valve_dead_zone").unwrap(), site).unwrap();
     assert!(small.effects.last().unwrap().is_worth_a_name());
+}
+
+/// What is estimated beside every model needs a prior; what a machine is has none, so that nothing is put in beforehand.
+#[test]
+fn nuisance_parameters_alone_have_priors() {
+    let scales = RecordingScales { sample_interval_s: 2e-3, largest_opening_m2: 1e-4 };
+    for (model, index) in common::every_effect_everywhere() {
+        let (effect, name) = (&model.effects[index], common::label(&model, index));
+        let is_nuisance = matches!(effect.physics.card().family, Family::Recording | Family::Rounding);
+        for parameter in &effect.parameters {
+            assert_eq!(parameter.card.prior.is_some(), is_nuisance, "{name} {}", parameter.card.name);
+            let Some(prior) = parameter.card.prior else { continue };
+            let Start::At([centre, ..]) = parameter.card.start else { panic!("{name}: no centre") };
+            assert_eq!(prior.standardised(*centre, *centre, &scales), 0.0, "{name}");
+            let above = match prior.scale {
+                PriorScale::Linear => centre + prior.standard_deviation(&scales),
+                PriorScale::Logarithmic => centre * prior.standard_deviation(&scales),
+            };
+            assert!((prior.standardised(above, *centre, &scales) - 1.0).abs() < 1e-12, "{name}");
+            assert!(above > *centre && above < parameter.card.maximum, "{name}: {above}");
+        }
+    }
+}
+
+#[test]
+fn spreads_follow_the_recordings() {
+    let lead = find("spool_sensor_lead").unwrap().parameters(&common::machines()[0].machine, Site::Cylinder(0))[0];
+    let spread = |sample_interval_s: f64| {
+        lead.prior.unwrap().standard_deviation(&RecordingScales { sample_interval_s, largest_opening_m2: 1e-4 })
+    };
+    assert_eq!(spread(2e-4), 4e-4);
+    assert!((spread(6e-3) - 2e-3).abs() < 1e-15);
+    let prior = Prior { spread: Spread::OfLargestOpening { part: 2.5e-3 }, scale: PriorScale::Linear };
+    assert_eq!(prior.standard_deviation(&RecordingScales { sample_interval_s: 1.0, largest_opening_m2: 8e-5 }), 2e-7);
+}
+
+/// Every corner that an effect rounds is the corner of some effect, and rounding has no corner of its own.
+#[test]
+fn what_is_rounded_is_there() {
+    let mut rounded = HashSet::new();
+    for effect in CATALOGUE {
+        let card = effect.card();
+        assert_eq!(effect.rounds().is_some(), card.family == Family::Rounding, "{}", card.name);
+        rounded.extend(effect.rounds().map(|corner| format!("{corner:?}")));
+    }
+    assert_eq!(rounded.len(), 2);
+    let arm = &common::machines()[0];
+    let site = Site::Cylinder(0);
+    assert!(arm.has_corner(Corner::OrificeFlow, site) && !arm.has_corner(Corner::OrificeFlow, Site::PumpLine));
+    let mut smooth = arm.clone();
+    smooth.effects.retain(|effect| effect.corner() != Some(Corner::Friction));
+    assert!(!smooth.has_corner(Corner::Friction, site));
+    let mut rough = smooth.with_effect(find("stribeck_friction").unwrap(), site).unwrap();
+    assert!(rough.has_corner(Corner::Friction, site));
+    rough.effects.last_mut().unwrap().parameters[0].value = 0.0;
+    assert!(!rough.has_corner(Corner::Friction, site), "a friction of zero has no corner");
+}
+
+/// Where the motion is imposed, pressures are measured and no oil flows.
+#[test]
+fn an_imposed_motion_can_have_what_needs_pressures() {
+    let needs = |name: &str| find(name).unwrap().card().needs;
+    assert_eq!(needs("pressure_dependent_friction"), Needs::Pressures);
+    assert_eq!([needs("coulomb_friction"), needs("sensor_delay")], [Needs::Nothing; 2]);
+    assert_eq!([needs("orifice_flow"), needs("cavitation"), needs("pressure_sensor_offset")], [Needs::Oil; 3]);
+}
+
+#[test]
+fn one_effect_can_act_on_the_whole_machine() {
+    let delay = find("sensor_delay").unwrap();
+    let arm = &common::machines()[0];
+    assert_eq!(arm.free_sites(delay), [Site::Cylinder(0), Site::PumpLine, Site::Machine]);
+    // Each place by itself covers the machine already.
+    assert_eq!(arm.parse_addition("sensor_delay").unwrap().len(), 2);
+    let [(physics, site)] = arm.parse_addition("sensor_delay@machine").unwrap()[..] else { panic!("one addition") };
+    let late = arm.with_effect(physics, site).unwrap();
+    let names = late.parameter_names();
+    assert_eq!(names[names.len() - 2..], ["machine.displacement_delay", "machine.pressure_delay"]);
+    assert!(late.free_sites(delay).is_empty(), "every place is late already");
+    let one_place = arm.with_effect(delay, Site::Cylinder(0)).unwrap();
+    assert_eq!(one_place.free_sites(delay), [Site::PumpLine]);
+
+    // A load driven by a measured force is one place, and has no pressures.
+    let load = excavator_model::document::built_in("emps").unwrap();
+    assert_eq!(load.free_sites(delay), [Site::Cylinder(0)]);
+    assert_eq!(load.with_effect(delay, Site::Machine).unwrap().effects.last().unwrap().parameters.len(), 1);
+
+    for name in ["coulomb_friction", "valve_lag", "pump_leakage", "pressure_sensor_offset"] {
+        let effect = find(name).unwrap();
+        assert!(!arm.free_sites(effect).contains(&Site::Machine), "{name}");
+        let error = arm.with_effect(effect, Site::Machine).unwrap_err().to_string();
+        assert!(error.contains("\"machine\"") && error.contains("EFFECT@"), "{error}");
+    }
+    let error = arm.parse_addition("sensor_delay@tower").unwrap_err().to_string();
+    assert!(error.contains("pump and machine"), "{error}");
 }

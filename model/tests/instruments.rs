@@ -106,6 +106,36 @@ fn a_delay_reports_the_past() {
     }
 }
 
+/// One effect on the whole machine is the same as one at each place.
+#[test]
+fn a_delay_of_the_whole_machine_is_that_of_each_place() {
+    for name in ["zx30u-arm", "zx30u", "emps"] {
+        let truth = built_in(name).unwrap();
+        let delay = find("sensor_delay").unwrap();
+        let set = |model: &mut Model, values: &[f64]| {
+            let parameters = &mut model.effects.last_mut().unwrap().parameters;
+            assert_eq!(parameters.len(), values.len(), "{name}");
+            parameters.iter_mut().zip(values).for_each(|(parameter, value)| parameter.value = *value);
+        };
+        let (position, pressure) = (0.0123, 0.0057);
+        let values = if truth.machine.has_chambers() { vec![position, pressure] } else { vec![position] };
+        let mut whole = truth.with_effect(delay, Site::Machine).unwrap();
+        set(&mut whole, &values);
+        let mut placed = truth.clone();
+        for (_, site) in truth.parse_addition("sensor_delay").unwrap() {
+            placed = placed.with_effect(delay, site).unwrap();
+            let own = if site == Site::PumpLine { vec![pressure] } else { values.clone() };
+            set(&mut placed, &own);
+        }
+        let (whole, placed) = (System::new(&whole), System::new(&placed));
+        assert_eq!(whole.own_instruments().of(Channel::Displacement(0)).delay, position, "{name}");
+        for channel in Channel::all(whole.layout()) {
+            let (one, other) = (whole.own_instruments().of(channel), placed.own_instruments().of(channel));
+            assert_eq!(one, other, "{name} {channel:?}");
+        }
+    }
+}
+
 /// A tenth of a good instrument's noise in the mean, and at most about its size where a chamber leaves cavitation: there
 /// the pressure has a corner, which no samples show.
 fn assert_small(channel: Channel, errors: &[f64]) {

@@ -31,9 +31,9 @@ static CARD: Card = Card {
 };
 
 /// An opening that is held between samples acts half a sample interval late, and converters take turns within one. So a third of the
-/// interval is one standard deviation, and 0.65 intervals are two. Where recordings are fast a controller's cycle of 1 ms is the
-/// longer time: 1.3 ms are three deviations of 0.4 ms. A spool sensor with a filter is late by up to 5 ms; recordings must show that
-/// against the prior.
+/// interval is one standard deviation, and two thirds are as far ahead as a sensor may be. Where recordings are fast a controller's
+/// cycle of a millisecond is the longer time: 1.3 ms are two deviations of 0.65 ms. A spool sensor with a filter is late by up to 5 ms,
+/// which are eight.
 const PRIOR: Prior = Prior {
     spread: Spread::OfSampleInterval { part: 1.0 / 3.0, at_least_s: 6.5e-4 },
     scale: PriorScale::Linear,
