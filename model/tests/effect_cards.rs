@@ -177,7 +177,8 @@ fn spreads_follow_the_recordings() {
     assert_eq!(spread(2e-4), 4e-4);
     assert!((spread(6e-3) - 2e-3).abs() < 1e-15);
     let prior = Prior { spread: Spread::OfLargestOpening { part: 2.5e-3 }, scale: PriorScale::Linear };
-    assert_eq!(prior.standard_deviation(&RecordingScales { sample_interval_s: 1.0, largest_opening_m2: 8e-5 }), 2e-7);
+    let scales = RecordingScales { sample_interval_s: 1.0, largest_opening_m2: 8e-5 };
+    assert!((prior.standard_deviation(&scales) - 2e-7).abs() < 1e-20);
 }
 
 /// Every corner that an effect rounds is the corner of some effect, and rounding has no corner of its own.

@@ -5,11 +5,9 @@ mod common;
 
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::energy::monitor::{
-    Balance, CylinderSample, Monitor, Sample, Settings, Watch, WatchSettings, Window,
-};
+use excavator_model::energy::monitor::{Balance, Monitor, Settings, Watch, WatchSettings, Window};
 use excavator_model::equations::System;
-use excavator_model::recording::Recording;
+use excavator_model::recording::{CylinderSample, Recording, Sample};
 use excavator_model::simulation::{InputSignals, Tolerances, simulate_from};
 
 const PERIOD: i64 = 1_000_000;

@@ -6,7 +6,7 @@ mod common;
 use common::Random;
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{ActsOn, CATALOGUE, Card, Family, Site, find};
+use excavator_model::effects::{ActsOn, CATALOGUE, Card, Family, Number, Site, find};
 use excavator_model::equations::{Inputs, Rows, Situation, System};
 use excavator_model::simulation::{InputSignals, Integrator, Tolerances};
 
@@ -169,14 +169,16 @@ fn only_valves_and_pump_line_have_a_say_in_the_way_of_oil() {
     for model in common::machines() {
         for effect in CATALOGUE.iter().filter(|effect| !has_a_say(effect.card())) {
             let name = effect.card().name;
-            for site in (0..model.machine.cylinders.len()).map(Site::Cylinder).chain([Site::PumpLine]) {
+            let places = (0..model.machine.cylinders.len()).map(Site::Cylinder);
+            for site in places.chain([Site::PumpLine, Site::Machine]) {
                 let typical: Vec<f64> =
                     effect.parameters(&model.machine, site).iter().map(|parameter| parameter.typical).collect();
                 assert_eq!(effect.states(), 0, "{name}");
-                assert_eq!(effect.spool_plain(&typical, &[], &mut [], 3e-5), [3e-5, 3e-5], "{name}");
-                assert_eq!(effect.opening_plain(&typical, 3e-5, 1e-4), 3e-5, "{name}");
+                let hooks = <f64 as Number>::hooks(*effect);
+                assert_eq!(hooks.spool(&typical, &[], &mut [], 3e-5), [3e-5, 3e-5], "{name}");
+                assert_eq!(hooks.opening(&typical, 3e-5, 1e-4), 3e-5, "{name}");
                 let mut situation = Situation::<f64>::empty(&model.machine);
-                effect.adjust_plain(site, &typical, &mut situation);
+                hooks.adjust(site, &typical, &mut situation);
                 assert_eq!(situation.pistons, Situation::<f64>::empty(&model.machine).pistons, "{name}");
             }
         }

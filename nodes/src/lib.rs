@@ -2,6 +2,7 @@
 
 mod arm_bridge;
 mod arm_simulator;
+mod arm_state;
 mod cli;
 mod command_gate;
 pub mod dashboard;

@@ -2,11 +2,11 @@
 
 use excavator_model::Model;
 use excavator_model::SignalError;
-use excavator_model::equations::{Channel, Inputs, System};
+use excavator_model::equations::{Channel, System};
 use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{
-    InputSignals, Integrator, Observer, Profile, Segment, SimulationError, Tolerances, rest_state,
+    InputSignals, Integrator, Observer, Profile, Segment, SimulationError, Tolerances, reachable_rest_state,
 };
 
 use super::DesignError;
@@ -39,20 +39,9 @@ impl<'m> Rider<'m> {
     /// # Errors
     /// [`SignalError::NoInitialState`] where the linkage cannot reach a displacement.
     pub fn at_rest(&self, displacements: &[f64]) -> Result<Vec<f64>, SignalError> {
-        let machine = &self.system.model().machine;
         let recording = self.commanded(&[], 0.0, 0.01, 2);
         let signals = InputSignals::from_recording(self.system.model(), &recording)?;
-        let mut inputs = Inputs::zero(machine.cylinders.len());
-        signals.between(0, 0.0, &mut inputs);
-        let state = rest_state(&self.system, displacements, &inputs);
-        match (0..machine.cylinders.len()).find(|&c| !state[self.system.layout().joint(c)].is_finite()) {
-            None => Ok(state),
-            Some(index) => Err(SignalError::NoInitialState {
-                source_name: machine.name.clone(),
-                signal: format!("{}.displacement", machine.cylinders[index].name),
-                reason: format!("the linkage cannot reach {:.3} m", displacements[index]),
-            }),
-        }
+        reachable_rest_state(&self.system, displacements, &signals.at_start())
     }
 
     /// Piston displacement of a cylinder at a state, m.

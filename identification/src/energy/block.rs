@@ -89,12 +89,8 @@ pub(super) fn measured_books(
                 known if known.is_finite() => pressure.value(&measured.velocity),
                 _ => motion.slope(displacement),
             };
-            state[layout.joint(number)] = joint;
-            state[layout.rate(number)] = velocity / cylinder.linkage.lever(joint);
-            if let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) {
-                state[cap] = pressure.value(&measured.cap_pressure);
-                state[rod] = pressure.value(&measured.rod_pressure);
-            }
+            let pressures = [&measured.cap_pressure, &measured.rod_pressure].map(|signal| pressure.value(signal));
+            system.set_cylinder(number, joint, velocity, pressures, &mut state);
         }
         match (layout.pump, model.machine.supply) {
             (Some(pump), _) => state[pump] = pressure.value(&recording.pump_pressure),
@@ -128,12 +124,8 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
         for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
             let own = truth.cylinder(&cylinder.name)?;
             let joint = cylinder.linkage.joint(own.displacement[sample]);
-            state[layout.joint(number)] = joint;
-            state[layout.rate(number)] = own.velocity[sample] / cylinder.linkage.lever(joint);
-            if let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) {
-                state[cap] = own.cap_pressure[sample];
-                state[rod] = own.rod_pressure[sample];
-            }
+            let pressures = [own.cap_pressure[sample], own.rod_pressure[sample]];
+            system.set_cylinder(number, joint, own.velocity[sample], pressures, &mut state);
         }
         if let Some(pump) = layout.pump {
             state[pump] = truth.pump_pressure[sample];
@@ -145,11 +137,7 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
 
 fn enter(system: &System<'_>, parameters: &[f64], state: &mut [f64], inputs: &Inputs<f64>, books: &mut Books) {
     // Where the spool of a lagging valve really is, is what its sensor says.
-    for (effect, &(first, states)) in system.model().effects.iter().zip(&system.layout().effect_states) {
-        if let excavator_model::effects::Site::Cylinder(number) = effect.site {
-            state[first..first + states].fill(inputs.orifice_area[number]);
-        }
-    }
+    system.set_spools(&inputs.orifice_area, state);
     if state.iter().all(|value| value.is_finite()) {
         let ledger = ledger(system, parameters, state, inputs);
         books.enter(system.model(), system.layout(), &ledger, state, inputs);

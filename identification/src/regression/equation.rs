@@ -154,14 +154,9 @@ pub fn equations(
             observation.inputs.between(sample, 0.0, &mut plain_inputs);
             inputs.lift_from(&plain_inputs);
             for (index, cylinder) in observation.cylinders.iter().enumerate() {
-                let linkage = &model.machine.cylinders[index].linkage;
-                let joint = linkage.joint(cylinder.smooth_displacement[sample]);
-                state[layout.joint(index)] = constant(joint);
-                state[layout.rate(index)] = constant(cylinder.velocity[sample] / linkage.lever(joint));
-                if let (Some(cap), Some(rod)) = (layout.cap_pressure(index), layout.rod_pressure(index)) {
-                    state[cap] = constant(cylinder.smooth_pressures[0][sample]);
-                    state[rod] = constant(cylinder.smooth_pressures[1][sample]);
-                }
+                let joint = model.machine.cylinders[index].linkage.joint(cylinder.smooth_displacement[sample]);
+                let pressures = [0, 1].map(|side: usize| cylinder.smooth_pressures[side][sample]);
+                system.set_cylinder(index, joint, cylinder.velocity[sample], pressures, &mut state);
             }
             if let Some(pump) = layout.pump {
                 state[pump] = constant(observation.smooth_pump_pressure[sample]);
@@ -188,13 +183,8 @@ pub fn equations(
             for (slot, number) in mass.iter_mut().zip(&rows.mass) {
                 slot.set(sample, number, first, last);
             }
-            for (index, piston) in workspace.situation.pistons.iter().enumerate() {
-                let drive = match model.machine.cylinders[index].chambers {
-                    Some(c) => piston.cap_pressure * c.cap_area - piston.rod_pressure * c.rod_area,
-                    None => piston.rod_force,
-                };
-                let total = rows.torque[index] + piston.lever * (rows.piston_force[index] + drive);
-                torque[index].set(sample, &total, first, last);
+            for index in 0..joints {
+                torque[index].set(sample, &rows.driven_torque(index, &workspace.situation), first, last);
                 if chambers {
                     flows[index][0].set(sample, &rows.cap_flow[index], first, last);
                     flows[index][1].set(sample, &rows.rod_flow[index], first, last);

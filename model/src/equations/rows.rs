@@ -1,5 +1,6 @@
 //! The rows of the equations of motion, as sums that effects add to.
 
+use super::Situation;
 use crate::scalar::Scalar;
 
 /// Sums of what effects add. Pressure forces `A+ p+ - A- p-` and the oil displaced by the piston `A v` belong to the
@@ -75,6 +76,17 @@ impl<T: Scalar> Rows<T> {
     /// The mass matrix at (`row`, `column`).
     pub fn mass_at(&self, row: usize, column: usize) -> T {
         self.mass[row * self.joints + column]
+    }
+
+    /// Torque on a joint together with that of its cylinder: of the pressures in the chambers, or of the force measured on the rod,
+    /// N m (N). It is what accelerates the joint.
+    pub fn driven_torque(&self, joint: usize, situation: &Situation<'_, T>) -> T {
+        let piston = &situation.pistons[joint];
+        let drive = match situation.chambers(joint) {
+            Some(chambers) => chambers.pressure_force(piston.cap_pressure, piston.rod_pressure),
+            None => piston.rod_force,
+        };
+        self.torque[joint] + piston.lever * (self.piston_force[joint] + drive)
     }
 
     /// Number of joints.

@@ -219,6 +219,34 @@ impl<'m> System<'m> {
         }
     }
 
+    /// Writes what is known of one cylinder into `state`: joint coordinate (rad, m), piston velocity (m/s), cap and rod pressure (Pa).
+    pub fn set_cylinder<T: Number>(
+        &self,
+        cylinder: usize,
+        joint: f64,
+        velocity: f64,
+        pressures: [f64; 2],
+        state: &mut [T],
+    ) {
+        let layout = &self.layout;
+        state[layout.joint(cylinder)] = T::from(joint);
+        state[layout.rate(cylinder)] = T::from(velocity / self.model.machine.cylinders[cylinder].linkage.lever(joint));
+        if let (Some(cap), Some(rod)) = (layout.cap_pressure(cylinder), layout.rod_pressure(cylinder)) {
+            state[cap] = T::from(pressures[0]);
+            state[rod] = T::from(pressures[1]);
+        }
+    }
+
+    /// Sets the effects' own states, all of them spools, to these openings (m², one per cylinder): a spool that has settled, or is where
+    /// its sensor says. An opening that is left out is zero.
+    pub fn set_spools(&self, openings: &[f64], state: &mut [f64]) {
+        for (effect, &(first, states)) in self.model.effects.iter().zip(&self.layout.effect_states) {
+            if let Site::Cylinder(cylinder) = effect.site {
+                state[first..first + states].fill(openings.get(cylinder).copied().unwrap_or(0.0));
+            }
+        }
+    }
+
     /// [`System::instruments`] at the model's own parameter values.
     pub fn own_instruments(&self) -> &Instruments<f64> {
         &self.own_instruments
@@ -239,11 +267,7 @@ impl<'m> System<'m> {
         let layout = &self.layout;
         let Workspace { situation, rows, mass, torque } = workspace;
         for (index, piston) in situation.pistons.iter().enumerate() {
-            let pressure_force = match situation.machine.cylinders[index].chambers {
-                Some(chambers) => piston.cap_pressure * chambers.cap_area - piston.rod_pressure * chambers.rod_area,
-                None => piston.rod_force,
-            };
-            torque[index] = rows.torque[index] + piston.lever * (rows.piston_force[index] + pressure_force);
+            torque[index] = rows.driven_torque(index, situation);
             rates[layout.joint(index)] = piston.rate;
         }
         mass.copy_from_slice(&rows.mass);

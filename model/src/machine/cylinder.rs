@@ -50,6 +50,11 @@ pub struct Chambers {
 }
 
 impl Chambers {
+    /// Force of both pressures on the piston, N.
+    pub fn pressure_force<T: Scalar>(&self, cap_pressure: T, rod_pressure: T) -> T {
+        cap_pressure * self.cap_area - rod_pressure * self.rod_area
+    }
+
     /// Cap side volume V+ = V+min + (L/2 + s) A+ in m³, \[A\] Eq. 1.
     pub fn cap_volume<T: Scalar>(&self, stroke: f64, displacement: T) -> T {
         (displacement + stroke / 2.0) * self.cap_area + self.cap_dead_volume

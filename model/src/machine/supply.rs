@@ -11,6 +11,25 @@ pub enum Supply {
     None,
 }
 
+impl Supply {
+    /// Tank pressure where the recording does not measure it, Pa (gauge); zero without oil.
+    pub fn tank_pressure(&self) -> f64 {
+        match self {
+            Supply::PumpLine(line) => line.tank_pressure,
+            Supply::PressureSource(source) => source.tank_pressure,
+            Supply::None => 0.0,
+        }
+    }
+
+    /// Pump flow where the recording does not measure it, m³/s; zero where the supply's pressure is set from outside.
+    pub fn pump_flow(&self) -> f64 {
+        match self {
+            Supply::PumpLine(line) => line.flow,
+            Supply::PressureSource(_) | Supply::None => 0.0,
+        }
+    }
+}
+
 /// Known constants of a supply whose pressure is kept from outside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PressureSource {

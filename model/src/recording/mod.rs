@@ -6,6 +6,7 @@ mod error;
 mod interpolation;
 mod pieces;
 mod resolution;
+mod sample;
 mod standard_deviation;
 
 pub use cylinder_signals::CylinderSignals;
@@ -14,6 +15,7 @@ pub use error::RecordingError;
 pub use interpolation::{cubic, linear, zero_order_hold};
 pub use pieces::{closed_gaps, longest_gap};
 pub use resolution::resolution;
+pub use sample::{CylinderSample, Sample};
 pub use standard_deviation::standard_deviation;
 
 /// A recording of one machine: all signals sampled on one, possibly uneven, clock.

@@ -76,11 +76,7 @@ pub fn initial_state(
         let measured = line(Channel::PumpPressure, &recording.pump_pressure).map(|(value, _)| value);
         state[pump] = measured.unwrap_or(tank_pressure);
     }
-    for (effect, &(first, states)) in model.effects.iter().zip(&layout.effect_states) {
-        if let crate::effects::Site::Cylinder(number) = effect.site {
-            state[first..first + states].fill(spool.get(number).copied().unwrap_or(0.0));
-        }
-    }
+    system.set_spools(spool, &mut state);
     if unmeasured.iter().any(|sides| sides[0] || sides[1]) {
         balance(system, spool, tank_pressure, &unmeasured, &mut state);
     }

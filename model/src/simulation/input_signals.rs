@@ -5,7 +5,7 @@ use super::imposed_motion::imposed_signals;
 use super::spool_estimate::spool_estimate;
 use crate::effects::Site;
 use crate::equations::{ImposedState, Inputs};
-use crate::machine::{Machine, Supply};
+use crate::machine::Supply;
 use crate::recording::{CylinderSignals, Recording, is_measured, standard_deviation};
 use crate::{Model, SignalError};
 
@@ -100,7 +100,6 @@ impl InputSignals {
                     .then(|| secants(&recording.time, values))
             })
             .collect();
-        let (default_tank, default_flow) = supply_constants(machine);
         let or_constant = |signal: &[f64], constant: f64| {
             without_holes(&recording.time, signal).unwrap_or_else(|| vec![constant; samples])
         };
@@ -114,8 +113,8 @@ impl InputSignals {
             rod_force,
             imposed,
             supply_pressure,
-            tank_pressure: smoothed(&or_constant(&recording.tank_pressure, default_tank)),
-            pump_flow: or_constant(&recording.pump_flow, default_flow),
+            tank_pressure: smoothed(&or_constant(&recording.tank_pressure, machine.supply.tank_pressure())),
+            pump_flow: or_constant(&recording.pump_flow, machine.supply.pump_flow()),
             time: recording.time.clone(),
         })
     }
@@ -230,6 +229,13 @@ impl InputSignals {
             && near_line(&self.pump_flow, STRAIGHT_FLOW)
     }
 
+    /// Inputs at the first sample.
+    pub fn at_start(&self) -> Inputs<f64> {
+        let mut inputs = Inputs::zero(self.orifice_area.len());
+        self.between(0, 0.0, &mut inputs);
+        inputs
+    }
+
     /// Inputs at `fraction` (0 to 1) of the way from sample `index` to the next, into `inputs`.
     pub fn between(&self, index: usize, fraction: f64, inputs: &mut Inputs<f64>) {
         let next = (index + 1).min(self.time.len().saturating_sub(1));
@@ -284,14 +290,6 @@ fn secants(time: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 /// Tank pressure and pump flow where nothing measures them.
-fn supply_constants(machine: &Machine) -> (f64, f64) {
-    match machine.supply {
-        Supply::PumpLine(line) => (line.tank_pressure, line.flow),
-        Supply::PressureSource(source) => (source.tank_pressure, 0.0),
-        Supply::None => (0.0, 0.0),
-    }
-}
-
 fn orifice_input(signals: &CylinderSignals, time: &[f64]) -> Option<(Interpolation, Vec<f64>)> {
     if is_measured(&signals.orifice_area) {
         return without_holes(time, &signals.orifice_area).map(|measured| {

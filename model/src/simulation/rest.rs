@@ -1,10 +1,32 @@
 //! A machine at rest.
 
-use crate::effects::Site;
+use crate::SignalError;
 use crate::equations::{Inputs, System};
 
 /// Pressure above tank of the less loaded chamber of a cylinder at rest, Pa: enough that small motions do not cavitate.
 const PRELOAD: f64 = 3e5;
+
+/// [`rest_state`] of displacements (m) that the linkages can reach.
+///
+/// # Errors
+/// [`SignalError::NoInitialState`] where one cannot.
+pub fn reachable_rest_state(
+    system: &System<'_>,
+    displacements: &[f64],
+    inputs: &Inputs<f64>,
+) -> Result<Vec<f64>, SignalError> {
+    let state = rest_state(system, displacements, inputs);
+    let machine = &system.model().machine;
+    let out_of_reach = |index: &usize| !state[system.layout().joint(*index)].is_finite();
+    match (0..machine.cylinders.len()).find(out_of_reach) {
+        None => Ok(state),
+        Some(index) => Err(SignalError::NoInitialState {
+            source_name: machine.name.clone(),
+            signal: format!("{}.displacement", machine.cylinders[index].name),
+            reason: format!("the linkage cannot reach {:.3} m", displacements.get(index).copied().unwrap_or(0.0)),
+        }),
+    }
+}
 
 /// State of a machine at rest with these piston displacements (m): velocities zero, chamber pressures in balance with
 /// gravity, pump pressure a little above tank. `NaN` joints where the linkage cannot reach a displacement.
@@ -19,11 +41,7 @@ pub fn rest_state(system: &System<'_>, displacements: &[f64], inputs: &Inputs<f6
     if let Some(pump) = layout.pump {
         state[pump] = inputs.tank_pressure + PRELOAD / 2.0;
     }
-    for (effect, &(first, states)) in system.model().effects.iter().zip(&layout.effect_states) {
-        if let Site::Cylinder(cylinder) = effect.site {
-            state[first..first + states].fill(inputs.orifice_area[cylinder]);
-        }
-    }
+    system.set_spools(&inputs.orifice_area, &mut state);
     let mut workspace = system.workspace();
     let mut rates = vec![0.0; layout.len];
     system.rates(&mut workspace, &system.model().parameter_values(), &state, inputs, &mut rates);

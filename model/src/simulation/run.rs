@@ -3,7 +3,7 @@
 use super::{InputSignals, Integrator, Observer, SimulationError, Tolerances, initial_state, rest_state};
 use crate::Model;
 use crate::SignalError;
-use crate::equations::{Channel, Inputs, System};
+use crate::equations::{Channel, System};
 use crate::machine::Supply;
 use crate::recording::Recording;
 
@@ -113,9 +113,7 @@ pub fn simulate_from_rest(
     if signals.is_empty() {
         return Ok(recording.clone());
     }
-    let mut inputs = Inputs::zero(model.machine.cylinders.len());
-    signals.between(0, 0.0, &mut inputs);
-    let state = rest_state(&System::new(model), displacements, &inputs);
+    let state = rest_state(&System::new(model), displacements, &signals.at_start());
     Ok(simulate_from(model, recording, &signals, state, tolerances)?)
 }
 

@@ -5,12 +5,14 @@ use std::os::fd::AsFd;
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
+use excavator_model::Model;
 use excavator_model::document;
 use excavator_model::equations::System;
+use excavator_model::simulation::Plant;
 
 use super::machine_process::{Answer, Order, Ready, Setup, TalkError, receive, send};
-use super::plant::Plant;
 use super::valve_limits;
+use crate::arm_state::arm_state;
 use crate::command_gate::{Slew, Wanted};
 use crate::error::VerbError;
 
@@ -34,14 +36,15 @@ pub fn run() -> Result<(), VerbError> {
         }
     };
     let system = System::new(&model);
-    let plant = match Plant::new(&system, &setup.start_displacement, setup.period, setup.supply_pressure) {
+    let supply_pressure = Some(setup.supply_pressure).filter(|pressure| *pressure > 0.0);
+    let plant = match Plant::new(&system, &setup.start_displacement, setup.period, supply_pressure) {
         Ok(plant) => plant,
         Err(error) => {
             return send(&mut stream, &Ready { failure: error.to_string() }).map_err(|e| failed(e.to_string()));
         }
     };
     let slew = Slew::new(&valve_limits(&model), setup.opening_time, setup.closing_time);
-    let mut machine = Machine { plant, slew, period: setup.period, failures: Vec::new() };
+    let mut machine = Machine { plant, model: &model, slew, period: setup.period, failures: Vec::new() };
     send(&mut stream, &Ready { failure: String::new() }).map_err(|error| failed(error.to_string()))?;
     let alone = follow(&mut stream, &mut machine, Duration::from_secs_f64(setup.wall_period.clamp(1e-6, 100.0)));
     if let Some(at) = alone {
@@ -57,6 +60,7 @@ pub fn run() -> Result<(), VerbError> {
 
 struct Machine<'m, 's> {
     plant: Plant<'m, 's>,
+    model: &'m Model,
     slew: Slew,
     period: f64,
     failures: Vec<String>,
@@ -116,7 +120,7 @@ impl Machine<'_, '_> {
     }
 
     fn answer(&mut self, oil_temperature: f64) -> Answer {
-        let state = self.plant.observe(oil_temperature);
+        let state = arm_state(&self.plant.sample(), self.model, oil_temperature);
         Answer {
             state,
             joint_rates: self.plant.joint_rates(),

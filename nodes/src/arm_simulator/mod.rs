@@ -7,7 +7,6 @@ mod declared;
 mod machine;
 mod machine_process;
 mod node;
-mod plant;
 mod sensors;
 mod stamps;
 

@@ -1,6 +1,6 @@
 //! The made-up machine at work, and the instruments on it.
 
-use excavator_model::equations::{Inputs, System};
+use excavator_model::equations::System;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{
     InputSignals, Integrator, Profile, RunError, SimulationError, Tolerances, observed, rest_state,
@@ -50,9 +50,7 @@ fn run(sealed: &Sealed, profile: &Profile) -> Result<Recording, RunError> {
     recording.cylinders[0].orifice_area.fill(0.0);
     let mut signals = InputSignals::from_recording(model, &recording)?;
     let system = System::new(model);
-    let mut inputs = Inputs::zero(1);
-    signals.between(0, 0.0, &mut inputs);
-    let mut state = rest_state(&system, &[0.0], &inputs);
+    let mut state = rest_state(&system, &[0.0], &signals.at_start());
     // Finer than what the identifier uses, so that it does not test itself against its own rounding.
     let tolerances = Tolerances::default().scaled(0.05);
     let mut integrator = Integrator::new(&system, &model.parameter_values(), &[], tolerances);

@@ -1,38 +1,8 @@
 //! Between messages and the monitor.
 
 use excavator_model::Model;
-use excavator_model::energy::monitor::{Balance, CylinderSample, Sample};
+use excavator_model::energy::monitor::Balance;
 use excavator_msgs::{ArmState, CylinderEnergy, EnergyState, EnergyTerm, Header, Time};
-
-/// The state in the order of the model's cylinders; what the message does not have is not measured.
-pub(super) fn sample(state: &ArmState, model: &Model) -> Sample {
-    let cylinders = model
-        .machine
-        .cylinders
-        .iter()
-        .map(|cylinder| {
-            state.cylinders.iter().find(|measured| measured.name == cylinder.name).map_or_else(
-                CylinderSample::unmeasured,
-                |measured| CylinderSample {
-                    joint_angle: measured.joint_angle,
-                    displacement: measured.displacement,
-                    velocity: measured.velocity,
-                    cap_pressure: measured.cap_pressure,
-                    rod_pressure: measured.rod_pressure,
-                    orifice_area: measured.orifice_area,
-                    rod_force: measured.rod_force,
-                },
-            )
-        })
-        .collect();
-    Sample {
-        nanoseconds: state.header.stamp.nanoseconds(),
-        cylinders,
-        pump_pressure: state.pump_pressure,
-        tank_pressure: state.tank_pressure,
-        pump_flow: state.pump_flow,
-    }
-}
 
 /// The state without cylinders that the model does not have, and without second entries of those that it has: whoever is on
 /// the network can send thousands.

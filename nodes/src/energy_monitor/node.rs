@@ -12,9 +12,10 @@ use excavator_model::equations::System;
 use excavator_msgs::common::Text;
 use excavator_msgs::{ArmState, EnergyState};
 
-use super::convert::{message, sample, trimmed};
+use super::convert::{message, trimmed};
 use super::incoming::{Counts, Inbox, Incoming, inbox};
 use super::ledger::{Ledger, Tally, judge_windows};
+use crate::arm_state::sample;
 use crate::error::VerbError;
 use crate::ros::{
     Diagnostics, Health, Logger, Outlet, Parameter, Parameters, RosArguments, Supervisor, TopicQos, Value,

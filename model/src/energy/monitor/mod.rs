@@ -6,11 +6,11 @@
 //! past and carries that state's stamp: the delay is one half width, two where the velocity is estimated
 //! ([`Monitor::delay`]).
 
+mod balance;
 mod pipeline;
-mod sample;
 mod slope;
 mod watch;
 
+pub use balance::{Balance, CylinderBalance, EffectTerm};
 pub use pipeline::{Counts, Monitor, Settings};
-pub use sample::{Balance, CylinderBalance, CylinderSample, EffectTerm, Sample};
 pub use watch::{Watch, WatchSettings, Window};

@@ -3,12 +3,13 @@
 use std::collections::VecDeque;
 
 use super::slope::slope_at;
-use super::{Balance, CylinderBalance, CylinderSample, EffectTerm, Sample};
+use super::{Balance, CylinderBalance, EffectTerm};
 use crate::Model;
 use crate::effects::{ActsOn, Site};
 use crate::energy::ledger;
 use crate::equations::{Inputs, System};
 use crate::machine::Supply;
+use crate::recording::{CylinderSample, Sample};
 
 /// How the monitor differentiates, and what it takes for a gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -265,13 +266,8 @@ impl<'m, 's> Monitor<'m, 's> {
             } else {
                 measured.joint_angle
             };
-            state[layout.joint(number)] = joint;
-            let velocity = self.velocity(waiting, number);
-            state[layout.rate(number)] = velocity / cylinder.linkage.lever(joint);
-            if let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) {
-                state[cap] = measured.cap_pressure;
-                state[rod] = measured.rod_pressure;
-            }
+            let pressures = [measured.cap_pressure, measured.rod_pressure];
+            self.system.set_cylinder(number, joint, self.velocity(waiting, number), pressures, &mut state);
             inputs.orifice_area[number] = if cylinder.chambers.is_some() { measured.orifice_area } else { 0.0 };
             inputs.rod_force[number] = if cylinder.chambers.is_some() { 0.0 } else { measured.rod_force };
         }
@@ -279,23 +275,14 @@ impl<'m, 's> Monitor<'m, 's> {
             state[pump] = sample.pump_pressure;
         }
         // Where the spool of a lagging valve really is, is what its sensor says.
-        for (effect, &(first, states)) in self.system.model().effects.iter().zip(&layout.effect_states) {
-            if let Site::Cylinder(number) = effect.site {
-                state[first..first + states].fill(inputs.orifice_area[number]);
-            }
-        }
-        let (tank, flow) = match machine.supply {
-            Supply::PumpLine(line) => (line.tank_pressure, line.flow),
-            Supply::PressureSource(source) => (source.tank_pressure, 0.0),
-            Supply::None => (0.0, 0.0),
-        };
+        self.system.set_spools(&inputs.orifice_area, &mut state);
         let or = |value: f64, constant: f64| if value.is_finite() { value } else { constant };
         inputs.supply_pressure = match machine.supply {
             Supply::PressureSource(source) => or(sample.pump_pressure, source.pressure),
             Supply::PumpLine(_) | Supply::None => sample.pump_pressure,
         };
-        inputs.tank_pressure = or(sample.tank_pressure, tank);
-        inputs.pump_flow = or(sample.pump_flow, flow);
+        inputs.tank_pressure = or(sample.tank_pressure, machine.supply.tank_pressure());
+        inputs.pump_flow = or(sample.pump_flow, machine.supply.pump_flow());
         (state, inputs)
     }
 
