@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 use common::{measure, off_the_data_sheet};
 use excavator_identification::diagnosis::DiagnosisSettings;
-use excavator_identification::fit::{FitSettings, fit};
+use excavator_identification::fit::{FitSettings, Simplified, fit, fit_watched, with_nuisances};
 use excavator_identification::refinement::{Additions, refine};
 use excavator_identification::search::Addition;
 use excavator_model::document::built_in;
