@@ -9,7 +9,7 @@ mod made_scores;
 mod policy;
 mod resampling;
 pub mod scores;
-mod statistic;
+pub mod statistic;
 #[cfg(test)]
 mod tests;
 mod verdict;

@@ -13,7 +13,7 @@ use crate::fit::nuisances_shown;
 /// Standard error over value from which on a number is called poorly known.
 const POORLY_KNOWN: f64 = 0.5;
 
-/// All parameters of a model, effect by effect. Marked are effects in `added` (`effect@place`), and what was fitted along
+/// All parameters of a model, effect by effect. Marked are effects in `added` (`effect@place`), and nuisance effects that show
 /// since the model `given`.
 pub(super) fn of_model(given: &Model, model: &Model, added: &[String]) -> Markup {
     let effects: Vec<&ModelEffect> = model.effects.iter().filter(|effect| !effect.parameters.is_empty()).collect();

@@ -53,9 +53,9 @@ pub enum Corner {
 pub enum Family {
     /// Part of the nominal model of \[A\] or of the frame every simulation needs.
     Base,
-    /// How recordings are made, not how the machine works: fitted along where the recordings show it, never a candidate.
+    /// How recordings are made, not how the machine works: a nuisance, estimated with every model and never attributed.
     Recording,
-    /// How widely the equations round a corner, which no machine knows: fitted along where the recordings show it, never a candidate.
+    /// How widely the equations round a corner, which no machine knows: a nuisance, estimated with every model and never attributed.
     Rounding,
     /// How a machine is built, which its data sheet says: added by hand, never a candidate.
     Construction,

@@ -48,8 +48,8 @@ fn list(all: &[&'static dyn Effect]) {
     };
     for (family, title) in [
         (Family::Base, "In the nominal model"),
-        (Family::Recording, "How recordings are made: fitted along where they show it, never a candidate"),
-        (Family::Rounding, "How widely corners are rounded: fitted along where recordings show it, never a candidate"),
+        (Family::Recording, "How recordings are made: nuisances, estimated with every model, never attributed"),
+        (Family::Rounding, "How widely corners are rounded: nuisances, estimated with every model, never attributed"),
         (Family::Construction, "How a machine is built: added by hand, never a candidate"),
         (Family::Loss, "Losses of the nominal model, candidates where a model leaves them out"),
         (Family::Candidate, "Candidates beyond it"),
