@@ -244,7 +244,7 @@ fn a_missing_effect_is_named_with_its_place_and_what_it_brings() {
     let mut trials = dead_zone();
     trials.push(trial(&["valve_dead_zone", "hose_loss"], 5.0));
     let both = sentence(&diagnosis(Kind::MissingEffect, trials, &[3], Vec::new()));
-    assert!(both.contains("valve dead zone at the arm valve section; and hose loss at the arm cylinder."), "{both}");
+    assert!(both.contains("valve dead zone at the arm valve section and hose loss at the arm cylinder."), "{both}");
     assert!(
         both.ends_with(
             "With all of them the squared error on recordings that were not fitted becomes 148 times smaller."

@@ -74,6 +74,7 @@ fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
     let mut text = match names.as_slice() {
         [] => format!("An effect of the catalogue is missing in {machine}."),
         [only] => format!("Missing in {machine}: {only}."),
+        several if alternatives.is_empty() => format!("Missing in {machine}: {}.", words::list(several, "and")),
         several => format!("Missing in {machine}: {}.", several.join("; and ")),
     };
     if !alternatives.is_empty() {
