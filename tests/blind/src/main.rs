@@ -211,7 +211,7 @@ fn judge(words: &Words, case: &mut Case) -> Result<(String, Option<Result<Score,
             if let Some(folder) = &words.scores {
                 let (secret, scores) = (Secret::of(case), score.scores.clone());
                 let source = format!("{}-{number:03}-{}", words.seed, secret.words.replace(' ', "-"));
-                Stored { source, secret, scores }.write(folder).map_err(|error| error.to_string())?;
+                Stored { source, secret, scores }.thinned().write(folder).map_err(|error| error.to_string())?;
             }
             (line(case, &evidence, &score), Some(Ok(score)))
         }

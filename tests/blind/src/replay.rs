@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use excavator_identification::decision::{Policy, Scores, ScoresError, decide};
+use excavator_identification::decision::{Hypothesis, Policy, Scores, ScoresError, decide};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -52,6 +52,9 @@ pub enum ReplayError {
     },
 }
 
+/// Hypotheses that are kept for being among the best, admissible or not.
+const KEPT: usize = 6;
+
 /// Level of compression: scores are written once and read often.
 const LEVEL: i32 = 19;
 
@@ -67,6 +70,32 @@ impl Stored {
         std::fs::create_dir_all(folder).map_err(failed)?;
         std::fs::write(&path, zstd::encode_all(json.as_slice(), LEVEL).map_err(failed)?).map_err(failed)?;
         Ok(path)
+    }
+
+    /// Without the hypotheses that no rule would look at again: those that are neither admissible under the usual policy, nor structural, nor a
+    /// part of an admissible one, nor among the best few.
+    pub fn thinned(mut self) -> Self {
+        let verdict = decide(&self.scores, &Policy::default());
+        let all = &self.scores.hypotheses;
+        let mut ranked: Vec<usize> = (1..all.len()).collect();
+        let ratio = |number: &usize| verdict.standings[*number].log_error_ratio;
+        ranked.sort_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        ranked.truncate(KEPT);
+        let is_part = |one: &Hypothesis| {
+            all.iter().zip(&verdict.standings).any(|(more, standing)| standing.is_admissible && more.extends(one))
+        };
+        let kept: Vec<Hypothesis> = (0..all.len())
+            .filter(|&number| {
+                number == 0
+                    || verdict.standings[number].is_admissible
+                    || ranked.contains(&number)
+                    || all[number].is_structural()
+                    || is_part(&all[number])
+            })
+            .map(|number| all[number].clone())
+            .collect();
+        self.scores.hypotheses = kept;
+        self
     }
 
     /// Reads one.
