@@ -281,7 +281,7 @@ fn what_is_unexplained_says_what_is_known_of_it() {
     let partly = |after| Reason::PartlyExplained { before: 2.0, after, limit: 0.1 };
     let mostly = sentence(&diagnosis(Kind::Unexplained, dead_zone(), &[1], vec![partly(0.4)]));
     assert!(mostly.contains("mostly valve dead zone at the arm valve section"), "{mostly}");
-    assert!(mostly.contains("20 % of the misfit remain"), "{mostly}");
+    assert!(mostly.contains("20 % of the misfit remains"), "{mostly}");
     let half = sentence(&diagnosis(Kind::Unexplained, dead_zone(), &[1], vec![partly(1.0)]));
     assert!(half.contains("With valve dead zone at the arm valve section the squared error"), "{half}");
 }

@@ -143,11 +143,11 @@ fn partly(diagnosis: &Diagnosis, selected: &[Candidate<'_>]) -> String {
     let smaller = format!("the squared error on recordings that were not fitted becomes {times} times smaller");
     if share >= MOSTLY {
         format!(
-            " It is mostly {names}, in a form that differs from the catalogue's: {smaller}, and {} of the misfit remain.",
+            " It is mostly {names}, in a form that differs from the catalogue's: {smaller}, and {} of the misfit remains.",
             percent(1.0 - share)
         )
     } else {
-        format!(" With {names} {smaller}, but {} of the misfit remain.", percent(1.0 - share))
+        format!(" With {names} {smaller}, but {} of the misfit remains.", percent(1.0 - share))
     }
 }
 
