@@ -148,7 +148,8 @@ pub(super) fn run(
 ) -> Result<Fit, FitError> {
     let system = System::new(model);
     let problem = Problem::new(model, &system, recordings, settings, fitted)?;
-    let Problem { fitted, scales, cards, bounds, noise, .. } = &problem;
+    let Problem { fitted, scales, cards, noise, .. } = &problem;
+    let bounds = &problem.priors.bounds;
     let mut segments = problem.segments.clone();
     let mut values = model.parameter_values();
     if first.is_none() {

@@ -37,9 +37,11 @@ pub fn predict(model: &Model, recordings: &[&Recording], settings: &FitSettings)
     let weights = error_sizes(&raw, &problem.noise);
     let loss_before = loss_per_reading(&weights, &problem.noise);
     let sums = problem.weighed_with_priors(&raw, &weights, &values);
-    let held = held_at_bounds(&sums, &values, &problem.fitted, &problem.bounds);
+    let held = held_at_bounds(&sums, &values, &problem.fitted, &problem.priors.bounds);
     let (stepped, taken) = match parameter_step(&sums, &held, DAMPING) {
-        Some(step) => bounded_step(&values, &step, &problem.fitted, &problem.scales, &problem.cards, &problem.bounds),
+        Some(step) => {
+            bounded_step(&values, &step, &problem.fitted, &problem.scales, &problem.cards, &problem.priors.bounds)
+        }
         None => (values, DVector::zeros(problem.fitted.len())),
     };
     let mut squares = vec![0.0; problem.noise.len()];

@@ -1,8 +1,10 @@
 //! What is known of nuisance parameters beforehand: for a fit, one more reading of each.
 
-use excavator_model::effects::{PriorScale, RecordingScales, Site, Start};
+use std::collections::{BTreeMap, BTreeSet};
+
+use excavator_model::effects::{Prior, PriorScale, RecordingScales, Site, Start};
 use excavator_model::recording::Recording;
-use excavator_model::{Model, Parameter};
+use excavator_model::{Model, ModelEffect, Parameter};
 use nalgebra::{DMatrix, DVector};
 
 use super::normal_equations::SegmentSums;
@@ -11,6 +13,8 @@ use super::normal_equations::SegmentSums;
 pub(crate) struct ParameterPriors {
     each: Vec<Option<Known>>,
     instruments: usize,
+    /// Least and largest value of every parameter of the model, in its unit: those of its card, within the range of its prior.
+    pub bounds: Vec<[f64; 2]>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -25,10 +29,8 @@ struct Known {
 }
 
 impl Known {
-    fn of(model: &Model, index: usize, recordings: &[&Recording]) -> Option<Self> {
-        let (effect, parameter) = model.parameters().nth(index)?;
-        let prior = parameter.card.prior?;
-        let spread = prior.standard_deviation(&scales_of(model, model.effects[effect].site, recordings));
+    fn of(index: usize, parameter: &Parameter, prior: Prior, scales: &RecordingScales) -> Option<Self> {
+        let spread = prior.standard_deviation(scales);
         let deviation = if prior.scale == PriorScale::Logarithmic { spread.ln() } else { spread };
         let known = Known { parameter: index, centre: centre(parameter), deviation, scale: prior.scale };
         // Where the recordings give no scale, as an opening that never leaves zero, nothing is known.
@@ -52,38 +54,50 @@ pub(crate) fn centre(parameter: &Parameter) -> f64 {
     }
 }
 
-/// What spreads are taken from: sample interval, and the largest opening at a site.
-fn scales_of(model: &Model, site: Site, recordings: &[&Recording]) -> RecordingScales {
-    let intervals = recordings.iter().map(|recording| recording.sample_interval());
-    let name = match site {
-        Site::Cylinder(index) => model.machine.cylinders.get(index).map(|cylinder| cylinder.name.as_str()),
-        Site::PumpLine | Site::Machine => None,
-    };
-    let openings = recordings.iter().filter_map(|recording| recording.cylinder(name?).ok());
-    let areas = openings.flat_map(|signals| &signals.orifice_area).filter(|area| area.is_finite());
-    RecordingScales {
-        sample_interval_s: intervals.fold(0.0, f64::max),
-        largest_opening_m2: areas.fold(0.0, |largest, area| largest.max(area.abs())),
+/// What spreads are taken from, for each site with a nuisance effect. Recordings are long, so each is read once.
+fn scales_by_site(model: &Model, recordings: &[&Recording]) -> BTreeMap<Site, RecordingScales> {
+    let has_prior = |effect: &&ModelEffect| effect.parameters.iter().any(|parameter| parameter.card.prior.is_some());
+    let sites: BTreeSet<Site> = model.effects.iter().filter(has_prior).map(|effect| effect.site).collect();
+    if sites.is_empty() {
+        return BTreeMap::new();
     }
+    let sample_interval_s = recordings.iter().map(|recording| recording.sample_interval()).fold(0.0, f64::max);
+    let scales = |site: Site| RecordingScales {
+        sample_interval_s,
+        largest_opening_m2: largest_opening(model, site, recordings),
+    };
+    sites.into_iter().map(|site| (site, scales(site))).collect()
+}
+
+/// Largest opening at a site, without its sign, m²; 0 where there is no valve.
+fn largest_opening(model: &Model, site: Site, recordings: &[&Recording]) -> f64 {
+    let Site::Cylinder(index) = site else { return 0.0 };
+    let Some(cylinder) = model.machine.cylinders.get(index) else { return 0.0 };
+    let openings = recordings.iter().filter_map(|recording| recording.cylinder(&cylinder.name).ok());
+    let areas = openings.flat_map(|signals| &signals.orifice_area).filter(|area| area.is_finite());
+    areas.fold(0.0, |largest, area| largest.max(area.abs()))
 }
 
 impl ParameterPriors {
     /// Of the parameters `fitted` of a model, for recordings with so many instruments.
     pub fn of(model: &Model, fitted: &[usize], recordings: &[&Recording], instruments: usize) -> Self {
-        let each = fitted.iter().map(|&index| Known::of(model, index, recordings)).collect();
-        ParameterPriors { each, instruments }
-    }
-
-    /// Least and largest value of every parameter of a model: those of its card, within the range of its prior.
-    pub fn bounds(model: &Model, recordings: &[&Recording]) -> Vec<[f64; 2]> {
-        let bounds = |(effect, parameter): (usize, &Parameter)| {
-            let card = parameter.card;
-            let Some(prior) = card.prior else { return [card.minimum, card.maximum] };
-            let scales = scales_of(model, model.effects[effect].site, recordings);
-            let [lowest, highest] = prior.bounds(centre(parameter), &scales);
-            [lowest.max(card.minimum), highest.min(card.maximum)]
-        };
-        model.parameters().map(bounds).collect()
+        let scales = scales_by_site(model, recordings);
+        let (known, bounds): (Vec<Option<Known>>, Vec<[f64; 2]>) = model
+            .parameters()
+            .enumerate()
+            .map(|(index, (effect, parameter))| {
+                let card = parameter.card;
+                match card.prior.zip(scales.get(&model.effects[effect].site)) {
+                    Some((prior, scales)) => {
+                        let [lowest, highest] = prior.bounds(centre(parameter), scales);
+                        let bounds = [lowest.max(card.minimum), highest.min(card.maximum)];
+                        (Known::of(index, parameter, prior, scales), bounds)
+                    }
+                    None => (None, [card.minimum, card.maximum]),
+                }
+            })
+            .unzip();
+        ParameterPriors { each: fitted.iter().map(|&index| known[index]).collect(), instruments, bounds }
     }
 
     /// Sum of squares of how many standard deviations each parameter is off, for all values of the model.

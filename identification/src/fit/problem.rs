@@ -31,8 +31,6 @@ pub(super) struct Problem<'s, 'm> {
     pub scales: Vec<f64>,
     /// Card of every parameter of the model.
     pub cards: Vec<&'static ParameterCard>,
-    /// Least and largest value of every parameter of the model, in its unit.
-    pub bounds: Vec<[f64; 2]>,
     /// What is known of nuisance parameters beforehand.
     pub priors: ParameterPriors,
 }
@@ -48,7 +46,6 @@ impl<'s, 'm> Problem<'s, 'm> {
         fitted: Vec<usize>,
     ) -> Result<Self, FitError> {
         let instruments = instruments(system, recordings);
-        let bounds = ParameterPriors::bounds(model, recordings);
         let priors = ParameterPriors::of(model, &fitted, recordings, instruments.len());
         if instruments.is_empty() {
             return Err(FitError::NothingMeasured { machine: model.machine.name.clone() });
@@ -68,20 +65,7 @@ impl<'s, 'm> Problem<'s, 'm> {
         let scales = scales(model, &fitted);
         let noise = instruments.iter().map(|instrument| instrument.noise).collect();
         let prior = InitialStatePrior::of(system);
-        Ok(Problem {
-            system,
-            prior,
-            recordings,
-            owners,
-            segments,
-            instruments,
-            noise,
-            fitted,
-            scales,
-            cards,
-            bounds,
-            priors,
-        })
+        Ok(Problem { system, prior, recordings, owners, segments, instruments, noise, fitted, scales, cards, priors })
     }
 
     /// Normal equations of every segment with these parameter values, each started from its state in `segments`.

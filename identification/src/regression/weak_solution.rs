@@ -85,8 +85,9 @@ pub(super) fn solve(
     let mut right = instruments.transpose() * &residuals;
     // What is known of nuisance parameters counts as one more row of each.
     let fitted: Vec<usize> = seen.iter().map(|&index| unknown[index]).collect();
-    let priors = ParameterPriors::of(model, &fitted, recordings, 0).equations(&values, &vec![1.0; fitted.len()]);
-    for (column, (information, gradient)) in priors.into_iter().enumerate() {
+    let priors = ParameterPriors::of(model, &fitted, recordings, 0);
+    let equations = priors.equations(&values, &vec![1.0; fitted.len()]);
+    for (column, (information, gradient)) in equations.into_iter().enumerate() {
         let scale = 1.0 / lengths[column];
         let instrument_scale = if own_lengths[column] > 0.0 { 1.0 / own_lengths[column] } else { scale };
         matrix[(column, column)] += information * scale * instrument_scale;
@@ -113,7 +114,6 @@ pub(super) fn solve(
     let step = -(&inverse * right);
     let remaining = &residuals + &regressors * &step;
 
-    let bounds = ParameterPriors::bounds(model, recordings);
     let mut improved = model.clone();
     let mut new_values = values.clone();
     for (column, &index) in seen.iter().enumerate() {
@@ -126,7 +126,7 @@ pub(super) fn solve(
                 1.0 / coefficient
             }
             Kind::Linear => values[parameter] + change,
-            Kind::Shape => (values[parameter] + change).clamp(bounds[parameter][0], bounds[parameter][1]),
+            Kind::Shape => (values[parameter] + change).clamp(priors.bounds[parameter][0], priors.bounds[parameter][1]),
         };
     }
     improved.set_parameter_values(&new_values);

@@ -36,7 +36,7 @@ pub(super) fn evidence(diagnosis: &Diagnosis, comparisons: &[Comparison]) -> Mar
         }
         @if !diagnosis.unpromising.is_empty() {
             details {
-                summary { "Effects left behind in the screening (" (diagnosis.unpromising.len()) ")" }
+                summary { "Effects dropped in the screening (" (diagnosis.unpromising.len()) ")" }
                 table.data {
                     thead { tr { th { "Effect" } th { "Where" } th.n { "Improvement that its first steps brought or promised" } } }
                     tbody { @for effect in &diagnosis.unpromising { tr {

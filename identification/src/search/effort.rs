@@ -23,7 +23,7 @@ pub struct Effort {
     /// So many more, the next best that have not converged in the screening, where the best of them leaves something unexplained.
     pub further_finalists: usize,
     /// The first step of a candidate is trusted to foretell its improvement only where its start is no further than this from the model
-    /// without it. Of 627 effects that ran on 40 blind machines this would have left behind 211: none was hidden in its machine.
+    /// without it. Of 627 effects that ran on 40 blind machines this would have dropped 211: none was hidden in its machine.
     pub trusted_distance: f64,
     /// Share of the misfit below which the best finalist does not end the screening: then all others are fitted too.
     pub little_share: f64,

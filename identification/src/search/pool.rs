@@ -43,7 +43,7 @@ pub struct Pool<'a> {
     pub trials: Vec<Trial>,
     /// One hypothesis for each trial.
     pub scores: Scores,
-    /// Effects that were left behind in the screening of additions to the given model, the most promising first.
+    /// Effects that were dropped in the screening of additions to the given model, the most promising first.
     pub unpromising: Vec<Unpromising>,
     /// Additions to the given model that could not be fitted, with the reason.
     pub failed: Vec<(String, AdditionError)>,
@@ -96,18 +96,15 @@ impl<'a> Pool<'a> {
         let key = trial.key();
         match self.find(&key) {
             Some(known) if self.trials[known].fit.loss() <= trial.fit.loss() => {}
-            Some(known) => self.replace(known, trial),
+            Some(known) => {
+                self.scores.hypotheses[known] = self.score(&trial);
+                self.trials[known] = trial;
+            }
             None => {
                 self.scores.hypotheses.push(self.score(&trial));
                 self.trials.push(trial);
             }
         }
-    }
-
-    /// Puts a trial in the place of another, whichever is better.
-    pub(super) fn replace(&mut self, known: usize, trial: Trial) {
-        self.scores.hypotheses[known] = self.score(&trial);
-        self.trials[known] = trial;
     }
 
     fn score(&self, trial: &Trial) -> crate::decision::Hypothesis {
@@ -124,9 +121,9 @@ impl<'a> Pool<'a> {
         self.find(&key_of(additions, &self.given().fit.model))
     }
 
-    /// Whether this was done with the trial; from now on it is.
-    pub(super) fn is_done(&mut self, what: Move, number: usize) -> bool {
-        !self.done.insert((what, self.trials[number].key()))
+    /// Marks that this is done with the trial.
+    pub(super) fn mark_done(&mut self, what: Move, number: usize) {
+        self.done.insert((what, self.trials[number].key()));
     }
 
     /// Whether this was done with the trial.

@@ -14,7 +14,6 @@ use super::addition::{Addition, AdditionError, best_start};
 use super::pool::Unpromising;
 use super::starts::can_be_transient;
 use super::track::{Track, few_steps};
-use super::transient::evaluate_on_others;
 use super::{Effort, Trial};
 use crate::fit::{Fit, fit, fit_predicted};
 
@@ -155,10 +154,6 @@ impl Screening<'_> {
     fn trial(&self, screen: Screen) -> Result<Trial, AdditionError> {
         let begin = Instant::now();
         let fit = fit(&screen.fit.model, self.identification, &self.effort.fit)?;
-        let known = &self.base.validation.model;
-        let validation = evaluate_on_others(&fit.model, known, self.validation, &self.effort.fit)?;
-        let mut additions = self.base.additions.clone();
-        additions.push(screen.addition);
-        Ok(Trial { additions, fit, validation, seconds: begin.elapsed().as_secs_f64() })
+        self.base.extended(screen.addition, fit, self.validation, &self.effort.fit, begin)
     }
 }

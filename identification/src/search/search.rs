@@ -32,7 +32,8 @@ pub fn search<'a>(
     milestones.tell("fit of the given model", 0.0);
     let mut fit = fit_given(model, identification, &effort.fit)?;
     milestones.pass();
-    for restart in 0.. {
+    let mut restarts = 0;
+    loop {
         let given = given_trial(fit, validation, &effort.fit)?;
         let mut pool = Pool::new(given, identification, validation);
         pool.look_at_inputs(effort, policy);
@@ -42,9 +43,12 @@ pub fn search<'a>(
         }
         steps.take(Move::Extend, 0, &mut pool);
         match better_given(&pool, effort) {
-            Some(better) if restart < effort.most_restarts => fit = better,
+            Some(better) if restarts < effort.most_restarts => {
+                fit = better;
+                restarts += 1;
+            }
             _ => {
-                while let Some((next, number)) = next_move(&mut pool, effort, policy) {
+                while let Some((next, number)) = next_move(&pool, effort, policy) {
                     steps.take(next, number, &mut pool);
                     milestones.pass();
                 }
@@ -53,14 +57,13 @@ pub fn search<'a>(
             }
         }
     }
-    unreachable!("the loop ends by returning")
 }
 
 /// What to try next, and of which hypothesis; none when all was tried that could change the verdict.
-fn next_move(pool: &mut Pool<'_>, effort: &Effort, policy: &Policy) -> Option<(Move, usize)> {
+fn next_move(pool: &Pool<'_>, effort: &Effort, policy: &Policy) -> Option<(Move, usize)> {
     let verdict = pool.verdict(policy);
     let wanted = moves_of(&verdict, pool, effort, policy);
-    wanted.into_iter().find(|&(what, number)| !pool.is_done(what, number))
+    wanted.into_iter().find(|&(what, number)| !pool.was_done(what, number))
 }
 
 fn moves_of(verdict: &Verdict, pool: &Pool<'_>, effort: &Effort, policy: &Policy) -> Vec<(Move, usize)> {

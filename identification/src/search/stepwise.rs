@@ -24,7 +24,7 @@ pub(super) struct Stepwise<'a> {
 impl Stepwise<'_> {
     /// Makes a move of trial `number`; what it leads to joins the pool.
     pub fn take(&self, what: Move, number: usize, pool: &mut Pool<'_>) {
-        pool.is_done(what, number);
+        pool.mark_done(what, number);
         match what {
             Move::Prune => self.prune(number, pool),
             Move::Extend => self.extend(number, pool),
@@ -142,25 +142,33 @@ impl Stepwise<'_> {
             // Its rivals were additions to the same model.
             return;
         }
-        let improvement = |addition: &Addition, pool: &Pool<'_>| {
-            pool.find_additions(&[*addition]).map_or(0.0, |single| verdict.standings[single].improvement)
-        };
+        // Of every effect that was fitted alone: by how much it improved. Trials of single effects stay what they are here.
+        let alone: Vec<(Addition, f64)> = pool
+            .trials
+            .iter()
+            .zip(&verdict.standings)
+            .filter_map(|(one, standing)| match one.additions[..] {
+                [addition] => Some((addition, standing.improvement)),
+                _ => None,
+            })
+            .collect();
         for addition in &trial.additions {
-            let least = self.effort.rival_share * improvement(addition, pool);
-            let singles = pool.trials.iter().filter(|one| one.additions.len() == 1).map(|one| one.additions[0]);
-            let mut rivals: Vec<Addition> = singles.filter(|rival| !trial.adds(rival)).collect();
-            rivals.retain(|rival| rival.physics.card().family.is_candidate());
-            rivals.retain(|rival| improvement(rival, pool) >= least.max(self.policy.least_improvement));
-            rivals.sort_by(|a, b| improvement(b, pool).total_cmp(&improvement(a, pool)));
+            let own = alone.iter().find(|(single, _)| single == addition).map_or(0.0, |(_, improvement)| *improvement);
+            let least = (self.effort.rival_share * own).max(self.policy.least_improvement);
+            let is_rival = |(rival, improvement): &&(Addition, f64)| {
+                !trial.adds(rival) && rival.physics.card().family.is_candidate() && *improvement >= least
+            };
+            let mut rivals: Vec<(Addition, f64)> = alone.iter().filter(is_rival).copied().collect();
+            rivals.sort_by(|a, b| b.1.total_cmp(&a.1));
             rivals.truncate(self.effort.most_rivals);
             if rivals.is_empty() {
                 continue;
             }
             let base = self.trial_without(number, addition, pool);
             let Some(base) = base else { continue };
-            for rival in rivals {
+            for (rival, _) in rivals {
                 self.milestones.tell(&rival.name(&base.fit.model), 0.5);
-                if let Ok(exchanged) = self.added(&base, rival, f64::INFINITY, pool) {
+                if let Ok(Some(exchanged)) = self.added(&base, rival, f64::INFINITY, pool) {
                     pool.put(exchanged);
                 }
             }
@@ -171,20 +179,22 @@ impl Stepwise<'_> {
         self.without(number, addition, pool).map(|without| pool.trials[without].clone())
     }
 
-    /// A trial with one more addition, fitted to the end; an error where its first step promises a loss above `worst`.
-    fn added(&self, base: &Trial, addition: Addition, worst: f64, pool: &Pool<'_>) -> Result<Trial, AdditionError> {
+    /// A trial with one more addition, fitted to the end; none where its first step promises a loss above `worst`.
+    fn added(
+        &self,
+        base: &Trial,
+        addition: Addition,
+        worst: f64,
+        pool: &Pool<'_>,
+    ) -> Result<Option<Trial>, AdditionError> {
         let begin = Instant::now();
         let settings = &self.effort.fit;
         let start = best_start(&base.fit.model, addition, pool.identification(), settings)?;
         if start.promise.loss_after > worst {
-            return Err(crate::fit::FitError::Stopped.into());
+            return Ok(None);
         }
         let fit = fit_predicted(&start.model, start.promise, pool.identification(), settings)?;
-        let validation =
-            super::transient::evaluate_on_others(&fit.model, &base.validation.model, pool.validation(), settings)?;
-        let mut additions = base.additions.clone();
-        additions.push(addition);
-        Ok(Trial { additions, fit, validation, seconds: begin.elapsed().as_secs_f64() })
+        base.extended(addition, fit, pool.validation(), settings, begin).map(Some)
     }
 
     /// Puts structural effects in the place of each effect, at its site; of the given model, at every site.
@@ -208,7 +218,7 @@ impl Stepwise<'_> {
                 continue;
             }
             self.milestones.tell("how the machine is built", 0.5);
-            if let Ok(trial) = self.added(base, addition, worst, pool) {
+            if let Ok(Some(trial)) = self.added(base, addition, worst, pool) {
                 pool.put(trial);
             }
         }

@@ -1,10 +1,13 @@
 //! A hypothesis with its fits.
 
+use std::time::Instant;
+
+use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelEffect};
 
-use super::Addition;
-use super::transient::is_transient;
-use crate::fit::Fit;
+use super::transient::{evaluate_on_others, is_transient};
+use super::{Addition, AdditionError};
+use crate::fit::{Fit, FitSettings};
 
 /// A model that was tried: the given one with some additions, fitted to the identification recordings and evaluated on the
 /// validation recordings.
@@ -21,6 +24,24 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// This trial with one more addition, whose fit began at `begin` and ended in `fit`, evaluated on the validation recordings.
+    ///
+    /// # Errors
+    /// [`AdditionError`] when it cannot be evaluated.
+    pub(super) fn extended(
+        &self,
+        addition: Addition,
+        fit: Fit,
+        validation: &[&Recording],
+        settings: &FitSettings,
+        begin: Instant,
+    ) -> Result<Trial, AdditionError> {
+        let validation = evaluate_on_others(&fit.model, &self.validation.model, validation, settings)?;
+        let mut additions = self.additions.clone();
+        additions.push(addition);
+        Ok(Trial { additions, fit, validation, seconds: begin.elapsed().as_secs_f64() })
+    }
+
     /// Names of the additions, sorted: the same for every order of selection.
     pub fn key(&self) -> Vec<String> {
         key_of(&self.additions, &self.fit.model)
