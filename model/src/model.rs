@@ -1,6 +1,6 @@
 //! A model: a machine plus a list of physical effects.
 
-use crate::effects::{self, ActsOn, Corner, Effect, Needs, ParameterCard, Site, UnknownEffect};
+use crate::effects::{self, ActsOn, Corner, Effect, Finding, Needs, ParameterCard, Site, UnknownEffect};
 use crate::machine::{Machine, Supply};
 
 /// A machine plus a list of physical effects with parameter values.
@@ -178,8 +178,13 @@ impl ModelEffect {
     }
 
     /// Whether it is large enough to say anything about a machine.
-    pub fn is_worth_a_name(&self) -> bool {
-        self.physics.is_worth_a_name(&self.values())
+    pub fn is_practically_significant(&self) -> bool {
+        self.physics.is_practically_significant(&self.values())
+    }
+
+    /// What a report says of it, for a nuisance.
+    pub fn finding(&self) -> Option<Finding> {
+        self.physics.finding(&self.values())
     }
 
     /// The corner of its law that others can round, at its parameter values.

@@ -135,15 +135,15 @@ fn sizes_that_say_nothing_are_no_name() {
     let mut model = common::machines()[0].with_effect(find("opening_scale").unwrap(), site).unwrap();
     for (scale, worth) in [(0.0067, false), (-0.0067, false), (0.02, true), (-0.02, true)] {
         model.effects.last_mut().unwrap().parameters[0].value = scale;
-        assert_eq!(model.effects.last().unwrap().is_worth_a_name(), worth, "{scale}");
+        assert_eq!(model.effects.last().unwrap().is_practically_significant(), worth, "{scale}");
     }
     let mut stribeck = common::machines()[0].with_effect(find("stribeck_friction").unwrap(), site).unwrap();
     for (speed, worth) in [(0.001, false), (0.01, true)] {
         stribeck.effects.last_mut().unwrap().parameters[1].value = speed;
-        assert_eq!(stribeck.effects.last().unwrap().is_worth_a_name(), worth, "{speed} m/s");
+        assert_eq!(stribeck.effects.last().unwrap().is_practically_significant(), worth, "{speed} m/s");
     }
     let small = common::machines()[0].with_effect(find("valve_dead_zone").unwrap(), site).unwrap();
-    assert!(small.effects.last().unwrap().is_worth_a_name());
+    assert!(small.effects.last().unwrap().is_practically_significant());
 }
 
 /// What is estimated beside every model needs a prior; what a machine is has none, so that nothing is put in beforehand.

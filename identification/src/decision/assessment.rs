@@ -1,8 +1,8 @@
 //! How each hypothesis stands against the given model and against the hypotheses with fewer effects.
 
-use super::resampling::{Resampled, Resampling};
+use super::resampling::{Resampled, Resampling, mean};
 use super::scores::{Bound, EffectScore, Hypothesis, Scores};
-use super::statistic::{block_costs, log_error_ratio_beyond_inputs};
+use super::statistic::block_costs;
 use super::{Policy, Standing};
 
 /// One hypothesis, assessed.
@@ -21,16 +21,15 @@ pub(super) struct Assessed<'a> {
 
 /// All hypotheses, assessed, in the order of the scores.
 pub(super) fn assess<'a>(scores: &'a Scores, policy: &Policy, given_is_adequate: bool) -> Vec<Assessed<'a>> {
-    let resampling = Resampling::new(scores.identification.blocks.len(), scores.validation.blocks.len());
+    let resampling = Resampling::new(&[scores.identification.blocks.len(), scores.validation.blocks.len()]);
     let mut assessed: Vec<Assessed<'a>> = scores
         .hypotheses
         .iter()
-        .map(|hypothesis| Assessed {
-            hypothesis,
-            resampled: resampling.of(&block_costs(scores, hypothesis)),
-            validation: log_error_ratio_beyond_inputs(&scores.validation, &hypothesis.validation),
-            identification: log_error_ratio_beyond_inputs(&scores.identification, &hypothesis.identification),
-            is_admissible: false,
+        .map(|hypothesis| {
+            let costs = block_costs(scores, hypothesis);
+            let [identification, validation] = [mean(&costs[0]), mean(&costs[1])];
+            let resampled = resampling.of(&costs);
+            Assessed { hypothesis, resampled, validation, identification, is_admissible: false }
         })
         .collect();
     let admissible: Vec<bool> =
@@ -81,11 +80,6 @@ impl Assessed<'_> {
             (self.validation - other.validation, self.identification - other.identification);
         let is_transient = other.hypothesis.effects.iter().any(|one| one.is_transient && !self.hypothesis.has(one));
         if is_transient { validation.min(identification) } else { validation }
-    }
-
-    /// Mean of both kinds of recordings.
-    pub fn mean(&self) -> f64 {
-        0.5 * (self.validation + self.identification)
     }
 
     /// Whether the recordings determine at least one parameter of its effects. A payload whose mass they do not show, on an incline that

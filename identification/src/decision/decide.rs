@@ -80,7 +80,7 @@ fn standings(assessed: &[Assessed<'_>]) -> Vec<Standing> {
 fn confidence_set(assessed: &[Assessed<'_>], standings: &[Standing], policy: &Policy) -> Vec<usize> {
     let admissible = (0..assessed.len()).filter(|&number| assessed[number].is_admissible);
     let mut ranked: Vec<usize> = admissible.collect();
-    ranked.sort_by(|&a, &b| assessed[a].mean().total_cmp(&assessed[b].mean()));
+    ranked.sort_by(|&a, &b| assessed[a].resampled.mean.total_cmp(&assessed[b].resampled.mean));
     let Some(&best) = ranked.first() else { return ranked };
     let doubt = policy.doubtful_share * assessed[best].validation.max(0.0);
     ranked.retain(|&number| {
@@ -104,7 +104,7 @@ fn with_fewest_effects(assessed: &[Assessed<'_>], set: &[usize], wanted: impl Fn
 fn best_candidate(assessed: &[Assessed<'_>]) -> Option<usize> {
     let candidates = (0..assessed.len())
         .filter(|&number| assessed[number].is_admissible && !assessed[number].hypothesis.is_structural());
-    candidates.min_by(|&a, &b| assessed[a].mean().total_cmp(&assessed[b].mean()))
+    candidates.min_by(|&a, &b| assessed[a].resampled.mean.total_cmp(&assessed[b].resampled.mean))
 }
 
 /// A structural effect in the set.

@@ -5,8 +5,6 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::statistic::BlockCosts;
-
 /// Draws; the standard error of a share is 0.02 at most.
 pub(super) const DRAWS: usize = 500;
 
@@ -16,13 +14,12 @@ const TOGETHER: usize = 4;
 /// Seed, so that a verdict is the same each time.
 const SEED: u64 = 1;
 
-/// How often each block was drawn, for each draw.
+/// How often each block of each kind of recordings was drawn, for each draw.
 pub(super) struct Resampling {
-    identification: Vec<Vec<f64>>,
-    validation: Vec<Vec<f64>>,
+    kinds: Vec<Vec<Vec<f64>>>,
 }
 
-/// The mean cost of a hypothesis, and in each draw. Both kinds of recordings count half.
+/// The mean cost of a hypothesis, and in each draw. Every kind of recordings counts the same.
 #[derive(Debug, Clone)]
 pub(super) struct Resampled {
     pub mean: f64,
@@ -30,20 +27,21 @@ pub(super) struct Resampled {
 }
 
 impl Resampling {
-    /// For recordings with so many blocks.
-    pub fn new(identification: usize, validation: usize) -> Self {
+    /// For kinds of recordings with so many blocks.
+    pub fn new(blocks: &[usize]) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
-        let mut draw = |blocks: usize| (0..DRAWS).map(|_| counts(blocks, &mut random)).collect();
-        Resampling { identification: draw(identification), validation: draw(validation) }
+        let mut draws = |blocks: usize| (0..DRAWS).map(|_| counts(blocks, &mut random)).collect();
+        Resampling { kinds: blocks.iter().map(|&blocks| draws(blocks)).collect() }
     }
 
-    /// Means of one hypothesis.
-    pub fn of(&self, costs: &BlockCosts) -> Resampled {
-        let draws = self.identification.iter().zip(&self.validation);
+    /// Means of one hypothesis, from the costs of its blocks, kind after kind.
+    pub fn of(&self, costs: &[Vec<f64>]) -> Resampled {
+        let each = || self.kinds.iter().zip(costs);
+        let share = 1.0 / self.kinds.len().max(1) as f64;
         Resampled {
-            mean: 0.5 * (mean(&costs.identification) + mean(&costs.validation)),
-            draws: draws
-                .map(|(one, other)| 0.5 * (weighed(one, &costs.identification) + weighed(other, &costs.validation)))
+            mean: share * each().map(|(_, costs)| mean(costs)).sum::<f64>(),
+            draws: (0..DRAWS)
+                .map(|draw| share * each().map(|(counts, costs)| weighed(&counts[draw], costs)).sum::<f64>())
                 .collect(),
         }
     }
@@ -64,17 +62,10 @@ pub(super) fn spread(values: &[f64]) -> f64 {
     (values.iter().map(|value| (value - middle).powi(2)).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-/// By how much a second hypothesis is better than a first on the same blocks, and that in its own standard errors.
-pub fn improvement_on_blocks(first: &[f64], second: &[f64]) -> (f64, f64) {
-    let resampling = Resampling::new(0, first.len().min(second.len()));
-    let of = |costs: &[f64]| {
-        let mut resampled = resampling.of(&BlockCosts { identification: Vec::new(), validation: costs.to_vec() });
-        // One kind of recordings only: it counts whole.
-        resampled.mean *= 2.0;
-        resampled.draws.iter_mut().for_each(|draw| *draw *= 2.0);
-        resampled
-    };
-    of(first).improvement(&of(second))
+/// By how much a second hypothesis is better than a first, from their costs on the same blocks, and that in its own standard errors.
+pub fn improvement_on_blocks(first: Vec<f64>, second: Vec<f64>) -> (f64, f64) {
+    let resampling = Resampling::new(&[first.len().min(second.len())]);
+    resampling.of(&[first]).improvement(&resampling.of(&[second]))
 }
 
 fn counts(blocks: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
@@ -97,6 +88,7 @@ fn weighed(counts: &[f64], costs: &[f64]) -> f64 {
     if count > 0.0 { sum / count } else { 0.0 }
 }
 
-fn mean(values: &[f64]) -> f64 {
+/// Mean of some values; 0 of none.
+pub(super) fn mean(values: &[f64]) -> f64 {
     if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 }
 }

@@ -53,25 +53,16 @@ pub fn relative_error(side: &Side, misfit: &Misfit) -> f64 {
     mean(errors.into_iter())
 }
 
-/// The cost beyond the input readings of each block of both kinds of recordings, identification first: mean over the instruments that were read in it. Blocks
-/// without a reading are left out.
-pub fn block_costs(scores: &Scores, hypothesis: &Hypothesis) -> BlockCosts {
-    BlockCosts {
-        identification: block_costs_of(&scores.identification, &hypothesis.identification),
-        validation: block_costs_of(&scores.validation, &hypothesis.validation),
-    }
+/// The cost of each block beyond the input readings, identification recordings first, then validation recordings.
+pub fn block_costs(scores: &Scores, hypothesis: &Hypothesis) -> [Vec<f64>; 2] {
+    [
+        block_costs_of(&scores.identification, &hypothesis.identification),
+        block_costs_of(&scores.validation, &hypothesis.validation),
+    ]
 }
 
-/// Costs of blocks, in order.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BlockCosts {
-    /// On the recordings that were fitted.
-    pub identification: Vec<f64>,
-    /// On the others.
-    pub validation: Vec<f64>,
-}
-
-/// The same of one kind of recordings.
+/// The same of one kind of recordings: mean over the instruments, each by its share of readings in the block, so that the mean over
+/// blocks is the log error ratio beyond the input readings.
 pub fn block_costs_of(side: &Side, misfit: &Misfit) -> Vec<f64> {
     // Each instrument counts as much as the others, however often it is read.
     let totals: Vec<f64> = (0..side.instruments.len()).map(|number| readings(&side.blocks, number)).collect();

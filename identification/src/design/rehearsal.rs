@@ -91,7 +91,7 @@ pub(super) fn rehearse(
             let refitted = evaluate(&refitted.model, &[&kept], &settings.fit)?;
             let side = side(&own, &[&kept]);
             let costs = |fit: &Fit| block_costs_of(&side, &misfit(fit));
-            let (improvement, significance) = improvement_on_blocks(&costs(&refitted), &costs(&own));
+            let (improvement, significance) = improvement_on_blocks(costs(&refitted), costs(&own));
             let (truth, other) = (truth.name.clone(), other.name.clone());
             rehearsed.push(Rehearsed { truth, other, improvement, significance });
         }

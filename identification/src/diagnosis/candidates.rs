@@ -49,6 +49,18 @@ impl Candidate<'_> {
         site_name(&self.trial.fit.model.machine, self.addition.site)
     }
 
+    /// What it is in the verdict, in a word or two.
+    pub fn result(&self) -> &'static str {
+        match self.part {
+            _ if self.is_tied_with_first => "tied",
+            Part::Tied => "tied",
+            Part::Selected if self.before.additions.is_empty() => "selected",
+            Part::Selected => "selected too",
+            Part::Improves => "helps less",
+            Part::NoEvidence => "no evidence",
+        }
+    }
+
     /// The effect with its fitted parameters.
     pub fn effect(&self) -> Option<&ModelEffect> {
         self.trial.effect(&self.addition)

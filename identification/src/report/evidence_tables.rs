@@ -64,11 +64,11 @@ fn table(rows: &[Candidate<'_>], recordings: &[&Recording]) -> Markup {
                 th.n { "Significance" } th.n { "Improvement where fitted" } th.n { "First in" }
             } }
             tbody { @for candidate in rows {
-                @let (class, result) = result_of(candidate);
+                @let class = class_of(candidate);
                 tr {
                     td { (words::spoken(candidate.name())) " " code.code-name { (candidate.name()) } }
                     td { (candidate.place()) }
-                    td { span class={ "chip " (class) } { (result) } }
+                    td { span class={ "chip " (class) } { (candidate.result()) } }
                     td.n { (significant(normalised_error(&candidate.before.validation, recordings), 3)) }
                     td.n { (significant(normalised_error(&candidate.trial.validation, recordings), 3)) }
                     td.n { (two_digits(candidate.improvement)) }
@@ -81,15 +81,14 @@ fn table(rows: &[Candidate<'_>], recordings: &[&Recording]) -> Markup {
     }
 }
 
-/// Class and words for what an effect is in the verdict.
-fn result_of(candidate: &Candidate<'_>) -> (&'static str, &'static str) {
+/// Class of what an effect is in the verdict.
+fn class_of(candidate: &Candidate<'_>) -> &'static str {
     match candidate.part {
-        _ if candidate.is_tied_with_first => ("tied", "tied: not told apart"),
-        Part::Tied => ("tied", "tied: not told apart"),
-        Part::Selected if candidate.before.additions.is_empty() => ("named", "selected"),
-        Part::Selected => ("named", "selected beside the above"),
-        Part::Improves => ("also", "helps, but less"),
-        Part::NoEvidence => ("none", "no evidence"),
+        _ if candidate.is_tied_with_first => "tied",
+        Part::Tied => "tied",
+        Part::Selected => "named",
+        Part::Improves => "also",
+        Part::NoEvidence => "none",
     }
 }
 

@@ -329,7 +329,7 @@ fn diagnosis_shows_evidence_cards_and_what_is_left() {
         "valve_dead_zone",
         "valve_leakage",
         "hose_loss",
-        "not told apart",
+        ">tied<",
         "arm.cap_continuity",
         "valve closed",
     ] {

@@ -1,8 +1,9 @@
 //! The verdict in plain sentences. They print the reasons of the decision and decide nothing.
 
+use excavator_model::effects::Finding;
 use excavator_model::{Model, site_name};
 
-use super::numbers::{percent, ratio, significant};
+use super::numbers::{percent, ratio};
 use super::plausibility_text::implausible_sentence;
 use super::words;
 use crate::decision::{Kind, Reason};
@@ -198,71 +199,20 @@ fn undetermined(diagnosis: &Diagnosis) -> Option<String> {
     ))
 }
 
-/// What is said of a nuisance effect.
-struct Telling {
-    effect: &'static str,
-    /// Of one, and of several.
-    sentences: [&'static str; 2],
-    /// Of its parameter, behind "that of the arm".
-    value: fn(f64) -> String,
-}
-
-const TELLINGS: [Telling; 5] = [
-    Telling {
-        effect: "spool_sensor_lead",
-        sentences: [
-            "The spool sensor is not read together with the other instruments",
-            "The spool sensors are not read together with the other instruments",
-        ],
-        value: |time| format!("{:.2} ms {}", 1e3 * time.abs(), if time > 0.0 { "before" } else { "after" }),
-    },
-    Telling {
-        effect: "spool_sensor_offset",
-        sentences: [
-            "The spool sensor does not read zero where its valve is closed",
-            "The spool sensors do not read zero where their valves are closed",
-        ],
-        value: |area| format!("{}{} mm2", if area > 0.0 { "+" } else { "" }, significant(1e6 * area, 2)),
-    },
-    Telling {
-        effect: "friction_reversal",
-        sentences: [
-            "Friction reverses over another speed than the usual 1 mm/s",
-            "Friction reverses over other speeds than the usual 1 mm/s",
-        ],
-        value: |speed| format!("over {} mm/s", significant(1e3 * speed, 2)),
-    },
-    Telling {
-        effect: "friction_corner",
-        sentences: [
-            "Friction reverses along another curve than the usual one",
-            "Friction reverses along other curves than the usual one",
-        ],
-        value: |sharpness| if sharpness > 0.0 { "a sharper one".into() } else { "a softer one".into() },
-    },
-    Telling {
-        effect: "orifice_transition",
-        sentences: [
-            "The valve's flow becomes turbulent at another pressure drop than the usual 2 kPa",
-            "The valves' flows become turbulent at other pressure drops than the usual 2 kPa",
-        ],
-        value: |drop| format!("at {} kPa", significant(1e-3 * drop, 2)),
-    },
-];
-
-/// The nuisance effects that were estimated up to the model `last`.
+/// What the nuisance effects that show in the model `last` say of the machine, those of one kind in one sentence.
 fn nuisances(given: &Model, last: &Model) -> Vec<String> {
-    let said = |telling: &Telling| {
-        let found: Vec<String> = nuisances_shown(given, last)
-            .filter(|effect| effect.name() == telling.effect)
-            .filter_map(|effect| {
-                let place = site_name(&last.machine, effect.site);
-                Some(format!("that of the {place} {}", (telling.value)(effect.parameters.first()?.value)))
-            })
-            .collect();
-        let sentence = telling.sentences[usize::from(found.len() > 1)];
-        let values = words::list(&found, "and");
-        (!found.is_empty()).then(|| format!("{sentence} ({values}); the fit takes this into account."))
+    let mut kinds: Vec<([&str; 2], Vec<String>)> = Vec::new();
+    for effect in nuisances_shown(given, last) {
+        let Some(Finding { sentences, value }) = effect.finding() else { continue };
+        let value = format!("that of the {} {value}", site_name(&last.machine, effect.site));
+        match kinds.iter_mut().find(|(known, _)| *known == sentences) {
+            Some((_, values)) => values.push(value),
+            None => kinds.push((sentences, vec![value])),
+        }
+    }
+    let sentence = |(sentences, values): &([&str; 2], Vec<String>)| {
+        let sentence = sentences[usize::from(values.len() > 1)];
+        format!("{sentence} ({}); the fit takes this into account.", words::list(values, "and"))
     };
-    TELLINGS.iter().filter_map(said).collect()
+    kinds.iter().map(sentence).collect()
 }

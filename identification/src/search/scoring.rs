@@ -56,7 +56,7 @@ pub(crate) fn score(trial: &Trial, given: &Model, identification: &[&Recording])
         place: site_name(&model.machine, effect.site).to_string(),
         role: if effect.physics.card().family == Family::Construction { Role::Structural } else { Role::Candidate },
         is_transient: is_transient(effect),
-        is_practically_significant: effect.is_worth_a_name(),
+        is_practically_significant: effect.is_practically_significant(),
         is_seen_from_both_sides: is_seen_from_both_sides(effect, identification),
         parameters: parameters(model, effect),
     };

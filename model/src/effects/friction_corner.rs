@@ -1,7 +1,8 @@
 //! How sharp a corner friction turns.
 
 use super::{
-    ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
+    ActsOn, Card, Corner, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
+    Spread, Start,
 };
 use crate::equations::Situation;
 use crate::machine::Machine;
@@ -50,6 +51,15 @@ impl Physics for FrictionCorner {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
+        let sharpness = *parameters.first()?;
+        let sentences = [
+            "Friction reverses along another curve than the usual one",
+            "Friction reverses along other curves than the usual one",
+        ];
+        Some(Finding { sentences, value: (if sharpness > 0.0 { "a sharper one" } else { "a softer one" }).to_string() })
     }
 
     fn has_power(&self) -> bool {

@@ -1,7 +1,8 @@
 //! How sharply friction turns round.
 
 use super::{
-    ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
+    ActsOn, Card, Corner, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
+    Spread, Start,
 };
 use crate::equations::Situation;
 use crate::equations::smooth::SLIP_SPEED;
@@ -52,6 +53,15 @@ impl Physics for FrictionReversal {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
+        let speed = *parameters.first()?;
+        let sentences = [
+            "Friction reverses over another speed than the usual 1 mm/s",
+            "Friction reverses over other speeds than the usual 1 mm/s",
+        ];
+        Some(Finding { sentences, value: format!("over {:.1} mm/s", 1e3 * speed) })
     }
 
     fn has_power(&self) -> bool {

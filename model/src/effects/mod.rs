@@ -58,7 +58,7 @@ mod viscous_damping;
 
 pub use card::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Site, Start};
 pub use physics::{Effect, Hooks, Number, Physics};
-pub use prior::{Prior, PriorScale, RecordingScales, Spread};
+pub use prior::{Finding, Prior, PriorScale, RecordingScales, Spread};
 
 use crate::equations::Rows;
 use crate::scalar::Scalar;

@@ -52,7 +52,7 @@ impl Physics for OpeningScale {
         false
     }
 
-    fn is_worth_a_name(&self, parameters: &[f64]) -> bool {
+    fn is_practically_significant(&self, parameters: &[f64]) -> bool {
         parameters.first().is_some_and(|scale| scale.abs() >= ACCURACY)
     }
 

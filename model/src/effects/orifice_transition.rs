@@ -1,7 +1,8 @@
 //! Where the flow through an orifice begins to be turbulent.
 
 use super::{
-    ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
+    ActsOn, Card, Corner, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
+    Spread, Start,
 };
 use crate::equations::Situation;
 use crate::equations::smooth::LAMINAR_PRESSURE;
@@ -51,6 +52,15 @@ impl Physics for OrificeTransition {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
+        let drop = *parameters.first()?;
+        let sentences = [
+            "The valve's flow becomes turbulent at another pressure drop than the usual 2 kPa",
+            "The valves' flows become turbulent at other pressure drops than the usual 2 kPa",
+        ];
+        Some(Finding { sentences, value: format!("at {:.1} kPa", 1e-3 * drop) })
     }
 
     fn has_power(&self) -> bool {

@@ -3,7 +3,7 @@
 //! To add a hook: write it with its default in [`Physics`], and its signature in the list of `hooks!`. Everything else follows from
 //! the list.
 
-use super::{Card, Corner, ParameterCard, Rows, Scalar, Site};
+use super::{Card, Corner, Finding, ParameterCard, Rows, Scalar, Site};
 use crate::equations::{Instruments, Situation};
 use crate::machine::Machine;
 use crate::scalar::Dual;
@@ -23,7 +23,7 @@ pub trait Physics: Sync {
 
     /// Whether an effect of this size says anything about a machine. One that is within the accuracy of good instruments, or whose
     /// shape lies where nothing moves, is no answer to what is missing, however well it takes up an error.
-    fn is_worth_a_name(&self, _parameters: &[f64]) -> bool {
+    fn is_practically_significant(&self, _parameters: &[f64]) -> bool {
         true
     }
 
@@ -45,6 +45,11 @@ pub trait Physics: Sync {
 
     /// The corner that its law has with these parameters, for others to round.
     fn corner(&self, _parameters: &[f64]) -> Option<Corner> {
+        None
+    }
+
+    /// What a report says of a nuisance effect with these parameters; `None` for what a verdict names.
+    fn finding(&self, _parameters: &[f64]) -> Option<Finding> {
         None
     }
 
@@ -135,11 +140,12 @@ hooks! {
         fn card() -> &'static Card;
         fn parameters(machine: &Machine, site: Site) -> &'static [ParameterCard];
         fn value_where_left_out(parameter: &str) -> Option<f64>;
-        fn is_worth_a_name(parameters: &[f64]) -> bool;
+        fn is_practically_significant(parameters: &[f64]) -> bool;
         fn has_power() -> bool;
         fn has_constant_compliance() -> bool;
         fn rounds() -> Option<Corner>;
         fn corner(parameters: &[f64]) -> Option<Corner>;
+        fn finding(parameters: &[f64]) -> Option<Finding>;
         fn states() -> usize;
         fn reads_course() -> bool;
     }

@@ -15,6 +15,15 @@ pub struct Prior {
     pub range: [f64; 2],
 }
 
+/// What a report says of a nuisance effect whose estimate shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// A sentence without its full stop, for one place and for several.
+    pub sentences: [&'static str; 2],
+    /// The estimate in engineering units, to follow "that of the arm".
+    pub value: String,
+}
+
 /// On which scale a [`Prior`] is normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PriorScale {

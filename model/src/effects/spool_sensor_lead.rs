@@ -1,7 +1,7 @@
 //! A spool sensor that is read earlier than the other instruments.
 
 use super::{
-    ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
+    ActsOn, Card, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
 };
 use crate::machine::Machine;
 
@@ -60,6 +60,18 @@ impl Physics for SpoolSensorLead {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
+        let time = *parameters.first()?;
+        let sentences = [
+            "The spool sensor is not read together with the other instruments",
+            "The spool sensors are not read together with the other instruments",
+        ];
+        Some(Finding {
+            sentences,
+            value: format!("{:.2} ms {}", 1e3 * time.abs(), if time > 0.0 { "before" } else { "after" }),
+        })
     }
 
     fn has_power(&self) -> bool {

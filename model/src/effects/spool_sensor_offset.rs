@@ -1,7 +1,7 @@
 //! A spool sensor that does not read zero where the valve closes.
 
 use super::{
-    ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
+    ActsOn, Card, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
 };
 use crate::machine::Machine;
 
@@ -48,6 +48,15 @@ impl Physics for SpoolSensorOffset {
 
     fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
         PARAMETERS
+    }
+
+    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
+        let area = *parameters.first()?;
+        let sentences = [
+            "The spool sensor does not read zero where its valve is closed",
+            "The spool sensors do not read zero where their valves are closed",
+        ];
+        Some(Finding { sentences, value: format!("{:+.3} mm2", 1e6 * area) })
     }
 
     fn has_power(&self) -> bool {

@@ -60,7 +60,7 @@ impl Physics for StribeckFriction {
         PARAMETERS
     }
 
-    fn is_worth_a_name(&self, parameters: &[f64]) -> bool {
+    fn is_practically_significant(&self, parameters: &[f64]) -> bool {
         parameters.get(1).is_some_and(|speed| *speed >= SLOWEST)
     }
 

@@ -2,7 +2,7 @@
 
 use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
 use comfy_table::{Attribute, Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
-use excavator_identification::diagnosis::{Diagnosis, Part};
+use excavator_identification::diagnosis::Diagnosis;
 use excavator_identification::fit::normalised_error;
 use excavator_identification::refinement::Refinement;
 use excavator_identification::search::Trial;
@@ -108,14 +108,7 @@ pub fn candidate_table(diagnosis: &Diagnosis, validation: &[&Recording]) -> Tabl
             right(format!("{:.2}", candidate.improvement)),
             right(format!("{:.1}", candidate.standing.significance)),
             right(format!("{:.0} %", 100.0 * candidate.standing.is_first)),
-            Cell::new(match candidate.part {
-                _ if candidate.is_tied_with_first => "tied",
-                Part::Tied => "tied",
-                Part::Selected if candidate.before.additions.is_empty() => "selected",
-                Part::Selected => "+ selected",
-                Part::Improves => "helps less",
-                Part::NoEvidence => "no evidence",
-            }),
+            Cell::new(candidate.result()),
         ]);
     }
     table

@@ -95,7 +95,7 @@ pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
                 _ => effect.name.clone(),
             })
             .collect();
-        print(&format!("Left behind after a few steps: {}.", names.join(", ")));
+        print(&format!("Dropped after a few steps of their fits: {}.", names.join(", ")));
     }
     for (name, error) in &diagnosis.failed {
         print(&format!("{name} could not be tried: {error}"));
