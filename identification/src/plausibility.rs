@@ -1,7 +1,7 @@
 //! Fitted values that point to a wrong unit or a wrong length rather than to a missing effect: a model whose pressures are all ten times
 //! too large fits as well as the right one, with ten times the inertia.
 
-use excavator_model::effects::{Family, Kind};
+use excavator_model::effects::{Family, Kind, Text};
 use excavator_model::{Model, ModelEffect, Parameter};
 
 /// A fitted value that is hard to believe.
@@ -12,7 +12,7 @@ pub struct Implausible {
     /// What was fitted, in `unit`.
     pub value: f64,
     /// SI unit.
-    pub unit: &'static str,
+    pub unit: Text,
     /// Why it is hard to believe.
     pub why: Doubt,
 }
@@ -48,7 +48,7 @@ pub fn implausible(given: &Model, found: &Model) -> Vec<Implausible> {
     fitted
         .filter_map(|((_, parameter), name)| {
             let why = doubt(given.value_of(&name), parameter)?;
-            Some(Implausible { name, value: parameter.value, unit: parameter.card.unit, why })
+            Some(Implausible { name, value: parameter.value, unit: parameter.card.unit.clone(), why })
         })
         .collect()
 }

@@ -6,7 +6,7 @@ use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose
 use excavator_identification::fit::normalised_error;
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 use excavator_model::recording::{Recording, linear};
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::{RngExt, SeedableRng};
@@ -15,8 +15,8 @@ use rand_distr::{Distribution, StandardNormal};
 
 /// A dead zone of 4 mm² towards the cap side and 5 mm² towards the rod side.
 fn machine() -> Model {
-    let zone = find("valve_dead_zone").unwrap();
-    let mut model = built_in("zx30u-arm").unwrap().with_effect(zone, Site::Cylinder(0)).unwrap();
+    let zone = Catalogue::built_in().find("valve_dead_zone").unwrap();
+    let mut model = built_in("zx30u-arm").unwrap().with_effect(&zone, Site::Cylinder(0)).unwrap();
     for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip([4e-6, 5e-6]) {
         parameter.value = value;
     }

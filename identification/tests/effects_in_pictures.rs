@@ -9,11 +9,14 @@ use excavator_identification::fit::{FitSettings, evaluate};
 use excavator_identification::search::{Addition, Trial};
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 
 /// The paper's arm with one more effect.
 fn machine(name: &str, values: &[f64]) -> Model {
-    let mut model = built_in("zx30u-arm").unwrap().with_effect(find(name).unwrap(), Site::Cylinder(0)).unwrap();
+    let mut model = built_in("zx30u-arm")
+        .unwrap()
+        .with_effect(&Catalogue::built_in().find(name).unwrap(), Site::Cylinder(0))
+        .unwrap();
     for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
         parameter.value = *value;
     }
@@ -24,8 +27,8 @@ fn shown(name: &'static str, values: &[f64], found: &[f64]) -> Option<Contributi
     let recording = swing(&machine(name, values));
     let model = machine(name, found);
     let fit = evaluate(&model, &[&recording], &FitSettings::default()).unwrap();
-    let addition = Addition { physics: find(name).unwrap(), site: Site::Cylinder(0) };
-    let trial = Trial { additions: vec![addition], validation: fit.clone(), fit, seconds: 0.0 };
+    let addition = Addition { physics: Catalogue::built_in().find(name).unwrap(), site: Site::Cylinder(0) };
+    let trial = Trial { additions: vec![addition.clone()], validation: fit.clone(), fit, seconds: 0.0 };
     contribution(&trial, &addition, &[&recording]).unwrap()
 }
 

@@ -11,7 +11,7 @@ use excavator_identification::report::refinement_sentence;
 use excavator_identification::search::Addition;
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 use excavator_model::recording::Recording;
 
 struct Machine {
@@ -26,8 +26,10 @@ impl Machine {
 
     fn refined(&self, names: &[&str]) -> Refinement {
         let model = built_in("zx30u-arm").unwrap();
-        let added =
-            names.iter().map(|name| Addition { physics: find(name).unwrap(), site: Site::Cylinder(0) }).collect();
+        let added = names
+            .iter()
+            .map(|name| Addition { physics: Catalogue::built_in().find(name).unwrap(), site: Site::Cylinder(0) })
+            .collect();
         let (identification, validation) = ([&self.identification], [&self.validation]);
         let settings = DiagnosisSettings::default();
         let additions = Additions::Named(added);

@@ -7,7 +7,7 @@ use common::add_noise;
 use excavator_identification::fit::{Fit, FitSettings, ProfileInterval, fit, profile};
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
@@ -73,7 +73,7 @@ fn where_a_model_is_linear_the_interval_is_that_of_the_standard_error() {
 /// All parameters known, and an effect that the machine has not, with these values; the last of them is asked for.
 fn profiled_addition(effect: &str, values: &[f64]) -> ProfileInterval {
     let recording = measured(swing, 2);
-    let mut model = model(&[]).with_effect(find(effect).unwrap(), Site::PumpLine).unwrap();
+    let mut model = model(&[]).with_effect(&Catalogue::built_in().find(effect).unwrap(), Site::PumpLine).unwrap();
     let own = model.effects.last_mut().unwrap();
     for (parameter, value) in own.parameters.iter_mut().zip(values) {
         parameter.value = *value;
@@ -109,7 +109,7 @@ fn what_a_recording_does_not_show_takes_nothing_from_what_is_known_of_the_others
         found.model.parameters().filter_map(|(_, parameter)| parameter.standard_error).collect()
     };
     let alone = model(&["arm.viscous_damping", "arm.coulomb_friction"]);
-    let mut more = alone.with_effect(find("relief_valve").unwrap(), Site::PumpLine).unwrap();
+    let mut more = alone.with_effect(&Catalogue::built_in().find("relief_valve").unwrap(), Site::PumpLine).unwrap();
     for (parameter, value) in more.effects.last_mut().unwrap().parameters.iter_mut().zip([34e6, 1e-9]) {
         parameter.value = value;
     }

@@ -13,7 +13,7 @@ use excavator_identification::fit::{FitSettings, Simplified, fit, fit_watched, w
 use excavator_identification::refinement::{Additions, refine};
 use excavator_identification::search::Addition;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use excavator_model::{Model, ModelEffect};
@@ -23,7 +23,9 @@ use rand_chacha::ChaCha8Rng;
 /// A machine whose friction turns round over `reversal_speed`, m/s.
 fn machine(reversal_speed: f64) -> Model {
     let mut model = off_the_data_sheet("zx30u-arm", 0.1);
-    let mut effect = ModelEffect::new(find("friction_reversal").unwrap(), &model.machine, Site::Cylinder(0)).unwrap();
+    let mut effect =
+        ModelEffect::new(&Catalogue::built_in().find("friction_reversal").unwrap(), &model.machine, Site::Cylinder(0))
+            .unwrap();
     effect.parameters[0].value = reversal_speed;
     model.effects.push(effect);
     model
@@ -81,7 +83,9 @@ fn a_friction_as_the_equations_have_it_needs_no_other_reversal() {
     let given = built_in("zx30u-arm").unwrap();
     let fitted = fit(&with_nuisances(&given, &[&recording]), &[&recording], &FitSettings::default()).unwrap();
     let found = Simplified::of(&given, &fitted.model).model;
-    let names = |model: &Model| model.effects.iter().map(ModelEffect::name).collect::<Vec<_>>();
+    fn names(model: &Model) -> Vec<&str> {
+        model.effects.iter().map(ModelEffect::name).collect()
+    }
     assert_eq!(names(&found), names(&given));
 }
 

@@ -6,13 +6,13 @@ mod common;
 use common::swing;
 use excavator_identification::regression::{RegressionError, WeakFormSettings, weak_form};
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 
 #[test]
 fn a_payload_is_held_and_the_rest_is_identified() {
     let plain = built_in("zx30u-arm").unwrap();
     let recording = swing(&plain);
-    let mut model = plain.with_effect(find("payload").unwrap(), Site::Cylinder(0)).unwrap();
+    let mut model = plain.with_effect(&Catalogue::built_in().find("payload").unwrap(), Site::Cylinder(0)).unwrap();
     model.effects.last_mut().unwrap().parameters[0].value = 0.0;
 
     let found = weak_form(&model, &[&recording], &WeakFormSettings::default()).unwrap();

@@ -12,6 +12,7 @@ pub mod document;
 pub mod effects;
 pub mod energy;
 pub mod equations;
+pub mod formula;
 pub mod machine;
 mod model;
 pub mod recording;

@@ -1,6 +1,11 @@
 //! A model: a machine plus a list of physical effects.
 
-use crate::effects::{self, ActsOn, Corner, Effect, Finding, Needs, ParameterCard, Site, UnknownEffect};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use crate::effects::{
+    self, ActsOn, AnyEffect, Catalogue, Corner, Effect, Finding, Needs, ParameterCard, Site, Text, UnknownEffect,
+};
 use crate::machine::{Machine, Supply};
 
 /// A machine plus a list of physical effects with parameter values.
@@ -12,13 +17,15 @@ pub struct Model {
     pub effects: Vec<ModelEffect>,
     /// What was done to the model, oldest first.
     pub history: Vec<HistoryEntry>,
+    /// The effects that it may have.
+    pub catalogue: Catalogue,
 }
 
 /// One effect at one place with its parameter values.
 #[derive(Debug, Clone)]
 pub struct ModelEffect {
     /// The physics.
-    pub physics: &'static dyn Effect,
+    pub physics: AnyEffect,
     /// Where it sits.
     pub site: Site,
     /// Its parameters, in the order of its cards.
@@ -29,7 +36,7 @@ pub struct ModelEffect {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
     /// What it means.
-    pub card: &'static ParameterCard,
+    pub card: Arc<ParameterCard>,
     /// Value in the card's unit.
     pub value: f64,
     /// Whether the value is a known constant, which identification leaves alone.
@@ -124,13 +131,13 @@ impl ModelEffect {
     ///
     /// # Errors
     /// [`ModelError::WrongSite`] when the effect cannot act there.
-    pub fn new(physics: &'static dyn Effect, machine: &Machine, site: Site) -> Result<Self, ModelError> {
-        if let Some(reason) = why_not(physics, machine, site) {
+    pub fn new(physics: &AnyEffect, machine: &Machine, site: Site) -> Result<Self, ModelError> {
+        if let Some(reason) = why_not(&**physics, machine, site) {
             return Err(ModelError::WrongSite {
-                effect: physics.card().name.into(),
+                effect: physics.card().name.to_string(),
                 site: site_name(machine, site).into(),
                 machine: machine.name.clone(),
-                reason: reason.into(),
+                reason,
             });
         }
         let parameters = physics
@@ -138,15 +145,20 @@ impl ModelEffect {
             .iter()
             .map(|card| {
                 // What acts in a window of time only where somebody looks for one acts always until then.
-                let always = card.start.is_a_time().then(|| physics.value_where_left_out(card.name)).flatten();
-                let first = match card.start {
+                let always = match card.start {
+                    effects::Start::Known(value) => Some(value),
+                    _ if card.start.is_a_time() => physics.value_where_left_out(&card.name),
+                    _ => None,
+                };
+                let first = match &card.start {
                     effects::Start::At(values) => values.first().copied().unwrap_or(card.typical),
                     effects::Start::PumpPressureQuantiles(_)
+                    | effects::Start::Known(_)
                     | effects::Start::WorstStretchBegin
                     | effects::Start::WorstStretchDuration => card.typical,
                 };
                 Parameter {
-                    card,
+                    card: Arc::new(card.clone()),
                     value: always.unwrap_or(first),
                     known: always.is_some(),
                     standard_error: None,
@@ -155,12 +167,17 @@ impl ModelEffect {
                 }
             })
             .collect();
-        Ok(ModelEffect { physics, site, parameters })
+        Ok(ModelEffect { physics: physics.clone(), site, parameters })
     }
 
     /// Name in the catalogue.
-    pub fn name(&self) -> &'static str {
-        self.physics.card().name
+    pub fn name(&self) -> &str {
+        &self.physics.card().name
+    }
+
+    /// The same, as results keep it.
+    pub fn name_text(&self) -> Text {
+        self.physics.card().name.clone()
     }
 
     /// What says when it begins and how long it lasts, s, for an effect that can act in a window of time.
@@ -174,7 +191,7 @@ impl ModelEffect {
         self.parameters
             .iter()
             .filter(|parameter| parameter.card.start.is_a_time())
-            .all(|time| self.physics.value_where_left_out(time.card.name) == Some(time.value))
+            .all(|time| self.physics.value_where_left_out(&time.card.name) == Some(time.value))
     }
 
     /// Whether it is large enough to say anything about a machine.
@@ -230,11 +247,16 @@ pub fn site_named(machine: &Machine, name: &str) -> Option<Site> {
 }
 
 /// Name of an effect at a place, as results and commands write it: `pump_leakage@pump`.
-pub fn addition_name(physics: &dyn Effect, place: &str) -> String {
-    format!("{}@{place}", physics.card().name)
+pub fn addition_name(effect: &str, place: &str) -> String {
+    format!("{effect}@{place}")
 }
 
-fn why_not(physics: &dyn Effect, machine: &Machine, site: Site) -> Option<&'static str> {
+fn why_not(physics: &dyn Effect, machine: &Machine, site: Site) -> Option<String> {
+    let by_card = why_not_by_card(physics, machine, site).map(str::to_string);
+    by_card.or_else(|| physics.why_not(machine, site))
+}
+
+fn why_not_by_card(physics: &dyn Effect, machine: &Machine, site: Site) -> Option<&'static str> {
     let card = physics.card();
     let pump_line = matches!(machine.supply, Supply::PumpLine(_));
     match (card.acts_on, site) {
@@ -281,13 +303,24 @@ impl Model {
         self.effects.iter_mut().flat_map(|effect| effect.parameters.iter_mut())
     }
 
-    /// Contract names of all parameters (`arm.inertia`, `pump.bulk_modulus`, ...), in the same order.
+    /// Contract names of all parameters (`arm.inertia`, `pump.bulk_modulus`, ...), in the same order. Where formulas of one place use
+    /// the same word, it stands behind the name of its effect: `arm.load_damping.k`.
     pub fn parameter_names(&self) -> Vec<String> {
-        self.parameters()
-            .map(|(effect, parameter)| {
-                format!("{}.{}", site_name(&self.machine, self.effects[effect].site), parameter.card.name)
-            })
-            .collect()
+        let plain = |(effect, parameter): (usize, &Parameter)| {
+            format!("{}.{}", site_name(&self.machine, self.effects[effect].site), parameter.card.name)
+        };
+        let names: Vec<String> = self.parameters().map(plain).collect();
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        names.iter().for_each(|name| *counts.entry(name).or_default() += 1);
+        let unique = |((effect, parameter), name): ((usize, &Parameter), &String)| {
+            let effect = &self.effects[effect];
+            let place = site_name(&self.machine, effect.site);
+            match counts.get(name.as_str()) {
+                Some(2..) => format!("{place}.{}.{}", effect.name(), parameter.card.name),
+                _ => name.clone(),
+            }
+        };
+        self.parameters().zip(&names).map(unique).collect()
     }
 
     /// Indices, in the order of [`Model::parameters`], of those that identification may change.
@@ -327,12 +360,12 @@ impl Model {
     ///
     /// An effect that acts everywhere at once is at every place. So the whole machine is free only where the effect is at no place, and
     /// no place is free where it is on the whole machine. A machine with one place is that place, and is not offered twice.
-    pub fn free_sites(&self, physics: &'static dyn Effect) -> Vec<Site> {
-        let name = physics.card().name;
+    pub fn free_sites(&self, physics: &AnyEffect) -> Vec<Site> {
+        let name = &physics.card().name;
         if self.has(name, Site::Machine) {
             return Vec::new();
         }
-        let can_act = |site: &Site| why_not(physics, &self.machine, *site).is_none();
+        let can_act = |site: &Site| why_not(&**physics, &self.machine, *site).is_none();
         let is_free = |site: &Site| !self.has(name, *site);
         let places = (0..self.machine.cylinders.len()).map(Site::Cylinder).chain([Site::PumpLine]);
         let places: Vec<Site> = places.filter(can_act).collect();
@@ -344,10 +377,10 @@ impl Model {
     ///
     /// # Errors
     /// [`ModelError::WrongSite`], [`ModelError::AlreadyPresent`].
-    pub fn with_effect(&self, physics: &'static dyn Effect, site: Site) -> Result<Model, ModelError> {
-        if self.has(physics.card().name, site) {
+    pub fn with_effect(&self, physics: &AnyEffect, site: Site) -> Result<Model, ModelError> {
+        if self.has(&physics.card().name, site) {
             return Err(ModelError::AlreadyPresent {
-                effect: physics.card().name.into(),
+                effect: physics.card().name.to_string(),
                 site: site_name(&self.machine, site).into(),
                 machine: self.machine.name.clone(),
             });
@@ -362,9 +395,9 @@ impl Model {
     ///
     /// # Errors
     /// [`ModelError`] when effect or site do not exist or do not fit.
-    pub fn parse_addition(&self, text: &str) -> Result<Vec<(&'static dyn Effect, Site)>, ModelError> {
+    pub fn parse_addition(&self, text: &str) -> Result<Vec<(AnyEffect, Site)>, ModelError> {
         let (name, place) = text.split_once('@').map_or((text, None), |(name, place)| (name, Some(place)));
-        let physics = effects::find(name)?;
+        let physics = self.catalogue.find(name)?;
         let wrong_site = |site: &str, reason: String| ModelError::WrongSite {
             effect: name.to_string(),
             site: site.to_string(),
@@ -373,12 +406,12 @@ impl Model {
         };
         let Some(place) = place else {
             // Each place by itself covers the whole machine already.
-            let mut sites = self.free_sites(physics);
+            let mut sites = self.free_sites(&physics);
             sites.retain(|site| *site != Site::Machine);
             if sites.is_empty() {
                 return Err(wrong_site("any place", "it is there already, or nothing it could act on".into()));
             }
-            return Ok(sites.into_iter().map(|site| (physics, site)).collect());
+            return Ok(sites.into_iter().map(|site| (physics.clone(), site)).collect());
         };
         let site = site_named(&self.machine, place).ok_or_else(|| {
             let names: Vec<&str> = self.machine.cylinders.iter().map(|c| c.name.as_str()).collect();

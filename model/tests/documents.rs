@@ -1,8 +1,10 @@
 //! Model files: there and back, and what is said when one is wrong.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod common;
+
 use excavator_model::document::{BUILT_IN, DocumentError, built_in, parse, to_text};
-use excavator_model::effects::CATALOGUE;
+use excavator_model::effects::Catalogue;
 use excavator_model::{HistoryEntry, Model};
 
 const ARM: &str = include_str!("../../config/zx30u-arm.toml");
@@ -20,7 +22,7 @@ fn assert_same(a: &Model, b: &Model) {
 fn models_survive_writing_and_reading() {
     for (name, _) in BUILT_IN {
         let mut model = built_in(name).unwrap();
-        for &physics in CATALOGUE {
+        for physics in &common::catalogue() {
             for site in model.free_sites(physics) {
                 model = model.with_effect(physics, site).unwrap();
             }
@@ -40,7 +42,7 @@ fn models_survive_writing_and_reading() {
             validation_error_after: None,
         });
         let text = to_text(&model).unwrap();
-        let read = parse("written", &text).unwrap();
+        let read = parse("written", &text, &Catalogue::built_in()).unwrap();
         assert_same(&model, &read);
         assert_eq!(to_text(&read).unwrap(), text);
     }
@@ -49,7 +51,7 @@ fn models_survive_writing_and_reading() {
 /// The error of the arm's file with one piece of text replaced, checked to be one line.
 fn error_with(from: &str, to: &str) -> DocumentError {
     assert!(ARM.contains(from), "the file no longer has {from}");
-    let error = parse("arm.toml", &ARM.replacen(from, to, 1)).unwrap_err();
+    let error = parse("arm.toml", &ARM.replacen(from, to, 1), &Catalogue::built_in()).unwrap_err();
     let text = error.to_string();
     assert!(!text.contains('\n') && text.contains("arm.toml"), "{text}");
     error
@@ -108,7 +110,7 @@ fn impossible_numbers_are_refused() {
     }
     // What is to be identified is a start only, and may come out of a fit like that.
     let start = ARM.replacen("viscous_damping = { value = 13000.0", "viscous_damping = { value = -1.0", 1);
-    assert_eq!(parse("arm.toml", &start).unwrap().value_of("arm.viscous_damping"), Some(-1.0));
+    assert_eq!(parse("arm.toml", &start, &Catalogue::built_in()).unwrap().value_of("arm.viscous_damping"), Some(-1.0));
     // Table 1 of [A] as printed.
     let text = error_with("mid_stroke_length = { value = 1.1", "mid_stroke_length = { value = 0.28").to_string();
     assert!(text.contains("linkage cannot reach"), "{text}");
@@ -117,7 +119,7 @@ fn impossible_numbers_are_refused() {
 #[test]
 fn what_is_no_model_says_so_in_one_line() {
     for text in ["", "not toml at all [", "[machine]\nname = 3\n"] {
-        let error = parse("arm.toml", text).unwrap_err();
+        let error = parse("arm.toml", text, &Catalogue::built_in()).unwrap_err();
         assert!(matches!(error, DocumentError::Syntax { .. }), "{error:?}");
         assert!(!error.to_string().contains('\n'), "{error}");
     }
@@ -149,7 +151,7 @@ fn effects_twice_or_in_the_wrong_place_are_refused() {
 fn places_beside_cylinders_are_no_names_of_cylinders() {
     for taken in ["pump", "machine"] {
         let text = ARM.replace("name = \"arm\"", &format!("name = \"{taken}\""));
-        let error = parse("arm.toml", &text).unwrap_err().to_string();
+        let error = parse("arm.toml", &text, &Catalogue::built_in()).unwrap_err().to_string();
         assert!(error.contains("is taken"), "{error}");
     }
 }

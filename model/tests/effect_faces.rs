@@ -147,7 +147,7 @@ fn regressor_times_coefficient_is_the_contribution() {
 #[test]
 fn powers_add_up_to_the_rate_of_the_storage() {
     let mut worst = 0.0_f64;
-    let mut shows_power: BTreeMap<&str, bool> = BTreeMap::new();
+    let mut shows_power: BTreeMap<String, bool> = BTreeMap::new();
     for (model, index) in common::every_effect_everywhere() {
         let mut random = common::random_for(2, &model, index);
         let system = System::new(&model);
@@ -203,7 +203,7 @@ fn powers_add_up_to_the_rate_of_the_storage() {
         }
         assert!(has_power || most_power == 0.0, "{}: up to {most_power} W", common::label(&model, index));
         // Not at every place: fifty states of some cylinders do not cavitate.
-        let shown = shows_power.entry(model.effects[index].name()).or_insert(!has_power);
+        let shown = shows_power.entry(model.effects[index].name().to_string()).or_insert(!has_power);
         *shown |= most_power > 0.0;
     }
     for (name, shown) in shows_power {

@@ -6,6 +6,7 @@ mod common;
 use common::Random;
 use excavator_model::Model;
 use excavator_model::document::built_in;
+use excavator_model::effects::Catalogue;
 use excavator_model::energy::{EffectPower, Ledger, ledger};
 use excavator_model::equations::{Inputs, System};
 use excavator_model::simulation::{InputSignals, Integrator, Tolerances};
@@ -164,9 +165,9 @@ fn losses_lose() {
     for model in common::machines() {
         let mut all = model.clone();
         for name in TAKING {
-            let physics = excavator_model::effects::find(name).unwrap();
-            for site in all.free_sites(physics) {
-                all = common::with_typical(&all, physics, site);
+            let physics = Catalogue::built_in().find(name).unwrap();
+            for site in all.free_sites(&physics) {
+                all = common::with_typical(&all, &physics, site);
             }
         }
         let system = System::new(&all);
@@ -180,7 +181,7 @@ fn losses_lose() {
             inputs.tank_pressure = 0.0;
             let book = ledger(&system, &parameters, &state, &inputs);
             for effect in &book.effects {
-                if TAKING.contains(&effect.effect) {
+                if TAKING.contains(&&*effect.effect) {
                     let size = effect.cap.abs() + effect.rod.abs() + effect.pump_line.abs();
                     // Between volumes of different bulk moduli an orifice is lossless in p, not in e; all else is exact.
                     let between = effect.acts_on == excavator_model::effects::ActsOn::Valve;

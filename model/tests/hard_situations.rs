@@ -175,12 +175,12 @@ fn the_rounded_sign_is_smooth_at_any_speed() {
 fn no_effect_stalls() {
     let base = built_in("zx30u-arm").unwrap();
     let mut worst = (0.0, String::new());
-    for &physics in excavator_model::effects::CATALOGUE {
+    for physics in &common::catalogue() {
         for site in base.free_sites(physics) {
             for strength in [1.0, 5.0] {
                 let mut model = common::with_typical(&base, physics, site);
                 for parameter in &mut model.effects.last_mut().unwrap().parameters {
-                    let card = parameter.card;
+                    let card = &parameter.card;
                     parameter.value = (strength * parameter.value).clamp(card.minimum, card.maximum);
                 }
                 let start = common::at_rest(&System::new(&model));
@@ -217,7 +217,7 @@ fn cost_of_each_effect() {
         let (states, steps) = run(model, &recording, &start);
         (clock.elapsed().as_secs_f64(), steps as f64 / states.len() as f64)
     };
-    for &physics in excavator_model::effects::CATALOGUE {
+    for physics in &common::catalogue() {
         for site in base.free_sites(physics) {
             let model = common::with_typical(&base, physics, site);
             // In turns, so that what else the machine does meets both alike; the least of each is the least disturbed.

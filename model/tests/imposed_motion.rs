@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use excavator_model::document::{parse, to_text};
+use excavator_model::effects::Catalogue;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::simulate;
 
@@ -36,7 +37,7 @@ fn swing() -> Recording {
 
 #[test]
 fn the_force_is_what_inertia_friction_and_pressure_take() {
-    let model = parse("rig", &format!("{RIG}{FURTHER}")).unwrap();
+    let model = parse("rig", &format!("{RIG}{FURTHER}"), &Catalogue::built_in()).unwrap();
     let recording = swing();
     let simulated = simulate(&model, &recording).unwrap();
     for (index, &t) in recording.time.iter().enumerate() {
@@ -58,21 +59,21 @@ fn the_force_is_what_inertia_friction_and_pressure_take() {
 
 #[test]
 fn a_rig_survives_the_round_trip_and_takes_no_chambers() {
-    let model = parse("rig", RIG).unwrap();
-    assert_eq!(parse("again", &to_text(&model).unwrap()).unwrap().machine, model.machine);
+    let model = parse("rig", RIG, &Catalogue::built_in()).unwrap();
+    assert_eq!(parse("again", &to_text(&model).unwrap(), &Catalogue::built_in()).unwrap().machine, model.machine);
     let chambers = "[machine.cylinders.chambers]\ncap_area = { value = 1e-3, unit = \"m2\" }\nrod_area = { value = 1e-3, \
                     unit = \"m2\" }\ncap_dead_volume = { value = 1e-4, unit = \"m3\" }\nrod_dead_volume = { value = 1e-4, \
                     unit = \"m3\" }\nmaximum_orifice_area = { value = 1e-4, unit = \"m2\" }\n\n[[effects]]";
     let both = RIG
         .replacen("[[effects]]", chambers, 1)
         .replace("kind = \"none\"", "kind = \"pressure_source\"\npressure = { value = 1e6, unit = \"Pa\" }\ntank_pressure = { value = 0.0, unit = \"Pa\" }");
-    let refused = parse("both", &both).unwrap_err().to_string();
+    let refused = parse("both", &both, &Catalogue::built_in()).unwrap_err().to_string();
     assert!(refused.contains("imposed_motion"), "{refused}");
 }
 
 #[test]
 fn without_a_force_or_a_displacement_there_is_a_clear_refusal() {
-    let model = parse("rig", RIG).unwrap();
+    let model = parse("rig", RIG, &Catalogue::built_in()).unwrap();
     for (signal, hide) in [("load.rod_force", true), ("load.displacement", false)] {
         let mut recording = swing();
         let load = &mut recording.cylinders[0];

@@ -4,7 +4,7 @@
 mod common;
 
 use excavator_model::document::built_in;
-use excavator_model::effects::{CATALOGUE, Family, Site, find};
+use excavator_model::effects::{Catalogue, Family, Site};
 use excavator_model::equations::{Channel, Distortion, System};
 use excavator_model::recording::{Recording, cubic, linear};
 use excavator_model::scalar::{derivative, variable};
@@ -24,7 +24,7 @@ fn arm_with_poor_instruments(offsets: [f64; 4], delays: [f64; 3]) -> Model {
         ("sensor_delay", Site::Cylinder(0), vec![delays[0], delays[1]]),
         ("sensor_delay", Site::PumpLine, vec![delays[2]]),
     ] {
-        model = model.with_effect(find(name).unwrap(), site).unwrap();
+        model = model.with_effect(&Catalogue::built_in().find(name).unwrap(), site).unwrap();
         for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
             parameter.value = value;
         }
@@ -111,7 +111,7 @@ fn a_delay_reports_the_past() {
 fn a_delay_of_the_whole_machine_is_that_of_each_place() {
     for name in ["zx30u-arm", "zx30u", "emps"] {
         let truth = built_in(name).unwrap();
-        let delay = find("sensor_delay").unwrap();
+        let delay = Catalogue::built_in().find("sensor_delay").unwrap();
         let set = |model: &mut Model, values: &[f64]| {
             let parameters = &mut model.effects.last_mut().unwrap().parameters;
             assert_eq!(parameters.len(), values.len(), "{name}");
@@ -119,11 +119,11 @@ fn a_delay_of_the_whole_machine_is_that_of_each_place() {
         };
         let (position, pressure) = (0.0123, 0.0057);
         let values = if truth.machine.has_chambers() { vec![position, pressure] } else { vec![position] };
-        let mut whole = truth.with_effect(delay, Site::Machine).unwrap();
+        let mut whole = truth.with_effect(&delay, Site::Machine).unwrap();
         set(&mut whole, &values);
         let mut placed = truth.clone();
         for (_, site) in truth.parse_addition("sensor_delay").unwrap() {
-            placed = placed.with_effect(delay, site).unwrap();
+            placed = placed.with_effect(&delay, site).unwrap();
             let own = if site == Site::PumpLine { vec![pressure] } else { values.clone() };
             set(&mut placed, &own);
         }
@@ -263,9 +263,10 @@ fn gradients_of_readings_are_slopes() {
 fn every_start_shows_in_reports() {
     for base in ["zx30u-arm", "emps"].map(|name| built_in(name).unwrap()) {
         let recording = common::tour(&base);
-        let candidates = CATALOGUE.iter().filter(|physics| physics.card().family == Family::Candidate);
-        for (&physics, site) in
-            candidates.flat_map(|physics| base.free_sites(*physics).into_iter().map(move |s| (physics, s)))
+        let catalogue = Catalogue::built_in();
+        let candidates = catalogue.iter().filter(|physics| physics.card().family == Family::Candidate);
+        for (physics, site) in
+            candidates.flat_map(|physics| base.free_sites(physics).into_iter().map(move |s| (physics, s)))
         {
             let model = base.with_effect(physics, site).unwrap();
             let shown = shown(&model, &recording);

@@ -6,12 +6,12 @@ mod common;
 use common::Random;
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 use excavator_model::energy::ledger;
 use excavator_model::equations::{Inputs, System};
 
 fn with(base: &Model, effect: &str, cylinder: usize, values: &[f64]) -> Model {
-    let mut model = base.with_effect(find(effect).unwrap(), Site::Cylinder(cylinder)).unwrap();
+    let mut model = base.with_effect(&Catalogue::built_in().find(effect).unwrap(), Site::Cylinder(cylinder)).unwrap();
     for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
         parameter.value = *value;
     }

@@ -6,7 +6,7 @@ mod common;
 use common::Random;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse, to_text};
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 use excavator_model::equations::System;
 use excavator_model::machine::Mechanism;
 
@@ -16,7 +16,7 @@ fn as_chain(two: &Model, length: f64) -> Model {
     chain.machine.mechanism = Mechanism::PlanarChain { link_lengths: vec![length] };
     chain.effects.clear();
     for effect in &two.effects {
-        chain = chain.with_effect(effect.physics, effect.site).unwrap();
+        chain = chain.with_effect(&effect.physics, effect.site).unwrap();
         let parameters = &mut chain.effects.last_mut().unwrap().parameters;
         for parameter in parameters {
             if let Some(same) = effect.parameters.iter().find(|other| other.card.name == parameter.card.name) {
@@ -61,7 +61,8 @@ fn two_links_of_a_chain_are_the_closed_form_of_the_paper() {
         for link in 0..2 {
             let (mass, distance) = (random.between(10.0, 200.0), random.between(0.5, 2.0));
             let loaded = |model: &Model| {
-                let mut model = model.with_effect(find("payload").unwrap(), Site::Cylinder(link)).unwrap();
+                let mut model =
+                    model.with_effect(&Catalogue::built_in().find("payload").unwrap(), Site::Cylinder(link)).unwrap();
                 // Its times are those of a load that is there always.
                 let own = model.effects.last_mut().unwrap().parameters.iter_mut().filter(|parameter| !parameter.known);
                 for (parameter, value) in own.zip([mass, distance, length]) {
@@ -155,7 +156,7 @@ fn a_chain_is_written_and_read_back() {
     for name in ["boom.inertia", "arm.inertia", "arm.coupling_moment", "bucket.inertia", "bucket.coupling_moment"] {
         assert!(names.iter().any(|candidate| candidate == name), "{name}");
     }
-    let again = parse("again", &to_text(&model).unwrap()).unwrap();
+    let again = parse("again", &to_text(&model).unwrap(), &Catalogue::built_in()).unwrap();
     assert_eq!(again.machine, model.machine);
     assert_eq!(again.parameter_values(), model.parameter_values());
     // One length too few: the third cylinder has no joint.
@@ -163,6 +164,6 @@ fn a_chain_is_written_and_read_back() {
     let mut short: toml::Table = text.parse().unwrap();
     let lengths = &mut short["machine"]["mechanism"]["link_lengths"];
     lengths.as_array_mut().unwrap().pop();
-    let error = parse("short", &short.to_string()).unwrap_err().to_string();
+    let error = parse("short", &short.to_string(), &Catalogue::built_in()).unwrap_err().to_string();
     assert!(error.contains("the mechanism has 2 joint(s), but there are 3 cylinder(s)"), "{error}");
 }

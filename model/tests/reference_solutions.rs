@@ -8,7 +8,7 @@ mod diffsol_reference;
 use diffsol_reference::{Method, solve};
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 use excavator_model::equations::{Inputs, System};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{InputSignals, Integrator, Tolerances};
@@ -128,7 +128,8 @@ fn closed_valve_leaks_as_its_eigenvalues_say() {
 fn pressure_builds_up_with_its_time_constant() {
     let mut model = common::closed_centre();
     model.effects.retain(|effect| ["inertia", "oil_compressibility"].contains(&effect.name()));
-    let mut model = model.with_effect(find("valve_leakage").unwrap(), Site::Cylinder(0)).unwrap();
+    let mut model =
+        model.with_effect(&Catalogue::built_in().find("valve_leakage").unwrap(), Site::Cylinder(0)).unwrap();
     let gain = 4e-11;
     model.set_parameter_values(&[1e11, 9.6e8, gain, 0.0, 0.0, 0.0]);
     let cylinder = &model.machine.cylinders[0];

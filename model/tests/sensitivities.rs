@@ -73,7 +73,7 @@ fn errors(model: &Model, settings: Tolerances) -> Vec<(String, f64)> {
         let (mut upper, mut lower) = ((parameters.clone(), start.clone()), (parameters.clone(), start.clone()));
         let (what, step, whole) = if number < wanted.len() {
             let index = wanted[number];
-            let card = model.parameters().nth(index).unwrap().1.card;
+            let card = &model.parameters().nth(index).unwrap().1.card;
             let whole = if parameters[index] == 0.0 { card.typical } else { parameters[index].abs() };
             let step = 1e-4 * whole;
             upper.0[index] += step;
@@ -127,7 +127,7 @@ fn fine() -> Tolerances {
 #[test]
 fn sensitivities_with_each_effect_added() {
     let base = excavator_model::document::built_in("zx30u-arm").unwrap();
-    for &physics in excavator_model::effects::CATALOGUE {
+    for physics in &common::catalogue() {
         for site in base.free_sites(physics) {
             let model = common::with_typical(&base, physics, site);
             check(&model, Tolerances::default(), 0.02, 0.1);

@@ -6,14 +6,15 @@ mod common;
 use common::Random;
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{ActsOn, CATALOGUE, Card, Family, Number, Site, find};
+use excavator_model::effects::{ActsOn, Card, Catalogue, Family, Number, Site};
 use excavator_model::equations::{Inputs, Rows, Situation, System};
 use excavator_model::simulation::{InputSignals, Integrator, Tolerances};
 
 const CYLINDER: Site = Site::Cylinder(0);
 
 fn arm_with(effect: &str, site: Site, values: &[f64]) -> Model {
-    let mut model = built_in("zx30u-arm").unwrap().with_effect(find(effect).unwrap(), site).unwrap();
+    let mut model =
+        built_in("zx30u-arm").unwrap().with_effect(&Catalogue::built_in().find(effect).unwrap(), site).unwrap();
     for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
         parameter.value = *value;
     }
@@ -167,17 +168,17 @@ fn has_a_say(card: &Card) -> bool {
 #[test]
 fn only_valves_and_pump_line_have_a_say_in_the_way_of_oil() {
     for model in common::machines() {
-        for effect in CATALOGUE.iter().filter(|effect| !has_a_say(effect.card())) {
-            let name = effect.card().name;
+        for effect in Catalogue::built_in().iter().filter(|effect| !has_a_say(effect.card())) {
+            let name = &effect.card().name;
             let places = (0..model.machine.cylinders.len()).map(Site::Cylinder);
             for site in places.chain([Site::PumpLine, Site::Machine]) {
                 let typical: Vec<f64> =
                     effect.parameters(&model.machine, site).iter().map(|parameter| parameter.typical).collect();
                 assert_eq!(effect.states(), 0, "{name}");
-                let hooks = <f64 as Number>::hooks(*effect);
+                let hooks = <f64 as Number>::hooks(&**effect);
                 assert_eq!(hooks.spool(&typical, &[], &mut [], 3e-5), [3e-5, 3e-5], "{name}");
-                assert_eq!(hooks.opening(&typical, 3e-5, 1e-4), 3e-5, "{name}");
                 let mut situation = Situation::<f64>::empty(&model.machine);
+                assert_eq!(hooks.opening(site, &typical, 3e-5, &situation), 3e-5, "{name}");
                 hooks.adjust(site, &typical, &mut situation);
                 assert_eq!(situation.pistons, Situation::<f64>::empty(&model.machine).pistons, "{name}");
             }
@@ -244,7 +245,8 @@ fn the_bypass_has_its_share_of_the_play() {
 fn a_compensated_valve_holds_flow_until_the_margin_is_gone() {
     let margin = 8e5;
     let nominal = built_in("zx30u-arm").unwrap();
-    let mut model = nominal.with_effect(find("pressure_compensation").unwrap(), Site::Cylinder(0)).unwrap();
+    let mut model =
+        nominal.with_effect(&Catalogue::built_in().find("pressure_compensation").unwrap(), Site::Cylinder(0)).unwrap();
     model.effects.last_mut().unwrap().parameters[0].value = margin;
     let system = System::new(&model);
     let gain = |name: &str| nominal.value_of(name).unwrap();
@@ -255,10 +257,9 @@ fn a_compensated_valve_holds_flow_until_the_margin_is_gone() {
         system.layout().cap_pressure(0).unwrap(),
         system.layout().rod_pressure(0).unwrap(),
     );
-    let valve = model.effects.iter().position(|effect| effect.name() == "orifice_flow").unwrap();
     let only_valve = |model: &Model| {
         let mut model = model.clone();
-        let keep = [model.effects[valve].name(), "pressure_compensation", "inertia", "oil_compressibility"];
+        let keep = ["orifice_flow", "pressure_compensation", "inertia", "oil_compressibility"];
         model.effects.retain(|effect| keep.contains(&effect.name()));
         model
     };
@@ -299,7 +300,7 @@ fn a_compensated_valve_holds_flow_until_the_margin_is_gone() {
 #[test]
 fn a_tight_check_valve_lets_nothing_back() {
     let base = built_in("zx30u-arm").unwrap();
-    let model = base.with_effect(find("load_check_valve").unwrap(), Site::Cylinder(0)).unwrap();
+    let model = base.with_effect(&Catalogue::built_in().find("load_check_valve").unwrap(), Site::Cylinder(0)).unwrap();
     let system = System::new(&model);
     let mut inputs = Inputs::zero(1);
     let mut state = common::at_rest(&system);

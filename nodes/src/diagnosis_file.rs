@@ -119,8 +119,8 @@ impl DiagnosisFile {
         let mut extended = model.clone();
         for name in &self.nuisances {
             for (physics, site) in model.parse_addition(name)? {
-                if !model.has(physics.card().name, site) {
-                    extended = extended.with_effect(physics, site)?;
+                if !model.has(&physics.card().name, site) {
+                    extended = extended.with_effect(&physics, site)?;
                 }
             }
         }

@@ -53,6 +53,8 @@ pub enum VerbError {
     Profile(#[from] ProfileError),
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: std::io::Error },
+    #[error("--catalogue {}: {reason}", path.display())]
+    Catalogue { path: PathBuf, reason: String },
     #[error("{} is not a profile: {reason}", path.display())]
     ProfileSyntax { path: PathBuf, reason: String },
     #[error("cannot write the profile: {0}")]

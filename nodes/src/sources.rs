@@ -1,12 +1,13 @@
 //! Models and recordings by what a person calls them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use excavator_bags::map::read_recording_or_mapped;
 use excavator_bags::{ReadLimits, read_regular_text};
 use excavator_identification::gate;
 use excavator_model::Model;
-use excavator_model::document::{built_in, parse};
+use excavator_model::document::{built_in, parse, parse_catalogue};
+use excavator_model::effects::Catalogue;
 use excavator_model::recording::Recording;
 
 use crate::cli::{self, Mapping};
@@ -14,14 +15,50 @@ use crate::error::VerbError;
 use crate::recording_part::Part;
 use crate::terminal::complain;
 
-/// A model by its built-in name or file.
-pub fn model(name: &str) -> Result<Model, VerbError> {
+/// A model by its built-in name or file, with the effects of its user.
+pub fn model(choice: &cli::ModelChoice) -> Result<Model, VerbError> {
+    model_with(&choice.model, &catalogue(&choice.own)?)
+}
+
+/// The same with the effects of the program and of its own file.
+pub fn model_named(name: &str) -> Result<Model, VerbError> {
+    model_with(name, &Catalogue::built_in())
+}
+
+fn model_with(name: &str, catalogue: &Catalogue) -> Result<Model, VerbError> {
     let path = Path::new(name);
     if !path.exists() && !name.ends_with(".toml") {
-        return Ok(built_in(name)?);
+        return Ok(Model { catalogue: catalogue.clone(), ..built_in(name)? });
     }
     let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
-    Ok(parse(name, &text)?)
+    Ok(parse(name, &text, catalogue)?)
+}
+
+/// The effects of the program and those of these catalogue files; of a folder, every TOML file in it, by name.
+pub fn catalogue(own: &cli::OwnEffects) -> Result<Catalogue, VerbError> {
+    let mut catalogue = Catalogue::built_in();
+    for path in &own.catalogue {
+        let files = if path.is_dir() { catalogue_files(path)? } else { vec![path.clone()] };
+        for file in files {
+            let text = read_regular_text(&file, ReadLimits::DEFAULT.document)?;
+            catalogue = parse_catalogue(&file.display().to_string(), &text, &catalogue)?;
+        }
+    }
+    Ok(catalogue)
+}
+
+fn catalogue_files(folder: &Path) -> Result<Vec<PathBuf>, VerbError> {
+    let unusable = |reason: String| VerbError::Catalogue { path: folder.to_path_buf(), reason };
+    let entries = std::fs::read_dir(folder).map_err(|error| unusable(error.to_string()))?;
+    let mut files: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .collect();
+    files.sort();
+    if files.is_empty() {
+        return Err(unusable("the folder has no catalogue files (.toml)".to_string()));
+    }
+    Ok(files)
 }
 
 /// A recording, with what was wrong in its data told on standard error, checked against the model. Bags of other people

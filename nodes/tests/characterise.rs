@@ -11,7 +11,7 @@ use excavator_bags::{Topics, WriteOptions, read_recording, write_recording};
 use excavator_identification::characterisation::{Characterisation, Estimate, Refusal, characterise};
 use excavator_model::Model;
 use excavator_model::document::{built_in, to_text};
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 use excavator_model::recording::Recording;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -36,7 +36,7 @@ const MASS: f64 = 300.0;
 fn bench(hidden: &[(&str, &[f64])]) -> Model {
     let mut model = built_in("servo-bench").unwrap();
     for (name, values) in hidden {
-        model = model.with_effect(find(name).unwrap(), Site::Cylinder(0)).unwrap();
+        model = model.with_effect(&Catalogue::built_in().find(name).unwrap(), Site::Cylinder(0)).unwrap();
         for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(*values) {
             parameter.value = *value;
         }

@@ -21,8 +21,8 @@ fn machine(effect: &str, values: &[(&str, f64)]) -> Model {
     for (number, parameter) in model.parameters_mut().filter(|parameter| !parameter.known).enumerate() {
         parameter.value *= [1.08, 0.93, 1.12, 0.95, 1.05, 0.9][number % 6];
     }
-    let (physics, site) = model.parse_addition(effect).unwrap()[0];
-    let mut model = model.with_effect(physics, site).unwrap();
+    let (physics, site) = model.parse_addition(effect).unwrap().remove(0);
+    let mut model = model.with_effect(&physics, site).unwrap();
     for (name, value) in values {
         let added = model.effects.last_mut().unwrap();
         added.parameters.iter_mut().find(|parameter| parameter.card.name == *name).unwrap().value = *value;

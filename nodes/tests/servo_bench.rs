@@ -11,7 +11,7 @@ use excavator_identification::search::Addition;
 use excavator_identification::validation::compare;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse};
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Profile, Segment, Tolerances, simulate_from_rest};
 use rand::SeedableRng;
@@ -35,7 +35,7 @@ const HIDDEN: [(&str, &[f64]); 5] = [
 fn plant() -> Model {
     let mut model = built_in("servo-bench").unwrap();
     for (name, values) in HIDDEN {
-        model = model.with_effect(find(name).unwrap(), Site::Cylinder(0)).unwrap();
+        model = model.with_effect(&Catalogue::built_in().find(name).unwrap(), Site::Cylinder(0)).unwrap();
         let effect = model.effects.last_mut().unwrap();
         for (parameter, value) in effect.parameters.iter_mut().zip(values) {
             parameter.value = *value;
@@ -48,7 +48,7 @@ fn plant() -> Model {
 fn the_refined_model_file_is_the_preliminary_one_and_five_effects() {
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../config/servo-bench-refined.toml")).unwrap();
-    let (refined, plant) = (parse("servo-bench-refined.toml", &text).unwrap(), plant());
+    let (refined, plant) = (parse("servo-bench-refined.toml", &text, &Catalogue::built_in()).unwrap(), plant());
     assert_eq!(refined.machine.cylinders, plant.machine.cylinders);
     assert_eq!(refined.parameter_names(), plant.parameter_names());
     assert_eq!(refined.parameter_values(), plant.parameter_values());
@@ -176,8 +176,10 @@ fn assert_coefficients(model: &Model) {
 
 #[test]
 fn the_error_falls_with_each_effect_of_the_refined_model() {
-    let named =
-        HIDDEN.iter().map(|(name, _)| Addition { physics: find(name).unwrap(), site: Site::Cylinder(0) }).collect();
+    let named = HIDDEN
+        .iter()
+        .map(|(name, _)| Addition { physics: Catalogue::built_in().find(name).unwrap(), site: Site::Cylinder(0) })
+        .collect();
     let refinement = story(&Additions::Named(named));
     assert_falls(&refinement);
     assert_coefficients(&refinement.model);

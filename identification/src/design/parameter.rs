@@ -1,7 +1,7 @@
 //! A profile that shows a parameter.
 
 use excavator_model::Model;
-use excavator_model::effects::nearest;
+use excavator_model::effects::{Text, nearest};
 use excavator_model::simulation::Profile;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ pub struct ParameterDesign {
     /// Contract name of the parameter.
     pub name: String,
     /// SI unit.
-    pub unit: &'static str,
+    pub unit: Text,
     /// Its value in the model.
     pub value: f64,
     /// Its standard error in the model, if it was identified before.
@@ -117,7 +117,7 @@ pub fn determine(
         .map_or((f64::NAN, f64::NAN), |(_, found)| (found.value, found.standard_error.unwrap_or(f64::INFINITY)));
     Ok(ParameterDesign {
         name: name.to_string(),
-        unit: parameter.card.unit,
+        unit: parameter.card.unit.clone(),
         value: parameter.value,
         given_error: parameter.standard_error,
         sine_error,

@@ -59,7 +59,7 @@ pub(super) fn record(
 /// [`FitError`] when neither can be fitted.
 pub(super) fn best_fit(rival: &Rival, recording: &Recording, settings: &DesignSettings) -> Result<Fit, FitError> {
     let own = fit(&rival.model, &[recording], &settings.fit);
-    let Some(addition) = rival.addition else { return own };
+    let Some(addition) = &rival.addition else { return own };
     let fresh = fit_addition(&rival.base(), addition, &[recording], &settings.fit);
     match (own, fresh) {
         (Ok(own), Ok(fresh)) => Ok(if fresh.loss() < own.loss() { fresh } else { own }),

@@ -1,7 +1,7 @@
 //! Models that are to be told apart.
 
 use excavator_model::Model;
-use excavator_model::effects::{Effect, Site};
+use excavator_model::effects::{AnyEffect, Site};
 
 use super::DesignError;
 use crate::search::Addition;
@@ -48,8 +48,8 @@ impl Rival {
         Ok(rivals)
     }
 
-    fn with(model: &Model, physics: &'static dyn Effect, site: Site) -> Result<Rival, DesignError> {
-        let mut extended = model.with_effect(physics, site)?;
+    fn with(model: &Model, physics: AnyEffect, site: Site) -> Result<Rival, DesignError> {
+        let mut extended = model.with_effect(&physics, site)?;
         if let Some(added) = extended.effects.last_mut() {
             for parameter in added.parameters.iter_mut().filter(|parameter| !parameter.known) {
                 parameter.value = parameter.card.typical.clamp(parameter.card.minimum, parameter.card.maximum);

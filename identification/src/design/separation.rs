@@ -87,7 +87,7 @@ pub fn separate(
         [first, ..] => first,
     };
     let machine = first.model.machine.clone();
-    let sites: Vec<_> = rivals.iter().map(|rival| rival.addition.map(|addition| addition.site)).collect();
+    let sites: Vec<_> = rivals.iter().map(|rival| rival.addition.as_ref().map(|addition| addition.site)).collect();
     let wanted = cylinders(&first.model, &sites);
     let manoeuvres = library(&machine, &wanted);
     if manoeuvres.is_empty() {

@@ -23,7 +23,7 @@ pub enum Part {
 #[derive(Debug, Clone, Copy)]
 pub struct Candidate<'a> {
     /// The effect and its place.
-    pub addition: Addition,
+    pub addition: &'a Addition,
     /// The fit that it is a part of.
     pub trial: &'a Trial,
     /// The fit that this is compared with.
@@ -38,10 +38,10 @@ pub struct Candidate<'a> {
     pub is_tied_with_first: bool,
 }
 
-impl Candidate<'_> {
+impl<'a> Candidate<'a> {
     /// Name in the catalogue.
-    pub fn name(&self) -> &'static str {
-        self.addition.physics.card().name
+    pub fn name(&self) -> &'a str {
+        &self.addition.physics.card().name
     }
 
     /// Name of the place.
@@ -63,7 +63,7 @@ impl Candidate<'_> {
 
     /// The effect with its fitted parameters.
     pub fn effect(&self) -> Option<&ModelEffect> {
-        self.trial.effect(&self.addition)
+        self.trial.effect(self.addition)
     }
 }
 
@@ -117,26 +117,26 @@ impl Diagnosis {
         let each = path.iter().zip(befores);
         each.flat_map(|(&trial, before)| {
             let new = trial.additions.iter().filter(|addition| !before.adds(addition));
-            new.map(move |addition| self.candidate(*addition, trial, before, Part::Selected))
+            new.map(move |addition| self.candidate(addition, trial, before, Part::Selected))
         })
         .collect()
     }
 
     /// Effects that stand in the place of another one in hypotheses that cannot be told from the favoured one, with the effect that they stand
     /// for. An alternative without a counterpart stands for the first.
-    pub fn alternatives(&self) -> Vec<(Candidate<'_>, Addition)> {
+    pub fn alternatives(&self) -> Vec<(Candidate<'_>, &Addition)> {
         let best = self.best();
-        let order: Vec<Addition> = self.selected_of(self.verdict.best).iter().map(|one| one.addition).collect();
+        let order: Vec<&Addition> = self.selected_of(self.verdict.best).iter().map(|one| one.addition).collect();
         let others = self.verdict.set.iter().filter(|&&number| number != self.verdict.best);
         let structural = self.verdict.structural_alternative();
-        let mut found: Vec<(Candidate<'_>, Addition)> = Vec::new();
+        let mut found: Vec<(Candidate<'_>, &Addition)> = Vec::new();
         for &number in others.chain(structural.iter()) {
             let trial = &self.trials[number];
-            let replaced = order.iter().find(|&&one| !trial.adds(&one)).or(order.first());
+            let replaced = order.iter().find(|one| !trial.adds(one)).or(order.first());
             let Some(&replaced) = replaced else { continue };
             for addition in trial.additions.iter().filter(|addition| !best.adds(addition)) {
-                if !found.iter().any(|(known, _)| known.addition == *addition) {
-                    found.push((self.candidate(*addition, trial, self.given(), Part::Tied), replaced));
+                if !found.iter().any(|(known, _)| known.addition == addition) {
+                    found.push((self.candidate(addition, trial, self.given(), Part::Tied), replaced));
                 }
             }
         }
@@ -182,14 +182,20 @@ impl Diagnosis {
             .map(|number| {
                 let part = if self.verdict.standings[number].is_admissible { Part::Improves } else { Part::NoEvidence };
                 let trial = &self.trials[number];
-                self.candidate(trial.additions[0], trial, self.given(), part)
+                self.candidate(&trial.additions[0], trial, self.given(), part)
             })
             .collect();
         singles.sort_by(|a, b| b.improvement.total_cmp(&a.improvement));
         singles
     }
 
-    fn candidate<'a>(&'a self, addition: Addition, trial: &'a Trial, before: &'a Trial, part: Part) -> Candidate<'a> {
+    fn candidate<'a>(
+        &'a self,
+        addition: &'a Addition,
+        trial: &'a Trial,
+        before: &'a Trial,
+        part: Part,
+    ) -> Candidate<'a> {
         let standing = self.verdict.standings[self.number(trial)];
         let improvement = self.verdict.standings[self.number(before)].log_error_ratio - standing.log_error_ratio;
         Candidate { addition, trial, before, standing, improvement, part, is_tied_with_first: false }

@@ -55,7 +55,7 @@ pub fn contribution(
 ) -> Result<Option<Contribution>, RegressionError> {
     let with = &trial.model_on_validation();
     let mut without = with.clone();
-    without.effects.retain(|effect| !effect.is(addition.physics.card().name, addition.site));
+    without.effects.retain(|effect| !effect.is(&addition.physics.card().name, addition.site));
     let with: BTreeMap<_, f64> =
         points(with, recordings)?.into_iter().map(|point| ((point.kind, point.place), point.residual)).collect();
     let pairs: Vec<(Point, f64)> = points(&without, recordings)?

@@ -137,7 +137,7 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
 
 fn enter(system: &System<'_>, parameters: &[f64], state: &mut [f64], inputs: &Inputs<f64>, books: &mut Books) {
     // Where the spool of a lagging valve really is, is what its sensor says.
-    system.set_spools(&inputs.orifice_area, state);
+    system.set_effect_states(&inputs.orifice_area, state);
     if state.iter().all(|value| value.is_finite()) {
         let ledger = ledger(system, parameters, state, inputs);
         books.enter(system.model(), system.layout(), &ledger, state, inputs);

@@ -1,7 +1,7 @@
 //! Energies and powers along a recording, as columns.
 
 use excavator_model::Model;
-use excavator_model::effects::{ActsOn, Site};
+use excavator_model::effects::{ActsOn, Site, Text};
 use excavator_model::energy::Ledger;
 use excavator_model::equations::{Inputs, Layout};
 
@@ -34,7 +34,7 @@ pub struct CylinderBooks {
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectBooks {
     /// Name in the catalogue.
-    pub effect: &'static str,
+    pub effect: Text,
     /// Where it sits.
     pub site: Site,
     /// What it belongs to.
@@ -70,7 +70,7 @@ impl Books {
     /// No entries yet.
     pub(super) fn new(model: &Model) -> Self {
         let effects = model.effects.iter().map(|effect| EffectBooks {
-            effect: effect.name(),
+            effect: effect.name_text(),
             site: effect.site,
             acts_on: effect.physics.card().acts_on,
             has_power: true,

@@ -1,7 +1,7 @@
 //! Energies over a stretch of time.
 
 use excavator_model::Model;
-use excavator_model::effects::{ActsOn, Site};
+use excavator_model::effects::{ActsOn, Site, Text};
 
 use super::Books;
 
@@ -33,7 +33,7 @@ impl CylinderTotals {
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectTotal {
     /// Name in the catalogue.
-    pub effect: &'static str,
+    pub effect: Text,
     /// Where it sits.
     pub site: Site,
     /// What it belongs to.
@@ -65,7 +65,7 @@ impl Totals {
     /// Nothing yet.
     pub(super) fn new(model: &Model) -> Self {
         let effects = model.effects.iter().map(|effect| EffectTotal {
-            effect: effect.name(),
+            effect: effect.name_text(),
             site: effect.site,
             acts_on: effect.physics.card().acts_on,
             has_power: true,

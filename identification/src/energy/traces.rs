@@ -1,7 +1,7 @@
 //! Energies and powers over time, for the head of a recording.
 
 use excavator_model::Model;
-use excavator_model::effects::{ActsOn, Site};
+use excavator_model::effects::{ActsOn, Site, Text};
 
 use super::analysis::PhaseDelays;
 use super::smoothing::Parabola;
@@ -21,7 +21,7 @@ pub struct Band {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermTrace {
     /// Name in the catalogue.
-    pub effect: &'static str,
+    pub effect: Text,
     /// At the measured state.
     pub analytical: Vec<f64>,
     /// At the simulated state; `NaN` where there is none.
@@ -148,7 +148,7 @@ impl CylinderTraces {
         for effect in &model.effects {
             let known = terms.iter().any(|term| term.effect == effect.name());
             if own(effect.site) && effect.physics.card().acts_on != ActsOn::Valve && !known {
-                terms.push(TermTrace { effect: effect.name(), analytical: Vec::new(), numerical: Vec::new() });
+                terms.push(TermTrace { effect: effect.name_text(), analytical: Vec::new(), numerical: Vec::new() });
             }
         }
         CylinderTraces {
@@ -210,7 +210,7 @@ impl CylinderTraces {
         }
         for term in &mut self.terms {
             let members = &self.members;
-            term.analytical.extend(range.clone().map(|k| power_of(books, term.effect, members, k)));
+            term.analytical.extend(range.clone().map(|k| power_of(books, &term.effect, members, k)));
         }
     }
 
@@ -233,7 +233,7 @@ impl CylinderTraces {
         self.numerical_dissipation = column(&|k| members.iter().map(|&m| books.dissipation(m, k)).sum());
         self.numerical = self.numerical_supply.iter().zip(&self.numerical_dissipation).map(|(s, d)| s + d).collect();
         for term in &mut self.terms {
-            term.numerical = column(&|k| power_of(books, term.effect, members, k));
+            term.numerical = column(&|k| power_of(books, &term.effect, members, k));
         }
     }
 

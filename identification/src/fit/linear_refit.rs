@@ -62,7 +62,7 @@ impl LinearRefit {
         let raw: Vec<&RawSums> = parts.iter().flat_map(|part| &part.raw).collect();
         let Free { fitted, scales } = Free::of(model);
         let values = model.parameter_values();
-        let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card).collect();
+        let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card.clone()).collect();
         let bounds: Vec<[f64; 2]> = cards.iter().map(|card| [card.minimum, card.maximum]).collect();
         let mut counts = vec![0; noise.len()];
         for sums in &raw {

@@ -69,8 +69,8 @@ impl InitialStatePrior {
             spread[layout.joint(joint)] = 0.01;
             spread[layout.rate(joint)] = 0.5;
         }
-        for &(first, states) in &layout.effect_states {
-            spread[first..first + states].fill(1e-5);
+        for (state, scale) in system.state_scales() {
+            spread[state] = 0.1 * scale;
         }
         InitialStatePrior { spread }
     }

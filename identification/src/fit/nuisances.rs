@@ -3,7 +3,7 @@
 //! They are estimated with every model, each with the prior of its card, and never attributed: a spool sensor that is read half a
 //! millisecond early, or a friction that reverses over 3 mm/s instead of 1 mm/s, looks like a little of many other effects.
 
-use excavator_model::effects::{CATALOGUE, Effect, Family, Site};
+use excavator_model::effects::{Effect, Family, Site};
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::{Model, ModelEffect, Parameter};
 
@@ -23,8 +23,9 @@ pub fn with_nuisances(model: &Model, recordings: &[&Recording]) -> Model {
 /// The same of these families. A regression sees no [`Family::Rounding`]: a smoothed velocity reverses slower than the piston.
 pub fn with_nuisances_of(model: &Model, families: &[Family], recordings: &[&Recording]) -> Model {
     let mut extended = model.clone();
-    for physics in CATALOGUE.iter().copied().filter(|physics| families.contains(&physics.card().family)) {
-        for site in model.free_sites(physics).into_iter().filter(|site| can_have(model, physics, *site, recordings)) {
+    for physics in model.catalogue.iter().filter(|physics| families.contains(&physics.card().family)) {
+        let sites = model.free_sites(physics).into_iter();
+        for site in sites.filter(|site| can_have(model, &**physics, *site, recordings)) {
             extended.effects.extend(ModelEffect::new(physics, &model.machine, site));
         }
     }

@@ -4,6 +4,8 @@
 //! the normal equations before they are added up: a general solver would factor one dense Jacobian with a column for
 //! each initial state of each segment.
 
+use std::sync::Arc;
+
 use std::ops::ControlFlow;
 
 use excavator_model::effects::ParameterCard;
@@ -278,13 +280,13 @@ pub(super) fn bounded_step(
     step: &DVector<f64>,
     fitted: &[usize],
     scales: &[f64],
-    cards: &[&'static ParameterCard],
+    cards: &[Arc<ParameterCard>],
     bounds: &[[f64; 2]],
 ) -> (Vec<f64>, DVector<f64>) {
     let mut stepped = values.to_vec();
     let mut taken = DVector::zeros(fitted.len());
     for (number, &index) in fitted.iter().enumerate() {
-        let card = cards[index];
+        let card = &cards[index];
         let most = if card.start.is_a_time() { LONGEST_SHIFT } else { f64::INFINITY };
         let wanted = values[index] + (step[number] * scales[number]).clamp(-most, most);
         let [lowest, highest] = bounds[index];

@@ -48,8 +48,8 @@ impl Known {
 
 /// The value of a nuisance parameter at which its effect changes nothing: that from which it is searched.
 pub(crate) fn centre(parameter: &Parameter) -> f64 {
-    match parameter.card.start {
-        Start::At([start, ..]) => *start,
+    match &parameter.card.start {
+        Start::At(starts) => starts.first().copied().unwrap_or(0.0),
         _ => 0.0,
     }
 }
@@ -86,7 +86,7 @@ impl ParameterPriors {
             .parameters()
             .enumerate()
             .map(|(index, (effect, parameter))| {
-                let card = parameter.card;
+                let card = &parameter.card;
                 match card.prior.zip(scales.get(&model.effects[effect].site)) {
                     Some((prior, scales)) => {
                         let [lowest, highest] = prior.bounds(centre(parameter), scales);
@@ -140,12 +140,15 @@ impl ParameterPriors {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use excavator_model::document::built_in;
-    use excavator_model::effects::find;
+    use excavator_model::effects::Catalogue;
 
     use super::*;
 
     fn with(effect: &str) -> Model {
-        built_in("zx30u-arm").unwrap().with_effect(find(effect).unwrap(), Site::Cylinder(0)).unwrap()
+        built_in("zx30u-arm")
+            .unwrap()
+            .with_effect(&Catalogue::built_in().find(effect).unwrap(), Site::Cylinder(0))
+            .unwrap()
     }
 
     fn recording() -> Recording {

@@ -1,5 +1,7 @@
 //! What a fit minimises: recordings cut into segments, simulated side by side.
 
+use std::sync::Arc;
+
 use excavator_model::Model;
 use excavator_model::effects::ParameterCard;
 use excavator_model::equations::System;
@@ -30,7 +32,7 @@ pub(super) struct Problem<'s, 'm> {
     /// Scale of each free parameter, in its unit.
     pub scales: Vec<f64>,
     /// Card of every parameter of the model.
-    pub cards: Vec<&'static ParameterCard>,
+    pub cards: Vec<Arc<ParameterCard>>,
     /// What is known of nuisance parameters beforehand.
     pub priors: ParameterPriors,
 }
@@ -61,7 +63,7 @@ impl<'s, 'm> Problem<'s, 'm> {
         if segments.is_empty() {
             return Err(FitError::TooShort);
         }
-        let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card).collect();
+        let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card.clone()).collect();
         let scales = scales(model, &fitted);
         let noise = instruments.iter().map(|instrument| instrument.noise).collect();
         let prior = InitialStatePrior::of(system);

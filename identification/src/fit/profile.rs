@@ -59,7 +59,7 @@ pub fn profile(
 fn end_of(best: &Fit, recordings: &[&Recording], settings: &FitSettings, index: usize, direction: f64) -> Option<f64> {
     let parameters: Vec<_> = best.model.parameters().map(|(_, parameter)| parameter).collect();
     let parameter = parameters.get(index)?;
-    let (start, card) = (parameter.value, parameter.card);
+    let (start, card) = (parameter.value, parameter.card.clone());
     let own = best.fitted.iter().position(|&fitted| fitted == index)?;
     let inflation = best.inflation.get(own).copied().filter(|factor| factor.is_finite()).unwrap_or(1.0).max(1.0);
     let error = parameter.standard_error.filter(|error| error.is_finite() && *error > 0.0);

@@ -191,11 +191,11 @@ fn as_named(
     let given = fit_given(model, identification, fitting)?;
     let (mut added, mut current) = (Vec::new(), given.clone());
     let mut fits = vec![(None, given.clone())];
-    for (number, &addition) in named.iter().enumerate() {
+    for (number, addition) in named.iter().enumerate() {
         let name = addition.name(model);
         progress(&name, (number + 1) as f64 / (named.len() + 1) as f64);
         current = fit_addition(&current.model, addition, identification, fitting)?;
-        added.push((addition, current.clone()));
+        added.push((addition.clone(), current.clone()));
         fits.push((Some(name), current.clone()));
     }
     let verdict = judge_named(&given, &added, identification, validation, fitting, &settings.policy)?;
@@ -205,7 +205,7 @@ fn as_named(
 /// Words for a model's history: the step, and the nuisances that show since the model `before`.
 fn what_was_done(before: &Model, step: &Step) -> String {
     let nuisances: Vec<String> = nuisances_shown(before, &step.fit.model)
-        .map(|effect| addition_name(effect.physics, site_name(&before.machine, effect.site)))
+        .map(|effect| addition_name(effect.name(), site_name(&before.machine, effect.site)))
         .collect();
     let done = step.added.as_ref().map_or_else(|| "parameters identified".to_string(), |name| format!("added {name}"));
     if nuisances.is_empty() { done } else { format!("{done}; nuisances: {}", nuisances.join(", ")) }

@@ -21,7 +21,7 @@ const MOVING_AVERAGE: usize = 43;
 /// # Errors
 /// [`RegressionError`].
 pub fn least_squares(model: &Model, recordings: &[&Recording]) -> Result<Regression, RegressionError> {
-    let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card).collect();
+    let cards: Vec<_> = model.parameters().map(|(_, parameter)| &*parameter.card).collect();
     let fitted: Vec<usize> =
         model.unknown_parameters().into_iter().filter(|&index| cards[index].kind != Kind::Shape).collect();
     let mut values = model.parameter_values();

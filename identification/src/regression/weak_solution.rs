@@ -22,7 +22,7 @@ pub(super) fn solve(
     rows: &[Row],
     with_errors: bool,
 ) -> Result<Regression, RegressionError> {
-    let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card).collect();
+    let cards: Vec<_> = model.parameters().map(|(_, parameter)| &*parameter.card).collect();
     let values = model.parameter_values();
     // Regression is on coefficients: one over the parameter where rows are linear in that.
     let slope_to_coefficient = |index: usize| match cards[index].kind {

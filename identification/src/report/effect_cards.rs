@@ -12,7 +12,7 @@ use crate::diagnosis::{Candidate, contribution};
 pub(super) fn effect_card(candidate: &Candidate<'_>, recordings: &[&Recording]) -> Markup {
     let card = candidate.addition.physics.card();
     // A picture that cannot be made leaves its place empty; the words beside it stand without.
-    let shown = contribution(candidate.trial, &candidate.addition, recordings).ok().flatten();
+    let shown = contribution(candidate.trial, candidate.addition, recordings).ok().flatten();
     html! {
         div.card {
             h3 { (capitalised(&place_of(candidate))) " " code.code-name { (card.name) "@" (candidate.place()) } }

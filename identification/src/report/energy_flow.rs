@@ -39,7 +39,7 @@ pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
             flow.give(pump, &format!("metering, {} valve", cylinder.name), own.metering_loss, 1, LOSS);
         }
         for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
-            flow.give(pump, &words::spoken(effect.effect), -effect.into_pump_line, 1, LOSS);
+            flow.give(pump, &words::spoken(&effect.effect), -effect.into_pump_line, 1, LOSS);
         }
         flow.give(pump, "stored in the pump line", totals.pump_line, 1, STORED);
         flow.give(pump, "not explained in the pump line", -totals.pump_residual(), 1, UNEXPLAINED);
@@ -55,7 +55,7 @@ pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
         let label = |what: &str| if many { format!("{what}, {}", cylinder.name) } else { what.to_string() };
         for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
             if site_name(machine, effect.site) == cylinder.name {
-                flow.give(from, &label(&words::spoken(effect.effect)), -effect.into_cylinders, 2, LOSS);
+                flow.give(from, &label(&words::spoken(&effect.effect)), -effect.into_cylinders, 2, LOSS);
             }
         }
         flow.give(from, &label("stored: motion and height"), own.kinetic + own.potential, 2, STORED);

@@ -155,7 +155,7 @@ fn terms(trace: &CylinderTraces, number: usize, budget: usize) -> Markup {
     let drawn: Vec<_> =
         trace.terms.iter().filter(|term| term.analytical.iter().any(|power| power.abs() > 1e-9)).collect();
     html! { @for (index, term) in drawn.iter().enumerate() {
-        @let label = words::spoken(term.effect);
+        @let label = words::spoken(&term.effect);
         @let plot = PowerPlot { group: &group, label: &label, unit: "W", height: 150, last: index + 1 == drawn.len(), budget };
         (plot.markup(&trace.time, &[
             line("numerical", NUMERICAL, true, &term.numerical),

@@ -48,18 +48,18 @@ pub(super) fn energies(model: &Model, analysis: &EnergyAnalysis) -> Markup {
 /// What a ledger that does not close has gained.
 const UNEXPLAINED: &str = "gained without explanation";
 
-struct Line {
+struct Line<'a> {
     what: String,
-    effect: Option<&'static str>,
+    effect: Option<&'a str>,
     energy: f64,
     heading: bool,
     /// A difference of others: its deviation is not the difference of theirs.
     derived: bool,
 }
 
-fn lines(model: &Model, totals: &Totals) -> Vec<Line> {
+fn lines<'a>(model: &Model, totals: &'a Totals) -> Vec<Line<'a>> {
     let mut lines = Vec::new();
-    let mut add = |what: String, effect: Option<&'static str>, energy: f64, heading: bool| {
+    let mut add = |what: String, effect: Option<&'a str>, energy: f64, heading: bool| {
         let derived = what.starts_with(UNEXPLAINED);
         lines.push(Line { what, effect, energy, heading, derived });
     };
@@ -67,7 +67,7 @@ fn lines(model: &Model, totals: &Totals) -> Vec<Line> {
         add("Pump".into(), None, totals.pump, true);
         for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
             if effect.into_pump_line != 0.0 {
-                add("lost between pump and tank".into(), Some(effect.effect), -effect.into_pump_line, false);
+                add("lost between pump and tank".into(), Some(&effect.effect), -effect.into_pump_line, false);
             }
         }
         for (cylinder, own) in model.machine.cylinders.iter().zip(&totals.cylinders) {
@@ -80,7 +80,7 @@ fn lines(model: &Model, totals: &Totals) -> Vec<Line> {
         add(format!("Supplied to the {} cylinder", cylinder.name), None, own.supplied, true);
         for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
             if site_name(&model.machine, effect.site) == cylinder.name {
-                add("dissipated".into(), Some(effect.effect), -effect.into_cylinders, false);
+                add("dissipated".into(), Some(&effect.effect), -effect.into_cylinders, false);
             }
         }
         add("gain of kinetic energy".into(), None, own.kinetic, false);

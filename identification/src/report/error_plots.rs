@@ -35,7 +35,7 @@ pub(super) struct Errors<'a> {
 /// Something that the machine does, in display units.
 struct Variable<'a> {
     label: String,
-    unit: Unit,
+    unit: Unit<'a>,
     values: Cow<'a, [f64]>,
 }
 
@@ -182,7 +182,7 @@ fn variables<'a>(model: &Model, name: &str, recording: &'a Recording) -> Vec<Var
         let labelled = |label: &str| {
             if own.is_none() && several { format!("{} {label}", cylinder.name) } else { label.to_string() }
         };
-        let mut push = |label: &str, unit: Unit, values: &'a [f64]| {
+        let mut push = |label: &str, unit: Unit<'static>, values: &'a [f64]| {
             found.push(Variable { label: labelled(label), unit, values: Cow::Borrowed(values) });
         };
         if cylinder.chambers.is_none() {

@@ -40,7 +40,7 @@ pub(super) fn evidence(diagnosis: &Diagnosis, comparisons: &[Comparison]) -> Mar
                 table.data {
                     thead { tr { th { "Effect" } th { "Where" } th.n { "Improvement that its first steps brought or promised" } } }
                     tbody { @for effect in &diagnosis.unpromising { tr {
-                        td { (words::spoken(effect.effect)) " " code.code-name { (effect.effect) } }
+                        td { (words::spoken(&effect.effect)) " " code.code-name { (effect.effect) } }
                         td { (effect.place) }
                         td.n { (two_digits(effect.promised_improvement)) }
                     } } }

@@ -18,7 +18,7 @@ const POORLY_KNOWN: f64 = 0.5;
 pub(super) fn of_model(given: &Model, model: &Model, added: &[String]) -> Markup {
     let effects: Vec<&ModelEffect> = model.effects.iter().filter(|effect| !effect.parameters.is_empty()).collect();
     let marks = nuisances_shown(given, model)
-        .map(|effect| addition_name(effect.physics, site_name(&model.machine, effect.site)))
+        .map(|effect| addition_name(effect.name(), site_name(&model.machine, effect.site)))
         .map(|name| (name, "nuisance"))
         .chain(added.iter().map(|name| (name.clone(), "added")))
         .collect();
@@ -49,7 +49,7 @@ fn table(model: &Model, effects: &[&ModelEffect], marks: Option<BTreeMap<String,
                 } }
                 tbody { @for effect in effects {
                     @let place = site_name(&model.machine, effect.site);
-                    @let mark = marks.get(&addition_name(effect.physics, place));
+                    @let mark = marks.get(&addition_name(effect.name(), place));
                     @for (number, parameter) in effect.parameters.iter().enumerate() {
                         @let relative = relative_error(parameter);
                         tr.weak[relative.is_some_and(|relative| relative > POORLY_KNOWN)].first[in_model && number == 0] {
@@ -74,9 +74,9 @@ fn table(model: &Model, effects: &[&ModelEffect], marks: Option<BTreeMap<String,
 fn cells(effect: &ModelEffect, place: &str, parameter: &Parameter, relative: Option<f64>) -> Markup {
     // A window of time is read along the recording, a time constant is short.
     let is_a_time = parameter.card.start.is_a_time();
-    let unit = if is_a_time { units::SECOND } else { units::of_parameter(parameter.card.unit) };
+    let unit = if is_a_time { units::SECOND } else { units::of_parameter(&parameter.card.unit) };
     let error = parameter.standard_error.filter(|_| !parameter.known).unwrap_or(f64::NAN);
-    let value = if is_a_time && effect.physics.value_where_left_out(parameter.card.name) == Some(parameter.value) {
+    let value = if is_a_time && effect.physics.value_where_left_out(&parameter.card.name) == Some(parameter.value) {
         let is_begin = parameter.card.start == Start::WorstStretchBegin;
         if is_begin { "from the beginning" } else { "to the end" }.to_string()
     } else {

@@ -3,7 +3,7 @@
 use super::units::{self, Unit};
 
 /// Of a variable of [`crate::diagnosis::Unexplained`].
-pub(super) fn unit_of_variable(variable: &str) -> Unit {
+pub(super) fn unit_of_variable(variable: &str) -> Unit<'static> {
     match variable {
         "command" => units::SQUARE_MILLIMETRE,
         "speed" => units::MILLIMETRE_PER_SECOND,
@@ -14,6 +14,6 @@ pub(super) fn unit_of_variable(variable: &str) -> Unit {
 }
 
 /// Of a residual whose SI unit is given.
-pub(super) fn unit_of_residual(si: &'static str) -> Unit {
+pub(super) fn unit_of_residual(si: &str) -> Unit<'_> {
     if si == "m3/s" { units::LITRE_PER_MINUTE } else { Unit { factor: 1.0, symbol: si } }
 }

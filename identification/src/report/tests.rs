@@ -4,7 +4,7 @@
 
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{self, Family, Site};
+use excavator_model::effects::{Catalogue, Family, Site};
 use excavator_model::recording::Recording;
 
 use super::{comparison_page, diagnosis_page, refinement_page, verdict_sentence};
@@ -67,9 +67,9 @@ fn trial(names: &[&str], improvement: f64) -> Trial {
     let mut extended = model();
     let mut additions = Vec::new();
     for name in names {
-        let physics = effects::find(name).unwrap();
-        let site = extended.free_sites(physics)[0];
-        extended = extended.with_effect(physics, site).unwrap();
+        let physics = Catalogue::built_in().find(name).unwrap();
+        let site = extended.free_sites(&physics)[0];
+        extended = extended.with_effect(&physics, site).unwrap();
         additions.push(Addition { physics, site });
     }
     let validation = fit_of(&extended, 1e-2 * (-0.5 * improvement).exp());
@@ -335,8 +335,8 @@ fn diagnosis_shows_evidence_cards_and_what_is_left() {
     ] {
         assert!(page.contains(text), "{text}");
     }
-    let experiment = effects::find("valve_dead_zone").unwrap().card().experiment;
-    assert!(page.contains(experiment) && page.contains("arm.dead_zone_positive"));
+    let experiment = Catalogue::built_in().find("valve_dead_zone").unwrap().card().experiment.clone();
+    assert!(page.contains(&*experiment) && page.contains("arm.dead_zone_positive"));
     let page = diagnosis_page(&model(), &diagnosis(Kind::Unexplained, Vec::new(), &[], Vec::new()), &[], &[]);
     assert_sound(&page);
     assert!(page.contains("piston position (mm)") && page.contains("residual (N m)"));
@@ -353,8 +353,8 @@ fn found_value(model: &mut Model, value: f64) {
 fn nuisances_are_told_once_they_are_known() {
     let mut found = adequate(NOISE);
     assert!(!verdict_sentence(&model(), &found).contains("spool sensor"));
-    let lead = effects::find("spool_sensor_lead").unwrap();
-    let mut known = found.trials[0].fit.model.with_effect(lead, Site::Cylinder(0)).unwrap();
+    let lead = Catalogue::built_in().find("spool_sensor_lead").unwrap();
+    let mut known = found.trials[0].fit.model.with_effect(&lead, Site::Cylinder(0)).unwrap();
     found_value(&mut known, -4.5e-4);
     found.trials[0].fit.model = known.clone();
     let sentence = verdict_sentence(&model(), &found);
@@ -362,19 +362,19 @@ fn nuisances_are_told_once_they_are_known() {
         sentence.contains("The spool sensor is not read together") && sentence.contains("0.45 ms after"),
         "{sentence}"
     );
-    let offset = effects::find("spool_sensor_offset").unwrap();
-    found.trials[0].fit.model = known.with_effect(offset, Site::Cylinder(0)).unwrap();
+    let offset = Catalogue::built_in().find("spool_sensor_offset").unwrap();
+    found.trials[0].fit.model = known.with_effect(&offset, Site::Cylinder(0)).unwrap();
     found_value(&mut found.trials[0].fit.model, 7e-8);
     let both = verdict_sentence(&model(), &found);
     assert!(both.contains("0.45 ms after") && both.contains("does not read zero where its valve is closed"), "{both}");
     assert!(both.contains("+0.070 mm2"), "{both}");
-    let reversal = effects::find("friction_reversal").unwrap();
-    found.trials[0].fit.model = known.with_effect(reversal, Site::Cylinder(0)).unwrap();
+    let reversal = Catalogue::built_in().find("friction_reversal").unwrap();
+    found.trials[0].fit.model = known.with_effect(&reversal, Site::Cylinder(0)).unwrap();
     found_value(&mut found.trials[0].fit.model, 2.14e-3);
     let sentence = verdict_sentence(&model(), &found);
     assert!(sentence.contains("Friction reverses over another speed") && sentence.contains("2.1 mm/s"), "{sentence}");
-    let corner = effects::find("friction_corner").unwrap();
-    found.trials[0].fit.model = known.with_effect(corner, Site::Cylinder(0)).unwrap();
+    let corner = Catalogue::built_in().find("friction_corner").unwrap();
+    found.trials[0].fit.model = known.with_effect(&corner, Site::Cylinder(0)).unwrap();
     found_value(&mut found.trials[0].fit.model, -1.2);
     let sentence = verdict_sentence(&model(), &found);
     assert!(
@@ -383,7 +383,7 @@ fn nuisances_are_told_once_they_are_known() {
     );
     let plain = built_in("zx30u-arm").unwrap();
     let is_along = |family| matches!(family, Family::Recording | Family::Rounding);
-    for physics in effects::CATALOGUE.iter().copied().filter(|physics| is_along(physics.card().family)) {
+    for physics in Catalogue::built_in().iter().filter(|physics| is_along(physics.card().family)) {
         found.trials[0].fit.model = plain.with_effect(physics, Site::Cylinder(0)).unwrap();
         let start = found.trials[0].fit.model.effects.last().unwrap().parameters[0].value;
         found_value(&mut found.trials[0].fit.model, 2.0 * start + 1.0);
@@ -416,9 +416,9 @@ fn a_refined_model_tells_the_nuisances_since_the_given_one() {
     let mut refinement = refinement();
     assert!(!refinement_page(&refinement).contains("nuisance<"));
     let Cause::Found(found) = &mut refinement.reason else { unreachable!() };
-    let reversal = effects::find("friction_reversal").unwrap();
+    let reversal = Catalogue::built_in().find("friction_reversal").unwrap();
     for model in [&mut refinement.model, &mut found.trials.last_mut().unwrap().fit.model] {
-        *model = model.with_effect(reversal, Site::Cylinder(0)).unwrap();
+        *model = model.with_effect(&reversal, Site::Cylinder(0)).unwrap();
         found_value(model, 2.14e-3);
     }
     let page = refinement_page(&refinement);

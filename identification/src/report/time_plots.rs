@@ -110,7 +110,7 @@ fn signal_plots(models: &[(Line, &Comparison)], name: &str, group: &str, budget:
 struct Plot<'a> {
     group: &'a str,
     label: &'a str,
-    unit: Unit,
+    unit: Unit<'a>,
     height: usize,
     last: bool,
     error: bool,

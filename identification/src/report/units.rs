@@ -2,34 +2,34 @@
 
 /// A unit for display.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Unit {
+pub(super) struct Unit<'a> {
     /// Displayed value = SI value times this.
     pub factor: f64,
     /// Symbol.
-    pub symbol: &'static str,
+    pub symbol: &'a str,
 }
 
-const fn unit(factor: f64, symbol: &'static str) -> Unit {
+const fn unit(factor: f64, symbol: &str) -> Unit<'_> {
     Unit { factor, symbol }
 }
 
 /// Displacements.
-pub(super) const MILLIMETRE: Unit = unit(1e3, "mm");
+pub(super) const MILLIMETRE: Unit<'static> = unit(1e3, "mm");
 /// Speeds.
-pub(super) const MILLIMETRE_PER_SECOND: Unit = unit(1e3, "mm/s");
+pub(super) const MILLIMETRE_PER_SECOND: Unit<'static> = unit(1e3, "mm/s");
 /// Pressures.
-pub(super) const MEGAPASCAL: Unit = unit(1e-6, "MPa");
+pub(super) const MEGAPASCAL: Unit<'static> = unit(1e-6, "MPa");
 /// Openings.
-pub(super) const SQUARE_MILLIMETRE: Unit = unit(1e6, "mm²");
+pub(super) const SQUARE_MILLIMETRE: Unit<'static> = unit(1e6, "mm²");
 /// Forces of cylinders.
-pub(super) const KILONEWTON: Unit = unit(1e-3, "kN");
+pub(super) const KILONEWTON: Unit<'static> = unit(1e-3, "kN");
 /// Flows.
-pub(super) const LITRE_PER_MINUTE: Unit = unit(6e4, "l/min");
+pub(super) const LITRE_PER_MINUTE: Unit<'static> = unit(6e4, "l/min");
 /// Times.
-pub(super) const SECOND: Unit = unit(1.0, "s");
+pub(super) const SECOND: Unit<'static> = unit(1.0, "s");
 
 /// Unit in which a signal of this contract name is shown.
-pub(super) fn of_signal(name: &str) -> Unit {
+pub(super) fn of_signal(name: &str) -> Unit<'static> {
     match name.rsplit('.').next().unwrap_or(name) {
         "joint_angle" => unit(180.0 / std::f64::consts::PI, "°"),
         "displacement" => MILLIMETRE,
@@ -44,7 +44,7 @@ pub(super) fn of_signal(name: &str) -> Unit {
 }
 
 /// Unit in which a parameter with this SI unit is shown.
-pub(super) fn of_parameter(si: &'static str) -> Unit {
+pub(super) fn of_parameter(si: &str) -> Unit<'_> {
     match si {
         "m" => MILLIMETRE,
         "m2" => SQUARE_MILLIMETRE,

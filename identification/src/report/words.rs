@@ -15,7 +15,7 @@ pub(super) fn effect_at(card: &Card, place: &str) -> String {
         (cylinder, ActsOn::Valve) => format!("the {cylinder} valve section"),
         (cylinder, _) => format!("the {cylinder} cylinder"),
     };
-    let name = spoken(card.name);
+    let name = spoken(&card.name);
     format!("{name} at {place}")
 }
 

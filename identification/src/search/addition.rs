@@ -1,6 +1,6 @@
 //! What can be added to a model.
 
-use excavator_model::effects::{CATALOGUE, Effect, Family, Site};
+use excavator_model::effects::{AnyEffect, Family, Site};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelError, addition_name, site_name};
 
@@ -8,10 +8,10 @@ use super::starts::{half_open, starts};
 use crate::fit::{Fit, FitError, FitSettings, Prediction, fit_predicted, predict};
 
 /// An effect at a place.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Addition {
     /// The effect.
-    pub physics: &'static dyn Effect,
+    pub physics: AnyEffect,
     /// Where.
     pub site: Site,
 }
@@ -25,7 +25,7 @@ impl PartialEq for Addition {
 impl Addition {
     /// `effect@place` on the machine of `model`.
     pub fn name(&self, model: &Model) -> String {
-        addition_name(self.physics, site_name(&model.machine, self.site))
+        addition_name(&self.physics.card().name, site_name(&model.machine, self.site))
     }
 }
 
@@ -40,11 +40,12 @@ pub(super) fn structural_additions(model: &Model) -> Vec<Addition> {
 }
 
 fn of_families(model: &Model, wanted: impl Fn(Family) -> bool) -> Vec<Addition> {
-    CATALOGUE
-        .iter()
-        .copied()
-        .filter(|effect| wanted(effect.card().family))
-        .flat_map(|physics| model.free_sites(physics).into_iter().map(move |site| Addition { physics, site }))
+    let wanted = model.catalogue.iter().filter(|effect| wanted(effect.card().family));
+    wanted
+        .flat_map(|physics| {
+            let sites = model.free_sites(physics).into_iter();
+            sites.map(move |site| Addition { physics: physics.clone(), site })
+        })
         .collect()
 }
 
@@ -65,7 +66,7 @@ pub enum AdditionError {
 /// [`AdditionError`].
 pub(crate) fn fit_addition(
     model: &Model,
-    addition: Addition,
+    addition: &Addition,
     recordings: &[&Recording],
     settings: &FitSettings,
 ) -> Result<Fit, AdditionError> {
@@ -87,11 +88,11 @@ pub(super) struct PromisingStart {
 /// [`AdditionError`].
 pub(super) fn best_start(
     model: &Model,
-    addition: Addition,
+    addition: &Addition,
     recordings: &[&Recording],
     settings: &FitSettings,
 ) -> Result<PromisingStart, AdditionError> {
-    let extended = model.with_effect(addition.physics, addition.site)?;
+    let extended = model.with_effect(&addition.physics, addition.site)?;
     let mut best: Option<PromisingStart> = None;
     let mut failure = None;
     let mut try_one = |start: Model, best: &mut Option<PromisingStart>| match predict(&start, recordings, settings) {
@@ -124,9 +125,9 @@ mod tests {
     #[test]
     fn a_structural_effect_is_no_candidate() {
         let model = built_in("zx30u-arm").unwrap();
-        let names: Vec<&str> = additions(&model).iter().map(|addition| addition.physics.card().name).collect();
-        assert!(names.contains(&"valve_dead_zone"), "{names:?}");
-        assert!(!names.contains(&"pressure_compensation"), "{names:?}");
+        let additions = additions(&model);
+        let tries = |name: &str| additions.iter().any(|addition| addition.physics.card().name == name);
+        assert!(tries("valve_dead_zone") && !tries("pressure_compensation"));
         assert!(structural_additions(&model).iter().any(|one| one.physics.card().name == "pressure_compensation"));
         assert_eq!(model.parse_addition("pressure_compensation@arm").unwrap().len(), 1);
     }

@@ -42,14 +42,14 @@ fn share_inside(effect: &ModelEffect, recordings: &[&Recording]) -> Option<f64> 
 mod tests {
     use excavator_model::Model;
     use excavator_model::document::built_in;
-    use excavator_model::effects::{Site, find};
+    use excavator_model::effects::{Catalogue, Site};
 
     use super::*;
 
     fn with(effect: &str, values: &[f64]) -> Model {
-        let effect = find(effect).unwrap();
+        let effect = Catalogue::built_in().find(effect).unwrap();
         let site = if effect.card().name == "relief_valve" { Site::PumpLine } else { Site::Cylinder(0) };
-        let mut model = built_in("zx30u-arm").unwrap().with_effect(effect, site).unwrap();
+        let mut model = built_in("zx30u-arm").unwrap().with_effect(&effect, site).unwrap();
         for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
             parameter.value = *value;
         }

@@ -27,7 +27,7 @@ pub(crate) fn score_named(
     pool.look_at_inputs(&Effort { fit: *settings, ..Effort::default() }, policy);
     let mut additions = Vec::new();
     for (addition, fit) in added {
-        additions.push(*addition);
+        additions.push(addition.clone());
         let evaluated = evaluate_on_others(&fit.model, &known, validation, settings)?;
         known = evaluated.model.clone();
         let additions = additions.clone();

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use excavator_model::effects::Text;
 use excavator_model::recording::Recording;
 
 use super::input_floor::input_floor;
@@ -15,7 +16,7 @@ pub struct Unpromising {
     /// `effect@place`.
     pub name: String,
     /// Name of the effect.
-    pub effect: &'static str,
+    pub effect: Text,
     /// Name of its place.
     pub place: String,
     /// Fall of the loss on the identification recordings that its first step promised, or its first steps brought.

@@ -63,7 +63,7 @@ pub(crate) fn score(trial: &Trial, given: &Model, identification: &[&Recording])
     Hypothesis {
         effects: trial.additions.iter().filter_map(|addition| trial.effect(addition)).map(effect).collect(),
         nuisances: nuisances_shown(given, model)
-            .map(|effect| addition_name(effect.physics, site_name(&model.machine, effect.site)))
+            .map(|effect| addition_name(effect.name(), site_name(&model.machine, effect.site)))
             .collect(),
         identification: misfit(&trial.fit),
         validation: misfit(&trial.validation),

@@ -60,7 +60,7 @@ impl Screen {
     /// The candidate as one that is not fitted to the end.
     pub fn left_behind(self) -> Unpromising {
         let place = site_name(&self.fit.model.machine, self.addition.site).to_string();
-        let (name, effect) = (self.name, self.addition.physics.card().name);
+        let (name, effect) = (self.name, self.addition.physics.card().name.clone());
         Unpromising { name, effect, place, promised_improvement: self.improvement }
     }
 }
@@ -78,7 +78,7 @@ impl Screening<'_> {
         // A transient effect acts in a window of a whole recording.
         let whole = Track::whole(self);
         let machine = &self.base.fit.model.machine;
-        let needs_all = |one: &Addition| can_be_transient(one.physics, machine, one.site);
+        let needs_all = |one: &Addition| can_be_transient(&*one.physics, machine, one.site);
         let (done, total) = (AtomicUsize::new(0), wanted.len().max(1) as f64);
         // The longest first, or one core ends with it alone.
         wanted.sort_by_key(|addition| !needs_all(addition));
@@ -136,14 +136,14 @@ impl Screening<'_> {
     fn screened(&self, addition: Addition, track: &Track) -> Result<Outcome, AdditionError> {
         let recordings: Vec<_> = track.recordings.iter().collect();
         let base = &track.base.model;
-        let start = best_start(base, addition, &recordings, &self.effort.fit)?;
+        let start = best_start(base, &addition, &recordings, &self.effort.fit)?;
         let promised_improvement = track.base.loss() - start.promise.loss_after;
         let name = addition.name(base);
         // Only from a start next to the base can the promise of one step be trusted.
         let is_trusted = (start.promise.loss_before - track.start_loss).abs() < self.effort.trusted_distance;
         if is_trusted && promised_improvement < self.least_improvement / 4.0 {
             let place = site_name(&base.machine, addition.site).to_string();
-            let effect = addition.physics.card().name;
+            let effect = addition.physics.card().name.clone();
             return Ok(Outcome::Unpromising(Unpromising { name, effect, place, promised_improvement }));
         }
         let fit = fit_predicted(&start.model, start.promise, &recordings, &few_steps(self.effort))?;

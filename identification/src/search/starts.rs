@@ -20,7 +20,7 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
         WeakFormSettings { rounds: 1, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
     let regressed = |start: &Model| Some(within_bounds(weak_form(start, &thinned, &quick).ok()?.model));
     let last = model.effects.last();
-    if last.is_some_and(|last| can_be_transient(last.physics, &model.machine, last.site)) {
+    if last.is_some_and(|last| can_be_transient(&*last.physics, &model.machine, last.site)) {
         // There are many windows, and how strong something is follows from when it is.
         let with_strength = |start: &Model| Some(with_shape_of(start, regressed(&with_shape_held(start))?));
         return plain.into_iter().map(|start| with_strength(&start).unwrap_or(start)).collect();
@@ -113,7 +113,7 @@ fn in_window(model: &Model, begin: Option<f64>, end: Option<f64>) -> Model {
     let mut start = model.clone();
     let mut first = 0.0;
     for parameter in start.effects.iter_mut().rev().take(1).flat_map(|effect| &mut effect.parameters) {
-        match parameter.card.start {
+        match &parameter.card.start {
             Start::WorstStretchBegin => {
                 parameter.value = begin.unwrap_or(parameter.card.minimum);
                 parameter.known = begin.is_none();
@@ -123,7 +123,7 @@ fn in_window(model: &Model, begin: Option<f64>, end: Option<f64>) -> Model {
                 parameter.value = end.map_or(parameter.card.maximum, |end| (end - first).max(SHORTEST));
                 parameter.known = end.is_none();
             }
-            Start::At(_) | Start::PumpPressureQuantiles(_) => {}
+            Start::At(_) | Start::PumpPressureQuantiles(_) | Start::Known(_) => {}
         }
     }
     start
@@ -134,15 +134,16 @@ const SHORTEST: f64 = 0.2;
 
 fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let Some(last) = model.effects.last() else { return vec![model.clone()] };
-    let mut starts = if can_be_transient(last.physics, &model.machine, last.site) {
+    let mut starts = if can_be_transient(&*last.physics, &model.machine, last.site) {
         windows(model, recordings)
     } else {
         vec![model.clone()]
     };
     for (number, parameter) in last.parameters.iter().enumerate() {
-        let values: Vec<f64> = match parameter.card.start {
+        let values: Vec<f64> = match &parameter.card.start {
             // Set by the windows.
             Start::WorstStretchBegin | Start::WorstStretchDuration => continue,
+            Start::Known(_) => continue,
             Start::At(values) => values.to_vec(),
             Start::PumpPressureQuantiles(levels) => {
                 levels.iter().map(|&level| pump_pressure(recordings, level)).collect()

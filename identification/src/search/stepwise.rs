@@ -9,7 +9,7 @@ use super::screening::{Screen, Screened, Screening};
 use super::transient::evaluate_in_windows_of;
 use super::{Addition, Effort, Trial};
 use crate::decision::{Policy, log_error_ratio};
-use crate::fit::{fit, fit_predicted};
+use crate::fit::{fit_predicted, predict};
 
 /// How moves are made.
 pub(super) struct Stepwise<'a> {
@@ -39,16 +39,23 @@ impl Stepwise<'_> {
         }
     }
 
-    /// Number of the trial that has all additions of another but one, fitted if need be.
+    /// Number of the trial that has all additions of another but one. It is fitted if need be: if nobody has, or if it promises to fit
+    /// better from here. A fit that ended in a local minimum would otherwise make the addition look needed.
     fn without(&self, number: usize, addition: &Addition, pool: &mut Pool<'_>) -> Option<usize> {
         let begin = Instant::now();
         let trial = &pool.trials[number];
-        let rest: Vec<Addition> = trial.additions.iter().copied().filter(|other| other != addition).collect();
-        if let Some(known) = pool.find_additions(&rest) {
-            return Some(known);
+        let rest: Vec<Addition> = trial.additions.iter().filter(|other| *other != addition).cloned().collect();
+        let known = pool.find_additions(&rest);
+        if known == Some(0) {
+            return known;
         }
         let settings = &self.effort.fit;
-        let fit = fit(&trial.model_without(addition), pool.identification(), settings).ok()?;
+        let start = trial.model_without(addition);
+        let promise = predict(&start, pool.identification(), settings).ok()?;
+        if known.is_some_and(|known| pool.trials[known].fit.loss() <= promise.loss_after) {
+            return known;
+        }
+        let fit = fit_predicted(&start, promise, pool.identification(), settings).ok()?;
         let validation =
             evaluate_in_windows_of(&fit.model, &trial.validation.model, pool.validation(), settings).ok()?;
         let seconds = begin.elapsed().as_secs_f64();
@@ -147,8 +154,8 @@ impl Stepwise<'_> {
             .trials
             .iter()
             .zip(&verdict.standings)
-            .filter_map(|(one, standing)| match one.additions[..] {
-                [addition] => Some((addition, standing.improvement)),
+            .filter_map(|(one, standing)| match &one.additions[..] {
+                [addition] => Some((addition.clone(), standing.improvement)),
                 _ => None,
             })
             .collect();
@@ -158,7 +165,7 @@ impl Stepwise<'_> {
             let is_rival = |(rival, improvement): &&(Addition, f64)| {
                 !trial.adds(rival) && rival.physics.card().family.is_candidate() && *improvement >= least
             };
-            let mut rivals: Vec<(Addition, f64)> = alone.iter().filter(is_rival).copied().collect();
+            let mut rivals: Vec<(Addition, f64)> = alone.iter().filter(is_rival).cloned().collect();
             rivals.sort_by(|a, b| b.1.total_cmp(&a.1));
             rivals.truncate(self.effort.most_rivals);
             if rivals.is_empty() {
@@ -189,7 +196,7 @@ impl Stepwise<'_> {
     ) -> Result<Option<Trial>, AdditionError> {
         let begin = Instant::now();
         let settings = &self.effort.fit;
-        let start = best_start(&base.fit.model, addition, pool.identification(), settings)?;
+        let start = best_start(&base.fit.model, &addition, pool.identification(), settings)?;
         if start.promise.loss_after > worst {
             return Ok(None);
         }

@@ -54,13 +54,13 @@ impl Trial {
 
     /// The effect of the fitted model that `addition` is.
     pub fn effect(&self, addition: &Addition) -> Option<&ModelEffect> {
-        self.fit.model.effect(addition.physics.card().name, addition.site)
+        self.fit.model.effect(&addition.physics.card().name, addition.site)
     }
 
     /// The fitted model without one of its additions, nothing fitted again.
     pub fn model_without(&self, addition: &Addition) -> Model {
         let mut model = self.fit.model.clone();
-        model.effects.retain(|effect| !effect.is(addition.physics.card().name, addition.site));
+        model.effects.retain(|effect| !effect.is(&addition.physics.card().name, addition.site));
         model
     }
 

@@ -3,7 +3,7 @@
 
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::effects::{Site, find};
+use excavator_model::effects::{Catalogue, Site};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
@@ -47,7 +47,7 @@ pub fn off_the_data_sheet(name: &str, spread: f64) -> Model {
 
 /// The model with one more effect that has these values.
 pub fn with(model: &Model, effect: &str, site: Site, values: &[f64]) -> Model {
-    let mut model = model.with_effect(find(effect).unwrap(), site).unwrap();
+    let mut model = model.with_effect(&Catalogue::built_in().find(effect).unwrap(), site).unwrap();
     for (parameter, value) in model.effects.last_mut().unwrap().parameters.iter_mut().zip(values) {
         parameter.value = *value;
     }

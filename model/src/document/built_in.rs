@@ -2,7 +2,7 @@
 
 use super::{DocumentError, parse};
 use crate::Model;
-use crate::effects::nearest;
+use crate::effects::{Catalogue, nearest};
 
 /// Names and texts of the built-in models.
 pub static BUILT_IN: &[(&str, &str)] = &[
@@ -25,5 +25,5 @@ pub fn built_in(name: &str) -> Result<Model, DocumentError> {
             suggestion: suggestion.map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)")),
         });
     };
-    parse(name, text)
+    parse(name, text, &Catalogue::built_in())
 }

@@ -3,11 +3,13 @@
 //! The text is what is read from and written to model files; reading and writing files is left to the caller.
 
 mod built_in;
+mod catalogue_text;
 mod machine_text;
 mod model_text;
 mod quantity;
 
 pub use built_in::{BUILT_IN, built_in};
+pub use catalogue_text::parse_catalogue;
 pub use model_text::{parse, to_text};
 
 /// What can be wrong with a model text.
@@ -17,6 +19,14 @@ pub enum DocumentError {
     #[error("{name} is not a model file: {reason}")]
     Syntax {
         /// File or built-in name.
+        name: String,
+        /// What the reader says.
+        reason: String,
+    },
+    /// Not TOML, or not of a catalogue's form.
+    #[error("{name} is not a catalogue file: {reason}")]
+    Catalogue {
+        /// File name.
         name: String,
         /// What the reader says.
         reason: String,
@@ -31,7 +41,7 @@ pub enum DocumentError {
         /// Unit in the text.
         found: String,
         /// Unit that it must have.
-        expected: &'static str,
+        expected: String,
     },
     /// A number is impossible.
     #[error("{name}: {quantity} = {value} is impossible; it must be {must}")]

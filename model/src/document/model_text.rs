@@ -5,15 +5,23 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::DocumentError;
+use super::catalogue_text::with_formulas;
 use super::machine_text::MachineText;
-use crate::effects::{self, Kind, ParameterCard};
+use crate::effects::{Catalogue, Kind, ParameterCard};
+use crate::formula::FormulaText;
 use crate::model::{site_name, site_named};
 use crate::{HistoryEntry, Model, ModelEffect};
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ModelText {
+    /// Version of the form of the file; files without it are of the first one.
+    #[serde(default = "first_format")]
+    format: u32,
     machine: MachineText,
+    /// Formula effects that the model brings along.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    formula: Vec<FormulaText>,
     #[serde(default)]
     effects: Vec<EffectText>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -45,27 +53,41 @@ struct ParameterText {
     source: String,
 }
 
-/// Reads a model from its text. `name` is the file's or the built-in model's, for messages.
+/// The form of model files that is written: the first one had no formulas.
+const FORMAT: u32 = 2;
+
+fn first_format() -> u32 {
+    1
+}
+
+/// Reads a model from its text. It may have the effects of `catalogue` and those that its own text brings along. `name` is the file's or the built-in model's, for messages.
 ///
 /// # Errors
 /// [`DocumentError`] in one line that says which number is wrong.
-pub fn parse(name: &str, text: &str) -> Result<Model, DocumentError> {
+pub fn parse(name: &str, text: &str, catalogue: &Catalogue) -> Result<Model, DocumentError> {
     let parsed: ModelText = toml::from_str(text).map_err(|error| DocumentError::Syntax {
         name: name.to_string(),
         reason: error.to_string().trim().replace('\n', " "),
     })?;
+    if parsed.format > FORMAT {
+        return Err(DocumentError::Inconsistent {
+            name: name.to_string(),
+            reason: format!("format {} is newer than this program, which reads up to {FORMAT}", parsed.format),
+        });
+    }
     let machine = parsed.machine.machine(name)?;
-    let mut model = Model { machine, effects: Vec::new(), history: parsed.history };
+    let catalogue = with_formulas(name, catalogue, &parsed.formula)?;
+    let mut model = Model { machine, effects: Vec::new(), history: parsed.history, catalogue: catalogue.clone() };
     for effect in &parsed.effects {
         let inconsistent = |reason: String| DocumentError::Inconsistent { name: name.to_string(), reason };
-        let physics = effects::find(&effect.effect).map_err(|error| inconsistent(error.to_string()))?;
+        let physics = catalogue.find(&effect.effect).map_err(|error| inconsistent(error.to_string()))?;
         let site = site_named(&model.machine, &effect.at).ok_or_else(|| {
             inconsistent(format!(
                 "effect {} is at \"{}\", which is no cylinder, pump or machine",
                 effect.effect, effect.at
             ))
         })?;
-        model = model.with_effect(physics, site).map_err(|error| inconsistent(error.to_string()))?;
+        model = model.with_effect(&physics, site).map_err(|error| inconsistent(error.to_string()))?;
         if let Some(added) = model.effects.last_mut() {
             fill_parameters(name, effect, added)?;
         }
@@ -80,15 +102,15 @@ fn fill_parameters(name: &str, text: &EffectText, effect: &mut ModelEffect) -> R
         problem,
     };
     for wanted in text.parameters.keys() {
-        if !effect.parameters.iter().any(|parameter| parameter.card.name == wanted) {
-            let names: Vec<&str> = effect.parameters.iter().map(|parameter| parameter.card.name).collect();
+        if !effect.parameters.iter().any(|parameter| parameter.card.name == *wanted) {
+            let names: Vec<&str> = effect.parameters.iter().map(|parameter| &*parameter.card.name).collect();
             return Err(problem(format!("has no parameter {wanted}; its parameters are {}", names.join(", "))));
         }
     }
     for parameter in &mut effect.parameters {
-        let card = parameter.card;
-        let Some(given) = text.parameters.get(card.name) else {
-            let left_out = effect.physics.value_where_left_out(card.name);
+        let card = parameter.card.clone();
+        let Some(given) = text.parameters.get(&*card.name) else {
+            let left_out = effect.physics.value_where_left_out(&card.name);
             parameter.value = left_out.ok_or_else(|| problem(format!("lacks {}", card.name)))?;
             parameter.known = true;
             continue;
@@ -98,10 +120,10 @@ fn fill_parameters(name: &str, text: &EffectText, effect: &mut ModelEffect) -> R
                 name: name.to_string(),
                 quantity: format!("{}.{}", text.at, card.name),
                 found: given.unit.clone(),
-                expected: card.unit,
+                expected: card.unit.to_string(),
             });
         }
-        if let Some(must) = what_it_must_be(given, card) {
+        if let Some(must) = what_it_must_be(given, &card) {
             return Err(DocumentError::Impossible {
                 name: name.to_string(),
                 quantity: format!("{}.{}", text.at, card.name),
@@ -138,7 +160,17 @@ fn what_it_must_be(given: &ParameterText, card: &ParameterCard) -> Option<String
 /// # Errors
 /// [`DocumentError::Syntax`] when a number cannot be written.
 pub fn to_text(model: &Model) -> Result<String, DocumentError> {
+    let formulas = model.effects.iter().filter_map(|effect| effect.physics.formula());
+    let mut formula: Vec<FormulaText> = Vec::new();
+    for text in formulas {
+        // An effect at several places is written once.
+        if !formula.contains(text) {
+            formula.push(text.clone());
+        }
+    }
     let text = ModelText {
+        format: FORMAT,
+        formula,
         machine: MachineText::of(&model.machine),
         effects: model
             .effects

@@ -40,7 +40,7 @@ impl Quantity {
                 name: name.to_string(),
                 quantity: quantity.to_string(),
                 found: self.unit.clone(),
-                expected: unit,
+                expected: unit.to_string(),
             });
         }
         let possible = match must {

@@ -1,6 +1,6 @@
 //! Friction that differs by direction.
 
-use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -11,37 +11,41 @@ use crate::machine::Machine;
 pub struct AsymmetricFriction;
 
 static CARD: Card = Card {
-    name: "asymmetric_friction",
+    name: text("asymmetric_friction"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Candidate,
-    summary: "The friction level of extension differs from that of retraction: lip seals, a bent rod, a wiper that bites one way.",
-    equation: "force -dFc max(s, 0), s = sgn(v) rounded (friction_reversal): dFc more against extension, nothing against retraction",
-    source: "textbook (e.g. Armstrong-Helouvry, Dupont, Canudas de Wit 1994)",
-    shows: "Force error of one size while extending and another while retracting, at any speed.",
-    experiment: "Slow strokes in both directions over the same range.",
-    energy: "Dissipates dFc |v| while extending.",
+    summary: text(
+        "The friction level of extension differs from that of retraction: lip seals, a bent rod, a wiper that bites one way.",
+    ),
+    equation: text(
+        "force -dFc max(s, 0), s = sgn(v) rounded (friction_reversal): dFc more against extension, nothing against retraction",
+    ),
+    source: text("textbook (e.g. Armstrong-Helouvry, Dupont, Canudas de Wit 1994)"),
+    shows: text("Force error of one size while extending and another while retracting, at any speed."),
+    experiment: text("Slow strokes in both directions over the same range."),
+    energy: text("Dissipates dFc |v| while extending."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "extension_friction_change",
-    symbol: "dFc",
-    unit: "N",
-    meaning: "how much larger the friction of extension is than that of retraction",
+    name: text("extension_friction_change"),
+    symbol: text("dFc"),
+    unit: text("N"),
+    meaning: text("how much larger the friction of extension is than that of retraction"),
     kind: Kind::Linear,
     minimum: -1e5,
     maximum: 1e5,
     typical: 200.0,
-    start: Start::At(&[0.0]),
+    start: Start::at(&[0.0]),
     prior: None,
 }];
 
 impl Physics for AsymmetricFriction {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,6 +1,6 @@
 //! A bypass that starts to close late.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -11,37 +11,37 @@ use crate::machine::Machine;
 pub struct BypassOverlap;
 
 static CARD: Card = Card {
-    name: "bypass_overlap",
+    name: text("bypass_overlap"),
     acts_on: ActsOn::PumpLine,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "The open centre stays fully open until the spool has travelled some way.",
-    equation: "section of the bypass umax - max(0, |u| - o) in place of umax - |u|: travel past the edge counts",
-    source: "hydraulics practice (overlap of the centre lands of open-centre spools)",
-    shows: "Pump pressure stays low for small openings and then follows a parallel curve.",
-    experiment: "Slow sweep of the spool from closed, with the cylinder at rest.",
-    energy: "Changes what the bypass loses; dissipates nothing itself.",
+    summary: text("The open centre stays fully open until the spool has travelled some way."),
+    equation: text("section of the bypass umax - max(0, |u| - o) in place of umax - |u|: travel past the edge counts"),
+    source: text("hydraulics practice (overlap of the centre lands of open-centre spools)"),
+    shows: text("Pump pressure stays low for small openings and then follows a parallel curve."),
+    experiment: text("Slow sweep of the spool from closed, with the cylinder at rest."),
+    energy: text("Changes what the bypass loses; dissipates nothing itself."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "bypass_overlap",
-    symbol: "o",
-    unit: "m2",
-    meaning: "spool travel before the bypass starts to close, as an orifice area",
+    name: text("bypass_overlap"),
+    symbol: text("o"),
+    unit: text("m2"),
+    meaning: text("spool travel before the bypass starts to close, as an orifice area"),
     kind: Kind::Shape,
     minimum: 0.0,
     maximum: 1e-4,
     typical: 1e-5,
-    start: Start::At(&[3e-6]),
+    start: Start::at(&[3e-6]),
     prior: None,
 }];
 
 impl Physics for BypassOverlap {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

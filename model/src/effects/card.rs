@@ -1,6 +1,16 @@
 //! What is said about an effect: the fourth face.
 
+use std::borrow::Cow;
+
 use super::Prior;
+
+/// A text of a card: that of a built-in effect is part of the program, that of a formula is its own.
+pub type Text = Cow<'static, str>;
+
+/// A text that is part of the program.
+pub const fn text(text: &'static str) -> Text {
+    Cow::Borrowed(text)
+}
 
 /// Which part of the machine an effect belongs to; decides where it can be added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,12 +94,14 @@ pub enum Kind {
 }
 
 /// Where a search for a parameter begins.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Start {
     /// At each of these values in turn; the best fit wins.
-    At(&'static [f64]),
+    At(Cow<'static, [f64]>),
     /// At these quantiles of the measured pump pressure: a threshold can only show inside the range that was visited.
-    PumpPressureQuantiles(&'static [f64]),
+    PumpPressureQuantiles(Cow<'static, [f64]>),
+    /// Nowhere: a constant of a law, which has this value.
+    Known(f64),
     /// At the beginning (s) of the stretches of time in which the equation of motion fails most.
     WorstStretchBegin,
     /// At the length (s) of those stretches.
@@ -97,23 +109,33 @@ pub enum Start {
 }
 
 impl Start {
+    /// At each of these values.
+    pub const fn at(values: &'static [f64]) -> Start {
+        Start::At(Cow::Borrowed(values))
+    }
+
+    /// At these quantiles of the measured pump pressure.
+    pub const fn pump_pressure_quantiles(quantiles: &'static [f64]) -> Start {
+        Start::PumpPressureQuantiles(Cow::Borrowed(quantiles))
+    }
+
     /// Whether the parameter says when something happens in a recording, s.
-    pub fn is_a_time(self) -> bool {
+    pub fn is_a_time(&self) -> bool {
         matches!(self, Start::WorstStretchBegin | Start::WorstStretchDuration)
     }
 }
 
 /// One parameter of an effect.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ParameterCard {
     /// Name within the effect's site: `arm.` + name.
-    pub name: &'static str,
+    pub name: Text,
     /// Symbol in the equation.
-    pub symbol: &'static str,
+    pub symbol: Text,
     /// SI unit, "-" for a pure number.
-    pub unit: &'static str,
+    pub unit: Text,
     /// What it means.
-    pub meaning: &'static str,
+    pub meaning: Text,
     /// How it enters the rows.
     pub kind: Kind,
     /// Least physically possible value.
@@ -129,10 +151,10 @@ pub struct ParameterCard {
 }
 
 /// What is said about an effect.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Card {
     /// Name in model files, reports, messages and JSON.
-    pub name: &'static str,
+    pub name: Text,
     /// Where it acts.
     pub acts_on: ActsOn,
     /// What a cylinder must have for it.
@@ -140,15 +162,15 @@ pub struct Card {
     /// Base or candidate.
     pub family: Family,
     /// One sentence.
-    pub summary: &'static str,
+    pub summary: Text,
     /// The formula, as in the code.
-    pub equation: &'static str,
+    pub equation: Text,
     /// Where the formula comes from.
-    pub source: &'static str,
+    pub source: Text,
     /// How it shows in data.
-    pub shows: &'static str,
+    pub shows: Text,
     /// Which experiment shows it best.
-    pub experiment: &'static str,
+    pub experiment: Text,
     /// Its part in the energy balance.
-    pub energy: &'static str,
+    pub energy: Text,
 }

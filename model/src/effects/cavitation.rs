@@ -1,6 +1,6 @@
 //! Oil boils instead of stretching.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,51 +8,51 @@ use crate::machine::Machine;
 pub struct Cavitation;
 
 static CARD: Card = Card {
-    name: "cavitation",
+    name: text("cavitation"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Oil,
     family: Family::Base,
-    summary: "Pressure cannot fall below the vapour pressure: vapour makes up the missing flow.",
-    equation: "Q+ = km max(0, pv - p+), likewise on the rod side",
-    source: "textbook (e.g. Merritt, Hydraulic Control Systems)",
-    shows: "A chamber pressure that rests at its floor while the piston runs ahead of the oil.",
-    experiment: "Lower a load fast.",
-    energy: "Supplies the volume of the vapour at nearly no pressure.",
+    summary: text("Pressure cannot fall below the vapour pressure: vapour makes up the missing flow."),
+    equation: text("Q+ = km max(0, pv - p+), likewise on the rod side"),
+    source: text("textbook (e.g. Merritt, Hydraulic Control Systems)"),
+    shows: text("A chamber pressure that rests at its floor while the piston runs ahead of the oil."),
+    experiment: text("Lower a load fast."),
+    energy: text("Supplies the volume of the vapour at nearly no pressure."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "vapour_pressure",
-        symbol: "pv",
-        unit: "Pa",
-        meaning: "gauge pressure at which the oil boils",
+        name: text("vapour_pressure"),
+        symbol: text("pv"),
+        unit: text("Pa"),
+        meaning: text("gauge pressure at which the oil boils"),
         kind: Kind::Shape,
         minimum: -101325.0,
         maximum: 0.0,
         typical: -9e4,
-        start: Start::At(&[-9e4]),
+        start: Start::at(&[-9e4]),
         prior: None,
     },
     ParameterCard {
-        name: "make_up_gain",
-        symbol: "km",
-        unit: "m3/(s Pa)",
-        meaning: "make-up flow per pressure deficit",
+        name: text("make_up_gain"),
+        symbol: text("km"),
+        unit: text("m3/(s Pa)"),
+        meaning: text("make-up flow per pressure deficit"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e-3,
         typical: 1e-7,
-        start: Start::At(&[1e-7]),
+        start: Start::at(&[1e-7]),
         prior: None,
     },
 ];
 
 impl Physics for Cavitation {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

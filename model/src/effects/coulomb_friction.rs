@@ -1,6 +1,6 @@
 //! Coulomb friction of the piston.
 
-use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,38 +8,40 @@ use crate::machine::Machine;
 pub struct CoulombFriction;
 
 static CARD: Card = Card {
-    name: "coulomb_friction",
+    name: text("coulomb_friction"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Loss,
-    summary: "Friction force of constant size against the motion.",
-    equation: "force -Fc sgn(v), the sign rounded (friction_reversal)",
-    source: "[A] Eq. 1. Eq. 11 of [A] prints its power with G22 squared, which has the wrong unit; -Fc |v| \
+    summary: text("Friction force of constant size against the motion."),
+    equation: text("force -Fc sgn(v), the sign rounded (friction_reversal)"),
+    source: text(
+        "[A] Eq. 1. Eq. 11 of [A] prints its power with G22 squared, which has the wrong unit; -Fc |v| \
         follows from Eq. 1.",
-    shows: "Force step at each reversal.",
-    experiment: "Slow reversals.",
-    energy: "Dissipates Fc |v|.",
+    ),
+    shows: text("Force step at each reversal."),
+    experiment: text("Slow reversals."),
+    energy: text("Dissipates Fc |v|."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "coulomb_friction",
-    symbol: "Fc",
-    unit: "N",
-    meaning: "friction force",
+    name: text("coulomb_friction"),
+    symbol: text("Fc"),
+    unit: text("N"),
+    meaning: text("friction force"),
     kind: Kind::Linear,
     minimum: 0.0,
     maximum: 1e6,
     typical: 200.0,
-    start: Start::At(&[200.0]),
+    start: Start::at(&[200.0]),
     prior: None,
 }];
 
 impl Physics for CoulombFriction {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,6 +1,6 @@
 //! A displacement sensor whose zero is not at mid-stroke.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::{Channel, Instruments};
 use crate::machine::Machine;
 
@@ -8,37 +8,41 @@ use crate::machine::Machine;
 pub struct DisplacementSensorOffset;
 
 static CARD: Card = Card {
-    name: "displacement_sensor_offset",
+    name: text("displacement_sensor_offset"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Candidate,
-    summary: "The displacement sensor reads the same amount too much or too little at all times; the machine feels nothing of it.",
-    equation: "reported s = s + o; joint angle and velocity are other instruments' or do not change",
-    source: "practice (mounting tolerance of string and magnetostrictive sensors)",
-    shows: "Gravity and lever of the model belong to another posture: force error that changes with position; ends of the stroke met early on one side and late on the other.",
-    experiment: "Drive gently into both ends: the mean of the two readings is the offset.",
-    energy: "None: it acts on the instrument.",
+    summary: text(
+        "The displacement sensor reads the same amount too much or too little at all times; the machine feels nothing of it.",
+    ),
+    equation: text("reported s = s + o; joint angle and velocity are other instruments' or do not change"),
+    source: text("practice (mounting tolerance of string and magnetostrictive sensors)"),
+    shows: text(
+        "Gravity and lever of the model belong to another posture: force error that changes with position; ends of the stroke met early on one side and late on the other.",
+    ),
+    experiment: text("Drive gently into both ends: the mean of the two readings is the offset."),
+    energy: text("None: it acts on the instrument."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "displacement_offset",
-    symbol: "o",
-    unit: "m",
-    meaning: "what the displacement sensor adds",
+    name: text("displacement_offset"),
+    symbol: text("o"),
+    unit: text("m"),
+    meaning: text("what the displacement sensor adds"),
     kind: Kind::Shape,
     minimum: -0.5,
     maximum: 0.5,
     typical: 5e-3,
-    start: Start::At(&[0.0]),
+    start: Start::at(&[0.0]),
     prior: None,
 }];
 
 impl Physics for DisplacementSensorOffset {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

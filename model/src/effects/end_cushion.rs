@@ -1,6 +1,6 @@
 //! Cushions at the ends of the stroke.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,51 +8,53 @@ use crate::machine::Machine;
 pub struct EndCushion;
 
 static CARD: Card = Card {
-    name: "end_cushion",
+    name: text("end_cushion"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Candidate,
-    summary: "Near either end the oil left in the chamber leaves through a throttle that brakes the piston.",
-    equation: "within l of an end, moving towards it: force -c (depth/l) v; free on the way back (check valve)",
-    source: "textbook (e.g. Merritt, Watton), linear in speed and depth",
-    shows: "The piston slows down before it meets the end, more the faster it comes; a force error in that region only.",
-    experiment: "Strokes into both ends at several speeds.",
-    energy: "Dissipates c (depth/l) v^2.",
+    summary: text("Near either end the oil left in the chamber leaves through a throttle that brakes the piston."),
+    equation: text("within l of an end, moving towards it: force -c (depth/l) v; free on the way back (check valve)"),
+    source: text("textbook (e.g. Merritt, Watton), linear in speed and depth"),
+    shows: text(
+        "The piston slows down before it meets the end, more the faster it comes; a force error in that region only.",
+    ),
+    experiment: text("Strokes into both ends at several speeds."),
+    energy: text("Dissipates c (depth/l) v^2."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "cushion_length",
-        symbol: "l",
-        unit: "m",
-        meaning: "length of the cushion before either end",
+        name: text("cushion_length"),
+        symbol: text("l"),
+        unit: text("m"),
+        meaning: text("length of the cushion before either end"),
         kind: Kind::Shape,
         minimum: 1e-3,
         maximum: 0.5,
         typical: 0.03,
-        start: Start::At(&[0.04, 0.08, 0.16]),
+        start: Start::at(&[0.04, 0.08, 0.16]),
         prior: None,
     },
     ParameterCard {
-        name: "cushion_damping",
-        symbol: "c",
-        unit: "N s/m",
-        meaning: "damping coefficient at the end of the stroke",
+        name: text("cushion_damping"),
+        symbol: text("c"),
+        unit: text("N s/m"),
+        meaning: text("damping coefficient at the end of the stroke"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e8,
         typical: 1e5,
-        start: Start::At(&[2e4]),
+        start: Start::at(&[2e4]),
         prior: None,
     },
 ];
 
 impl Physics for EndCushion {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

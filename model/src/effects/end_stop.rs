@@ -1,6 +1,6 @@
 //! The piston meets the ends of the cylinder.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,53 +8,57 @@ use crate::machine::Machine;
 pub struct EndStop;
 
 static CARD: Card = Card {
-    name: "end_stop",
+    name: text("end_stop"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Base,
-    summary: "Stiff one-sided contact with damping outside the stroke.",
-    equation: "outside |s| < L/2: force -k x (1 + c v) against the penetration x with speed of approach v, \
+    summary: text("Stiff one-sided contact with damping outside the stroke."),
+    equation: text(
+        "outside |s| < L/2: force -k x (1 + c v) against the penetration x with speed of approach v, \
         never pulling",
-    source: "[A] Eq. 1 (F_e), as a Hunt-Crossley contact; as printed F_e is outside the bracket, but it is a \
+    ),
+    source: text(
+        "[A] Eq. 1 (F_e), as a Hunt-Crossley contact; as printed F_e is outside the bracket, but it is a \
         force on the piston.",
-    shows: "Motion stops dead at +-L/2 while pressure rises.",
-    experiment: "Drive gently into both ends.",
-    energy: "Returns most of what it takes, dissipates the rest.",
+    ),
+    shows: text("Motion stops dead at +-L/2 while pressure rises."),
+    experiment: text("Drive gently into both ends."),
+    energy: text("Returns most of what it takes, dissipates the rest."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "end_stop_stiffness",
-        symbol: "k",
-        unit: "N/m",
-        meaning: "contact stiffness",
+        name: text("end_stop_stiffness"),
+        symbol: text("k"),
+        unit: text("N/m"),
+        meaning: text("contact stiffness"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e12,
         typical: 5e7,
-        start: Start::At(&[5e7]),
+        start: Start::at(&[5e7]),
         prior: None,
     },
     ParameterCard {
-        name: "end_stop_damping",
-        symbol: "c",
-        unit: "s/m",
-        meaning: "damping factor of the contact",
+        name: text("end_stop_damping"),
+        symbol: text("c"),
+        unit: text("s/m"),
+        meaning: text("damping factor of the contact"),
         kind: Kind::Shape,
         minimum: 0.0,
         maximum: 1e3,
         typical: 5.0,
-        start: Start::At(&[5.0]),
+        start: Start::at(&[5.0]),
         prior: None,
     },
 ];
 
 impl Physics for EndStop {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,6 +1,6 @@
 //! Air bubbles in the oil.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,38 +8,40 @@ use crate::machine::Machine;
 pub struct EntrainedAir;
 
 static CARD: Card = Card {
-    name: "entrained_air",
+    name: text("entrained_air"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "Undissolved air makes the oil soft at low pressure.",
-    equation: "compliance V (alpha/n) p0^(1/n) / (p0 + p)^(1 + 1/n) on top of V/b, p0 = 101325 Pa, n = 1.4: bubbles \
+    summary: text("Undissolved air makes the oil soft at low pressure."),
+    equation: text(
+        "compliance V (alpha/n) p0^(1/n) / (p0 + p)^(1 + 1/n) on top of V/b, p0 = 101325 Pa, n = 1.4: bubbles \
         compressed without losing heat",
-    source: "textbook (e.g. Merritt, Watton)",
-    shows: "Pressure rises slowly from low values and stiffly from high ones.",
-    experiment: "Load changes of a chamber that starts near tank pressure.",
-    energy: "Stores the work of compressing the bubbles.",
+    ),
+    source: text("textbook (e.g. Merritt, Watton)"),
+    shows: text("Pressure rises slowly from low values and stiffly from high ones."),
+    experiment: text("Load changes of a chamber that starts near tank pressure."),
+    energy: text("Stores the work of compressing the bubbles."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "air_fraction",
-    symbol: "alpha",
-    unit: "-",
-    meaning: "volume of air per volume of oil at ambient pressure",
+    name: text("air_fraction"),
+    symbol: text("alpha"),
+    unit: text("-"),
+    meaning: text("volume of air per volume of oil at ambient pressure"),
     kind: Kind::Linear,
     minimum: 0.0,
     maximum: 0.5,
     typical: 0.02,
-    start: Start::At(&[5e-3]),
+    start: Start::at(&[5e-3]),
     prior: None,
 }];
 
 impl Physics for EntrainedAir {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

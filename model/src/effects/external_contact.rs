@@ -1,6 +1,6 @@
 //! Something outside pushes for a while.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::smooth::window;
 use crate::machine::{Machine, Mechanism};
@@ -12,23 +12,27 @@ use crate::machine::{Machine, Mechanism};
 pub struct ExternalContact;
 
 static CARD: Card = Card {
-    name: "external_contact",
+    name: text("external_contact"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Candidate,
-    summary: "A force from outside acts on the link in a part of the recording: ground, an obstacle, a person.",
-    equation: "torque tau w(t), w = s(t - t0) s(t0 + d - t), s(x) = 1/(1 + exp(-2 x/e)), e = 30 ms; linear load: force F w(t)",
-    source: "practice",
-    shows: "Force error in one stretch of time and nowhere else, whatever the motion; not found again in another recording.",
-    experiment: "Repeat the manoeuvre in free air.",
-    energy: "Gives or takes tau w(t) times the joint's rate.",
+    summary: text("A force from outside acts on the link in a part of the recording: ground, an obstacle, a person."),
+    equation: text(
+        "torque tau w(t), w = s(t - t0) s(t0 + d - t), s(x) = 1/(1 + exp(-2 x/e)), e = 30 ms; linear load: force F w(t)",
+    ),
+    source: text("practice"),
+    shows: text(
+        "Force error in one stretch of time and nowhere else, whatever the motion; not found again in another recording.",
+    ),
+    experiment: text("Repeat the manoeuvre in free air."),
+    energy: text("Gives or takes tau w(t) times the joint's rate."),
 };
 
 const START: ParameterCard = ParameterCard {
-    name: "contact_start",
-    symbol: "t0",
-    unit: "s",
-    meaning: "time after the first sample at which the contact begins, -1 where it is there from the beginning",
+    name: text("contact_start"),
+    symbol: text("t0"),
+    unit: text("s"),
+    meaning: text("time after the first sample at which the contact begins, -1 where it is there from the beginning"),
     kind: Kind::Shape,
     minimum: -1.0,
     maximum: 1e5,
@@ -38,10 +42,10 @@ const START: ParameterCard = ParameterCard {
 };
 
 const DURATION: ParameterCard = ParameterCard {
-    name: "contact_duration",
-    symbol: "d",
-    unit: "s",
-    meaning: "how long it lasts",
+    name: text("contact_duration"),
+    symbol: text("d"),
+    unit: text("s"),
+    meaning: text("how long it lasts"),
     kind: Kind::Shape,
     minimum: 0.02,
     maximum: 1e5,
@@ -54,15 +58,15 @@ static LINK: &[ParameterCard] = &[
     START,
     DURATION,
     ParameterCard {
-        name: "contact_torque",
-        symbol: "tau",
-        unit: "N m",
-        meaning: "torque on the joint, + = in the direction of growing angle",
+        name: text("contact_torque"),
+        symbol: text("tau"),
+        unit: text("N m"),
+        meaning: text("torque on the joint, + = in the direction of growing angle"),
         kind: Kind::Linear,
         minimum: -1e6,
         maximum: 1e6,
         typical: 300.0,
-        start: Start::At(&[300.0]),
+        start: Start::at(&[300.0]),
         prior: None,
     },
 ];
@@ -71,25 +75,25 @@ static LOAD: &[ParameterCard] = &[
     START,
     DURATION,
     ParameterCard {
-        name: "contact_force",
-        symbol: "F",
-        unit: "N",
-        meaning: "force on the load, + = pushes the rod out",
+        name: text("contact_force"),
+        symbol: text("F"),
+        unit: text("N"),
+        meaning: text("force on the load, + = pushes the rod out"),
         kind: Kind::Linear,
         minimum: -1e6,
         maximum: 1e6,
         typical: 100.0,
-        start: Start::At(&[50.0]),
+        start: Start::at(&[50.0]),
         prior: None,
     },
 ];
 
 impl Physics for ExternalContact {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, machine: &Machine, _site: Site) -> &[ParameterCard] {
         match machine.mechanism {
             Mechanism::LinearLoad => LOAD,
             Mechanism::SingleLink { .. } | Mechanism::TwoLink | Mechanism::PlanarChain { .. } => LINK,

@@ -1,6 +1,6 @@
 //! Leakage out of the chambers.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,51 +8,51 @@ use crate::machine::Machine;
 pub struct ExternalLeakage;
 
 static CARD: Card = Card {
-    name: "external_leakage",
+    name: text("external_leakage"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Oil,
     family: Family::Loss,
-    summary: "Laminar leakage from each chamber to the outside.",
-    equation: "Q+ = -Ce+ p+, Q- = -Ce- p-",
-    source: "[A] Eq. 1",
-    shows: "Pressures fall towards ambient while the valve is closed.",
-    experiment: "Long holds.",
-    energy: "Dissipates b (Ce+ p+ (exp(p+/b) - 1) + Ce- p- (exp(p-/b) - 1)).",
+    summary: text("Laminar leakage from each chamber to the outside."),
+    equation: text("Q+ = -Ce+ p+, Q- = -Ce- p-"),
+    source: text("[A] Eq. 1"),
+    shows: text("Pressures fall towards ambient while the valve is closed."),
+    experiment: text("Long holds."),
+    energy: text("Dissipates b (Ce+ p+ (exp(p+/b) - 1) + Ce- p- (exp(p-/b) - 1))."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "external_leakage_cap",
-        symbol: "Ce+",
-        unit: "m3/(s Pa)",
-        meaning: "leakage coefficient of the cap side",
+        name: text("external_leakage_cap"),
+        symbol: text("Ce+"),
+        unit: text("m3/(s Pa)"),
+        meaning: text("leakage coefficient of the cap side"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e-6,
         typical: 3e-12,
-        start: Start::At(&[3e-12]),
+        start: Start::at(&[3e-12]),
         prior: None,
     },
     ParameterCard {
-        name: "external_leakage_rod",
-        symbol: "Ce-",
-        unit: "m3/(s Pa)",
-        meaning: "leakage coefficient of the rod side",
+        name: text("external_leakage_rod"),
+        symbol: text("Ce-"),
+        unit: text("m3/(s Pa)"),
+        meaning: text("leakage coefficient of the rod side"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e-6,
         typical: 3e-12,
-        start: Start::At(&[3e-12]),
+        start: Start::at(&[3e-12]),
         prior: None,
     },
 ];
 
 impl Physics for ExternalLeakage {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -2,7 +2,7 @@
 
 use super::{
     ActsOn, Card, Corner, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
-    Spread, Start,
+    Spread, Start, text,
 };
 use crate::equations::Situation;
 use crate::machine::Machine;
@@ -15,16 +15,20 @@ use crate::machine::Machine;
 pub struct FrictionCorner;
 
 static CARD: Card = Card {
-    name: "friction_corner",
+    name: text("friction_corner"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Rounding,
-    summary: "The friction of a piston turns round along another curve than the hyperbolic tangent of the equations.",
-    equation: "sgn(v) = tanh(sinh(sqrt(q) x)/sqrt(q)), x = v/vr; q < 0: tanh(asinh(sqrt(-q) x)/sqrt(-q)), in all friction of the piston",
-    source: "convention (the papers print sgn(v)); shapes of presliding, textbook",
-    shows: "A short error of the motion before and after every reversal, of the same shape each time.",
-    experiment: "Slow reversals, and holds with the valve nearly closed.",
-    energy: "None of its own: it rounds what other effects dissipate.",
+    summary: text(
+        "The friction of a piston turns round along another curve than the hyperbolic tangent of the equations.",
+    ),
+    equation: text(
+        "sgn(v) = tanh(sinh(sqrt(q) x)/sqrt(q)), x = v/vr; q < 0: tanh(asinh(sqrt(-q) x)/sqrt(-q)), in all friction of the piston",
+    ),
+    source: text("convention (the papers print sgn(v)); shapes of presliding, textbook"),
+    shows: text("A short error of the motion before and after every reversal, of the same shape each time."),
+    experiment: text("Slow reversals, and holds with the valve nearly closed."),
+    energy: text("None of its own: it rounds what other effects dissipate."),
 };
 
 /// Shapes reach from softer than `x / sqrt(1 + x^2)`, at minus one, to nearly straight, at four: one standard deviation. Below minus two it
@@ -32,24 +36,24 @@ static CARD: Card = Card {
 const PRIOR: Prior = Prior { spread: Spread::Fixed(4.0), scale: PriorScale::Linear, range: [-0.5, 5.0] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "corner_sharpness",
-    symbol: "q",
-    unit: "-",
-    meaning: "-1 as x/sqrt(1 + x^2), 0 as tanh(x), 4 nearly straight up to one",
+    name: text("corner_sharpness"),
+    symbol: text("q"),
+    unit: text("-"),
+    meaning: text("-1 as x/sqrt(1 + x^2), 0 as tanh(x), 4 nearly straight up to one"),
     kind: Kind::Shape,
     minimum: -4.0,
     maximum: 20.0,
     typical: 1.0,
-    start: Start::At(&[0.0]),
+    start: Start::at(&[0.0]),
     prior: Some(PRIOR),
 }];
 
 impl Physics for FrictionCorner {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -2,7 +2,7 @@
 
 use super::{
     ActsOn, Card, Corner, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
-    Spread, Start,
+    Spread, Start, text,
 };
 use crate::equations::Situation;
 use crate::equations::smooth::SLIP_SPEED;
@@ -16,16 +16,18 @@ use crate::machine::Machine;
 pub struct FrictionReversal;
 
 static CARD: Card = Card {
-    name: "friction_reversal",
+    name: text("friction_reversal"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Rounding,
-    summary: "The friction of a piston turns round over another speed than the 1 mm/s of the equations.",
-    equation: "sgn(v) = tanh(v/vr) in all friction of the piston, or along another curve of v/vr with friction_corner",
-    source: "convention (the papers print sgn(v)); width of presliding, textbook",
-    shows: "A short error of the motion at every reversal, of the same shape each time.",
-    experiment: "Slow reversals, and holds with the valve nearly closed.",
-    energy: "None of its own: it rounds what other effects dissipate.",
+    summary: text("The friction of a piston turns round over another speed than the 1 mm/s of the equations."),
+    equation: text(
+        "sgn(v) = tanh(v/vr) in all friction of the piston, or along another curve of v/vr with friction_corner",
+    ),
+    source: text("convention (the papers print sgn(v)); width of presliding, textbook"),
+    shows: text("A short error of the motion at every reversal, of the same shape each time."),
+    experiment: text("Slow reversals, and holds with the valve nearly closed."),
+    energy: text("None of its own: it rounds what other effects dissipate."),
 };
 
 /// Velocity reversals over 0.2 mm/s to 6 mm/s are rounded and no more: each end is about one and a half standard deviations of a
@@ -34,24 +36,24 @@ static CARD: Card = Card {
 const PRIOR: Prior = Prior { spread: Spread::Fixed(3.0), scale: PriorScale::Logarithmic, range: [-1.46, 1.63] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "reversal_speed",
-    symbol: "vr",
-    unit: "m/s",
-    meaning: "speed over which the sign of the velocity changes",
+    name: text("reversal_speed"),
+    symbol: text("vr"),
+    unit: text("m/s"),
+    meaning: text("speed over which the sign of the velocity changes"),
     kind: Kind::Shape,
     minimum: 1e-4,
     maximum: 2e-2,
     typical: 3e-3,
-    start: Start::At(&[SLIP_SPEED]),
+    start: Start::at(&[SLIP_SPEED]),
     prior: Some(PRIOR),
 }];
 
 impl Physics for FrictionReversal {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

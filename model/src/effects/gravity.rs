@@ -1,6 +1,6 @@
 //! Weight of the links.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::planar_chain::{absolute_angle, add_weight};
 use crate::machine::Machine;
@@ -10,51 +10,53 @@ use crate::machine::Mechanism;
 pub struct Gravity;
 
 static CARD: Card = Card {
-    name: "gravity",
+    name: text("gravity"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Base,
-    summary: "Weight of the link that the cylinder carries.",
-    equation: "torque -W1 g sin q1 on the first joint, -W2 g sin(q1 + q2) on both; one link: -W2 g sin(q1const \
+    summary: text("Weight of the link that the cylinder carries."),
+    equation: text(
+        "torque -W1 g sin q1 on the first joint, -W2 g sin(q1 + q2) on both; one link: -W2 g sin(q1const \
         + q2); link i of a chain: -Wi g sin(q1 + ... + qi) on joints 1 to i; linear load: -Fg",
-    source: "[A] Eq. 1, 4; the unit of W is kg m (Table 1), not m/s2 as in the text.",
-    shows: "Static pressure difference that changes with posture.",
-    experiment: "Slow moves over the whole stroke with holds.",
-    energy: "Stores potential energy -W g cos(q).",
+    ),
+    source: text("[A] Eq. 1, 4; the unit of W is kg m (Table 1), not m/s2 as in the text."),
+    shows: text("Static pressure difference that changes with posture."),
+    experiment: text("Slow moves over the whole stroke with holds."),
+    energy: text("Stores potential energy -W g cos(q)."),
 };
 
 static LINK: &[ParameterCard] = &[ParameterCard {
-    name: "gravity_moment",
-    symbol: "W",
-    unit: "kg m",
-    meaning: "mass times distance of the centre of gravity",
+    name: text("gravity_moment"),
+    symbol: text("W"),
+    unit: text("kg m"),
+    meaning: text("mass times distance of the centre of gravity"),
     kind: Kind::Linear,
     minimum: -1e6,
     maximum: 1e6,
     typical: 200.0,
-    start: Start::At(&[200.0]),
+    start: Start::at(&[200.0]),
     prior: None,
 }];
 
 static LOAD: &[ParameterCard] = &[ParameterCard {
-    name: "weight",
-    symbol: "Fg",
-    unit: "N",
-    meaning: "weight of the load along the cylinder",
+    name: text("weight"),
+    symbol: text("Fg"),
+    unit: text("N"),
+    meaning: text("weight of the load along the cylinder"),
     kind: Kind::Linear,
     minimum: -1e6,
     maximum: 1e6,
     typical: 1000.0,
-    start: Start::At(&[1000.0]),
+    start: Start::at(&[1000.0]),
     prior: None,
 }];
 
 impl Physics for Gravity {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, machine: &Machine, site: Site) -> &[ParameterCard] {
         match (&machine.mechanism, site) {
             (Mechanism::LinearLoad, _) => LOAD,
             _ => LINK,

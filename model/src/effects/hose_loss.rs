@@ -1,6 +1,6 @@
 //! Pressure loss in hoses and pipes.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,37 +8,37 @@ use crate::machine::Machine;
 pub struct HoseLoss;
 
 static CARD: Card = Card {
-    name: "hose_loss",
+    name: text("hose_loss"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Candidate,
-    summary: "Force against the motion that grows with the square of speed.",
-    equation: "force -zeta v |v|",
-    source: "[B] Eq. 17-18; printed as v^2, which would push along for v < 0",
-    shows: "Force error bends upward with speed, opposite for the two directions.",
-    experiment: "Steady strokes at several speeds up to the fastest.",
-    energy: "Dissipates zeta |v|^3.",
+    summary: text("Force against the motion that grows with the square of speed."),
+    equation: text("force -zeta v |v|"),
+    source: text("[B] Eq. 17-18; printed as v^2, which would push along for v < 0"),
+    shows: text("Force error bends upward with speed, opposite for the two directions."),
+    experiment: text("Steady strokes at several speeds up to the fastest."),
+    energy: text("Dissipates zeta |v|^3."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "hose_loss",
-    symbol: "zeta",
-    unit: "N s2/m2",
-    meaning: "loss coefficient",
+    name: text("hose_loss"),
+    symbol: text("zeta"),
+    unit: text("N s2/m2"),
+    meaning: text("loss coefficient"),
     kind: Kind::Linear,
     minimum: 0.0,
     maximum: 1e9,
     typical: 3e5,
-    start: Start::At(&[1e5]),
+    start: Start::at(&[1e5]),
     prior: None,
 }];
 
 impl Physics for HoseLoss {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

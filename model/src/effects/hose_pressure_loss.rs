@@ -1,6 +1,6 @@
 //! Pressure loss between valve and chamber.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -13,37 +13,41 @@ use crate::machine::Machine;
 pub struct HosePressureLoss;
 
 static CARD: Card = Card {
-    name: "hose_pressure_loss",
+    name: text("hose_pressure_loss"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "The hose between valve and chamber takes pressure in proportion to the square of the flow, before the sensor at the chamber.",
-    equation: "q = C a sqrt(dp) / sqrt(1 + R (C a)^2) for each metering edge, from dp = R q^2 + (q / (C a))^2",
-    source: "[B] Eq. 17-18, as a pressure loss",
-    shows: "Flow over sqrt(dp) against opening bends down at large openings, on both sides of the cylinder. A bent area law of the valve looks much the same: a look at hose and couplings tells them apart.",
-    experiment: "Steady strokes from small openings to the largest.",
-    energy: "Dissipates R q^3, booked with the metering edge that it is in series with.",
+    summary: text(
+        "The hose between valve and chamber takes pressure in proportion to the square of the flow, before the sensor at the chamber.",
+    ),
+    equation: text("q = C a sqrt(dp) / sqrt(1 + R (C a)^2) for each metering edge, from dp = R q^2 + (q / (C a))^2"),
+    source: text("[B] Eq. 17-18, as a pressure loss"),
+    shows: text(
+        "Flow over sqrt(dp) against opening bends down at large openings, on both sides of the cylinder. A bent area law of the valve looks much the same: a look at hose and couplings tells them apart.",
+    ),
+    experiment: text("Steady strokes from small openings to the largest."),
+    energy: text("Dissipates R q^3, booked with the metering edge that it is in series with."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "hose_resistance",
-    symbol: "R",
-    unit: "Pa s2/m6",
-    meaning: "pressure loss per square of the flow, in each of the two hoses",
+    name: text("hose_resistance"),
+    symbol: text("R"),
+    unit: text("Pa s2/m6"),
+    meaning: text("pressure loss per square of the flow, in each of the two hoses"),
     kind: Kind::Shape,
     minimum: 0.0,
     maximum: 1e15,
     typical: 1e12,
-    start: Start::At(&[1e11]),
+    start: Start::at(&[1e11]),
     prior: None,
 }];
 
 impl Physics for HosePressureLoss {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,6 +1,6 @@
 //! Inertia of the links, or the mass of a linear load.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::planar_chain::{add_composite_inertia, add_first_moment};
 use crate::machine::Machine;
@@ -10,71 +10,77 @@ use crate::machine::Mechanism;
 pub struct Inertia;
 
 static CARD: Card = Card {
-    name: "inertia",
+    name: text("inertia"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Base,
-    summary: "Inertia of the link that the cylinder moves.",
-    equation: "mass matrix J(q) = [[J1 + 2 R12 cos q2, J2 + R12 cos q2], [., J2]] with the Coriolis torque \
+    summary: text("Inertia of the link that the cylinder moves."),
+    equation: text(
+        "mass matrix J(q) = [[J1 + 2 R12 cos q2, J2 + R12 cos q2], [., J2]] with the Coriolis torque \
         c(q, qd); one link: J; chain: J_k = A_k + ... + A_n where joint k begins, h_j l_i cos(phi_j - phi_i) between links i < j; linear load: M",
-    source: "[A] Eq. 1, [B] Eq. 5. Eq. 1 of [A] multiplies C(q, qd) by qd; as printed C already is the \
+    ),
+    source: text(
+        "[A] Eq. 1, [B] Eq. 5. Eq. 1 of [A] multiplies C(q, qd) by qd; as printed C already is the \
         torque.",
-    shows: "Pressure difference needed to accelerate: force error in phase with acceleration.",
-    experiment: "Fast reversals: sines of 1 Hz and above.",
-    energy: "Stores kinetic energy 1/2 qd' J(q) qd.",
+    ),
+    shows: text("Pressure difference needed to accelerate: force error in phase with acceleration."),
+    experiment: text("Fast reversals: sines of 1 Hz and above."),
+    energy: text("Stores kinetic energy 1/2 qd' J(q) qd."),
 };
 
 static SINGLE: &[ParameterCard] = &[ParameterCard {
-    name: "inertia",
-    symbol: "J2",
-    unit: "kg m2",
-    meaning: "moment of inertia about the joint",
+    name: text("inertia"),
+    symbol: text("J2"),
+    unit: text("kg m2"),
+    meaning: text("moment of inertia about the joint"),
     kind: Kind::Linear,
     minimum: 1e-3,
     maximum: 1e7,
     typical: 200.0,
-    start: Start::At(&[200.0]),
+    start: Start::at(&[200.0]),
     prior: None,
 }];
 
 static FIRST_OF_TWO: &[ParameterCard] = &[
     ParameterCard {
-        name: "inertia",
-        symbol: "J1",
-        unit: "kg m2",
-        meaning: "moment of inertia of both links about the first joint",
+        name: text("inertia"),
+        symbol: text("J1"),
+        unit: text("kg m2"),
+        meaning: text("moment of inertia of both links about the first joint"),
         kind: Kind::Linear,
         minimum: 1e-3,
         maximum: 1e7,
         typical: 2000.0,
-        start: Start::At(&[2000.0]),
+        start: Start::at(&[2000.0]),
         prior: None,
     },
     ParameterCard {
-        name: "coupling_inertia",
-        symbol: "R12",
-        unit: "kg m2",
-        meaning: "coupling m2 lg2 l1 between the links",
+        name: text("coupling_inertia"),
+        symbol: text("R12"),
+        unit: text("kg m2"),
+        meaning: text("coupling m2 lg2 l1 between the links"),
         kind: Kind::Linear,
         minimum: -1e7,
         maximum: 1e7,
         typical: 500.0,
-        start: Start::At(&[500.0]),
+        start: Start::at(&[500.0]),
         prior: None,
     },
 ];
 
 /// What joint `k` of a chain of n links turns, J_k = A_k + ... + A_n: the links' own inertias with all later masses at their ends.
 const CHAIN_INERTIA: ParameterCard = ParameterCard {
-    name: "inertia",
-    symbol: "J",
-    unit: "kg m2",
-    meaning: "moments of inertia A of this link and all later ones, each about its own joint with later masses at its end",
+    name: text("inertia"),
+    symbol: text("J"),
+    unit: text("kg m2"),
+    meaning: text(
+        "moments of inertia A of this link and all later ones, each about its own joint with later masses at its end",
+    ),
     kind: Kind::Linear,
     minimum: 1e-3,
     maximum: 1e7,
     typical: 500.0,
-    start: Start::At(&[500.0]),
+    start: Start::at(&[500.0]),
     prior: None,
 };
 
@@ -85,38 +91,40 @@ static FIRST_OF_CHAIN: &[ParameterCard] = &[CHAIN_INERTIA];
 static LATER_OF_CHAIN: &[ParameterCard] = &[
     CHAIN_INERTIA,
     ParameterCard {
-        name: "coupling_moment",
-        symbol: "h",
-        unit: "kg m",
-        meaning: "first moment of the link about its joint, with later masses at its end: couples it to the links before",
+        name: text("coupling_moment"),
+        symbol: text("h"),
+        unit: text("kg m"),
+        meaning: text(
+            "first moment of the link about its joint, with later masses at its end: couples it to the links before",
+        ),
         kind: Kind::Linear,
         minimum: -1e6,
         maximum: 1e6,
         typical: 100.0,
-        start: Start::At(&[100.0]),
+        start: Start::at(&[100.0]),
         prior: None,
     },
 ];
 
 static LOAD: &[ParameterCard] = &[ParameterCard {
-    name: "mass",
-    symbol: "M",
-    unit: "kg",
-    meaning: "mass of the load",
+    name: text("mass"),
+    symbol: text("M"),
+    unit: text("kg"),
+    meaning: text("mass of the load"),
     kind: Kind::Linear,
     minimum: 1e-3,
     maximum: 1e6,
     typical: 100.0,
-    start: Start::At(&[100.0]),
+    start: Start::at(&[100.0]),
     prior: None,
 }];
 
 impl Physics for Inertia {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, machine: &Machine, site: Site) -> &[ParameterCard] {
         match (&machine.mechanism, site) {
             (Mechanism::LinearLoad, _) => LOAD,
             (Mechanism::TwoLink, Site::Cylinder(0)) => FIRST_OF_TWO,

@@ -1,6 +1,6 @@
 //! Leakage past the piston seal.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,37 +8,37 @@ use crate::machine::Machine;
 pub struct InternalLeakage;
 
 static CARD: Card = Card {
-    name: "internal_leakage",
+    name: text("internal_leakage"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Oil,
     family: Family::Loss,
-    summary: "Laminar leakage from one chamber to the other.",
-    equation: "Q+ = -Ci (p+ - p-), Q- = +Ci (p+ - p-)",
-    source: "[A] Eq. 1",
-    shows: "Pressures run together while the valve is closed.",
-    experiment: "Holds with a loaded cylinder.",
-    energy: "Dissipates b Ci (p+ - p-) (exp(p+/b) - exp(p-/b)).",
+    summary: text("Laminar leakage from one chamber to the other."),
+    equation: text("Q+ = -Ci (p+ - p-), Q- = +Ci (p+ - p-)"),
+    source: text("[A] Eq. 1"),
+    shows: text("Pressures run together while the valve is closed."),
+    experiment: text("Holds with a loaded cylinder."),
+    energy: text("Dissipates b Ci (p+ - p-) (exp(p+/b) - exp(p-/b))."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "internal_leakage",
-    symbol: "Ci",
-    unit: "m3/(s Pa)",
-    meaning: "leakage coefficient",
+    name: text("internal_leakage"),
+    symbol: text("Ci"),
+    unit: text("m3/(s Pa)"),
+    meaning: text("leakage coefficient"),
     kind: Kind::Linear,
     minimum: 0.0,
     maximum: 1e-6,
     typical: 1e-11,
-    start: Start::At(&[1e-11]),
+    start: Start::at(&[1e-11]),
     prior: None,
 }];
 
 impl Physics for InternalLeakage {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

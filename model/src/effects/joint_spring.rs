@@ -1,6 +1,6 @@
 //! A spring at the joint.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::{Machine, Mechanism};
 
@@ -12,63 +12,64 @@ use crate::machine::{Machine, Mechanism};
 pub struct JointSpring;
 
 static CARD: Card = Card {
-    name: "joint_spring",
+    name: text("joint_spring"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Construction,
-    summary: "A balance spring, a gas strut, or hoses and cables that are stiff: a torque on the joint that falls as its angle grows.",
-    equation: "torque tau0 - k (q - qm), qm the angle at mid-stroke; linear load: force F0 - k s",
-    source: "textbook (spring); [A] Eq. 1 for where it acts",
-    shows: "Static pressure difference that changes with position otherwise than gravity does.",
-    experiment: "Slow strokes from end to end, in both directions.",
-    energy: "Stores k (q - qm)^2 / 2 - tau0 (q - qm).",
+    summary: text(
+        "A balance spring, a gas strut, or hoses and cables that are stiff: a torque on the joint that falls as its angle grows.",
+    ),
+    equation: text("torque tau0 - k (q - qm), qm the angle at mid-stroke; linear load: force F0 - k s"),
+    source: text("textbook (spring); [A] Eq. 1 for where it acts"),
+    shows: text("Static pressure difference that changes with position otherwise than gravity does."),
+    experiment: text("Slow strokes from end to end, in both directions."),
+    energy: text("Stores k (q - qm)^2 / 2 - tau0 (q - qm)."),
 };
 
-const STIFFNESS: ParameterCard = ParameterCard {
-    name: "spring_stiffness",
-    symbol: "k",
-    unit: "N m/rad",
-    meaning: "stiffness of the spring; below zero where it pushes away from the middle",
-    kind: Kind::Linear,
-    minimum: -1e6,
-    maximum: 1e6,
-    typical: 300.0,
-    start: Start::At(&[0.0]),
-    prior: None,
-};
-
-const TORQUE: ParameterCard = ParameterCard {
-    name: "spring_torque",
-    symbol: "tau0",
-    unit: "N m",
-    meaning: "its torque at mid-stroke, + = in the direction of growing angle",
-    kind: Kind::Linear,
-    minimum: -1e6,
-    maximum: 1e6,
-    typical: 100.0,
-    start: Start::At(&[0.0]),
-    prior: None,
-};
-
-static LINK: &[ParameterCard] = &[STIFFNESS, TORQUE];
-
-static LOAD: &[ParameterCard] = &[
-    ParameterCard { unit: "N/m", typical: 1000.0, ..STIFFNESS },
+const fn stiffness(unit: &'static str, typical: f64) -> ParameterCard {
     ParameterCard {
-        name: "spring_force",
-        symbol: "F0",
-        unit: "N",
-        meaning: "its force at mid-stroke, + = pushes the rod out",
-        ..TORQUE
-    },
+        name: text("spring_stiffness"),
+        symbol: text("k"),
+        unit: text(unit),
+        meaning: text("stiffness of the spring; below zero where it pushes away from the middle"),
+        kind: Kind::Linear,
+        minimum: -1e6,
+        maximum: 1e6,
+        typical,
+        start: Start::at(&[0.0]),
+        prior: None,
+    }
+}
+
+const fn preload(name: &'static str, symbol: &'static str, unit: &'static str, meaning: &'static str) -> ParameterCard {
+    ParameterCard {
+        name: text(name),
+        symbol: text(symbol),
+        unit: text(unit),
+        meaning: text(meaning),
+        kind: Kind::Linear,
+        minimum: -1e6,
+        maximum: 1e6,
+        typical: 100.0,
+        start: Start::at(&[0.0]),
+        prior: None,
+    }
+}
+
+static LINK: &[ParameterCard] = &[
+    stiffness("N m/rad", 300.0),
+    preload("spring_torque", "tau0", "N m", "its torque at mid-stroke, + = in the direction of growing angle"),
 ];
 
+static LOAD: &[ParameterCard] =
+    &[stiffness("N/m", 1000.0), preload("spring_force", "F0", "N", "its force at mid-stroke, + = pushes the rod out")];
+
 impl Physics for JointSpring {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, machine: &Machine, _site: Site) -> &[ParameterCard] {
         match machine.mechanism {
             Mechanism::LinearLoad => LOAD,
             Mechanism::SingleLink { .. } | Mechanism::TwoLink | Mechanism::PlanarChain { .. } => LINK,

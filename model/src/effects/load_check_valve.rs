@@ -1,6 +1,6 @@
 //! Check valve between pump line and metering edge.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -11,37 +11,41 @@ use crate::machine::Machine;
 pub struct LoadCheckValve;
 
 static CARD: Card = Card {
-    name: "load_check_valve",
+    name: text("load_check_valve"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "No oil runs back from a chamber to the pump while the pump pressure is below the chamber's: the load does not sag as the valve opens.",
-    equation: "flow from pump to chamber times (1 - c) while the pump is below the chamber; c = 1: tight",
-    source: "hydraulics practice (load holding check of mobile valve sections)",
-    shows: "With the valve just opened and the pump still low, the load stands still where the model lets it drop.",
-    experiment: "Open slowly from closed against a heavy load, from low pump pressure.",
-    energy: "Keeps oil from flowing back; dissipates nothing itself.",
+    summary: text(
+        "No oil runs back from a chamber to the pump while the pump pressure is below the chamber's: the load does not sag as the valve opens.",
+    ),
+    equation: text("flow from pump to chamber times (1 - c) while the pump is below the chamber; c = 1: tight"),
+    source: text("hydraulics practice (load holding check of mobile valve sections)"),
+    shows: text(
+        "With the valve just opened and the pump still low, the load stands still where the model lets it drop.",
+    ),
+    experiment: text("Open slowly from closed against a heavy load, from low pump pressure."),
+    energy: text("Keeps oil from flowing back; dissipates nothing itself."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "check_tightness",
-    symbol: "c",
-    unit: "-",
-    meaning: "share of the flow back that the check valve keeps: 0 none, 1 all",
+    name: text("check_tightness"),
+    symbol: text("c"),
+    unit: text("-"),
+    meaning: text("share of the flow back that the check valve keeps: 0 none, 1 all"),
     kind: Kind::Linear,
     minimum: 0.0,
     maximum: 1.0,
     typical: 0.9,
-    start: Start::At(&[0.5]),
+    start: Start::at(&[0.5]),
     prior: None,
 }];
 
 impl Physics for LoadCheckValve {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,7 +1,7 @@
 //! Valves that let oil from the tank line into a chamber that is drawn empty.
 
 use super::cavitation::fill_below;
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -9,51 +9,55 @@ use crate::machine::Machine;
 pub struct MakeUpValve;
 
 static CARD: Card = Card {
-    name: "make_up_valve",
+    name: text("make_up_valve"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "A check valve lets oil from the tank line into a chamber that is drawn below its pressure: the load runs ahead without the chamber boiling.",
-    equation: "Q+ = k max(0, pt - pm - p+), likewise on the rod side",
-    source: "textbook (e.g. Merritt, Hydraulic Control Systems): anti-cavitation check valves",
-    shows: "A chamber pressure that rests at a floor near the tank's while the piston runs ahead of the oil.",
-    experiment: "Lower a load fast, or brake it hard against a closing valve.",
-    energy: "Supplies oil at the chamber's pressure; what it lost on the way from tank pressure is outside the cylinders.",
+    summary: text(
+        "A check valve lets oil from the tank line into a chamber that is drawn below its pressure: the load runs ahead without the chamber boiling.",
+    ),
+    equation: text("Q+ = k max(0, pt - pm - p+), likewise on the rod side"),
+    source: text("textbook (e.g. Merritt, Hydraulic Control Systems): anti-cavitation check valves"),
+    shows: text("A chamber pressure that rests at a floor near the tank's while the piston runs ahead of the oil."),
+    experiment: text("Lower a load fast, or brake it hard against a closing valve."),
+    energy: text(
+        "Supplies oil at the chamber's pressure; what it lost on the way from tank pressure is outside the cylinders.",
+    ),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "make_up_cracking",
-        symbol: "pm",
-        unit: "Pa",
-        meaning: "how far below tank pressure a chamber must be drawn for its valve to open",
+        name: text("make_up_cracking"),
+        symbol: text("pm"),
+        unit: text("Pa"),
+        meaning: text("how far below tank pressure a chamber must be drawn for its valve to open"),
         kind: Kind::Shape,
         minimum: 0.0,
         maximum: 2e6,
         typical: 2e4,
-        start: Start::At(&[2e4, 1e5]),
+        start: Start::at(&[2e4, 1e5]),
         prior: None,
     },
     ParameterCard {
-        name: "make_up_valve_gain",
-        symbol: "k",
-        unit: "m3/(s Pa)",
-        meaning: "flow per pressure beyond cracking",
+        name: text("make_up_valve_gain"),
+        symbol: text("k"),
+        unit: text("m3/(s Pa)"),
+        meaning: text("flow per pressure beyond cracking"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e-6,
         typical: 3e-9,
-        start: Start::At(&[3e-10]),
+        start: Start::at(&[3e-10]),
         prior: None,
     },
 ];
 
 impl Physics for MakeUpValve {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,6 +1,6 @@
 //! Compressibility of the oil, with the walls and hoses around it.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 use crate::machine::Supply;
@@ -9,37 +9,37 @@ use crate::machine::Supply;
 pub struct OilCompressibility;
 
 static CARD: Card = Card {
-    name: "oil_compressibility",
+    name: text("oil_compressibility"),
     acts_on: ActsOn::CylinderOrPumpLine,
     needs: Needs::Oil,
     family: Family::Base,
-    summary: "Oil springs: pressure rises with the oil squeezed in.",
-    equation: "compliance V/b in V/b dp/dt = net flow; pump line Vp/bp",
-    source: "[A] Eq. 1, 2",
-    shows: "Pressure lags behind the net flow; ringing of pressure and load.",
-    experiment: "Steps of the valve.",
-    energy: "Stores V (b (exp(p/b) - 1) - p).",
+    summary: text("Oil springs: pressure rises with the oil squeezed in."),
+    equation: text("compliance V/b in V/b dp/dt = net flow; pump line Vp/bp"),
+    source: text("[A] Eq. 1, 2"),
+    shows: text("Pressure lags behind the net flow; ringing of pressure and load."),
+    experiment: text("Steps of the valve."),
+    energy: text("Stores V (b (exp(p/b) - 1) - p)."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "bulk_modulus",
-    symbol: "b",
-    unit: "Pa",
-    meaning: "bulk modulus",
+    name: text("bulk_modulus"),
+    symbol: text("b"),
+    unit: text("Pa"),
+    meaning: text("bulk modulus"),
     kind: Kind::Reciprocal,
     minimum: 1e5,
     maximum: 1e11,
     typical: 1e9,
-    start: Start::At(&[1e9]),
+    start: Start::at(&[1e9]),
     prior: None,
 }];
 
 impl Physics for OilCompressibility {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,6 +1,6 @@
 //! Open-centre bypass from pump to tank.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::smooth::{LAMINAR_PRESSURE, orifice_root};
 use crate::machine::Machine;
@@ -9,39 +9,43 @@ use crate::machine::Machine;
 pub struct OpenCentreBypass;
 
 static CARD: Card = Card {
-    name: "open_centre_bypass",
+    name: text("open_centre_bypass"),
     acts_on: ActsOn::PumpLine,
     needs: Needs::Oil,
     family: Family::Base,
-    summary: "Pump flow that returns to tank through the open centre, closing as spools move.",
-    equation: "pump line loses Cft phi(pp - pt) usum, usum = (sum_i (umax_i - |u_i|)^-2)^-1/2: sections in \
+    summary: text("Pump flow that returns to tank through the open centre, closing as spools move."),
+    equation: text(
+        "pump line loses Cft phi(pp - pt) usum, usum = (sum_i (umax_i - |u_i|)^-2)^-1/2: sections in \
         series",
-    source: "[A] Eq. 3; printed with u_i, which would open the bypass beyond its maximum for u < 0: |u_i| is \
+    ),
+    source: text(
+        "[A] Eq. 3; printed with u_i, which would open the bypass beyond its maximum for u < 0: |u_i| is \
         used.",
-    shows: "Pump pressure against spool travel.",
-    experiment: "Slow sweep of the spool with the cylinder at rest.",
-    energy: "Throttled between pump and tank, outside the cylinders.",
+    ),
+    shows: text("Pump pressure against spool travel."),
+    experiment: text("Slow sweep of the spool with the cylinder at rest."),
+    energy: text("Throttled between pump and tank, outside the cylinders."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "bypass_flow_gain",
-    symbol: "Cft",
-    unit: "m/(s sqrt(Pa))",
-    meaning: "flow gain of the bypass",
+    name: text("bypass_flow_gain"),
+    symbol: text("Cft"),
+    unit: text("m/(s sqrt(Pa))"),
+    meaning: text("flow gain of the bypass"),
     kind: Kind::Linear,
     minimum: 0.0,
     maximum: 1.0,
     typical: 1e-2,
-    start: Start::At(&[1e-2]),
+    start: Start::at(&[1e-2]),
     prior: None,
 }];
 
 impl Physics for OpenCentreBypass {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

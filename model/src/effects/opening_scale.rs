@@ -1,6 +1,6 @@
 //! A full opening that is not what was assumed.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -11,28 +11,32 @@ use crate::machine::Machine;
 pub struct OpeningScale;
 
 static CARD: Card = Card {
-    name: "opening_scale",
+    name: text("opening_scale"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "The bypass closes sooner or later than recorded openings say: the full scale of the command or of the spool sensor is not what was assumed.",
-    equation: "section of the bypass umax - (1 + k) |u| in place of umax - |u|; flow gains are those of the opening as recorded",
-    source: "ours: commands in volts or per cent",
-    shows: "Pump pressure at large openings is too low or too high, however the flow gains are fitted.",
-    experiment: "Trapezoids up to the full opening.",
-    energy: "Changes what the bypass loses; dissipates nothing itself.",
+    summary: text(
+        "The bypass closes sooner or later than recorded openings say: the full scale of the command or of the spool sensor is not what was assumed.",
+    ),
+    equation: text(
+        "section of the bypass umax - (1 + k) |u| in place of umax - |u|; flow gains are those of the opening as recorded",
+    ),
+    source: text("ours: commands in volts or per cent"),
+    shows: text("Pump pressure at large openings is too low or too high, however the flow gains are fitted."),
+    experiment: text("Trapezoids up to the full opening."),
+    energy: text("Changes what the bypass loses; dissipates nothing itself."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "opening_scale",
-    symbol: "k",
-    unit: "-",
-    meaning: "relative error of the full scale: recorded openings times 1 + k are the true ones",
+    name: text("opening_scale"),
+    symbol: text("k"),
+    unit: text("-"),
+    meaning: text("relative error of the full scale: recorded openings times 1 + k are the true ones"),
     kind: Kind::Shape,
     minimum: -0.9,
     maximum: 4.0,
     typical: 0.1,
-    start: Start::At(&[0.0, -0.2]),
+    start: Start::at(&[0.0, -0.2]),
     prior: None,
 }];
 
@@ -40,11 +44,11 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
 const ACCURACY: f64 = 0.01;
 
 impl Physics for OpeningScale {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,6 +1,6 @@
 //! Turbulent flow through the metering edges of the valve.
 
-use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,54 +8,58 @@ use crate::machine::Machine;
 pub struct OrificeFlow;
 
 static CARD: Card = Card {
-    name: "orifice_flow",
+    name: text("orifice_flow"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Base,
-    summary: "Flow through the open metering edges.",
-    equation: "u > 0: Q+ = Cf+ u phi(pp - p+), Q- = -Cf- u phi(p- - pt), pump gives Q+; u < 0: Q+ = Cf+ u \
+    summary: text("Flow through the open metering edges."),
+    equation: text(
+        "u > 0: Q+ = Cf+ u phi(pp - p+), Q- = -Cf- u phi(p- - pt), pump gives Q+; u < 0: Q+ = Cf+ u \
         phi(p+ - pt), Q- = -Cf- u phi(pp - p-), pump gives Q-; phi(x) = sgn(x) sqrt|x|, laminar below 2 \
         kPa",
-    source: "[A] Eq. 1, 3. For u < 0 Eq. 3 prints the flow drawn from the pump as negative; phi carries a \
+    ),
+    source: text(
+        "[A] Eq. 1, 3. For u < 0 Eq. 3 prints the flow drawn from the pump as negative; phi carries a \
         sign so that flow reverses when the supply is below the chamber.",
-    shows: "Speed against opening times root of the pressure drop.",
-    experiment: "Trapezoids of several amplitudes.",
-    energy: "Supplies b (exp(p/b) - 1) Q to each chamber.",
+    ),
+    shows: text("Speed against opening times root of the pressure drop."),
+    experiment: text("Trapezoids of several amplitudes."),
+    energy: text("Supplies b (exp(p/b) - 1) Q to each chamber."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "flow_gain_cap",
-        symbol: "Cf+",
-        unit: "m/(s sqrt(Pa))",
-        meaning: "flow gain of the cap side edges",
+        name: text("flow_gain_cap"),
+        symbol: text("Cf+"),
+        unit: text("m/(s sqrt(Pa))"),
+        meaning: text("flow gain of the cap side edges"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1.0,
         typical: 4e-3,
-        start: Start::At(&[4e-3]),
+        start: Start::at(&[4e-3]),
         prior: None,
     },
     ParameterCard {
-        name: "flow_gain_rod",
-        symbol: "Cf-",
-        unit: "m/(s sqrt(Pa))",
-        meaning: "flow gain of the rod side edges",
+        name: text("flow_gain_rod"),
+        symbol: text("Cf-"),
+        unit: text("m/(s sqrt(Pa))"),
+        meaning: text("flow gain of the rod side edges"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1.0,
         typical: 4e-3,
-        start: Start::At(&[4e-3]),
+        start: Start::at(&[4e-3]),
         prior: None,
     },
 ];
 
 impl Physics for OrificeFlow {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

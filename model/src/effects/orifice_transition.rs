@@ -2,7 +2,7 @@
 
 use super::{
     ActsOn, Card, Corner, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
-    Spread, Start,
+    Spread, Start, text,
 };
 use crate::equations::Situation;
 use crate::equations::smooth::LAMINAR_PRESSURE;
@@ -16,16 +16,20 @@ use crate::machine::Machine;
 pub struct OrificeTransition;
 
 static CARD: Card = Card {
-    name: "orifice_transition",
+    name: text("orifice_transition"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Rounding,
-    summary: "The flow of the valve's edges turns turbulent at another pressure drop than the 2 kPa of the equations.",
-    equation: "phi(dp) = dp / (dp^2 + pl^2)^(1/4) at the four edges",
-    source: "convention ([A] prints the root); critical Reynolds number of an orifice, textbook (Merritt 1967)",
-    shows: "Flow over sqrt(dp) that falls where the pressure drop is small; a return chamber near tank pressure whose pressure is too low.",
-    experiment: "Slow strokes with small openings, the return line nearly without pressure.",
-    energy: "None of its own: it rounds the metering loss.",
+    summary: text(
+        "The flow of the valve's edges turns turbulent at another pressure drop than the 2 kPa of the equations.",
+    ),
+    equation: text("phi(dp) = dp / (dp^2 + pl^2)^(1/4) at the four edges"),
+    source: text("convention ([A] prints the root); critical Reynolds number of an orifice, textbook (Merritt 1967)"),
+    shows: text(
+        "Flow over sqrt(dp) that falls where the pressure drop is small; a return chamber near tank pressure whose pressure is too low.",
+    ),
+    experiment: text("Slow strokes with small openings, the return line nearly without pressure."),
+    energy: text("None of its own: it rounds the metering loss."),
 };
 
 /// Metering slots turn turbulent between 0.2 kPa and 300 kPa: a slot of 0.1 mm in cold oil reaches the upper end. That is one standard
@@ -33,24 +37,24 @@ static CARD: Card = Card {
 const PRIOR: Prior = Prior { spread: Spread::Fixed(8.0), scale: PriorScale::Logarithmic, range: [-1.1, 2.4] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "transition_pressure",
-    symbol: "pl",
-    unit: "Pa",
-    meaning: "pressure drop below which the flow is laminar",
+    name: text("transition_pressure"),
+    symbol: text("pl"),
+    unit: text("Pa"),
+    meaning: text("pressure drop below which the flow is laminar"),
     kind: Kind::Shape,
     minimum: 1e2,
     maximum: 4e5,
     typical: 2e4,
-    start: Start::At(&[LAMINAR_PRESSURE]),
+    start: Start::at(&[LAMINAR_PRESSURE]),
     prior: Some(PRIOR),
 }];
 
 impl Physics for OrificeTransition {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,6 +1,6 @@
 //! A mass that the link carries.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::planar_chain::{absolute_angle, add_first_moment, add_inertia, add_weight};
 use crate::equations::smooth::window;
@@ -14,49 +14,57 @@ use crate::machine::{Machine, Mechanism};
 pub struct Payload;
 
 static CARD: Card = Card {
-    name: "payload",
+    name: text("payload"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Candidate,
-    summary: "Added mass at the tip, always or while it is carried: inertia and weight grow together, by mass times distance squared and mass times distance.",
-    equation: "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; link of a chain: the same with the known lengths; linear load: M += m, Fg += m g i; m times w(t), w = s(t - t0) s(t0 + d - t), s(x) = 1/(1 + exp(-2 x/e)), e = 30 ms",
-    source: "practice; point mass in [A] Eq. 1",
-    shows: "Static pressure difference and force at reversals both larger than the unloaded machine's, in a fixed ratio, from one moment on. Always there, it is to be told from inertia and gravity only where these are known.",
-    experiment: "One recording with the bucket empty at first and filled then.",
-    energy: "Stores kinetic energy m |velocity|^2 / 2 and potential energy m g height, brought along when it is picked up.",
+    summary: text(
+        "Added mass at the tip, always or while it is carried: inertia and weight grow together, by mass times distance squared and mass times distance.",
+    ),
+    equation: text(
+        "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; link of a chain: the same with the known lengths; linear load: M += m, Fg += m g i; m times w(t), w = s(t - t0) s(t0 + d - t), s(x) = 1/(1 + exp(-2 x/e)), e = 30 ms",
+    ),
+    source: text("practice; point mass in [A] Eq. 1"),
+    shows: text(
+        "Static pressure difference and force at reversals both larger than the unloaded machine's, in a fixed ratio, from one moment on. Always there, it is to be told from inertia and gravity only where these are known.",
+    ),
+    experiment: text("One recording with the bucket empty at first and filled then."),
+    energy: text(
+        "Stores kinetic energy m |velocity|^2 / 2 and potential energy m g height, brought along when it is picked up.",
+    ),
 };
 
 const MASS: ParameterCard = ParameterCard {
-    name: "payload_mass",
-    symbol: "m",
-    unit: "kg",
-    meaning: "added mass",
+    name: text("payload_mass"),
+    symbol: text("m"),
+    unit: text("kg"),
+    meaning: text("added mass"),
     kind: Kind::Linear,
     minimum: 0.0,
     maximum: 1e5,
     typical: 100.0,
-    start: Start::At(&[20.0]),
+    start: Start::at(&[20.0]),
     prior: None,
 };
 
 const DISTANCE: ParameterCard = ParameterCard {
-    name: "payload_distance",
-    symbol: "r",
-    unit: "m",
-    meaning: "distance of its centre from the joint",
+    name: text("payload_distance"),
+    symbol: text("r"),
+    unit: text("m"),
+    meaning: text("distance of its centre from the joint"),
     kind: Kind::Shape,
     minimum: 0.0,
     maximum: 20.0,
     typical: 1.5,
-    start: Start::At(&[1.5]),
+    start: Start::at(&[1.5]),
     prior: None,
 };
 
 const START: ParameterCard = ParameterCard {
-    name: "payload_start",
-    symbol: "t0",
-    unit: "s",
-    meaning: "time after the first sample at which it is picked up, -1 where it is there from the beginning",
+    name: text("payload_start"),
+    symbol: text("t0"),
+    unit: text("s"),
+    meaning: text("time after the first sample at which it is picked up, -1 where it is there from the beginning"),
     kind: Kind::Shape,
     minimum: BEFORE,
     maximum: FOREVER,
@@ -66,10 +74,10 @@ const START: ParameterCard = ParameterCard {
 };
 
 const DURATION: ParameterCard = ParameterCard {
-    name: "payload_duration",
-    symbol: "d",
-    unit: "s",
-    meaning: "how long it is carried, 1e9 where it is never put down",
+    name: text("payload_duration"),
+    symbol: text("d"),
+    unit: text("s"),
+    meaning: text("how long it is carried, 1e9 where it is never put down"),
     kind: Kind::Shape,
     minimum: 0.02,
     maximum: FOREVER,
@@ -90,15 +98,15 @@ static SECOND_OF_TWO: &[ParameterCard] = &[
     MASS,
     DISTANCE,
     ParameterCard {
-        name: "payload_joint_distance",
-        symbol: "l1",
-        unit: "m",
-        meaning: "distance between the two joints",
+        name: text("payload_joint_distance"),
+        symbol: text("l1"),
+        unit: text("m"),
+        meaning: text("distance between the two joints"),
         kind: Kind::Shape,
         minimum: 0.0,
         maximum: 20.0,
         typical: 2.5,
-        start: Start::At(&[2.5]),
+        start: Start::at(&[2.5]),
         prior: None,
     },
     START,
@@ -108,15 +116,15 @@ static SECOND_OF_TWO: &[ParameterCard] = &[
 static LOAD: &[ParameterCard] = &[
     MASS,
     ParameterCard {
-        name: "payload_incline",
-        symbol: "i",
-        unit: "-",
-        meaning: "sine of the slope of the axis: 1 lifts, 0 level",
+        name: text("payload_incline"),
+        symbol: text("i"),
+        unit: text("-"),
+        meaning: text("sine of the slope of the axis: 1 lifts, 0 level"),
         kind: Kind::Shape,
         minimum: -1.0,
         maximum: 1.0,
         typical: 0.5,
-        start: Start::At(&[0.0]),
+        start: Start::at(&[0.0]),
         prior: None,
     },
     START,
@@ -124,11 +132,11 @@ static LOAD: &[ParameterCard] = &[
 ];
 
 impl Physics for Payload {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, machine: &Machine, site: Site) -> &[ParameterCard] {
         match (&machine.mechanism, site) {
             (Mechanism::LinearLoad, _) => LOAD,
             (Mechanism::TwoLink, Site::Cylinder(1)) => SECOND_OF_TWO,

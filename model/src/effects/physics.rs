@@ -5,16 +5,17 @@
 
 use super::{Card, Corner, Finding, ParameterCard, Rows, Scalar, Site};
 use crate::equations::{Instruments, Situation};
+use crate::formula::FormulaText;
 use crate::machine::Machine;
 use crate::scalar::Dual;
 
 /// One physical effect, written once for any number type.
-pub trait Physics: Sync {
+pub trait Physics: Send + Sync {
     /// What is said about it.
-    fn card(&self) -> &'static Card;
+    fn card(&self) -> &Card;
 
     /// Its parameters at `site` of `machine`, in the order in which [`Physics::contribute`] gets them.
-    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard];
+    fn parameters(&self, machine: &Machine, site: Site) -> &[ParameterCard];
 
     /// Value of a parameter that a model file leaves out, where that may be: files that are older than the parameter.
     fn value_where_left_out(&self, _parameter: &str) -> Option<f64> {
@@ -53,9 +54,29 @@ pub trait Physics: Sync {
         None
     }
 
-    /// Number of states that it adds to the model.
+    /// The text of a law that was read from a formula.
+    fn formula(&self) -> Option<&FormulaText> {
+        None
+    }
+
+    /// Why it cannot act at `site` of `machine`, beyond what its card says.
+    fn why_not(&self, _machine: &Machine, _site: Site) -> Option<String> {
+        None
+    }
+
+    /// Number of states that it adds to the model. Those of a built-in effect are spools, as openings.
     fn states(&self) -> usize {
         0
+    }
+
+    /// Order of magnitude of a state, in its unit: that of a spool's opening, m².
+    fn state_scale(&self, _state: usize) -> f64 {
+        1e-4
+    }
+
+    /// Whether its law needs the metering flows, so that it has to wait for those of the valve.
+    fn reads_metering_flows(&self) -> bool {
+        false
     }
 
     /// Where the metering edges and where the bypass's really are (m²), given where the input says the spool is; `states` are the
@@ -75,8 +96,8 @@ pub trait Physics: Sync {
         reading
     }
 
-    /// The area open to flow (m²), given the area that the effects before it left open; `maximum` is umax.
-    fn opening<T: Scalar>(&self, _parameters: &[T], opening: T, _maximum: f64) -> T {
+    /// The area open to flow (m²), given the area that the effects before it left open.
+    fn opening<T: Scalar>(&self, _site: Site, _parameters: &[T], opening: T, _now: &Situation<T>) -> T {
         opening
     }
 
@@ -95,6 +116,34 @@ pub trait Physics: Sync {
 
     /// Adds the effect at `site` to the rows of the equations of motion.
     fn contribute<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>, _rows: &mut Rows<T>) {}
+
+    /// The same for an effect whose law needs its own states.
+    fn contribute_remembering<T: Scalar>(
+        &self,
+        site: Site,
+        parameters: &[T],
+        _states: &[T],
+        now: &Situation<T>,
+        rows: &mut Rows<T>,
+    ) {
+        self.contribute(site, parameters, now, rows);
+    }
+
+    /// Rates of its own states into `rates`, for states that are no spools.
+    fn remember<T: Scalar>(
+        &self,
+        _site: Site,
+        _parameters: &[T],
+        _states: &[T],
+        _now: &Situation<T>,
+        _rates: &mut [T],
+    ) {
+    }
+
+    /// Sets states that are no spools to where they begin, and says whether they are such.
+    fn begin<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>, _states: &mut [T]) -> bool {
+        false
+    }
 }
 
 /// The traits through which a model uses unlike effects, from the list of the hooks of [`Physics`]: those that are the same for every
@@ -111,7 +160,7 @@ macro_rules! hooks {
         /// [`Physics`] as a model holds it: one list of unlike effects, for the number types that the program uses.
         /// Implemented for every `Physics`; not to be implemented by hand.
         #[allow(missing_docs)]
-        pub trait Effect: Hooks<f64> + Hooks<Dual> + Sync {
+        pub trait Effect: Hooks<f64> + Hooks<Dual> + Send + Sync {
             $(fn $plain(&self, $($plain_name: $plain_type),*) $(-> $plain_result)?;)*
         }
 
@@ -137,8 +186,8 @@ macro_rules! hooks {
 
 hooks! {
     same for every number type {
-        fn card() -> &'static Card;
-        fn parameters(machine: &Machine, site: Site) -> &'static [ParameterCard];
+        fn card() -> &Card;
+        fn parameters(machine: &Machine, site: Site) -> &[ParameterCard];
         fn value_where_left_out(parameter: &str) -> Option<f64>;
         fn is_practically_significant(parameters: &[f64]) -> bool;
         fn has_power() -> bool;
@@ -146,23 +195,31 @@ hooks! {
         fn rounds() -> Option<Corner>;
         fn corner(parameters: &[f64]) -> Option<Corner>;
         fn finding(parameters: &[f64]) -> Option<Finding>;
+        fn formula() -> Option<&FormulaText>;
+        fn why_not(machine: &Machine, site: Site) -> Option<String>;
         fn states() -> usize;
+        fn state_scale(state: usize) -> f64;
+        fn reads_metering_flows() -> bool;
         fn reads_course() -> bool;
     }
     in number type T {
         fn spool(parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2];
         fn read(parameters: &[T], reading: T, course: [T; 2]) -> T;
-        fn opening(parameters: &[T], opening: T, maximum: f64) -> T;
+        fn opening(site: Site, parameters: &[T], opening: T, now: &Situation<T>) -> T;
         fn adjust(site: Site, parameters: &[T], now: &mut Situation<T>);
         fn distort(site: Site, parameters: &[T], instruments: &mut Instruments<T>);
         fn potential(site: Site, parameters: &[T], now: &Situation<T>) -> Option<T>;
         fn contribute(site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>);
+        fn contribute_remembering(
+            site: Site, parameters: &[T], states: &[T], now: &Situation<T>, rows: &mut Rows<T>);
+        fn remember(site: Site, parameters: &[T], states: &[T], now: &Situation<T>, rates: &mut [T]);
+        fn begin(site: Site, parameters: &[T], now: &Situation<T>, states: &mut [T]) -> bool;
     }
 }
 
 impl std::fmt::Debug for dyn Effect {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str(self.card().name)
+        formatter.write_str(&self.card().name)
     }
 }
 

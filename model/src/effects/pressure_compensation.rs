@@ -1,6 +1,6 @@
 //! Pressure compensator in front of the metering edges.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -12,37 +12,43 @@ use crate::machine::Machine;
 pub struct PressureCompensation;
 
 static CARD: Card = Card {
-    name: "pressure_compensation",
+    name: text("pressure_compensation"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Construction,
-    summary: "A compensator between pump and metering edge holds flow, not opening: the edge sees no more than the compensator's margin of pressure drop.",
-    equation: "flow from the pump Cf u phi(x), x = d / (1 + (d/pm)^8)^(1/8) for a drop d > 0: the orifice law well below pm, Cf u sqrt(pm) well above; edges to tank keep the orifice law",
-    source: "hydraulics practice (pressure-compensated mobile valves); textbook (e.g. Merritt; Murrenhoff)",
-    shows: "Speed follows the opening whatever the load, until pump pressure is within the margin of the load's; then it falls as with any orifice.",
-    experiment: "The same opening against different loads, and once with the pump near its lowest pressure.",
-    energy: "Throttles what the edge would not: its loss is part of the metering loss.",
+    summary: text(
+        "A compensator between pump and metering edge holds flow, not opening: the edge sees no more than the compensator's margin of pressure drop.",
+    ),
+    equation: text(
+        "flow from the pump Cf u phi(x), x = d / (1 + (d/pm)^8)^(1/8) for a drop d > 0: the orifice law well below pm, Cf u sqrt(pm) well above; edges to tank keep the orifice law",
+    ),
+    source: text("hydraulics practice (pressure-compensated mobile valves); textbook (e.g. Merritt; Murrenhoff)"),
+    shows: text(
+        "Speed follows the opening whatever the load, until pump pressure is within the margin of the load's; then it falls as with any orifice.",
+    ),
+    experiment: text("The same opening against different loads, and once with the pump near its lowest pressure."),
+    energy: text("Throttles what the edge would not: its loss is part of the metering loss."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "compensator_margin",
-    symbol: "pm",
-    unit: "Pa",
-    meaning: "pressure drop that the compensator leaves to the metering edge",
+    name: text("compensator_margin"),
+    symbol: text("pm"),
+    unit: text("Pa"),
+    meaning: text("pressure drop that the compensator leaves to the metering edge"),
     kind: Kind::Shape,
     minimum: 1e5,
     maximum: 5e6,
     typical: 1e6,
-    start: Start::At(&[7e5, 2e6]),
+    start: Start::at(&[7e5, 2e6]),
     prior: None,
 }];
 
 impl Physics for PressureCompensation {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,6 +1,6 @@
 //! Friction of seals that pressure pushes against the wall.
 
-use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,37 +8,41 @@ use crate::machine::Machine;
 pub struct PressureDependentFriction;
 
 static CARD: Card = Card {
-    name: "pressure_dependent_friction",
+    name: text("pressure_dependent_friction"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Pressures,
     family: Family::Candidate,
-    summary: "Friction grows with the pressures in the chambers.",
-    equation: "force -mu (max(0, p+) + max(0, p-)) sgn(v), the sign rounded (friction_reversal); a chamber under vacuum pushes no seal",
-    source: "textbook (e.g. Merritt, Watton)",
-    shows: "Force step at each reversal is larger under load than without; Coulomb friction identified at two pressure levels differs.",
-    experiment: "Slow reversals with and without load, or at two counter-pressures.",
-    energy: "Dissipates mu (p+ + p-) |v|.",
+    summary: text("Friction grows with the pressures in the chambers."),
+    equation: text(
+        "force -mu (max(0, p+) + max(0, p-)) sgn(v), the sign rounded (friction_reversal); a chamber under vacuum pushes no seal",
+    ),
+    source: text("textbook (e.g. Merritt, Watton)"),
+    shows: text(
+        "Force step at each reversal is larger under load than without; Coulomb friction identified at two pressure levels differs.",
+    ),
+    experiment: text("Slow reversals with and without load, or at two counter-pressures."),
+    energy: text("Dissipates mu (p+ + p-) |v|."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "pressure_friction",
-    symbol: "mu",
-    unit: "m2",
-    meaning: "friction force per sum of the chamber pressures",
+    name: text("pressure_friction"),
+    symbol: text("mu"),
+    unit: text("m2"),
+    meaning: text("friction force per sum of the chamber pressures"),
     kind: Kind::Linear,
     minimum: 0.0,
     maximum: 1e-2,
     typical: 1e-4,
-    start: Start::At(&[5e-5]),
+    start: Start::at(&[5e-5]),
     prior: None,
 }];
 
 impl Physics for PressureDependentFriction {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

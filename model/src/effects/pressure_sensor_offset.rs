@@ -1,6 +1,6 @@
 //! Pressure sensors that do not read zero at ambient pressure.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::{Channel, Instruments};
 use crate::machine::Machine;
 
@@ -10,64 +10,68 @@ use crate::machine::Machine;
 pub struct PressureSensorOffset;
 
 static CARD: Card = Card {
-    name: "pressure_sensor_offset",
+    name: text("pressure_sensor_offset"),
     acts_on: ActsOn::CylinderOrPumpLine,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "A pressure sensor reads the same amount too much or too little at all times; the machine feels nothing of it.",
-    equation: "reported p = p + o, for cap side, rod side or pump",
-    source: "practice (zero shift of strain gauge pressure sensors)",
-    shows: "Measured pressure off by a constant; flows through the valve look wrong most where the pressure drop is small.",
-    experiment: "Read all pressures with the pump off and the load on its stop.",
-    energy: "None: it acts on the instrument.",
+    summary: text(
+        "A pressure sensor reads the same amount too much or too little at all times; the machine feels nothing of it.",
+    ),
+    equation: text("reported p = p + o, for cap side, rod side or pump"),
+    source: text("practice (zero shift of strain gauge pressure sensors)"),
+    shows: text(
+        "Measured pressure off by a constant; flows through the valve look wrong most where the pressure drop is small.",
+    ),
+    experiment: text("Read all pressures with the pump off and the load on its stop."),
+    energy: text("None: it acts on the instrument."),
 };
 
 static CYLINDER: &[ParameterCard] = &[
     ParameterCard {
-        name: "pressure_offset_cap",
-        symbol: "o+",
-        unit: "Pa",
-        meaning: "what the cap side sensor adds",
+        name: text("pressure_offset_cap"),
+        symbol: text("o+"),
+        unit: text("Pa"),
+        meaning: text("what the cap side sensor adds"),
         kind: Kind::Shape,
         minimum: -1e7,
         maximum: 1e7,
         typical: 5e4,
-        start: Start::At(&[0.0]),
+        start: Start::at(&[0.0]),
         prior: None,
     },
     ParameterCard {
-        name: "pressure_offset_rod",
-        symbol: "o-",
-        unit: "Pa",
-        meaning: "what the rod side sensor adds",
+        name: text("pressure_offset_rod"),
+        symbol: text("o-"),
+        unit: text("Pa"),
+        meaning: text("what the rod side sensor adds"),
         kind: Kind::Shape,
         minimum: -1e7,
         maximum: 1e7,
         typical: 5e4,
-        start: Start::At(&[0.0]),
+        start: Start::at(&[0.0]),
         prior: None,
     },
 ];
 
 static PUMP_LINE: &[ParameterCard] = &[ParameterCard {
-    name: "pressure_offset",
-    symbol: "op",
-    unit: "Pa",
-    meaning: "what the pump pressure sensor adds",
+    name: text("pressure_offset"),
+    symbol: text("op"),
+    unit: text("Pa"),
+    meaning: text("what the pump pressure sensor adds"),
     kind: Kind::Shape,
     minimum: -1e7,
     maximum: 1e7,
     typical: 5e4,
-    start: Start::At(&[0.0]),
+    start: Start::at(&[0.0]),
     prior: None,
 }];
 
 impl Physics for PressureSensorOffset {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, site: Site) -> &[ParameterCard] {
         match site {
             Site::Cylinder(_) => CYLINDER,
             Site::PumpLine => PUMP_LINE,

@@ -1,6 +1,6 @@
 //! Leakage inside the pump.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,37 +8,37 @@ use crate::machine::Machine;
 pub struct PumpLeakage;
 
 static CARD: Card = Card {
-    name: "pump_leakage",
+    name: text("pump_leakage"),
     acts_on: ActsOn::PumpLine,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "The pump gives less flow the higher its pressure.",
-    equation: "pump line loses kp pp",
-    source: "textbook (e.g. Merritt: slip flow of positive displacement pumps)",
-    shows: "Flow missing in the pump line in proportion to its pressure, whatever the spools do.",
-    experiment: "Hold the spool at several openings against a load, so that pump pressure takes several levels.",
-    energy: "Throttled between pump and tank, outside the cylinders.",
+    summary: text("The pump gives less flow the higher its pressure."),
+    equation: text("pump line loses kp pp"),
+    source: text("textbook (e.g. Merritt: slip flow of positive displacement pumps)"),
+    shows: text("Flow missing in the pump line in proportion to its pressure, whatever the spools do."),
+    experiment: text("Hold the spool at several openings against a load, so that pump pressure takes several levels."),
+    energy: text("Throttled between pump and tank, outside the cylinders."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "pump_leakage",
-    symbol: "kp",
-    unit: "m3/(s Pa)",
-    meaning: "flow lost per pressure",
+    name: text("pump_leakage"),
+    symbol: text("kp"),
+    unit: text("m3/(s Pa)"),
+    meaning: text("flow lost per pressure"),
     kind: Kind::Linear,
     minimum: 0.0,
     maximum: 1e-8,
     typical: 1e-11,
-    start: Start::At(&[1e-12]),
+    start: Start::at(&[1e-12]),
     prior: None,
 }];
 
 impl Physics for PumpLeakage {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -1,6 +1,6 @@
 //! Instruments that report late.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::{Channel, Instruments};
 use crate::machine::Machine;
 
@@ -10,64 +10,76 @@ use crate::machine::Machine;
 pub struct SensorDelay;
 
 static CARD: Card = Card {
-    name: "sensor_delay",
+    name: text("sensor_delay"),
     acts_on: ActsOn::Instruments,
     needs: Needs::Nothing,
     family: Family::Candidate,
-    summary: "Readings arrive later than they are stamped: filters, converters and buses on the way; the machine feels nothing of it.",
-    equation: "reported y(t) = y(t - T), one T for position (displacement, angle, velocity), one for the pressures: of a cylinder, of the pump line, or of the whole machine",
-    source: "practice (group delay of filters, cycle time of field buses)",
-    shows: "Error in proportion to the rate of the signal, by the same time at all frequencies, in the late signals only: against valve_lag, pump pressure is not late.",
-    experiment: "Sines of two frequencies: phase that grows in proportion to frequency. Knock on the boom: all sensors should see it at once.",
-    energy: "None: it acts on the instrument.",
+    summary: text(
+        "Readings arrive later than they are stamped: filters, converters and buses on the way; the machine feels nothing of it.",
+    ),
+    equation: text(
+        "reported y(t) = y(t - T), one T for position (displacement, angle, velocity), one for the pressures: of a cylinder, of the pump line, or of the whole machine",
+    ),
+    source: text("practice (group delay of filters, cycle time of field buses)"),
+    shows: text(
+        "Error in proportion to the rate of the signal, by the same time at all frequencies, in the late signals only: against valve_lag, pump pressure is not late.",
+    ),
+    experiment: text(
+        "Sines of two frequencies: phase that grows in proportion to frequency. Knock on the boom: all sensors should see it at once.",
+    ),
+    energy: text("None: it acts on the instrument."),
 };
 
-const DISPLACEMENT_DELAY: ParameterCard = ParameterCard {
-    name: "displacement_delay",
-    symbol: "Ts",
-    unit: "s",
-    meaning: "delay of displacement, velocity and joint angle",
-    kind: Kind::Shape,
-    minimum: 0.0,
-    maximum: 0.5,
-    typical: 0.01,
-    start: Start::At(&[5e-3]),
-    prior: None,
-};
-
-const PRESSURE_DELAY: ParameterCard = ParameterCard {
-    name: "pressure_delay",
-    symbol: "Tp",
-    unit: "s",
-    meaning: "delay of both chamber pressures",
-    kind: Kind::Shape,
-    minimum: 0.0,
-    maximum: 0.5,
-    typical: 0.01,
-    start: Start::At(&[5e-3]),
-    prior: None,
-};
-
-static CYLINDER: &[ParameterCard] = &[DISPLACEMENT_DELAY, PRESSURE_DELAY];
-
-static MACHINE: &[ParameterCard] = &[
+const fn displacement_delay(meaning: &'static str) -> ParameterCard {
     ParameterCard {
-        meaning: "delay of displacement, velocity and joint angle of every cylinder",
-        ..DISPLACEMENT_DELAY
-    },
-    ParameterCard { meaning: "delay of all chamber pressures and of the pump pressure", ..PRESSURE_DELAY },
+        name: text("displacement_delay"),
+        symbol: text("Ts"),
+        unit: text("s"),
+        meaning: text(meaning),
+        kind: Kind::Shape,
+        minimum: 0.0,
+        maximum: 0.5,
+        typical: 0.01,
+        start: Start::at(&[5e-3]),
+        prior: None,
+    }
+}
+
+const fn pressure_delay(meaning: &'static str) -> ParameterCard {
+    ParameterCard {
+        name: text("pressure_delay"),
+        symbol: text("Tp"),
+        unit: text("s"),
+        meaning: text(meaning),
+        kind: Kind::Shape,
+        minimum: 0.0,
+        maximum: 0.5,
+        typical: 0.01,
+        start: Start::at(&[5e-3]),
+        prior: None,
+    }
+}
+
+static CYLINDER: &[ParameterCard] = &[
+    displacement_delay("delay of displacement, velocity and joint angle"),
+    pressure_delay("delay of both chamber pressures"),
 ];
 
-static LOAD: &[ParameterCard] = &[DISPLACEMENT_DELAY];
+static MACHINE: &[ParameterCard] = &[
+    displacement_delay("delay of displacement, velocity and joint angle of every cylinder"),
+    pressure_delay("delay of all chamber pressures and of the pump pressure"),
+];
 
-static PUMP_LINE: &[ParameterCard] = &[ParameterCard { meaning: "delay of the pump pressure", ..PRESSURE_DELAY }];
+static LOAD: &[ParameterCard] = &[displacement_delay("delay of displacement, velocity and joint angle")];
+
+static PUMP_LINE: &[ParameterCard] = &[pressure_delay("delay of the pump pressure")];
 
 impl Physics for SensorDelay {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, machine: &Machine, site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, machine: &Machine, site: Site) -> &[ParameterCard] {
         match site {
             Site::Cylinder(index) if machine.cylinders.get(index).is_some_and(|c| c.chambers.is_some()) => CYLINDER,
             Site::Machine if machine.has_chambers() => MACHINE,

@@ -2,6 +2,7 @@
 
 use super::{
     ActsOn, Card, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
+    text,
 };
 use crate::machine::Machine;
 
@@ -18,16 +19,22 @@ use crate::machine::Machine;
 pub struct SpoolSensorLead;
 
 static CARD: Card = Card {
-    name: "spool_sensor_lead",
+    name: text("spool_sensor_lead"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Recording,
-    summary: "The spool's sensor is read a little earlier (or later) than the other instruments, or its opening is held between samples.",
-    equation: "u(t) = reading(t) - T d(reading)/dt; where reading jumps, with its rate before t for T > 0 and after t for T < 0",
-    source: "practice (converters that take turns, cycles of controllers)",
-    shows: "Pressures rise before their cause, by less than a sample; bulk moduli come out too low (lead) or too high.",
-    experiment: "Steps and fast sines of the spool.",
-    energy: "None: it acts on the instrument.",
+    summary: text(
+        "The spool's sensor is read a little earlier (or later) than the other instruments, or its opening is held between samples.",
+    ),
+    equation: text(
+        "u(t) = reading(t) - T d(reading)/dt; where reading jumps, with its rate before t for T > 0 and after t for T < 0",
+    ),
+    source: text("practice (converters that take turns, cycles of controllers)"),
+    shows: text(
+        "Pressures rise before their cause, by less than a sample; bulk moduli come out too low (lead) or too high.",
+    ),
+    experiment: text("Steps and fast sines of the spool."),
+    energy: text("None: it acts on the instrument."),
 };
 
 /// An opening that is held between samples acts half a sample interval late, and converters take turns within one. So a third of the
@@ -41,24 +48,24 @@ const PRIOR: Prior = Prior {
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "spool_lead_time",
-    symbol: "T",
-    unit: "s",
-    meaning: "how much later than its stamp the opening is what the sensor reports",
+    name: text("spool_lead_time"),
+    symbol: text("T"),
+    unit: text("s"),
+    meaning: text("how much later than its stamp the opening is what the sensor reports"),
     kind: Kind::Shape,
     minimum: -2e-2,
     maximum: 2e-2,
     typical: 5e-4,
-    start: Start::At(&[0.0]),
+    start: Start::at(&[0.0]),
     prior: Some(PRIOR),
 }];
 
 impl Physics for SpoolSensorLead {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

@@ -2,6 +2,7 @@
 
 use super::{
     ActsOn, Card, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
+    text,
 };
 use crate::machine::Machine;
 
@@ -12,16 +13,18 @@ use crate::machine::Machine;
 pub struct SpoolSensorOffset;
 
 static CARD: Card = Card {
-    name: "spool_sensor_offset",
+    name: text("spool_sensor_offset"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Recording,
-    summary: "The spool's sensor reads a little more or less than the opening, everywhere the same.",
-    equation: "u(t) = reading(t) - u0",
-    source: "practice (zero of a position transducer)",
-    shows: "A closed valve that seems to pass oil to one side, and to need a little more opening on the other; a dead zone far below the sensor's noise.",
-    experiment: "Hold a load with the valve closed, then meter slowly to both sides.",
-    energy: "None: it acts on the instrument.",
+    summary: text("The spool's sensor reads a little more or less than the opening, everywhere the same."),
+    equation: text("u(t) = reading(t) - u0"),
+    source: text("practice (zero of a position transducer)"),
+    shows: text(
+        "A closed valve that seems to pass oil to one side, and to need a little more opening on the other; a dead zone far below the sensor's noise.",
+    ),
+    experiment: text("Hold a load with the valve closed, then meter slowly to both sides."),
+    energy: text("None: it acts on the instrument."),
 };
 
 /// An ordinary position transducer is good to 0.5 % of the largest opening, which are two standard deviations.
@@ -29,24 +32,24 @@ const PRIOR: Prior =
     Prior { spread: Spread::OfLargestOpening { part: 2.5e-3 }, scale: PriorScale::Linear, range: [-2.0, 2.0] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "spool_offset",
-    symbol: "u0",
-    unit: "m2",
-    meaning: "what the sensor reads where the valve is closed",
+    name: text("spool_offset"),
+    symbol: text("u0"),
+    unit: text("m2"),
+    meaning: text("what the sensor reads where the valve is closed"),
     kind: Kind::Shape,
     minimum: -1e-5,
     maximum: 1e-5,
     typical: 1e-7,
-    start: Start::At(&[0.0]),
+    start: Start::at(&[0.0]),
     prior: Some(PRIOR),
 }];
 
 impl Physics for SpoolSensorOffset {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

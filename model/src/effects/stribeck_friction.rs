@@ -1,6 +1,6 @@
 //! Stribeck friction.
 
-use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,41 +8,41 @@ use crate::machine::Machine;
 pub struct StribeckFriction;
 
 static CARD: Card = Card {
-    name: "stribeck_friction",
+    name: text("stribeck_friction"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Candidate,
-    summary: "Extra friction near standstill that fades as the seal floats up on its oil film.",
-    equation: "force -Fs exp(-(v/vs)^2) sgn(v), the sign rounded (friction_reversal)",
-    source: "textbook (e.g. Armstrong-Helouvry, Dupont, Canudas de Wit 1994)",
-    shows: "Friction force against speed: the upturn near zero.",
-    experiment: "Very slow strokes with reversals.",
-    energy: "Dissipates Fs exp(-(v/vs)^2) |v|.",
+    summary: text("Extra friction near standstill that fades as the seal floats up on its oil film."),
+    equation: text("force -Fs exp(-(v/vs)^2) sgn(v), the sign rounded (friction_reversal)"),
+    source: text("textbook (e.g. Armstrong-Helouvry, Dupont, Canudas de Wit 1994)"),
+    shows: text("Friction force against speed: the upturn near zero."),
+    experiment: text("Very slow strokes with reversals."),
+    energy: text("Dissipates Fs exp(-(v/vs)^2) |v|."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "stribeck_force",
-        symbol: "Fs",
-        unit: "N",
-        meaning: "friction at standstill above the Coulomb level",
+        name: text("stribeck_force"),
+        symbol: text("Fs"),
+        unit: text("N"),
+        meaning: text("friction at standstill above the Coulomb level"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e6,
         typical: 500.0,
-        start: Start::At(&[300.0]),
+        start: Start::at(&[300.0]),
         prior: None,
     },
     ParameterCard {
-        name: "stribeck_speed",
-        symbol: "vs",
-        unit: "m/s",
-        meaning: "speed at which it has fallen to 37 %",
+        name: text("stribeck_speed"),
+        symbol: text("vs"),
+        unit: text("m/s"),
+        meaning: text("speed at which it has fallen to 37 %"),
         kind: Kind::Shape,
         minimum: 1e-3,
         maximum: 0.2,
         typical: 0.015,
-        start: Start::At(&[6e-3, 2.5e-2]),
+        start: Start::at(&[6e-3, 2.5e-2]),
         prior: None,
     },
 ];
@@ -52,11 +52,11 @@ static PARAMETERS: &[ParameterCard] = &[
 const SLOWEST: f64 = 3e-3;
 
 impl Physics for StribeckFriction {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

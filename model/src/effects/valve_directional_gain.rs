@@ -1,6 +1,6 @@
 //! A valve that meters differently in the two directions.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -11,51 +11,55 @@ use crate::machine::Machine;
 pub struct ValveDirectionalGain;
 
 static CARD: Card = Card {
-    name: "valve_directional_gain",
+    name: text("valve_directional_gain"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "The flow gains for u < 0 differ from those for u > 0, on the cap side and on the rod side.",
-    equation: "u < 0: Q+ += dCf+ u phi(p+ - pt), Q- += -dCf- u phi(pp - p-), the pump gives the second; nothing for u > 0: gains of orifice_flow hold there",
-    source: "[B] Eq. 7-8",
-    shows: "Speed over opening times root of the pressure drop has another slope for retraction than for extension.",
-    experiment: "Trapezoids of equal amplitude in both directions, steady for half a second.",
-    energy: "Supplies b (exp(p/b) - 1) times its flow to each chamber.",
+    summary: text("The flow gains for u < 0 differ from those for u > 0, on the cap side and on the rod side."),
+    equation: text(
+        "u < 0: Q+ += dCf+ u phi(p+ - pt), Q- += -dCf- u phi(pp - p-), the pump gives the second; nothing for u > 0: gains of orifice_flow hold there",
+    ),
+    source: text("[B] Eq. 7-8"),
+    shows: text(
+        "Speed over opening times root of the pressure drop has another slope for retraction than for extension.",
+    ),
+    experiment: text("Trapezoids of equal amplitude in both directions, steady for half a second."),
+    energy: text("Supplies b (exp(p/b) - 1) times its flow to each chamber."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "negative_gain_change_cap",
-        symbol: "dCf+",
-        unit: "m/(s sqrt(Pa))",
-        meaning: "how much more the cap side edges pass for u < 0 than for u > 0",
+        name: text("negative_gain_change_cap"),
+        symbol: text("dCf+"),
+        unit: text("m/(s sqrt(Pa))"),
+        meaning: text("how much more the cap side edges pass for u < 0 than for u > 0"),
         kind: Kind::Linear,
         minimum: -0.02,
         maximum: 0.02,
         typical: 1e-3,
-        start: Start::At(&[0.0]),
+        start: Start::at(&[0.0]),
         prior: None,
     },
     ParameterCard {
-        name: "negative_gain_change_rod",
-        symbol: "dCf-",
-        unit: "m/(s sqrt(Pa))",
-        meaning: "how much more the rod side edges pass for u < 0 than for u > 0",
+        name: text("negative_gain_change_rod"),
+        symbol: text("dCf-"),
+        unit: text("m/(s sqrt(Pa))"),
+        meaning: text("how much more the rod side edges pass for u < 0 than for u > 0"),
         kind: Kind::Linear,
         minimum: -0.02,
         maximum: 0.02,
         typical: 1e-3,
-        start: Start::At(&[0.0]),
+        start: Start::at(&[0.0]),
         prior: None,
     },
 ];
 
 impl Physics for ValveDirectionalGain {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

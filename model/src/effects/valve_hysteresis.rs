@@ -1,6 +1,6 @@
 //! Play between spool and opening.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::machine::{Machine, Supply};
 
 /// Play between spool and opening.
@@ -18,51 +18,59 @@ use crate::machine::{Machine, Supply};
 pub struct ValveHysteresis;
 
 static CARD: Card = Card {
-    name: "valve_hysteresis",
+    name: text("valve_hysteresis"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "The opening follows the measured spool only after some play has been taken up: backlash, or friction in a pilot stage.",
-    equation: "T dz/dt = y - z, y = z where |u - z| < w/2, else the edge u - w/2 or u + w/2; opening from y, bypass from u + c (y - u); T = 1 ms",
-    source: "[B] IV-B; play operator (e.g. Visintin, Differential Models of Hysteresis) in a rate form",
-    shows: "Flow against opening runs on two lines, one for opening and one for closing; after a reversal nothing happens for the width of the play.",
-    experiment: "Slow triangles of the spool around several mean openings.",
-    energy: "Changes the supply through the valve; dissipates nothing itself.",
+    summary: text(
+        "The opening follows the measured spool only after some play has been taken up: backlash, or friction in a pilot stage.",
+    ),
+    equation: text(
+        "T dz/dt = y - z, y = z where |u - z| < w/2, else the edge u - w/2 or u + w/2; opening from y, bypass from u + c (y - u); T = 1 ms",
+    ),
+    source: text("[B] IV-B; play operator (e.g. Visintin, Differential Models of Hysteresis) in a rate form"),
+    shows: text(
+        "Flow against opening runs on two lines, one for opening and one for closing; after a reversal nothing happens for the width of the play.",
+    ),
+    experiment: text("Slow triangles of the spool around several mean openings."),
+    energy: text("Changes the supply through the valve; dissipates nothing itself."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "play_width",
-        symbol: "w",
-        unit: "m2",
-        meaning: "spool travel lost at each reversal, as an orifice area",
+        name: text("play_width"),
+        symbol: text("w"),
+        unit: text("m2"),
+        meaning: text("spool travel lost at each reversal, as an orifice area"),
         kind: Kind::Shape,
         minimum: 0.0,
         maximum: 5e-5,
         typical: 1e-5,
-        start: Start::At(&[4e-6, 5e-7]),
+        start: Start::at(&[4e-6, 5e-7]),
         prior: None,
     },
     ParameterCard {
-        name: "bypass_share",
-        symbol: "c",
-        unit: "-",
-        meaning: "how much of the play the bypass has: 1 where it is on the same spool, 0 where it follows the sensor",
+        name: text("bypass_share"),
+        symbol: text("c"),
+        unit: text("-"),
+        meaning: text(
+            "how much of the play the bypass has: 1 where it is on the same spool, 0 where it follows the sensor",
+        ),
         kind: Kind::Shape,
         minimum: 0.0,
         maximum: 1.0,
         typical: 1.0,
-        start: Start::At(&[0.5]),
+        start: Start::at(&[0.5]),
         prior: None,
     },
 ];
 
 impl Physics for ValveHysteresis {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, machine: &Machine, _site: Site) -> &[ParameterCard] {
         // Without a pump line there is no bypass.
         if matches!(machine.supply, Supply::PumpLine(_)) { PARAMETERS } else { &PARAMETERS[..1] }
     }

@@ -1,6 +1,6 @@
 //! Lag of the spool.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::machine::Machine;
 
 /// Lag of the spool.
@@ -12,51 +12,57 @@ use crate::machine::Machine;
 pub struct ValveLag;
 
 static CARD: Card = Card {
-    name: "valve_lag",
+    name: text("valve_lag"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "The opening follows the command (or the measured spool) with a lag of first or second order, or late.",
-    equation: "tau dz/dt = y - z, (r tau + T) d(y - z)/dt = u - y, opening from z; z/u = 1/(1 + tau s + (r tau + T) tau s^2), T = 0.2 ms",
-    source: "[B], [A] Remark 1",
-    shows: "Errors in proportion to how fast the opening changes; everything comes late by the same time.",
-    experiment: "Steps and fast sines.",
-    energy: "Changes the supply through the valve; dissipates nothing itself.",
+    summary: text(
+        "The opening follows the command (or the measured spool) with a lag of first or second order, or late.",
+    ),
+    equation: text(
+        "tau dz/dt = y - z, (r tau + T) d(y - z)/dt = u - y, opening from z; z/u = 1/(1 + tau s + (r tau + T) tau s^2), T = 0.2 ms",
+    ),
+    source: text("[B], [A] Remark 1"),
+    shows: text("Errors in proportion to how fast the opening changes; everything comes late by the same time."),
+    experiment: text("Steps and fast sines."),
+    energy: text("Changes the supply through the valve; dissipates nothing itself."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "lag_time",
-        symbol: "tau",
-        unit: "s",
-        meaning: "time by which the opening comes late: the time constant of first order, the sum of all lags and delays else",
+        name: text("lag_time"),
+        symbol: text("tau"),
+        unit: text("s"),
+        meaning: text(
+            "time by which the opening comes late: the time constant of first order, the sum of all lags and delays else",
+        ),
         kind: Kind::Shape,
         minimum: 1e-4,
         maximum: 2.0,
         typical: 0.02,
-        start: Start::At(&[0.01]),
+        start: Start::at(&[0.01]),
         prior: None,
     },
     ParameterCard {
-        name: "second_order_share",
-        symbol: "r",
-        unit: "-",
-        meaning: "0 first order, 0.25 two equal lags, 0.5 like a pure delay, more overshoots",
+        name: text("second_order_share"),
+        symbol: text("r"),
+        unit: text("-"),
+        meaning: text("0 first order, 0.25 two equal lags, 0.5 like a pure delay, more overshoots"),
         kind: Kind::Shape,
         minimum: 0.0,
         maximum: 2.0,
         typical: 0.3,
-        start: Start::At(&[0.0]),
+        start: Start::at(&[0.0]),
         prior: None,
     },
 ];
 
 impl Physics for ValveLag {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

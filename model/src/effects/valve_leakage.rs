@@ -1,6 +1,6 @@
 //! Leakage across the lands of the spool.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,77 +8,81 @@ use crate::machine::Machine;
 pub struct ValveLeakage;
 
 static CARD: Card = Card {
-    name: "valve_leakage",
+    name: text("valve_leakage"),
     acts_on: ActsOn::Valve,
     needs: Needs::Oil,
     family: Family::Candidate,
-    summary: "Laminar leakage between pump, chambers and tank across the spool's lands.",
-    equation: "Q+ = Cpa (pp - p+) - Cat (p+ - pt), Q- = Cpb (pp - p-) - Cbt (p- - pt); the pump gives the \
+    summary: text("Laminar leakage between pump, chambers and tank across the spool's lands."),
+    equation: text(
+        "Q+ = Cpa (pp - p+) - Cat (p+ - pt), Q- = Cpb (pp - p-) - Cbt (p- - pt); the pump gives the \
         first term of each",
-    source: "[B] Eq. 12-13",
-    shows: "Chamber pressures move while the valve is closed; both drift towards a value between pump and \
+    ),
+    source: text("[B] Eq. 12-13"),
+    shows: text(
+        "Chamber pressures move while the valve is closed; both drift towards a value between pump and \
         tank.",
-    experiment: "Holds of several seconds with the valve closed.",
-    energy: "Supplies or drains each chamber by flow times pressure.",
+    ),
+    experiment: text("Holds of several seconds with the valve closed."),
+    energy: text("Supplies or drains each chamber by flow times pressure."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[
     ParameterCard {
-        name: "valve_leakage_pump_cap",
-        symbol: "Cpa",
-        unit: "m3/(s Pa)",
-        meaning: "leakage pump to cap side",
+        name: text("valve_leakage_pump_cap"),
+        symbol: text("Cpa"),
+        unit: text("m3/(s Pa)"),
+        meaning: text("leakage pump to cap side"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
-        start: Start::At(&[2e-12]),
+        start: Start::at(&[2e-12]),
         prior: None,
     },
     ParameterCard {
-        name: "valve_leakage_cap_tank",
-        symbol: "Cat",
-        unit: "m3/(s Pa)",
-        meaning: "leakage cap side to tank",
+        name: text("valve_leakage_cap_tank"),
+        symbol: text("Cat"),
+        unit: text("m3/(s Pa)"),
+        meaning: text("leakage cap side to tank"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
-        start: Start::At(&[2e-12]),
+        start: Start::at(&[2e-12]),
         prior: None,
     },
     ParameterCard {
-        name: "valve_leakage_pump_rod",
-        symbol: "Cpb",
-        unit: "m3/(s Pa)",
-        meaning: "leakage pump to rod side",
+        name: text("valve_leakage_pump_rod"),
+        symbol: text("Cpb"),
+        unit: text("m3/(s Pa)"),
+        meaning: text("leakage pump to rod side"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
-        start: Start::At(&[2e-12]),
+        start: Start::at(&[2e-12]),
         prior: None,
     },
     ParameterCard {
-        name: "valve_leakage_rod_tank",
-        symbol: "Cbt",
-        unit: "m3/(s Pa)",
-        meaning: "leakage rod side to tank",
+        name: text("valve_leakage_rod_tank"),
+        symbol: text("Cbt"),
+        unit: text("m3/(s Pa)"),
+        meaning: text("leakage rod side to tank"),
         kind: Kind::Linear,
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
-        start: Start::At(&[2e-12]),
+        start: Start::at(&[2e-12]),
         prior: None,
     },
 ];
 
 impl Physics for ValveLeakage {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

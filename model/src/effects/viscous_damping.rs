@@ -1,6 +1,6 @@
 //! Viscous damping of the piston.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start};
+use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -8,37 +8,37 @@ use crate::machine::Machine;
 pub struct ViscousDamping;
 
 static CARD: Card = Card {
-    name: "viscous_damping",
+    name: text("viscous_damping"),
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Loss,
-    summary: "Friction force that grows with speed.",
-    equation: "force -Fd v",
-    source: "[A] Eq. 1, [B] Eq. 5",
-    shows: "Force error in proportion to speed.",
-    experiment: "Steady strokes at several speeds.",
-    energy: "Dissipates Fd v^2.",
+    summary: text("Friction force that grows with speed."),
+    equation: text("force -Fd v"),
+    source: text("[A] Eq. 1, [B] Eq. 5"),
+    shows: text("Force error in proportion to speed."),
+    experiment: text("Steady strokes at several speeds."),
+    energy: text("Dissipates Fd v^2."),
 };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: "viscous_damping",
-    symbol: "Fd",
-    unit: "N s/m",
-    meaning: "damping coefficient",
+    name: text("viscous_damping"),
+    symbol: text("Fd"),
+    unit: text("N s/m"),
+    meaning: text("damping coefficient"),
     kind: Kind::Linear,
     minimum: 0.0,
     maximum: 1e7,
     typical: 1e4,
-    start: Start::At(&[1e4]),
+    start: Start::at(&[1e4]),
     prior: None,
 }];
 
 impl Physics for ViscousDamping {
-    fn card(&self) -> &'static Card {
+    fn card(&self) -> &Card {
         &CARD
     }
 
-    fn parameters(&self, _machine: &Machine, _site: Site) -> &'static [ParameterCard] {
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }
 

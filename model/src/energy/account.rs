@@ -12,7 +12,7 @@ pub fn ledger<'m, T: Number>(system: &System<'m>, parameters: &[T], state: &[T],
     let mut rates = vec![zero; state.len()];
     // The rows are evaluated too: the mass matrix gives the kinetic energy.
     system.rates(&mut workspace, parameters, state, inputs, &mut rates);
-    let mut account = Account { system, parameters, workspace };
+    let mut account = Account { system, parameters, state, workspace };
 
     let mut cylinders = account.mechanical_storage();
     let mut potentials = Vec::with_capacity(cylinders.len());
@@ -72,6 +72,7 @@ impl Oil {
 struct Account<'m, 'a, T> {
     system: &'a System<'m>,
     parameters: &'a [T],
+    state: &'a [T],
     workspace: Workspace<'m, T>,
 }
 
@@ -79,10 +80,7 @@ impl<T: Number> Account<'_, '_, T> {
     /// What effect `number` alone adds to the rows.
     fn contribute_alone(&mut self, number: usize) {
         self.workspace.rows.clear();
-        let effect = &self.system.model().effects[number];
-        let (first, last) = self.system.parameter_ranges()[number];
-        let Workspace { situation, rows, .. } = &mut self.workspace;
-        T::hooks(effect.physics).contribute(effect.site, &self.parameters[first..last], situation, rows);
+        self.system.contribute_one(number, &mut self.workspace, self.parameters, self.state);
     }
 
     /// Kinetic and potential energy of each joint, \[A\] Eq. 9, from rows that all effects have added to.
@@ -93,7 +91,7 @@ impl<T: Number> Account<'_, '_, T> {
             .map(|kinetic| CylinderStorage { kinetic, potential: zero, cap_internal: zero, rod_internal: zero })
             .collect();
         for (effect, &(first, last)) in self.system.model().effects.iter().zip(self.system.parameter_ranges()) {
-            let stored = T::hooks(effect.physics).potential(effect.site, &self.parameters[first..last], situation);
+            let stored = T::hooks(&*effect.physics).potential(effect.site, &self.parameters[first..last], situation);
             if let (Some(potential), Site::Cylinder(index)) = (stored, effect.site) {
                 storage[index].potential += potential;
             }
@@ -149,7 +147,7 @@ impl<T: Number> Account<'_, '_, T> {
                 let parameters = &self.parameters[first..last];
                 // The torque of what has mass is its Coriolis torque, whose power is the change of the mass matrix.
                 let has_mass = rows.mass.iter().any(|entry| entry.value() != 0.0);
-                let has_weight = T::hooks(effect.physics).potential(effect.site, parameters, situation).is_some();
+                let has_weight = T::hooks(&*effect.physics).potential(effect.site, parameters, situation).is_some();
                 let has_spring = rows.cap_compliance.iter().chain(&rows.rod_compliance).any(|c| c.value() != 0.0)
                     || rows.pump_compliance.value() != 0.0;
                 let (mut mechanical, mut cap, mut rod) = (zero, zero, zero);
@@ -167,7 +165,7 @@ impl<T: Number> Account<'_, '_, T> {
                 }
                 let only_stores = (has_mass || has_weight || has_spring) && effect.acts_always();
                 EffectPower {
-                    effect: effect.name(),
+                    effect: effect.name_text(),
                     site: effect.site,
                     acts_on,
                     has_power: effect.physics.has_power() && !only_stores,
@@ -190,7 +188,7 @@ impl<T: Number> Account<'_, '_, T> {
             let effect = &self.system.model().effects[number];
             let (first, last) = self.system.parameter_ranges()[number];
             let Workspace { situation, rows, .. } = &self.workspace;
-            let potential = T::hooks(effect.physics).potential(effect.site, &self.parameters[first..last], situation);
+            let potential = T::hooks(&*effect.physics).potential(effect.site, &self.parameters[first..last], situation);
             kinetic_energies(situation, rows).fold(potential.unwrap_or(T::from(0.0)), |sum, part| sum + part)
         };
         let near = stored_at(now + INSTANT) - stored_at(now - INSTANT);

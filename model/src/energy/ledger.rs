@@ -1,6 +1,6 @@
 //! The ledger itself and its sums.
 
-use crate::effects::{ActsOn, Site};
+use crate::effects::{ActsOn, Site, Text};
 use crate::scalar::Scalar;
 
 /// What one cylinder with its joint stores, J.
@@ -18,10 +18,10 @@ pub struct CylinderStorage<T = f64> {
 }
 
 /// Power of one effect of the model, W; positive where it gives energy to what it acts on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct EffectPower<T = f64> {
     /// Name of the effect in the catalogue.
-    pub effect: &'static str,
+    pub effect: Text,
     /// Where it sits.
     pub site: Site,
     /// The part of the machine that it belongs to.

@@ -2,6 +2,7 @@
 
 use super::Rounding;
 use super::smooth::at_most;
+use crate::effects::Site;
 use crate::machine::{Chambers, Machine};
 use crate::scalar::Scalar;
 
@@ -26,6 +27,13 @@ pub struct Piston<T> {
     pub cap_volume: T,
     /// Rod side volume V-, m³.
     pub rod_volume: T,
+    /// What the recording says of the valve, as an orifice area, m²: measured, or commanded where no spool sensor exists.
+    pub command: T,
+    /// Flow of the valve's effects into the cap side, m³/s; known only where an effect of the model asks for it
+    /// ([`crate::effects::Physics::reads_metering_flows`]).
+    pub cap_flow: T,
+    /// The same into the rod side.
+    pub rod_flow: T,
     /// Where the spool really is, as an orifice area, m²: the input after lag and hysteresis.
     pub spool: T,
     /// Area open to flow, m²: the spool's after dead zone and area law. It sets the metered flow.
@@ -100,6 +108,9 @@ impl<'m, T: Scalar> Situation<'m, T> {
             rod_pressure: zero,
             cap_volume: T::from(1.0),
             rod_volume: T::from(1.0),
+            command: zero,
+            cap_flow: zero,
+            rod_flow: zero,
             spool: zero,
             opening: zero,
             bypass_closing: zero,
@@ -117,6 +128,12 @@ impl<'m, T: Scalar> Situation<'m, T> {
             tank_pressure: zero,
             pump_flow: zero,
         }
+    }
+
+    /// Largest opening of a cylinder's valve section, umax, m²; zero without chambers.
+    pub fn largest_opening(&self, site: Site) -> f64 {
+        let Site::Cylinder(cylinder) = site else { return 0.0 };
+        self.chambers(cylinder).map_or(0.0, |chambers| chambers.maximum_orifice_area)
     }
 
     /// Known constants of a cylinder's chambers; `None` for a cylinder driven by a measured force.

@@ -1,5 +1,7 @@
 //! The equations of motion of a model, for any number type.
 
+use std::ops::Range;
+
 use super::{Inputs, Instruments, Layout, Rounding, Rows, Situation};
 use crate::Model;
 use crate::effects::{ActsOn, Family, Number, Site};
@@ -15,6 +17,10 @@ pub struct System<'m> {
     adjusting: Vec<usize>,
     /// Effects that look at how the input changes.
     readers_of_course: Vec<usize>,
+    /// Effects with states of their own.
+    remembering: Vec<usize>,
+    /// Whether an effect needs the metering flows.
+    reads_metering_flows: bool,
     own_instruments: Instruments<f64>,
 }
 
@@ -50,6 +56,9 @@ impl<'m> System<'m> {
             .collect();
         let readers_of_course =
             (0..model.effects.len()).filter(|&number| model.effects[number].physics.reads_course()).collect();
+        let remembering =
+            (0..model.effects.len()).filter(|&number| model.effects[number].physics.states() > 0).collect();
+        let reads_metering_flows = model.effects.iter().any(|effect| effect.physics.reads_metering_flows());
         let own_instruments = Instruments::true_ones(model.machine.cylinders.len());
         let mut system = System {
             model,
@@ -57,6 +66,8 @@ impl<'m> System<'m> {
             parameter_ranges,
             adjusting,
             readers_of_course,
+            remembering,
+            reads_metering_flows,
             own_instruments,
         };
         system.own_instruments = system.instruments(&model.parameter_values());
@@ -104,19 +115,71 @@ impl<'m> System<'m> {
         if matches!(self.model.machine.supply, Supply::PumpLine(_)) {
             workspace.rows.pump_flow = workspace.situation.pump_flow;
         }
-        for (effect, &(first, last)) in self.model.effects.iter().zip(&self.parameter_ranges) {
-            T::hooks(effect.physics).contribute(
-                effect.site,
-                &parameters[first..last],
-                &workspace.situation,
-                &mut workspace.rows,
-            );
+        if self.reads_metering_flows {
+            self.contribute(workspace, parameters, state, |acts_on| acts_on == ActsOn::Valve);
+            for (index, piston) in workspace.situation.pistons.iter_mut().enumerate() {
+                piston.cap_flow = workspace.rows.cap_flow[index];
+                piston.rod_flow = workspace.rows.rod_flow[index];
+            }
+            self.contribute(workspace, parameters, state, |acts_on| acts_on != ActsOn::Valve);
+        } else {
+            self.contribute(workspace, parameters, state, |_| true);
+        }
+        for &number in &self.remembering {
+            let effect = &self.model.effects[number];
+            let (own, states) = (&parameters[self.parameters_of(number)], self.states_of(number));
+            let (situation, rates) = (&workspace.situation, &mut rates[states.clone()]);
+            T::hooks(&*effect.physics).remember(effect.site, own, &state[states], situation, rates);
         }
         if self.layout.rod_forces.is_some() {
             self.assemble_rod_forces(workspace, state, rates);
         } else {
             self.assemble(workspace, rates);
         }
+    }
+
+    /// Adds the effects that are `wanted`, by where they act, to the rows.
+    fn contribute<T: Number>(
+        &self,
+        workspace: &mut Workspace<'m, T>,
+        parameters: &[T],
+        state: &[T],
+        wanted: impl Fn(ActsOn) -> bool,
+    ) {
+        for (number, effect) in self.model.effects.iter().enumerate() {
+            if wanted(effect.physics.card().acts_on) {
+                self.contribute_one(number, workspace, parameters, state);
+            }
+        }
+    }
+
+    /// Adds one effect to the rows.
+    pub(crate) fn contribute_one<T: Number>(
+        &self,
+        number: usize,
+        workspace: &mut Workspace<'m, T>,
+        parameters: &[T],
+        state: &[T],
+    ) {
+        let effect = &self.model.effects[number];
+        let own = &parameters[self.parameters_of(number)];
+        let (hooks, Workspace { situation, rows, .. }) = (T::hooks(&*effect.physics), workspace);
+        let states = self.states_of(number);
+        if states.is_empty() {
+            hooks.contribute(effect.site, own, situation, rows);
+        } else {
+            hooks.contribute_remembering(effect.site, own, &state[states], situation, rows);
+        }
+    }
+
+    fn parameters_of(&self, number: usize) -> Range<usize> {
+        let (first, last) = self.parameter_ranges[number];
+        first..last
+    }
+
+    fn states_of(&self, number: usize) -> Range<usize> {
+        let (first, states) = self.layout.effect_states[number];
+        first..first + states
     }
 
     /// Fills the situation: kinematics, pressures, and the spool after the effects that act on it, whose state rates
@@ -159,7 +222,8 @@ impl<'m> System<'m> {
                 rates[layout.joint(index)] = imposed.rate + (imposed.joint - piston.joint) / TRACKING;
                 rates[layout.rate(index)] = imposed.acceleration + (imposed.rate - piston.rate) / TRACKING;
             }
-            piston.spool = inputs.orifice_area[index];
+            piston.command = inputs.orifice_area[index];
+            piston.spool = piston.command;
         }
         for &number in &self.readers_of_course {
             let effect = &self.model.effects[number];
@@ -167,7 +231,7 @@ impl<'m> System<'m> {
             let (first, last) = self.parameter_ranges[number];
             let piston = &mut situation.pistons[index];
             let course = inputs.orifice_course[index];
-            piston.spool = T::hooks(effect.physics).read(&parameters[first..last], piston.spool, course);
+            piston.spool = T::hooks(&*effect.physics).read(&parameters[first..last], piston.spool, course);
         }
         self.observe_valves(situation, parameters, state, rates);
     }
@@ -192,7 +256,7 @@ impl<'m> System<'m> {
             let own_rates = &mut rates[state_first..state_first + states];
             let piston = &mut situation.pistons[index];
             let [metering, bypass] =
-                T::hooks(effect.physics).spool(&parameters[first..last], own_states, own_rates, piston.spool);
+                T::hooks(&*effect.physics).spool(&parameters[first..last], own_states, own_rates, piston.spool);
             piston.bypass_closing += bypass - piston.spool;
             piston.spool = metering;
         }
@@ -209,13 +273,13 @@ impl<'m> System<'m> {
             let (first, last) = self.parameter_ranges[number];
             let own = &parameters[first..last];
             if let Site::Cylinder(index) = effect.site
-                && let Some(chambers) = self.model.machine.cylinders[index].chambers
+                && self.model.machine.cylinders[index].chambers.is_some()
             {
                 let opening = situation.pistons[index].opening;
                 situation.pistons[index].opening =
-                    T::hooks(effect.physics).opening(own, opening, chambers.maximum_orifice_area);
+                    T::hooks(&*effect.physics).opening(effect.site, own, opening, situation);
             }
-            T::hooks(effect.physics).adjust(effect.site, own, situation);
+            T::hooks(&*effect.physics).adjust(effect.site, own, situation);
         }
     }
 
@@ -237,14 +301,38 @@ impl<'m> System<'m> {
         }
     }
 
-    /// Sets the effects' own states, all of them spools, to these openings (m², one per cylinder): a spool that has settled, or is where
-    /// its sensor says. An opening that is left out is zero.
-    pub fn set_spools(&self, openings: &[f64], state: &mut [f64]) {
-        for (effect, &(first, states)) in self.model.effects.iter().zip(&self.layout.effect_states) {
-            if let Site::Cylinder(cylinder) = effect.site {
-                state[first..first + states].fill(openings.get(cylinder).copied().unwrap_or(0.0));
+    /// Sets the effects' own states. Spools are at these openings (m², one per cylinder; one that is left out is zero): settled, or
+    /// where their sensors say. Other states are where they begin.
+    pub fn set_effect_states(&self, openings: &[f64], state: &mut [f64]) {
+        for number in 0..self.model.effects.len() {
+            if let Site::Cylinder(cylinder) = self.model.effects[number].site {
+                state[self.states_of(number)].fill(openings.get(cylinder).copied().unwrap_or(0.0));
             }
         }
+        if self.remembering.is_empty() {
+            return;
+        }
+        let parameters = self.model.parameter_values();
+        let mut inputs = Inputs::zero(self.layout.joints);
+        for (slot, &area) in inputs.orifice_area.iter_mut().zip(openings) {
+            *slot = area;
+        }
+        let (mut workspace, mut rates) = (self.workspace(), vec![0.0; self.layout.len]);
+        self.observe(&mut workspace, &parameters, state, &inputs, &mut rates);
+        for &number in &self.remembering {
+            let effect = &self.model.effects[number];
+            let own = &parameters[self.parameters_of(number)];
+            let states = &mut state[self.states_of(number)];
+            f64::hooks(&*effect.physics).begin(effect.site, own, &workspace.situation, states);
+        }
+    }
+
+    /// Order of magnitude of each effect's own states: index in the state vector and magnitude, in its unit.
+    pub fn state_scales(&self) -> impl Iterator<Item = (usize, f64)> {
+        let each = self.model.effects.iter().zip(&self.layout.effect_states);
+        each.flat_map(|(effect, &(first, states))| {
+            (0..states).map(move |state| (first + state, effect.physics.state_scale(state)))
+        })
     }
 
     /// [`System::instruments`] at the model's own parameter values.
@@ -257,7 +345,7 @@ impl<'m> System<'m> {
     pub fn instruments<T: Number>(&self, parameters: &[T]) -> Instruments<T> {
         let mut instruments = Instruments::true_ones(self.model.machine.cylinders.len());
         for (effect, &(first, last)) in self.model.effects.iter().zip(&self.parameter_ranges) {
-            T::hooks(effect.physics).distort(effect.site, &parameters[first..last], &mut instruments);
+            T::hooks(&*effect.physics).distort(effect.site, &parameters[first..last], &mut instruments);
         }
         instruments
     }

@@ -76,7 +76,7 @@ pub fn initial_state(
         let measured = line(Channel::PumpPressure, &recording.pump_pressure).map(|(value, _)| value);
         state[pump] = measured.unwrap_or(tank_pressure);
     }
-    system.set_spools(spool, &mut state);
+    system.set_effect_states(spool, &mut state);
     if unmeasured.iter().any(|sides| sides[0] || sides[1]) {
         balance(system, spool, tank_pressure, &unmeasured, &mut state);
     }

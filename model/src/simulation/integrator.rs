@@ -156,9 +156,8 @@ impl<'m, 's> Integrator<'m, 's> {
             tolerances[layout.joint(joint)] = settings.joint;
             tolerances[layout.rate(joint)] = settings.rate;
         }
-        for &(first, states) in &layout.effect_states {
-            // Effect states are openings in m²; a hundred-thousandth of a usual spool's.
-            tolerances[first..first + states].fill(1e-9);
+        for (state, scale) in system.state_scales() {
+            tolerances[state] = 1e-5 * scale;
         }
         let zeros = vec![0.0; layout.len];
         Integrator {

@@ -41,7 +41,7 @@ pub fn rest_state(system: &System<'_>, displacements: &[f64], inputs: &Inputs<f6
     if let Some(pump) = layout.pump {
         state[pump] = inputs.tank_pressure + PRELOAD / 2.0;
     }
-    system.set_spools(&inputs.orifice_area, &mut state);
+    system.set_effect_states(&inputs.orifice_area, &mut state);
     let mut workspace = system.workspace();
     let mut rates = vec![0.0; layout.len];
     system.rates(&mut workspace, &system.model().parameter_values(), &state, inputs, &mut rates);

@@ -1,12 +1,12 @@
 //! What several tests need: machines, random states that a machine could be in, and drives.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-use excavator_model::document::built_in;
-use excavator_model::effects::{CATALOGUE, Effect, Site};
+use excavator_model::Model;
+use excavator_model::document::{built_in, parse_catalogue};
+use excavator_model::effects::{AnyEffect, Catalogue, Site};
 use excavator_model::equations::{Channel, Inputs, System};
 use excavator_model::machine::{Machine, Mechanism, PressureSource, Supply};
 use excavator_model::recording::Recording;
-use excavator_model::{Model, ModelEffect};
 
 /// Uniform random numbers that are the same on every machine (SplitMix64, Steele et al. 2014).
 pub struct Random(pub u64);
@@ -49,12 +49,17 @@ pub fn machines() -> Vec<Model> {
     models
 }
 
+/// The built-in effects, and formula effects: built-in ones written as formulas, and laws that no catalogue has.
+pub fn catalogue() -> Catalogue {
+    parse_catalogue("own-effects.toml", include_str!("../data/own-effects.toml"), &Catalogue::built_in()).unwrap()
+}
+
 /// One model for each effect of the catalogue at each place of each machine where it can act, with the index of that
 /// effect in the model: effects that a machine has as they are there, the others added.
 pub fn every_effect_everywhere() -> Vec<(Model, usize)> {
     let mut cases = Vec::new();
     for machine in machines() {
-        for &physics in CATALOGUE {
+        for physics in &catalogue() {
             for (index, _) in machine.effects.iter().enumerate().filter(|(_, e)| e.name() == physics.card().name) {
                 cases.push((machine.clone(), index));
             }
@@ -77,10 +82,10 @@ pub fn random_for(seed: u64, model: &Model, effect: usize) -> Random {
 }
 
 /// The model with one more effect, as strong as is typical, so that no test is about an effect of size zero.
-pub fn with_typical(model: &Model, physics: &'static dyn Effect, site: Site) -> Model {
+pub fn with_typical(model: &Model, physics: &AnyEffect, site: Site) -> Model {
     let mut model = model.with_effect(physics, site).unwrap();
     for parameter in &mut model.effects.last_mut().unwrap().parameters {
-        parameter.value = match parameter.card.name {
+        parameter.value = match &*parameter.card.name {
             // Within the second or less that tests simulate.
             "contact_start" | "payload_start" => 0.1,
             "contact_duration" | "payload_duration" => 0.3,
@@ -91,7 +96,7 @@ pub fn with_typical(model: &Model, physics: &'static dyn Effect, site: Site) -> 
 }
 
 pub fn label(model: &Model, effect: usize) -> String {
-    let ModelEffect { site, .. } = model.effects[effect];
+    let site = model.effects[effect].site;
     format!("{} {}@{site:?}", model.machine.name, model.effects[effect].name())
 }
 
@@ -103,7 +108,7 @@ pub fn random_parameters(model: &Model, random: &mut Random) -> Vec<f64> {
         .map(|(_, parameter)| {
             let value = if parameter.value == 0.0 { parameter.card.typical } else { parameter.value };
             // Moments of three links in wild proportions are those of no masses at all: the mass matrix turns singular.
-            let bound = chain && ["inertia", "coupling_moment"].contains(&parameter.card.name);
+            let bound = chain && ["inertia", "coupling_moment"].contains(&&*parameter.card.name);
             value * if bound { random.between(0.97, 1.03) } else { random.between(0.7, 1.3) }
         })
         .collect()
@@ -132,10 +137,8 @@ pub fn random_state(system: &System<'_>, random: &mut Random) -> Vec<f64> {
     if let Some(pump) = layout.pump {
         state[pump] = random_pressure(random);
     }
-    for &(first, states) in &layout.effect_states {
-        for slot in &mut state[first..first + states] {
-            *slot = random.between(-1e-4, 1e-4);
-        }
+    for (index, scale) in system.state_scales() {
+        state[index] = random.between(-scale, scale);
     }
     state
 }

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use excavator_model::Model;
 use excavator_model::document;
+use excavator_model::effects::Catalogue;
 use excavator_model::equations::System;
 use excavator_model::simulation::Plant;
 
@@ -29,7 +30,7 @@ pub fn run() -> Result<(), VerbError> {
     let setup: Setup = receive(&mut stream)
         .map_err(|_| VerbError::Machine("this verb is for excavator node arm-simulator only".to_string()))?;
     let failed = |reason: String| VerbError::Machine(reason);
-    let model = match document::parse(&setup.name, &setup.model) {
+    let model = match document::parse(&setup.name, &setup.model, &Catalogue::built_in()) {
         Ok(model) => model,
         Err(error) => {
             return send(&mut stream, &Ready { failure: error.to_string() }).map_err(|e| failed(e.to_string()));

@@ -37,7 +37,7 @@ const MOST_MISSED: u64 = 10_000;
 /// [`VerbError`] when it cannot start.
 pub fn run(arguments: &RosArguments) -> Result<(), VerbError> {
     let supervisor = Supervisor::start("arm_simulator", arguments, parameters())?;
-    let model = sources::model(&supervisor.parameters.text("model"))?;
+    let model = sources::model_named(&supervisor.parameters.text("model"))?;
     let not_measured = supervisor.parameters.texts("not_measured");
     if let Some(unknown) = not_measured.iter().find(|name| !SIGNALS.contains(&name.as_str())) {
         let reason = format!("not_measured: \"{unknown}\" is none of {}", SIGNALS.join(", "));

@@ -29,6 +29,29 @@ pub struct Mapping {
 }
 
 #[derive(Debug, Args)]
+pub struct ModelChoice {
+    /// Model: built-in name or TOML file.
+    #[arg(long)]
+    pub model: String,
+    #[command(flatten)]
+    pub own: OwnEffects,
+}
+
+impl ModelChoice {
+    /// The files that it names.
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
+        std::iter::once(PathBuf::from(&self.model)).chain(self.own.catalogue.iter().cloned())
+    }
+}
+
+#[derive(Debug, Args)]
+pub struct OwnEffects {
+    /// Your own effects, written as formulas: a file (TOML), or a folder with such files.
+    #[arg(long, num_args = 1.., value_name = "FILE|FOLDER")]
+    pub catalogue: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub struct DemoArguments {
     /// Draws the machine, its hidden effect and its noise.
     #[arg(long, default_value_t = 1)]
@@ -40,9 +63,8 @@ pub struct DemoArguments {
 
 #[derive(Debug, Args)]
 pub struct SimulateArguments {
-    /// Model: built-in name or TOML file.
-    #[arg(long)]
-    pub model: String,
+    #[command(flatten)]
+    pub model: ModelChoice,
     /// A bag whose inputs are used, or a profile (.toml) of sines, sweeps, trapezoids and holds.
     #[arg(long, value_name = "BAG|PROFILE")]
     pub input: PathBuf,
@@ -67,9 +89,8 @@ pub enum Method {
 
 #[derive(Debug, Args)]
 pub struct IdentifyArguments {
-    /// Model: built-in name or TOML file.
-    #[arg(long)]
-    pub model: String,
+    #[command(flatten)]
+    pub model: ModelChoice,
     /// Recordings; `BAG@20..40` is the part of one from 20 s to 40 s.
     #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
     pub bag: Vec<PathBuf>,
@@ -89,9 +110,8 @@ pub struct IdentifyArguments {
 
 #[derive(Debug, Args)]
 pub struct CompareArguments {
-    /// Model: built-in name or TOML file.
-    #[arg(long)]
-    pub model: String,
+    #[command(flatten)]
+    pub model: ModelChoice,
     /// Recording; `BAG@20..40` is the part of one from 20 s to 40 s.
     #[arg(long, value_name = "BAG")]
     pub bag: PathBuf,
@@ -111,9 +131,8 @@ pub struct CharacteriseArguments {
     /// Recordings, taken together; `BAG@20..40` is the part of one from 20 s to 40 s.
     #[arg(required = true, num_args = 1.., value_name = "BAG")]
     pub bags: Vec<PathBuf>,
-    /// Model: built-in name or TOML file. Areas, volumes, bulk modulus and load are taken from it.
-    #[arg(long)]
-    pub model: String,
+    #[command(flatten)]
+    pub model: ModelChoice,
     #[command(flatten)]
     pub mapping: Mapping,
     /// Write a page with gains, normalised flow, transients and friction, with their bands.
@@ -127,9 +146,8 @@ pub struct CharacteriseArguments {
 
 #[derive(Debug, Args)]
 pub struct EnergyArguments {
-    /// Model: built-in name or TOML file.
-    #[arg(long)]
-    pub model: String,
+    #[command(flatten)]
+    pub model: ModelChoice,
     /// Recording, of any length.
     #[arg(long, value_name = "BAG")]
     pub bag: PathBuf,
@@ -165,9 +183,8 @@ impl Recordings {
 
 #[derive(Debug, Args)]
 pub struct DiagnoseArguments {
-    /// Model: built-in name or TOML file.
-    #[arg(long)]
-    pub model: String,
+    #[command(flatten)]
+    pub model: ModelChoice,
     #[command(flatten)]
     pub recordings: Recordings,
     /// Write a page with the evidence.
@@ -185,9 +202,8 @@ pub struct DiagnoseArguments {
 #[derive(Debug, Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["add", "auto"])))]
 pub struct RefineArguments {
-    /// Model: built-in name or TOML file.
-    #[arg(long)]
-    pub model: String,
+    #[command(flatten)]
+    pub model: ModelChoice,
     #[command(flatten)]
     pub recordings: Recordings,
     /// Effects to add, one after the other: EFFECT, EFFECT@CYLINDER, EFFECT@pump or EFFECT@machine.
@@ -211,9 +227,8 @@ pub struct RefineArguments {
 #[derive(Debug, Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).multiple(true).args(["between", "parameter", "diagnosis"])))]
 pub struct DesignArguments {
-    /// Model: built-in name or TOML file.
-    #[arg(long)]
-    pub model: String,
+    #[command(flatten)]
+    pub model: ModelChoice,
     /// Effects to be told apart, with commas: EFFECT, EFFECT@CYLINDER, EFFECT@pump, EFFECT@machine, or none for the model as it is. With
     /// --parameter: effects that the model is to have besides.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "EFFECT[@PLACE],...")]
@@ -246,6 +261,8 @@ pub struct DesignArguments {
 pub struct EffectsArguments {
     /// Effect to describe in full.
     pub name: Option<String>,
+    #[command(flatten)]
+    pub own: OwnEffects,
     #[command(flatten)]
     pub json: Json,
     #[command(flatten)]

@@ -2,7 +2,7 @@
 
 use excavator_model::Model;
 use excavator_model::document::{DocumentError, built_in};
-use excavator_model::effects::{self, Kind, Site};
+use excavator_model::effects::{Kind, Site, Text};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
@@ -53,12 +53,12 @@ impl Sealed {
     pub fn draw(generator: &mut ChaCha8Rng) -> Result<Sealed, VerbError> {
         let mut truth = Self::draw_without_effect(generator)?.truth;
         let (effect, ranges) = HIDDEN[generator.random_range(0..HIDDEN.len())];
-        let physics = effects::find(effect)?;
-        let site = truth.free_sites(physics).first().copied().ok_or_else(|| DocumentError::Inconsistent {
+        let physics = truth.catalogue.find(effect)?;
+        let site = truth.free_sites(&physics).first().copied().ok_or_else(|| DocumentError::Inconsistent {
             name: truth.machine.name.clone(),
             reason: format!("{effect} has no place"),
         })?;
-        truth = truth.with_effect(physics, site)?;
+        truth = truth.with_effect(&physics, site)?;
         if let Some(hidden) = truth.effects.last_mut() {
             for (parameter, &(low, high)) in hidden.parameters.iter_mut().zip(ranges) {
                 parameter.value = generator.random_range(low..high);
@@ -73,7 +73,7 @@ impl Sealed {
     }
 
     /// Value, name and unit of the hidden effect's parameters, with what was found for them.
-    pub fn opened(&self, found: &Model) -> Vec<(String, f64, Option<f64>, &'static str)> {
+    pub fn opened(&self, found: &Model) -> Vec<(String, f64, Option<f64>, Text)> {
         let Some(hidden) = self.truth.effects.last() else { return Vec::new() };
         let place = excavator_model::site_name(&self.truth.machine, self.site);
         hidden
@@ -82,7 +82,7 @@ impl Sealed {
             .map(|parameter| {
                 let name = format!("{place}.{}", parameter.card.name);
                 let value = found.value_of(&name);
-                (name, parameter.value, value, parameter.card.unit)
+                (name, parameter.value, value, parameter.card.unit.clone())
             })
             .collect()
     }

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use excavator_model::Model;
 use excavator_model::document::parse;
+use excavator_model::effects::Catalogue;
 use excavator_model::energy::monitor::{Monitor, Settings, Watch, WatchSettings, Window};
 use excavator_model::equations::System;
 use excavator_msgs::common::Text;
@@ -61,7 +62,7 @@ fn parameters() -> Vec<Parameter> {
 pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     let supervisor = Supervisor::start("energy_monitor", ros, parameters())?;
     let name = supervisor.parameters.text("model");
-    let model = if name.is_empty() { None } else { Some(sources::model(&name)?) };
+    let model = if name.is_empty() { None } else { Some(sources::model_named(&name)?) };
     let outlet = supervisor.link.publish("/arm/energy", TopicQos::reliable(50))?;
     let (door, incoming) = inbox();
     let states = door.clone();
@@ -131,7 +132,7 @@ impl Desk<'_> {
     }
 
     fn read(&self, text: &str) -> Option<Model> {
-        match parse("/arm/model", text) {
+        match parse("/arm/model", text, &Catalogue::built_in()) {
             Ok(model) => Some(model),
             Err(error) => {
                 self.logger.error(error.to_string());

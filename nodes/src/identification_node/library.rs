@@ -7,6 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 use excavator_model::Model;
 use excavator_model::document::{DocumentError, built_in, parse};
+use excavator_model::effects::Catalogue;
 use nix::libc::O_NONBLOCK;
 
 use super::printable::printable;
@@ -71,7 +72,7 @@ impl Library {
     /// [`Unusable`].
     pub fn model(&self, given: &str) -> Result<Model, Unusable> {
         if given.contains('\n') {
-            return parse("the model of the goal", given)
+            return parse("the model of the goal", given, &Catalogue::built_in())
                 .map_err(|error| Unusable::Text(printable(&error.to_string(), QUOTED)));
         }
         if let Ok(model) = built_in(given) {
@@ -80,7 +81,7 @@ impl Library {
         let name = printable(given, QUOTED);
         let Some(root) = &self.models else { return Err(Unusable::NoModelFolder(name)) };
         let text = below(root, given).and_then(|path| text_of(&path)).ok_or(Unusable::Model(name.clone()))?;
-        parse(given, &text).map_err(|error| {
+        parse(given, &text, &Catalogue::built_in()).map_err(|error| {
             tell_operator(&error.to_string());
             Unusable::NotAModel { name, place: place(&error) }
         })

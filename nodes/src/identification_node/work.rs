@@ -92,7 +92,7 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
     let mut wanted = given.clone();
     for effect in &goal.effects {
         for (physics, site) in wanted.parse_addition(effect).map_err(VerbError::from)? {
-            wanted = wanted.with_effect(physics, site).map_err(VerbError::from)?;
+            wanted = wanted.with_effect(&physics, site).map_err(VerbError::from)?;
         }
     }
     if goal.bags.is_empty() {

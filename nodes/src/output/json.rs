@@ -166,7 +166,7 @@ pub fn diagnosis_json(given: &Model, diagnosis: &Diagnosis, validation: &[&Recor
             "effect": structural.physics.card().name,
             "cylinder": site_name(&trial.fit.model.machine, structural.site),
             "validation_error_after": finite(normalised_error(&trial.validation, validation)),
-            "parameters": own_parameters(&trial.fit.model, structural.physics.card().name, structural.site),
+            "parameters": own_parameters(&trial.fit.model, &structural.physics.card().name, structural.site),
         }))
     });
     let given_trial = diagnosis.given();

@@ -62,7 +62,7 @@ pub fn parameter_table(model: &Model, fitted: &[usize]) -> Table {
                 Cell::new(&names[index]),
                 right(number(parameter.value)),
                 right(margin),
-                Cell::new(parameter.card.unit),
+                Cell::new(&*parameter.card.unit),
             ]);
         }
     }

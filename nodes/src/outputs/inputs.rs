@@ -45,6 +45,12 @@ impl Inputs {
         self
     }
 
+    /// These and others.
+    #[must_use]
+    pub fn and_all(self, files: impl IntoIterator<Item = PathBuf>) -> Self {
+        files.into_iter().fold(self, Inputs::and)
+    }
+
     /// Whether this file is read.
     pub fn has(&self, id: FileId) -> bool {
         self.files.contains(&id)

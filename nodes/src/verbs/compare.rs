@@ -14,7 +14,7 @@ use crate::sources;
 
 pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
-    let inputs = Inputs::recordings([&arguments.bag], &arguments.mapping).and(&arguments.model);
+    let inputs = Inputs::recordings([&arguments.bag], &arguments.mapping).and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let recording = sources::recording(&arguments.bag, &arguments.mapping, &model)?;

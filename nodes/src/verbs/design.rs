@@ -19,7 +19,7 @@ use crate::sources;
 
 pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {
     let outputs = [("-o", Some(arguments.output.as_path())), ("--json", arguments.json.json.as_deref())];
-    let inputs = arguments.diagnosis.iter().fold(Inputs::default().and(&arguments.model), Inputs::and);
+    let inputs = arguments.diagnosis.iter().fold(Inputs::default().and_all(arguments.model.files()), Inputs::and);
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let diagnosis = arguments.diagnosis.as_deref().map(DiagnosisFile::read).transpose()?;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use excavator_model::document::built_in;
-use excavator_model::effects::{self, ActsOn, Card, Effect, Family, Kind, ParameterCard, Site};
+use excavator_model::effects::{ActsOn, AnyEffect, Card, Effect, Family, Kind, ParameterCard, Site};
 use serde_json::{Value, json};
 
 use super::print;
@@ -11,22 +11,24 @@ use crate::cli::EffectsArguments;
 use crate::error::VerbError;
 use crate::output::{effect_table, number, write_json};
 use crate::outputs::{self, Inputs};
+use crate::sources;
 
 pub fn run(arguments: &EffectsArguments) -> Result<(), VerbError> {
     let outputs = [("--json", arguments.json.json.as_deref())];
     outputs::check(&outputs, &Inputs::default(), arguments.overwriting)?;
-    let wanted: Vec<&'static dyn Effect> = match &arguments.name {
-        Some(name) => vec![effects::find(name)?],
-        None => effects::CATALOGUE.to_vec(),
+    let catalogue = sources::catalogue(&arguments.own)?;
+    let wanted: Vec<AnyEffect> = match &arguments.name {
+        Some(name) => vec![catalogue.find(name)?],
+        None => catalogue.iter().cloned().collect(),
     };
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         match wanted.as_slice() {
-            [one] if arguments.name.is_some() => page(*one)?,
+            [one] if arguments.name.is_some() => page(&**one)?,
             all => list(all),
         }
     }
     if let Some(path) = &arguments.json.json {
-        let cards = wanted.iter().map(|effect| card_json(*effect)).collect::<Result<Vec<Value>, _>>()?;
+        let cards = wanted.iter().map(|effect| card_json(&**effect)).collect::<Result<Vec<Value>, _>>()?;
         write_json(path, &json!({ "effects": cards }), arguments.overwriting)?;
     }
     Ok(())
@@ -42,10 +44,9 @@ fn place(acts_on: ActsOn) -> &'static str {
     }
 }
 
-fn list(all: &[&'static dyn Effect]) {
-    let longest = |text: fn(&Card) -> &'static str| {
-        all.iter().map(|effect| text(effect.card()).len() as u16).max().unwrap_or_default()
-    };
+fn list(all: &[AnyEffect]) {
+    let longest =
+        |text: fn(&Card) -> &str| all.iter().map(|effect| text(effect.card()).len() as u16).max().unwrap_or_default();
     for (family, title) in [
         (Family::Base, "In the nominal model"),
         (Family::Recording, "How recordings are made: nuisances, estimated with every model, never attributed"),
@@ -56,14 +57,14 @@ fn list(all: &[&'static dyn Effect]) {
     ] {
         print(title);
         let own = all.iter().map(|effect| effect.card()).filter(|card| card.family == family);
-        let rows: Vec<[&str; 3]> = own.map(|card| [card.name, place(card.acts_on), card.summary]).collect();
-        print(&effect_table(&rows, longest(|card| card.name), longest(|card| place(card.acts_on))).trim_fmt());
+        let rows: Vec<[&str; 3]> = own.map(|card| [&*card.name, place(card.acts_on), &*card.summary]).collect();
+        print(&effect_table(&rows, longest(|card| &card.name), longest(|card| place(card.acts_on))).trim_fmt());
     }
     print("`excavator effects NAME` describes one.");
 }
 
 /// The parameters of an effect on the machine where it looks most usual.
-fn parameters(effect: &dyn Effect) -> Result<&'static [ParameterCard], VerbError> {
+fn parameters(effect: &dyn Effect) -> Result<&[ParameterCard], VerbError> {
     let machine = built_in("zx30u-arm")?.machine;
     let site = if effect.card().acts_on == ActsOn::PumpLine { Site::PumpLine } else { Site::Cylinder(0) };
     Ok(effect.parameters(&machine, site))
@@ -73,11 +74,11 @@ fn page(effect: &dyn Effect) -> Result<(), VerbError> {
     let card = effect.card();
     print(&format!("{} ({})\n{}\n", card.name, place(card.acts_on), card.summary));
     for (title, text) in [
-        ("equation", card.equation),
-        ("source", card.source),
-        ("shows as", card.shows),
-        ("experiment", card.experiment),
-        ("energy", card.energy),
+        ("equation", &card.equation),
+        ("source", &card.source),
+        ("shows as", &card.shows),
+        ("experiment", &card.experiment),
+        ("energy", &card.energy),
     ] {
         print(&format!("{title:12}{text}"));
     }

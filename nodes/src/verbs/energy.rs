@@ -25,7 +25,7 @@ const WAITING: usize = 4;
 
 pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
-    let inputs = Inputs::recordings([&arguments.bag], &arguments.mapping).and(&arguments.model);
+    let inputs = Inputs::recordings([&arguments.bag], &arguments.mapping).and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let analysis = analyse_bag(&model, &arguments.bag, &arguments.mapping)?;

@@ -38,7 +38,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     let inputs = Inputs::recordings(&arguments.bag, &arguments.mapping);
     // With --force the model may become its own successor: it has a history.
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
-    outputs::check(&outputs[1..], &inputs.and(&arguments.model), arguments.overwriting)?;
+    outputs::check(&outputs[1..], &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let recordings = sources::recordings(&arguments.bag, &arguments.mapping, &model)?;
     let recordings: Vec<&Recording> = recordings.iter().collect();
@@ -155,7 +155,7 @@ fn profiles_json(result: &Identified) -> Value {
 /// What the recordings say of a parameter that they hardly show.
 fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
     let names = model.parameter_names();
-    let unit = model.parameters().nth(profile.index).map_or("", |(_, parameter)| parameter.card.unit);
+    let unit = model.parameters().nth(profile.index).map_or("", |(_, parameter)| &*parameter.card.unit);
     let name = &names[profile.index];
     let mut text = match (profile.lower, profile.upper) {
         (None, None) => format!("{name} is not identifiable from these recordings: every possible value fits as well"),

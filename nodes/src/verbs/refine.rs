@@ -23,7 +23,7 @@ pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
     let inputs = Inputs::recordings(arguments.recordings.bags(), &arguments.recordings.mapping);
     // With --force the model may become its own successor: it has a history.
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
-    outputs::check(&others, &inputs.and(&arguments.model), arguments.overwriting)?;
+    outputs::check(&others, &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let additions = if arguments.auto { Additions::Auto } else { named(&model, &arguments.add)? };
     let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;

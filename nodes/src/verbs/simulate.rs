@@ -17,7 +17,7 @@ use crate::profile_file::ProfileFile;
 use crate::{sources, terminal};
 
 pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
-    let inputs = outputs::Inputs::recordings([&arguments.input], &arguments.mapping).and(&arguments.model);
+    let inputs = outputs::Inputs::recordings([&arguments.input], &arguments.mapping).and_all(arguments.model.files());
     outputs::check_bag(&arguments.output, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let simulated = if arguments.input.extension().is_some_and(|extension| extension == "toml") {

@@ -1,5 +1,7 @@
 //! What comes out of the monitor.
 
+use crate::effects::Text;
+
 /// The energy balance at one measured state, \[A\] Eq. 9-12; `NaN` where a signal is missing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Balance {
@@ -36,10 +38,10 @@ pub struct CylinderBalance {
 }
 
 /// Power of one effect.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct EffectTerm {
     /// Name in the catalogue.
-    pub effect: &'static str,
+    pub effect: Text,
     /// W; negative = taken out of the stored energy.
     pub power: f64,
 }

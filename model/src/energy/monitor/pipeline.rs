@@ -224,7 +224,7 @@ impl<'m, 's> Monitor<'m, 's> {
                 let pushed = if oil { 0.0 } else { self.rod_power(&state, &inputs, number) };
                 let terms = own()
                     .filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power)
-                    .map(|effect| EffectTerm { effect: effect.effect, power: effect.into_cylinders() })
+                    .map(|effect| EffectTerm { effect: effect.effect.clone(), power: effect.into_cylinders() })
                     .collect();
                 CylinderBalance {
                     kinetic: storage.kinetic,
@@ -275,7 +275,7 @@ impl<'m, 's> Monitor<'m, 's> {
             state[pump] = sample.pump_pressure;
         }
         // Where the spool of a lagging valve really is, is what its sensor says.
-        self.system.set_spools(&inputs.orifice_area, &mut state);
+        self.system.set_effect_states(&inputs.orifice_area, &mut state);
         let or = |value: f64, constant: f64| if value.is_finite() { value } else { constant };
         inputs.supply_pressure = match machine.supply {
             Supply::PressureSource(source) => or(sample.pump_pressure, source.pressure),

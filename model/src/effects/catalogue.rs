@@ -1,0 +1,87 @@
+//! The effects that a model may have.
+
+use std::sync::{Arc, LazyLock};
+
+use super::{Effect, built_in, nearest};
+
+/// An effect that several models share.
+pub type AnyEffect = Arc<dyn Effect>;
+
+/// The effects that a model may have: those of the program, and those of its user. A copy costs next to nothing.
+#[derive(Debug, Clone)]
+pub struct Catalogue {
+    effects: Arc<[AnyEffect]>,
+}
+
+/// An effect name that the catalogue does not have.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown effect \"{name}\"{}; `excavator effects` lists all", did_you_mean(suggestion))]
+pub struct UnknownEffect {
+    /// The name asked for.
+    pub name: String,
+    /// The nearest name in the catalogue, if one is near.
+    pub suggestion: Option<String>,
+}
+
+fn did_you_mean(suggestion: &Option<String>) -> String {
+    suggestion.as_ref().map_or(String::new(), |name| format!(" (did you mean \"{name}\"?)"))
+}
+
+/// Two effects of one name.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("there are two effects named \"{name}\"; give yours another name")]
+pub struct TwiceInCatalogue {
+    /// The name.
+    pub name: String,
+}
+
+impl Catalogue {
+    /// The effects of the program.
+    pub fn built_in() -> Catalogue {
+        static BUILT_IN: LazyLock<Catalogue> = LazyLock::new(|| Catalogue { effects: built_in::built_in().into() });
+        BUILT_IN.clone()
+    }
+
+    /// The same catalogue with more effects, behind those that it has.
+    ///
+    /// # Errors
+    /// [`TwiceInCatalogue`] when a name is there already, or twice among the new ones.
+    pub fn with(&self, more: impl IntoIterator<Item = AnyEffect>) -> Result<Catalogue, TwiceInCatalogue> {
+        let mut names: std::collections::HashSet<String> =
+            self.iter().map(|effect| effect.card().name.to_string()).collect();
+        let mut effects = self.effects.to_vec();
+        for effect in more {
+            let name = effect.card().name.to_string();
+            if !names.insert(name.clone()) {
+                return Err(TwiceInCatalogue { name });
+            }
+            effects.push(effect);
+        }
+        Ok(Catalogue { effects: effects.into() })
+    }
+
+    /// Every effect: base effects of \[A\] first, then the candidates beyond them, then those of the user.
+    pub fn iter(&self) -> std::slice::Iter<'_, AnyEffect> {
+        self.effects.iter()
+    }
+
+    /// The effect of this name.
+    ///
+    /// # Errors
+    /// [`UnknownEffect`] with the nearest name that exists.
+    pub fn find(&self, name: &str) -> Result<AnyEffect, UnknownEffect> {
+        self.iter().find(|effect| effect.card().name == name).cloned().ok_or_else(|| UnknownEffect {
+            name: name.to_string(),
+            suggestion: nearest(name, self.iter().map(|effect| &*effect.card().name)),
+        })
+    }
+}
+
+impl<'a> IntoIterator for &'a Catalogue {
+    type Item = &'a AnyEffect;
+    type IntoIter = std::slice::Iter<'a, AnyEffect>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}

@@ -1,0 +1,77 @@
+//! How widely the corners of a formula are rounded.
+//!
+//! A law with a jump stalls a simulation: at a speed of zero friction would change its sign at every step. So a formula's `sign`, `step` and
+//! `if` change over a width, as the corners of the equations do.
+
+use super::dimension::Dimension;
+use crate::equations::{Rounding, Situation};
+use crate::scalar::Scalar;
+
+/// What a corner's argument is, which says how widely it is rounded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Corner {
+    /// A speed, rounded as the friction of the piston.
+    Speed,
+    /// A pressure, rounded as the flow of the valve's edges.
+    Pressure,
+    /// An opening, over a ten-thousandth of the largest one.
+    Area,
+    /// A position, over a ten-thousandth of the stroke.
+    Length,
+    /// A time, over 10 ms: longer than the interval of a recorder, so that a fit sees where it is.
+    Time,
+    /// A pure number, over a thousandth.
+    Pure,
+    /// Anything else is compared with its own size and has a sharp corner.
+    Sharp,
+}
+
+/// Width of a corner in time, s.
+const TIME_WIDTH: f64 = 0.01;
+
+/// Width of a corner in a pure number.
+const PURE_WIDTH: f64 = 1e-3;
+
+/// Width of a corner in an opening or a position, as a share of the largest opening or the stroke.
+const SHARE_WIDTH: f64 = 1e-4;
+
+impl Corner {
+    /// That of an argument with this dimension.
+    pub fn of(dimension: Dimension) -> Corner {
+        let is = |unit: &str| Dimension::read(unit).is_ok_and(|known| known == dimension);
+        if dimension.is_pure() {
+            Corner::Pure
+        } else if is("m/s") {
+            Corner::Speed
+        } else if is("Pa") {
+            Corner::Pressure
+        } else if is("m2") {
+            Corner::Area
+        } else if is("m") {
+            Corner::Length
+        } else if is("s") {
+            Corner::Time
+        } else {
+            Corner::Sharp
+        }
+    }
+
+    /// Half of the width over which the argument changes its sign at this cylinder, in the argument's unit.
+    pub fn width<T: Scalar>(self, now: &Situation<'_, T>, cylinder: Option<usize>) -> T {
+        let own = cylinder.and_then(|cylinder| now.machine.cylinders.get(cylinder));
+        let rounding = cylinder.and_then(|cylinder| now.pistons.get(cylinder)).map(|piston| piston.rounding);
+        let rounding = rounding.unwrap_or_else(Rounding::of_the_equations);
+        match self {
+            Corner::Speed => rounding.reversal_speed,
+            Corner::Pressure => rounding.transition_pressure,
+            Corner::Area => {
+                let largest = own.and_then(|own| own.chambers.as_ref()).map_or(0.0, |oil| oil.maximum_orifice_area);
+                T::from(SHARE_WIDTH * largest)
+            }
+            Corner::Length => T::from(SHARE_WIDTH * own.map_or(0.0, |own| own.stroke)),
+            Corner::Time => T::from(TIME_WIDTH),
+            Corner::Pure => T::from(PURE_WIDTH),
+            Corner::Sharp => T::from(0.0),
+        }
+    }
+}

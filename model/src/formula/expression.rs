@@ -1,0 +1,53 @@
+//! A formula as a tree.
+
+use std::ops::Range;
+
+use super::function::Function;
+use super::variable::Variable;
+
+/// A part of a formula and where it stands in the text.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Expression {
+    pub node: Node,
+    pub at: Range<usize>,
+}
+
+/// What a part of a formula is.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Node {
+    Number(f64),
+    Name(Symbol),
+    Negative(Box<Expression>),
+    Binary(Operator, Box<Expression>, Box<Expression>),
+    Call(Function, Vec<Expression>),
+    /// `table(x, knots, values)`.
+    Table(Box<Expression>, Vec<f64>, Vec<f64>),
+    /// `if(less < more, then, otherwise)`.
+    If {
+        less: Box<Expression>,
+        more: Box<Expression>,
+        then: Box<Expression>,
+        otherwise: Box<Expression>,
+    },
+}
+
+/// What a name stands for.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) enum Symbol {
+    /// The effect's parameter of this number.
+    Parameter(usize),
+    /// The effect's state of this number.
+    State(usize),
+    /// A variable of the effect's own place, or of the cylinder of this name.
+    Variable(Variable, Option<String>),
+}
+
+/// An operator with two sides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Operator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+}

@@ -1,0 +1,30 @@
+//! Laws that a user writes as text.
+//!
+//! A formula is read ([`parser`]), checked for units and compiled ([`compile`]), and evaluated with plain numbers or dual numbers
+//! ([`program`]). So one text serves simulation, regressor, power and sensitivities, as the code of a built-in effect does.
+
+mod compile;
+mod corner;
+mod dimension;
+mod error;
+mod expression;
+mod function;
+mod law;
+mod linearity;
+mod names;
+mod parser;
+mod program;
+mod read;
+mod row;
+mod table;
+mod text;
+mod token;
+mod variable;
+
+pub use dimension::{Dimension, UnitError};
+pub use error::{FormulaError, Problem};
+pub use law::Law;
+pub use read::{LawError, LawProblem};
+pub use row::{ROWS, Row, RowCard};
+pub use text::{FormulaText, ParameterText, StateText};
+pub use variable::variables;

@@ -1,0 +1,28 @@
+//! What the names in a formula stand for.
+
+use super::expression::Symbol;
+use super::variable::VARIABLES;
+
+/// The parameters and states of an effect; its formulas also use the variables of the language.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Names<'a> {
+    pub parameters: &'a [String],
+    pub states: &'a [String],
+}
+
+impl<'a> Names<'a> {
+    /// What a name stands for; `None` where it is unknown.
+    pub fn find(&self, name: &str) -> Option<Symbol> {
+        let position = |names: &[String]| names.iter().position(|known| known == name);
+        position(self.parameters)
+            .map(Symbol::Parameter)
+            .or_else(|| position(self.states).map(Symbol::State))
+            .or_else(|| Symbol::variable(name))
+    }
+
+    /// All names, for suggestions.
+    pub fn all(&self) -> impl Iterator<Item = &'a str> {
+        let own = self.parameters.iter().chain(self.states).map(String::as_str);
+        own.chain(VARIABLES.iter().map(|card| card.name))
+    }
+}

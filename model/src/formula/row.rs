@@ -1,0 +1,179 @@
+//! Where a formula enters the equations.
+
+use super::dimension::Dimension;
+use crate::effects::{ActsOn, Needs};
+
+/// What a formula gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Row {
+    /// Force on the piston along its extension, N.
+    PistonForce,
+    /// Torque on the cylinder's joint, N m (on a linear load its force, N).
+    JointTorque,
+    /// Flow into the cap side from outside, m³/s.
+    CapFlow,
+    /// Flow into the rod side from outside, m³/s.
+    RodFlow,
+    /// Flow from the cap to the rod side, m³/s.
+    PistonLeak,
+    /// Flow from the pump line to the tank, m³/s.
+    PumpLeak,
+    /// Flow from the pump line to the cap side, m³/s.
+    PumpToCap,
+    /// Flow from the pump line to the rod side, m³/s.
+    PumpToRod,
+    /// Flow from the cap side to the tank, m³/s.
+    CapToTank,
+    /// Flow from the rod side to the tank, m³/s.
+    RodToTank,
+    /// Opening of the metering edges, m².
+    Opening,
+    /// What the cap pressure's instrument shows beside the truth, Pa.
+    CapPressureReading,
+    /// What the rod pressure's instrument shows beside the truth, Pa.
+    RodPressureReading,
+    /// What the pump pressure's instrument shows beside the truth, Pa.
+    PumpPressureReading,
+    /// What the displacement's instrument shows beside the truth, m.
+    DisplacementReading,
+}
+
+/// What is said about a row.
+pub struct RowCard {
+    /// As a catalogue file writes it.
+    pub name: &'static str,
+    /// The row.
+    pub row: Row,
+    /// Unit of its formula.
+    pub unit: &'static str,
+    /// What the formula gives.
+    pub meaning: &'static str,
+    /// How an effect there shows in data.
+    pub shows: &'static str,
+    /// Its part in the energy balance.
+    pub energy: &'static str,
+}
+
+const fn card(
+    name: &'static str,
+    row: Row,
+    unit: &'static str,
+    meaning: &'static str,
+    shows: &'static str,
+    energy: &'static str,
+) -> RowCard {
+    RowCard { name, row, unit, meaning, shows, energy }
+}
+
+const FORCE: &str = "In the force balance of the cylinder.";
+const CHAMBERS: &str = "In the oil balances of the chambers.";
+const INSTRUMENT: &str = "In one reading, and in nothing that the machine does.";
+const FLOW_POWER: &str = "Flow times the pressures at both of its ends.";
+const NO_POWER: &str = "None: it acts on the instrument.";
+
+/// All rows.
+pub static ROWS: [RowCard; 15] = [
+    card(
+        "piston_force",
+        Row::PistonForce,
+        "N",
+        "force on the piston along its extension",
+        FORCE,
+        "Force times piston velocity.",
+    ),
+    card("joint_torque", Row::JointTorque, "N m", "torque on the cylinder's joint", FORCE, "Torque times joint rate."),
+    card("cap_flow", Row::CapFlow, "m3/s", "flow into the cap side from outside", CHAMBERS, FLOW_POWER),
+    card("rod_flow", Row::RodFlow, "m3/s", "flow into the rod side from outside", CHAMBERS, FLOW_POWER),
+    card("piston_leak", Row::PistonLeak, "m3/s", "flow from the cap to the rod side", CHAMBERS, FLOW_POWER),
+    card(
+        "pump_leak",
+        Row::PumpLeak,
+        "m3/s",
+        "flow from the pump line to the tank",
+        "In the oil balance of the pump line.",
+        FLOW_POWER,
+    ),
+    card("pump_to_cap", Row::PumpToCap, "m3/s", "flow from the pump line to the cap side", CHAMBERS, FLOW_POWER),
+    card("pump_to_rod", Row::PumpToRod, "m3/s", "flow from the pump line to the rod side", CHAMBERS, FLOW_POWER),
+    card("cap_to_tank", Row::CapToTank, "m3/s", "flow from the cap side to the tank", CHAMBERS, FLOW_POWER),
+    card("rod_to_tank", Row::RodToTank, "m3/s", "flow from the rod side to the tank", CHAMBERS, FLOW_POWER),
+    card(
+        "opening",
+        Row::Opening,
+        "m2",
+        "opening of the metering edges",
+        "In the flows through the valve.",
+        "Changes the supply through the valve; dissipates nothing itself.",
+    ),
+    card(
+        "cap_pressure_reading",
+        Row::CapPressureReading,
+        "Pa",
+        "what the cap pressure's instrument adds",
+        INSTRUMENT,
+        NO_POWER,
+    ),
+    card(
+        "rod_pressure_reading",
+        Row::RodPressureReading,
+        "Pa",
+        "what the rod pressure's instrument adds",
+        INSTRUMENT,
+        NO_POWER,
+    ),
+    card(
+        "pump_pressure_reading",
+        Row::PumpPressureReading,
+        "Pa",
+        "what the pump pressure's instrument adds",
+        INSTRUMENT,
+        NO_POWER,
+    ),
+    card(
+        "displacement_reading",
+        Row::DisplacementReading,
+        "m",
+        "what the displacement's instrument adds",
+        INSTRUMENT,
+        NO_POWER,
+    ),
+];
+
+impl Row {
+    /// Its card.
+    pub fn card(self) -> &'static RowCard {
+        // Every row has a card; the first is a stand-in that no input can reach.
+        ROWS.iter().find(|card| card.row == self).unwrap_or(&ROWS[0])
+    }
+
+    /// Unit of its formula.
+    pub fn dimension(self) -> Dimension {
+        Dimension::read(self.card().unit).unwrap_or(Dimension::PURE)
+    }
+
+    /// The part of the machine that its effects act on.
+    pub fn acts_on(self) -> ActsOn {
+        match self {
+            Row::PumpLeak | Row::PumpPressureReading => ActsOn::PumpLine,
+            Row::PumpToCap | Row::PumpToRod | Row::CapToTank | Row::RodToTank | Row::Opening => ActsOn::Valve,
+            _ => ActsOn::Cylinder,
+        }
+    }
+
+    /// What a cylinder must have for it.
+    pub fn needs(self) -> Needs {
+        match self {
+            Row::PistonForce | Row::JointTorque | Row::DisplacementReading => Needs::Nothing,
+            Row::CapPressureReading | Row::RodPressureReading => Needs::Pressures,
+            _ => Needs::Oil,
+        }
+    }
+
+    /// Whether it is an instrument's.
+    pub fn is_a_reading(self) -> bool {
+        matches!(
+            self,
+            Row::CapPressureReading | Row::RodPressureReading | Row::PumpPressureReading | Row::DisplacementReading
+        )
+    }
+}

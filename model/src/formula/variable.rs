@@ -1,0 +1,133 @@
+//! The variables that a formula may use.
+
+use super::dimension::Dimension;
+use super::expression::Symbol;
+
+/// A quantity of the machine at one instant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Variable {
+    Displacement,
+    Velocity,
+    Acceleration,
+    Joint,
+    Rate,
+    Lever,
+    CapPressure,
+    RodPressure,
+    PumpPressure,
+    TankPressure,
+    Opening,
+    LargestOpening,
+    Command,
+    CapFlow,
+    RodFlow,
+    RodForce,
+    CapArea,
+    RodArea,
+    Stroke,
+    Time,
+    Temperature,
+}
+
+/// A variable as a formula writes it.
+pub(super) struct VariableCard {
+    pub name: &'static str,
+    pub variable: Variable,
+    /// SI unit.
+    pub unit: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+}
+
+const fn card(name: &'static str, variable: Variable, unit: &'static str, meaning: &'static str) -> VariableCard {
+    VariableCard { name, variable, unit, meaning }
+}
+
+/// All variables.
+pub(super) static VARIABLES: [VariableCard; 21] = [
+    card("s", Variable::Displacement, "m", "piston displacement from mid-stroke"),
+    card("v", Variable::Velocity, "m/s", "piston velocity"),
+    card("a", Variable::Acceleration, "m/s2", "piston acceleration"),
+    card("q", Variable::Joint, "rad", "joint coordinate"),
+    card("qd", Variable::Rate, "rad/s", "joint rate"),
+    card("lever", Variable::Lever, "m", "lever of the cylinder on its joint"),
+    card("p_cap", Variable::CapPressure, "Pa", "cap side pressure"),
+    card("p_rod", Variable::RodPressure, "Pa", "rod side pressure"),
+    card("p_pump", Variable::PumpPressure, "Pa", "pump pressure"),
+    card("p_tank", Variable::TankPressure, "Pa", "tank pressure"),
+    card("u", Variable::Opening, "m2", "opening of the metering edges"),
+    card("u_max", Variable::LargestOpening, "m2", "largest opening of the valve section"),
+    card("command", Variable::Command, "m2", "opening that the recording gives"),
+    card("flow_cap", Variable::CapFlow, "m3/s", "metering flow into the cap side"),
+    card("flow_rod", Variable::RodFlow, "m3/s", "metering flow into the rod side"),
+    card("rod_force", Variable::RodForce, "N", "force measured on the rod"),
+    card("area_cap", Variable::CapArea, "m2", "piston area on the cap side"),
+    card("area_rod", Variable::RodArea, "m2", "piston area on the rod side"),
+    card("stroke", Variable::Stroke, "m", "stroke of the cylinder"),
+    card("t", Variable::Time, "s", "time since the first sample"),
+    card("temperature", Variable::Temperature, "degC", "oil temperature"),
+];
+
+impl Variable {
+    /// Its card.
+    pub fn card(self) -> &'static VariableCard {
+        let found = VARIABLES.iter().find(|card| card.variable == self);
+        // Every variable has a card; the first is a stand-in that no input can reach.
+        found.unwrap_or(&VARIABLES[0])
+    }
+
+    /// Its unit.
+    pub fn dimension(self) -> Dimension {
+        Dimension::read(self.card().unit).unwrap_or(Dimension::PURE)
+    }
+
+    /// Whether it belongs to one cylinder.
+    pub fn is_of_a_cylinder(self) -> bool {
+        !matches!(self, Variable::PumpPressure | Variable::TankPressure | Variable::Time | Variable::Temperature)
+    }
+
+    /// Whether only a cylinder with oil in its chambers has it.
+    pub fn needs_oil(self) -> bool {
+        matches!(
+            self,
+            Variable::Opening | Variable::LargestOpening | Variable::Command | Variable::CapFlow | Variable::RodFlow
+        )
+    }
+
+    /// Whether only a cylinder with pressures has it.
+    pub fn needs_pressures(self) -> bool {
+        self.needs_oil()
+            || matches!(self, Variable::CapPressure | Variable::RodPressure | Variable::CapArea | Variable::RodArea)
+    }
+
+    /// Why a formula cannot use it yet, if so.
+    pub fn why_not(self) -> Option<&'static str> {
+        match self {
+            Variable::Acceleration => Some("the equations of motion are solved for it; use a mass or a state instead"),
+            Variable::Temperature => Some("recordings carry no temperature"),
+            _ => None,
+        }
+    }
+}
+
+/// Name, SI unit and meaning of every variable.
+pub fn variables() -> impl Iterator<Item = [&'static str; 3]> {
+    VARIABLES.iter().map(|card| [card.name, card.unit, card.meaning])
+}
+
+impl Symbol {
+    /// The variable of this name, `v` or `boom.v`.
+    pub fn variable(name: &str) -> Option<Symbol> {
+        let (cylinder, own) = name.rsplit_once('.').map_or((None, name), |(cylinder, own)| (Some(cylinder), own));
+        let variable = VARIABLES.iter().find(|card| card.name == own)?.variable;
+        if cylinder.is_some_and(|cylinder| cylinder.is_empty() || !variable.is_of_a_cylinder()) {
+            return None;
+        }
+        Some(Symbol::Variable(variable, cylinder.map(str::to_string)))
+    }
+
+    /// Whether a variable has this name.
+    pub fn is_variable(name: &str) -> bool {
+        VARIABLES.iter().any(|card| card.name == name)
+    }
+}
