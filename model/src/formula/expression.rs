@@ -12,6 +12,24 @@ pub(super) struct Expression {
     pub at: Range<usize>,
 }
 
+impl Expression {
+    /// Every name in it and where it stands.
+    pub fn names(&self) -> Vec<(&Symbol, Range<usize>)> {
+        let (mut found, mut waiting) = (Vec::new(), vec![self]);
+        while let Some(part) = waiting.pop() {
+            match &part.node {
+                Node::Number(_) => {}
+                Node::Name(symbol) => found.push((symbol, part.at.clone())),
+                Node::Negative(inner) | Node::Table(inner, _, _) => waiting.push(inner),
+                Node::Binary(_, left, right) => waiting.extend([&**left, right]),
+                Node::Call(_, arguments) => waiting.extend(arguments),
+                Node::If { less, more, then, otherwise } => waiting.extend([&**less, more, then, otherwise]),
+            }
+        }
+        found
+    }
+}
+
 /// What a part of a formula is.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Node {

@@ -12,7 +12,7 @@ use super::program::Program;
 use super::row::{ROWS, Row};
 use super::text::{FormulaText, ParameterText, StateText};
 use super::variable::Variable;
-use crate::effects::{Card, Family, Kind, Needs, ParameterCard, Start, Text, nearest};
+use crate::effects::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Start, Text, nearest};
 
 /// A formula effect that cannot be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -154,7 +154,6 @@ impl<'a> Reader<'a> {
         };
         let inputs: Vec<&Symbol> = programs().flat_map(|program| &program.inputs).collect();
         self.check_use(&inputs)?;
-        self.check_variables(&inputs)?;
         let parameters = self.parameter_cards(&trees)?;
         let mut others: Vec<String> = inputs.iter().filter_map(|input| other_cylinder(input)).collect();
         others.sort();
@@ -176,6 +175,7 @@ impl<'a> Reader<'a> {
         let problem = |error| LawProblem::Formula { what: what.to_string(), error: Box::new(error) };
         let names = Names { parameters: &self.parameters, states };
         let tree = parse(text, &names).map_err(problem)?;
+        self.check_variables(&tree, text).map_err(problem)?;
         let unit_of = |symbol: &Symbol| match symbol {
             Symbol::Parameter(number) => self.parameter_units[*number],
             Symbol::State(number) => self.state_units[*number],
@@ -195,38 +195,39 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether every variable is known where the formula is evaluated.
-    fn check_variables(&self, inputs: &[&Symbol]) -> Result<(), LawProblem> {
-        let is_of_the_pump = matches!(self.row, Row::PumpLeak | Row::PumpPressureReading);
-        let is_of_the_valve = self.row.acts_on() == crate::effects::ActsOn::Valve;
-        for input in inputs {
-            let Some(variable) = variable(input) else { continue };
-            let reason = if let Some(reason) = variable.why_not() {
-                reason
-            } else if self.row.is_a_reading() {
-                "what an instrument adds can depend on parameters only"
-            } else if is_of_the_pump && variable.is_of_a_cylinder() && other_cylinder(input).is_none() {
-                "the pump line has no cylinder of its own; say whose, as in boom.v"
-            } else if is_of_the_valve && variable.is_a_metering_flow() {
-                "it is the sum of what the valve's effects give, this one among them"
-            } else if self.row == Row::Opening && variable == Variable::Opening && other_cylinder(input).is_some() {
-                "openings are formed one after the other"
-            } else {
-                continue;
+    fn check_variables(&self, tree: &Expression, text: &str) -> Result<(), FormulaError> {
+        let refused = |(symbol, at): (&Symbol, std::ops::Range<usize>)| {
+            let (name, reason) = match symbol {
+                Symbol::Parameter(_) => return None,
+                Symbol::State(number) if self.row == Row::Opening || self.row.is_a_reading() => {
+                    (self.states[*number].clone(), "openings and readings have no states")
+                }
+                Symbol::State(_) => return None,
+                Symbol::Variable(variable, other) => {
+                    (variable.card().name.to_string(), self.why_not(*variable, other.is_some())?)
+                }
             };
-            let name = variable.card().name;
-            let at = find(&self.text.formula, name);
-            let problem = Problem::Unavailable { name: name.to_string(), reason };
-            let error = Box::new(FormulaError::new(problem, at, &self.text.formula));
-            return Err(LawProblem::Formula { what: "formula".to_string(), error });
+            Some(FormulaError::new(Problem::Unavailable { name, reason }, at, text))
+        };
+        tree.names().into_iter().find_map(refused).map_or(Ok(()), Err)
+    }
+
+    /// Why a variable, of another cylinder or of the effect's own, is not known in this row.
+    fn why_not(&self, variable: Variable, of_another: bool) -> Option<&'static str> {
+        let is_of_the_pump = self.row.acts_on() == ActsOn::PumpLine;
+        if let Some(reason) = variable.why_not() {
+            Some(reason)
+        } else if self.row.is_a_reading() {
+            Some("what an instrument adds can depend on parameters only")
+        } else if is_of_the_pump && variable.is_of_a_cylinder() && !of_another {
+            Some("the pump line has no cylinder of its own; say whose, as in boom.v")
+        } else if self.row.acts_on() == ActsOn::Valve && variable.is_a_metering_flow() {
+            Some("it is the sum of what the valve's effects give, this one among them")
+        } else if self.row == Row::Opening && variable == Variable::Opening && of_another {
+            Some("openings are formed one after the other")
+        } else {
+            None
         }
-        let has_memory = !self.text.states.is_empty();
-        if has_memory && (self.row == Row::Opening || self.row.is_a_reading()) {
-            let state = self.states[0].clone();
-            let problem = Problem::Unavailable { name: state, reason: "openings and readings have no states" };
-            let error = Box::new(FormulaError::new(problem, 0..0, &self.text.formula));
-            return Err(LawProblem::Formula { what: "formula".to_string(), error });
-        }
-        Ok(())
     }
 
     fn parameter_cards(&self, trees: &[Expression]) -> Result<Vec<ParameterCard>, LawProblem> {
@@ -360,13 +361,4 @@ fn other_cylinder(input: &Symbol) -> Option<String> {
         Symbol::Variable(_, cylinder) => cylinder.clone(),
         _ => None,
     }
-}
-
-/// Where a name stands in a formula.
-fn find(formula: &str, name: &str) -> std::ops::Range<usize> {
-    let is_part = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-    let found = formula.match_indices(name).find(|(at, _)| {
-        !is_part(formula[..*at].chars().next_back()) && !is_part(formula[at + name.len()..].chars().next())
-    });
-    found.map_or(0..0, |(at, _)| at..at + name.len())
 }
