@@ -7,6 +7,8 @@ use crate::fit::FitSettings;
 pub struct Effort {
     /// Fits of all hypotheses.
     pub fit: FitSettings,
+    /// Most further steps of the fit of the favoured hypothesis, where those of `fit` were not enough.
+    pub settling_steps: usize,
     /// Most effects of one hypothesis: \[B\] adds five to its preliminary model.
     pub most_effects: usize,
     /// Most hypotheses that are extended beside the best, where that does not explain the recordings.
@@ -46,6 +48,7 @@ impl Default for Effort {
     fn default() -> Self {
         Effort {
             fit: FitSettings::default(),
+            settling_steps: 40,
             most_effects: 5,
             most_second_beginnings: 1,
             screening_steps: 3,

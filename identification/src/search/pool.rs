@@ -26,6 +26,8 @@ pub struct Unpromising {
 /// What a search does with a hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Move {
+    /// Fit it until it converges.
+    Settle,
     /// Take out each of its effects in turn.
     Prune,
     /// Add every other effect to it.

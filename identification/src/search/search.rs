@@ -70,6 +70,9 @@ fn moves_of(verdict: &Verdict, pool: &Pool<'_>, effort: &Effort, policy: &Policy
     let (best, mut moves) = (verdict.best, Vec::new());
     let effects = pool.trials[best].additions.len();
     if best != 0 {
+        if !pool.trials[best].fit.converged {
+            moves.push((Move::Settle, best));
+        }
         if effects > 1 {
             moves.push((Move::Prune, best));
         }

@@ -9,7 +9,7 @@ use super::screening::{Screen, Screened, Screening};
 use super::transient::evaluate_in_windows_of;
 use super::{Addition, Effort, Trial};
 use crate::decision::{Policy, log_error_ratio};
-use crate::fit::{fit_predicted, predict};
+use crate::fit::{FitSettings, fit, fit_predicted, predict};
 
 /// How moves are made.
 pub(super) struct Stepwise<'a> {
@@ -26,11 +26,25 @@ impl Stepwise<'_> {
     pub fn take(&self, what: Move, number: usize, pool: &mut Pool<'_>) {
         pool.mark_done(what, number);
         match what {
+            Move::Settle => self.settle(number, pool),
             Move::Prune => self.prune(number, pool),
             Move::Extend => self.extend(number, pool),
             Move::Exchange => self.exchange(number, pool),
             Move::Structural => self.structural(number, pool),
         }
+    }
+
+    /// Fits on where the most steps of a fit were not enough. Whatever is added to a fit that has not converged goes on with it, and looks
+    /// as if it explained something.
+    fn settle(&self, number: usize, pool: &mut Pool<'_>) {
+        let begin = Instant::now();
+        let trial = pool.trials[number].clone();
+        let settings = FitSettings { maximum_steps: self.effort.settling_steps, ..self.effort.fit };
+        let Ok(fit) = fit(&trial.fit.model, pool.identification(), &settings) else { return };
+        let known = &trial.validation.model;
+        let Ok(validation) = evaluate_in_windows_of(&fit.model, known, pool.validation(), &settings) else { return };
+        let seconds = trial.seconds + begin.elapsed().as_secs_f64();
+        pool.put(Trial { fit, validation, seconds, ..trial });
     }
 
     fn prune(&self, number: usize, pool: &mut Pool<'_>) {
