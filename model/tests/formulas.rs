@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse_catalogue};
 use excavator_model::effects::{Catalogue, Effect, Kind, Number, Site};
-use excavator_model::equations::Situation;
+use excavator_model::equations::{Inputs, LawStates, Situation, System};
 use excavator_model::formula::{FormulaText, Law, ParameterText};
 use excavator_model::scalar::{Dual, constant, derivative, variable};
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
@@ -296,4 +296,31 @@ fn a_catalogue_file_is_read_and_merged() {
         let error = parse_catalogue("mine.toml", text, &catalogue).unwrap_err().to_string();
         assert!(error.contains(says) && error.starts_with("mine.toml") && !error.contains('\n'), "{error}");
     }
+}
+
+/// A seal that bends at constant speed: its bend nears the reach exponentially.
+#[test]
+fn memory_follows_measured_signals() {
+    let base = built_in("zx30u-arm").unwrap();
+    let model = base.with_effect(&common::catalogue().find("bristle_friction").unwrap(), Site::Cylinder(0)).unwrap();
+    let system = System::new(&model);
+    let parameters = model.parameter_values();
+    let (velocity, reach) = (0.02, 4e-4);
+    let mut laws = LawStates::new(&system);
+    let mut state = vec![0.0; system.layout().len];
+    let (bend, _) = system.law_states().next().unwrap();
+    let mut bend_at = |time: f64| {
+        system.set_cylinder(0, model.machine.cylinders[0].linkage.joint(0.0), velocity, [2e6, 2e6], &mut state);
+        laws.follow(&system, &parameters, time, &Inputs::zero(1), &mut state);
+        state[bend]
+    };
+    for sample in 0..200 {
+        let time = 2e-3 * f64::from(sample);
+        let wanted = reach * (1.0 - (-velocity * time / reach).exp());
+        assert!((bend_at(time) - wanted).abs() < 0.03 * reach, "at {time} s");
+    }
+    // A clock that is set back, and a long gap, begin anew.
+    assert_eq!(bend_at(0.1), 0.0);
+    assert!(bend_at(0.102) > 0.0);
+    assert_eq!(bend_at(9.0), 0.0);
 }

@@ -2,7 +2,7 @@
 
 use excavator_model::SignalError;
 use excavator_model::energy::ledger;
-use excavator_model::equations::{Inputs, System};
+use excavator_model::equations::{Inputs, LawStates, System};
 use excavator_model::machine::Supply;
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::simulation::{InputSignals, undistorted};
@@ -71,7 +71,7 @@ pub(super) fn measured_books(
             Ok((displacement, signals))
         })
         .collect::<Result<Vec<_>, SignalError>>()?;
-    let mut books = Books::new(model);
+    let (mut books, mut laws) = (Books::new(model), LawStates::new(system));
     let mut state = vec![0.0; layout.len];
     let mut inputs = Inputs::zero(model.machine.cylinders.len());
     let (mut motion, mut pressure) = (Parabola::default(), Parabola::default());
@@ -103,7 +103,8 @@ pub(super) fn measured_books(
             }
             (None, _) => {}
         }
-        enter(system, parameters, &mut state, &inputs, &mut books);
+        laws.follow(system, parameters, inputs.time, &inputs, &mut state);
+        enter(system, parameters, &state, &inputs, &mut books);
     }
     Ok(books)
 }
@@ -115,7 +116,7 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
     let parameters = model.parameter_values();
     let truth = undistorted(model, simulated);
     let signals = InputSignals::from_recording(model, &block.recording)?;
-    let mut books = Books::new(model);
+    let (mut books, mut laws) = (Books::new(model), LawStates::new(system));
     let mut state = vec![0.0; layout.len];
     let mut inputs = Inputs::zero(model.machine.cylinders.len());
     for sample in block.entries() {
@@ -130,14 +131,13 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
         if let Some(pump) = layout.pump {
             state[pump] = truth.pump_pressure[sample];
         }
-        enter(system, &parameters, &mut state, &inputs, &mut books);
+        laws.follow(system, &parameters, inputs.time, &inputs, &mut state);
+        enter(system, &parameters, &state, &inputs, &mut books);
     }
     Ok(books)
 }
 
-fn enter(system: &System<'_>, parameters: &[f64], state: &mut [f64], inputs: &Inputs<f64>, books: &mut Books) {
-    // Where the spool of a lagging valve really is, is what its sensor says.
-    system.set_effect_states(&inputs.orifice_area, state);
+fn enter(system: &System<'_>, parameters: &[f64], state: &[f64], inputs: &Inputs<f64>, books: &mut Books) {
     if state.iter().all(|value| value.is_finite()) {
         let ledger = ledger(system, parameters, state, inputs);
         books.enter(system.model(), system.layout(), &ledger, state, inputs);

@@ -64,9 +64,15 @@ pub trait Physics: Send + Sync {
         None
     }
 
-    /// Number of states that it adds to the model. Those of a built-in effect are spools, as openings.
+    /// Number of states that it adds to the model.
     fn states(&self) -> usize {
         0
+    }
+
+    /// Whether its states are its own memory, of which [`Physics::begin`] and [`Physics::remember`] know. Others are spools, as openings,
+    /// of which [`Physics::spool`] knows.
+    fn has_memory(&self) -> bool {
+        false
     }
 
     /// Order of magnitude of a state, in its unit: that of a spool's opening, m².
@@ -117,7 +123,7 @@ pub trait Physics: Send + Sync {
     /// Adds the effect at `site` to the rows of the equations of motion.
     fn contribute<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>, _rows: &mut Rows<T>) {}
 
-    /// The same for an effect whose law needs its own states.
+    /// The same for an effect with memory.
     fn contribute_remembering<T: Scalar>(
         &self,
         site: Site,
@@ -129,7 +135,7 @@ pub trait Physics: Send + Sync {
         self.contribute(site, parameters, now, rows);
     }
 
-    /// Rates of its own states into `rates`, for states that are no spools.
+    /// Rates of its memory into `rates`.
     fn remember<T: Scalar>(
         &self,
         _site: Site,
@@ -140,10 +146,8 @@ pub trait Physics: Send + Sync {
     ) {
     }
 
-    /// Sets states that are no spools to where they begin, and says whether they are such.
-    fn begin<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>, _states: &mut [T]) -> bool {
-        false
-    }
+    /// Sets its memory to where it begins.
+    fn begin<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>, _states: &mut [T]) {}
 }
 
 /// The traits through which a model uses unlike effects, from the list of the hooks of [`Physics`]: those that are the same for every
@@ -198,6 +202,7 @@ hooks! {
         fn formula() -> Option<&FormulaText>;
         fn why_not(machine: &Machine, site: Site) -> Option<String>;
         fn states() -> usize;
+        fn has_memory() -> bool;
         fn state_scale(state: usize) -> f64;
         fn reads_metering_flows() -> bool;
         fn reads_course() -> bool;
@@ -213,7 +218,7 @@ hooks! {
         fn contribute_remembering(
             site: Site, parameters: &[T], states: &[T], now: &Situation<T>, rows: &mut Rows<T>);
         fn remember(site: Site, parameters: &[T], states: &[T], now: &Situation<T>, rates: &mut [T]);
-        fn begin(site: Site, parameters: &[T], now: &Situation<T>, states: &mut [T]) -> bool;
+        fn begin(site: Site, parameters: &[T], now: &Situation<T>, states: &mut [T]);
     }
 }
 

@@ -3,6 +3,7 @@
 mod channel;
 mod inputs;
 mod instruments;
+mod law_states;
 mod layout;
 pub mod planar_chain;
 mod rounding;
@@ -14,6 +15,7 @@ mod system;
 pub use channel::Channel;
 pub use inputs::{ImposedState, Inputs};
 pub use instruments::{Distortion, Instruments};
+pub use law_states::LawStates;
 pub use layout::Layout;
 pub use rounding::Rounding;
 pub use rows::Rows;

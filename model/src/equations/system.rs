@@ -17,7 +17,7 @@ pub struct System<'m> {
     adjusting: Vec<usize>,
     /// Effects that look at how the input changes.
     readers_of_course: Vec<usize>,
-    /// Effects with states of their own.
+    /// Effects with memory.
     remembering: Vec<usize>,
     /// Whether an effect needs the metering flows.
     reads_metering_flows: bool,
@@ -57,7 +57,7 @@ impl<'m> System<'m> {
         let readers_of_course =
             (0..model.effects.len()).filter(|&number| model.effects[number].physics.reads_course()).collect();
         let remembering =
-            (0..model.effects.len()).filter(|&number| model.effects[number].physics.states() > 0).collect();
+            (0..model.effects.len()).filter(|&number| model.effects[number].physics.has_memory()).collect();
         let reads_metering_flows = model.effects.iter().any(|effect| effect.physics.reads_metering_flows());
         let own_instruments = Instruments::true_ones(model.machine.cylinders.len());
         let mut system = System {
@@ -325,6 +325,12 @@ impl<'m> System<'m> {
             let states = &mut state[self.states_of(number)];
             f64::hooks(&*effect.physics).begin(effect.site, own, &workspace.situation, states);
         }
+    }
+
+    /// Those of [`System::state_scales`] that are no spools.
+    pub fn law_states(&self) -> impl Iterator<Item = (usize, f64)> {
+        let spans: Vec<_> = self.remembering.iter().map(|&number| self.states_of(number)).collect();
+        self.state_scales().filter(move |(index, _)| spans.iter().any(|span| span.contains(index)))
     }
 
     /// Order of magnitude of each effect's own states: index in the state vector and magnitude, in its unit.

@@ -113,6 +113,10 @@ impl Physics for Law {
         self.states.len()
     }
 
+    fn has_memory(&self) -> bool {
+        !self.states.is_empty()
+    }
+
     fn state_scale(&self, state: usize) -> f64 {
         self.states.get(state).map_or(1.0, |state| state.scale)
     }
@@ -164,11 +168,10 @@ impl Physics for Law {
         }
     }
 
-    fn begin<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, states: &mut [T]) -> bool {
+    fn begin<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, states: &mut [T]) {
         for (slot, state) in states.iter_mut().zip(&self.states) {
             *slot = state.start.evaluate(&Law::moment(site, parameters, &[], now));
         }
-        !self.states.is_empty()
     }
 }
 

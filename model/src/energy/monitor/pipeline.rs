@@ -7,7 +7,7 @@ use super::{Balance, CylinderBalance, EffectTerm};
 use crate::Model;
 use crate::effects::{ActsOn, Site};
 use crate::energy::ledger;
-use crate::equations::{Inputs, System};
+use crate::equations::{Inputs, LawStates, System};
 use crate::machine::Supply;
 use crate::recording::{CylinderSample, Sample};
 
@@ -63,6 +63,7 @@ pub struct Monitor<'m, 's> {
     given: usize,
     /// Entries of `waiting` whose storage and powers are known.
     evaluated: usize,
+    laws: LawStates<'m>,
     counts: Counts,
 }
 
@@ -84,6 +85,7 @@ impl<'m, 's> Monitor<'m, 's> {
             waiting: VecDeque::new(),
             given: 0,
             evaluated: 0,
+            laws: LawStates::new(system),
             counts: Counts::default(),
         }
     }
@@ -144,7 +146,10 @@ impl<'m, 's> Monitor<'m, 's> {
             if !all && !measured && next.time + self.settings.half_width > now + ROUNDING {
                 return;
             }
-            let balance = self.balance(self.evaluated);
+            let (mut state, inputs) = self.state_of(next);
+            let time = next.time;
+            self.laws.follow(self.system, &self.parameters, time, &inputs, &mut state);
+            let balance = self.balance(self.evaluated, &state, &inputs);
             if let Some(next) = self.waiting.get_mut(self.evaluated) {
                 next.balance = Some(balance);
             }
@@ -207,11 +212,10 @@ impl<'m, 's> Monitor<'m, 's> {
     }
 
     /// Storage and powers at one state; the rate of the Hamiltonian is still to come.
-    fn balance(&self, index: usize) -> Balance {
+    fn balance(&self, index: usize, state: &[f64], inputs: &Inputs<f64>) -> Balance {
         let waiting = &self.waiting[index];
-        let (state, inputs) = self.state_of(waiting);
         let model: &Model = self.system.model();
-        let book = ledger(self.system, &self.parameters, &state, &inputs);
+        let book = ledger(self.system, &self.parameters, state, inputs);
         let cylinders = book
             .cylinders
             .iter()
@@ -221,7 +225,7 @@ impl<'m, 's> Monitor<'m, 's> {
                 let valve: f64 =
                     own().filter(|effect| effect.acts_on == ActsOn::Valve).map(|effect| effect.into_cylinders()).sum();
                 let oil = model.machine.cylinders.get(number).is_some_and(|cylinder| cylinder.chambers.is_some());
-                let pushed = if oil { 0.0 } else { self.rod_power(&state, &inputs, number) };
+                let pushed = if oil { 0.0 } else { self.rod_power(state, inputs, number) };
                 let terms = own()
                     .filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power)
                     .map(|effect| EffectTerm { effect: effect.effect.clone(), power: effect.into_cylinders() })
@@ -252,7 +256,7 @@ impl<'m, 's> Monitor<'m, 's> {
         inputs.rod_force[number] * cylinder.linkage.lever(state[layout.joint(number)]) * state[layout.rate(number)]
     }
 
-    /// State vector and inputs of a measured state.
+    /// State vector, but for the effects' own states, and inputs of a measured state.
     fn state_of(&self, waiting: &Waiting) -> (Vec<f64>, Inputs<f64>) {
         let layout = self.system.layout();
         let machine = &self.system.model().machine;
@@ -274,8 +278,6 @@ impl<'m, 's> Monitor<'m, 's> {
         if let Some(pump) = layout.pump {
             state[pump] = sample.pump_pressure;
         }
-        // Where the spool of a lagging valve really is, is what its sensor says.
-        self.system.set_effect_states(&inputs.orifice_area, &mut state);
         let or = |value: f64, constant: f64| if value.is_finite() { value } else { constant };
         inputs.supply_pressure = match machine.supply {
             Supply::PressureSource(source) => or(sample.pump_pressure, source.pressure),

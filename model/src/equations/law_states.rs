@@ -1,0 +1,78 @@
+//! States of laws with memory beside measured signals.
+//!
+//! A bristle that bends is measured by nobody. Where all else is known, its state follows from its rate.
+
+use super::{Inputs, System, Workspace};
+
+/// States of laws, carried from sample to sample.
+#[derive(Debug, Clone)]
+pub struct LawStates<'m> {
+    workspace: Workspace<'m, f64>,
+    /// When they were last known, s, and what they were.
+    known: Option<(f64, Vec<f64>)>,
+}
+
+/// A gap after which memory begins anew, s: longer than that of any seal.
+const GAP: f64 = 0.5;
+
+/// Part of a state's order of magnitude by which it is moved to see how its rate depends on it.
+const NUDGE: f64 = 1e-4;
+
+impl<'m> LawStates<'m> {
+    /// Nothing known yet.
+    pub fn new(system: &System<'m>) -> Self {
+        LawStates { workspace: system.workspace(), known: None }
+    }
+
+    /// Sets the effects' own states in `state`, whose other entries are measured at `time` (s): spools as
+    /// [`System::set_effect_states`] does, states of laws by one step from the last call (Rosenbrock-Euler, which is stable however
+    /// fast a law forgets). `parameters` are the model's; times go forward, and where they do not, laws begin anew.
+    pub fn follow(
+        &mut self,
+        system: &System<'m>,
+        parameters: &[f64],
+        time: f64,
+        inputs: &Inputs<f64>,
+        state: &mut [f64],
+    ) {
+        system.set_effect_states(&inputs.orifice_area, state);
+        let own: Vec<(usize, f64)> = system.law_states().collect();
+        if own.is_empty() {
+            return;
+        }
+        if let Some((before, values)) = &self.known
+            && (0.0..GAP).contains(&(time - before))
+        {
+            let step = time - before;
+            for ((index, _), value) in own.iter().zip(values) {
+                state[*index] = *value;
+            }
+            let rates = self.rates(system, parameters, inputs, state);
+            let next: Vec<f64> = own
+                .iter()
+                .map(|&(index, scale)| {
+                    let (here, nudge) = (state[index], NUDGE * scale);
+                    state[index] = here + nudge;
+                    let slope = (self.rates(system, parameters, inputs, state)[index] - rates[index]) / nudge;
+                    state[index] = here;
+                    // A law that runs away would make the step infinite.
+                    here + step * rates[index] / (1.0 - step * slope.min(0.0))
+                })
+                .collect();
+            for ((index, _), value) in own.iter().zip(&next) {
+                state[*index] = *value;
+            }
+        }
+        let values: Vec<f64> = own.iter().map(|(index, _)| state[*index]).collect();
+        // What was not measured leaves memory as it was.
+        if values.iter().all(|value| value.is_finite()) {
+            self.known = Some((time, values));
+        }
+    }
+
+    fn rates(&mut self, system: &System<'m>, parameters: &[f64], inputs: &Inputs<f64>, state: &[f64]) -> Vec<f64> {
+        let mut rates = vec![0.0; state.len()];
+        system.rates(&mut self.workspace, parameters, state, inputs, &mut rates);
+        rates
+    }
+}
