@@ -53,6 +53,8 @@ pub enum VerbError {
     Profile(#[from] ProfileError),
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: std::io::Error },
+    #[error("{wrong} of the laws, each at one place, {} a problem", if *wrong == 1 { "has" } else { "have" })]
+    Laws { wrong: usize },
     #[error("--catalogue {}: {reason}", path.display())]
     Catalogue { path: PathBuf, reason: String },
     #[error("{} is not a profile: {reason}", path.display())]

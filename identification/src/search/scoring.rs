@@ -88,7 +88,9 @@ fn parameters(model: &Model, effect: &ModelEffect) -> Vec<ParameterScore> {
     let bound = |parameter: &Parameter| match parameter.value {
         _ if parameter.known => None,
         value if value <= parameter.card.minimum => Some(Bound::Lower),
-        value if value >= parameter.card.maximum => Some(Bound::Upper),
+        value if value >= parameter.card.maximum && !effect.physics.has_natural_maximum(&parameter.card.name) => {
+            Some(Bound::Upper)
+        }
         _ => None,
     };
     let of = |parameter: &Parameter| ParameterScore {

@@ -45,6 +45,10 @@ impl Physics for LoadCheckValve {
         &CARD
     }
 
+    fn has_natural_maximum(&self, parameter: &str) -> bool {
+        parameter == "check_tightness"
+    }
+
     fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
         PARAMETERS
     }

@@ -22,6 +22,11 @@ pub trait Physics: Send + Sync {
         None
     }
 
+    /// Whether the maximum of a parameter is a size that machines have, as a check valve is tight, and not the end of what is plausible.
+    fn has_natural_maximum(&self, _parameter: &str) -> bool {
+        false
+    }
+
     /// Whether an effect of this size says anything about a machine. One that is within the accuracy of good instruments, or whose
     /// shape lies where nothing moves, is no answer to what is missing, however well it takes up an error.
     fn is_practically_significant(&self, _parameters: &[f64]) -> bool {
@@ -193,6 +198,7 @@ hooks! {
         fn card() -> &Card;
         fn parameters(machine: &Machine, site: Site) -> &[ParameterCard];
         fn value_where_left_out(parameter: &str) -> Option<f64>;
+        fn has_natural_maximum(parameter: &str) -> bool;
         fn is_practically_significant(parameters: &[f64]) -> bool;
         fn has_power() -> bool;
         fn has_constant_compliance() -> bool;

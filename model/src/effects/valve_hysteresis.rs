@@ -70,6 +70,10 @@ impl Physics for ValveHysteresis {
         &CARD
     }
 
+    fn has_natural_maximum(&self, parameter: &str) -> bool {
+        parameter == "bypass_share"
+    }
+
     fn parameters(&self, machine: &Machine, _site: Site) -> &[ParameterCard] {
         // Without a pump line there is no bypass.
         if matches!(machine.supply, Supply::PumpLine(_)) { PARAMETERS } else { &PARAMETERS[..1] }

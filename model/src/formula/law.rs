@@ -1,5 +1,6 @@
 //! A formula as a physical effect.
 
+use super::expression::Symbol;
 use super::program::{Moment, Program};
 use super::row::Row;
 use super::text::FormulaText;
@@ -35,6 +36,19 @@ impl Law {
     /// Where it enters the equations.
     pub fn row(&self) -> Row {
         self.row
+    }
+
+    /// The variables of its formula, in the order in which they stand there first.
+    pub(super) fn variables(&self) -> impl Iterator<Item = Variable> {
+        self.program.inputs.iter().filter_map(|input| match input {
+            Symbol::Variable(variable, None) => Some(*variable),
+            _ => None,
+        })
+    }
+
+    /// Its value in the unit of its row.
+    pub(super) fn value<T: Scalar>(&self, site: Site, parameters: &[T], states: &[T], now: &Situation<'_, T>) -> T {
+        self.program.evaluate(&Law::moment(site, parameters, states, now))
     }
 
     fn moment<'a, 'm, T>(

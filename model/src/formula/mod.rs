@@ -3,6 +3,7 @@
 //! A formula is read ([`parser`]), checked for units and compiled ([`compile`]), and evaluated with plain numbers or dual numbers
 //! ([`program`]). So one text serves simulation, regressor, power and sensitivities, as the code of a built-in effect does.
 
+mod check;
 mod compile;
 mod corner;
 mod dimension;
@@ -21,6 +22,7 @@ mod text;
 mod token;
 mod variable;
 
+pub use check::{CheckProblem, Checked, Curve, check};
 pub use dimension::{Dimension, UnitError};
 pub use error::{FormulaError, Problem};
 pub use law::Law;

@@ -263,6 +263,15 @@ pub struct EffectsArguments {
     pub name: Option<String>,
     #[command(flatten)]
     pub own: OwnEffects,
+    /// Check the formulas of these files over the range of a machine and draw them: finite, without jumps, and do they put energy in?
+    #[arg(long, num_args = 1.., value_name = "FILE|FOLDER", conflicts_with_all = ["name", "catalogue", "json"])]
+    pub check: Vec<PathBuf>,
+    /// Machine on which formulas are checked: the built-in name or file of a model.
+    #[arg(long, value_name = "MODEL", default_value = "zx30u-arm", requires = "check")]
+    pub model: String,
+    /// Print what a formula may use: rows, variables, functions.
+    #[arg(long, conflicts_with_all = ["name", "catalogue", "check", "json"])]
+    pub language: bool,
     #[command(flatten)]
     pub json: Json,
     #[command(flatten)]

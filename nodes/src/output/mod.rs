@@ -1,6 +1,7 @@
 //! What people and programs see of results.
 
 mod characterisation;
+mod chart;
 mod design;
 mod energy;
 mod json;
@@ -8,6 +9,7 @@ mod progress;
 mod tables;
 
 pub use characterisation::{characterisation_json, characterisation_table, refusals};
+pub use chart::chart;
 pub use design::{determination_json, pair_table, separation_json};
 pub use energy::{energy_json, energy_table, ledger_table, missing_power_json};
 pub use json::{comparison_json, diagnosis_json, identification_json, refinement_json, write_json};

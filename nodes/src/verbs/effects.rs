@@ -6,7 +6,7 @@ use excavator_model::document::built_in;
 use excavator_model::effects::{ActsOn, AnyEffect, Card, Effect, Family, Kind, ParameterCard, Site};
 use serde_json::{Value, json};
 
-use super::print;
+use super::{check_effects, print};
 use crate::cli::EffectsArguments;
 use crate::error::VerbError;
 use crate::output::{effect_table, number, write_json};
@@ -14,6 +14,13 @@ use crate::outputs::{self, Inputs};
 use crate::sources;
 
 pub fn run(arguments: &EffectsArguments) -> Result<(), VerbError> {
+    if arguments.language {
+        check_effects::language();
+        return Ok(());
+    }
+    if !arguments.check.is_empty() {
+        return check_effects::run(&arguments.check, &arguments.model);
+    }
     let outputs = [("--json", arguments.json.json.as_deref())];
     outputs::check(&outputs, &Inputs::default(), arguments.overwriting)?;
     let catalogue = sources::catalogue(&arguments.own)?;

@@ -1,6 +1,7 @@
 //! One file per verb.
 
 mod characterise;
+mod check_effects;
 mod compare;
 mod design;
 mod diagnose;
