@@ -24,7 +24,7 @@ pub use instruments::{Instrument, instruments};
 pub(crate) use linear_refit::Remainder;
 pub(crate) use linear_refit::{LinearRefit, scales};
 pub use normalised_error::normalised_error;
-pub use nuisances::{Simplified, is_nuisance, nuisances_shown, with_nuisances, with_nuisances_of};
+pub use nuisances::{Simplified, is_nuisance, nuisances_shown, simplified, with_nuisances, with_nuisances_of};
 pub use output_error::{Fit, FitError, evaluate, fit, fit_watched};
 pub(crate) use prediction::fit_predicted;
 pub use prediction::{Prediction, predict};

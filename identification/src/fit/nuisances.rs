@@ -7,8 +7,8 @@ use excavator_model::effects::{Effect, Family, Site};
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::{Model, ModelEffect, Parameter};
 
-use super::Fit;
 use super::priors::centre;
+use super::{Fit, FitError, FitSettings, fit};
 
 /// Whether an effect of this family is a nuisance.
 pub fn is_nuisance(family: Family) -> bool {
@@ -72,16 +72,24 @@ impl Simplified {
     pub fn index(&self, before: usize) -> Option<usize> {
         self.kept.iter().position(|&kept| kept == before)
     }
+}
 
-    /// The same of a fit whose model it was made of.
-    pub fn fit(given: &Model, fit: &Fit) -> Fit {
-        let simple = Simplified::of(given, &fit.model);
-        let (places, fitted): (Vec<usize>, Vec<usize>) =
-            fit.fitted.iter().enumerate().filter_map(|(place, &index)| Some((place, simple.index(index)?))).unzip();
-        let covariance = fit.covariance.select_rows(&places).select_columns(&places);
-        let inflation = places.iter().map(|&place| fit.inflation[place]).collect();
-        Fit { model: simple.model, fitted, covariance, inflation, ..fit.clone() }
+/// A fit without the nuisance effects that `given` has not and that do not differ from nothing. The rest is fitted again: it was bent by
+/// what is left out.
+///
+/// # Errors
+/// [`FitError`].
+pub fn simplified(
+    given: &Model,
+    fitted: &Fit,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+) -> Result<Fit, FitError> {
+    let simple = Simplified::of(given, &fitted.model).model;
+    if simple.effects.len() == fitted.model.effects.len() {
+        return Ok(fitted.clone());
     }
+    fit(&simple, recordings, settings)
 }
 
 fn is_added(given: &Model, effect: &ModelEffect) -> bool {
@@ -104,10 +112,8 @@ fn differs(parameter: &Parameter) -> bool {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use excavator_model::document::built_in;
-    use nalgebra::DMatrix;
 
     use super::*;
-    use crate::fit::made_up::made_up_fit;
 
     fn recording(is_spool_measured: bool) -> Recording {
         let time: Vec<f64> = (0..100).map(|index| f64::from(index) * 2e-3).collect();
@@ -140,20 +146,13 @@ mod tests {
         }
         let speed = model.effects.iter_mut().find(|effect| effect.name() == "friction_reversal").unwrap();
         speed.parameters[0].value = 3e-3;
-        let fitted = model.unknown_parameters();
-        let count = fitted.len();
-        let covariance = DMatrix::from_fn(count, count, |row, column| if row == column { row as f64 } else { 0.0 });
-        let fit = Fit { fitted, covariance, inflation: vec![1.0; count], ..made_up_fit(model.clone(), 1.0, 1.0) };
-        let simple = Simplified::fit(&given, &fit);
+        let simple = Simplified::of(&given, &model);
         let shown: Vec<&str> = nuisances_shown(&given, &model).map(ModelEffect::name).collect();
         assert_eq!(shown, ["friction_reversal"]);
         assert_eq!(simple.model.effects.len(), given.effects.len() + 1);
-        let own = given.unknown_parameters().len();
-        assert_eq!((simple.fitted.len(), simple.inflation.len()), (own + 1, own + 1));
         let names = simple.model.parameter_names();
-        assert_eq!(names[*simple.fitted.last().unwrap()], "arm.reversal_speed");
-        // The variance is that of the same parameter before.
-        let before = fit.fitted.iter().position(|&index| model.parameter_names()[index] == "arm.reversal_speed");
-        assert_eq!(simple.covariance[(own, own)], before.unwrap() as f64);
+        assert_eq!(names.last().unwrap(), "arm.reversal_speed");
+        let before = model.parameter_names().iter().position(|name| name == "arm.reversal_speed").unwrap();
+        assert_eq!(simple.index(before), Some(names.len() - 1));
     }
 }

@@ -6,7 +6,7 @@ use excavator_model::{HistoryEntry, Model, ModelError, addition_name, site_name}
 
 use crate::decision::Kind;
 use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisSettings, NamedVerdict, diagnose, judge_named};
-use crate::fit::{Fit, FitError, Simplified, nuisances_shown};
+use crate::fit::{Fit, FitError, nuisances_shown, simplified};
 use crate::search::{Addition, AdditionError, fit_addition, fit_given};
 use crate::validation::{Comparison, compare};
 
@@ -129,7 +129,7 @@ pub fn refine(
     };
     let mut steps: Vec<Step> = Vec::new();
     for (added, fit) in fits {
-        let fit = Simplified::fit(model, &fit);
+        let fit = simplified(model, &fit, identification, &settings.effort.fit)?;
         let comparisons =
             validation.iter().map(|recording| compare(&fit.model, recording)).collect::<Result<Vec<_>, _>>()?;
         steps.push(Step { added, fit, comparisons });

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use excavator_identification::fit::{
-    FitError, FitSettings, Simplified, fit_watched, with_nuisances, with_nuisances_of,
+    FitError, FitSettings, fit_watched, simplified, with_nuisances, with_nuisances_of,
 };
 use excavator_identification::regression::{RegressionError, WeakFormSettings, weak_form_watched};
 use excavator_identification::validation::compare;
@@ -120,7 +120,7 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
         let fitting = part("fitting outputs", 0.5, 0.7);
         let start = with_nuisances(&identified, &recordings);
         let fitted = fit_watched(&start, &recordings, &FitSettings::default(), &fitting).map_err(VerbError::from)?;
-        identified = Simplified::of(&wanted, &fitted.model).model;
+        identified = simplified(&wanted, &fitted, &recordings, &FitSettings::default()).map_err(VerbError::from)?.model;
     }
     let (mut signals, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
     for (index, recording) in recordings.iter().enumerate() {

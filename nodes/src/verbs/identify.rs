@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use excavator_identification::fit::{
-    FitSettings, ProfileInterval, Simplified, fit, profile, with_nuisances, with_nuisances_of,
+    FitSettings, ProfileInterval, fit, profile, simplified, with_nuisances, with_nuisances_of,
 };
 use excavator_identification::regression::{
     ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form,
@@ -120,7 +120,7 @@ fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<
     if method == Method::OutputError {
         let settings = FitSettings { sample_rate: f64::INFINITY, ..FitSettings::default() };
         let fitted = fit(&with_nuisances(&result.model, recordings), recordings, &settings)?;
-        let fitted = Simplified::fit(model, &fitted);
+        let fitted = simplified(model, &fitted, recordings, &settings)?;
         result.profiles = fitted
             .undetermined()
             .into_iter()
