@@ -1,0 +1,168 @@
+//! Formula effects as a user meets them: the page of the docs, and recordings with laws that no catalogue has.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+const REPOSITORY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
+/// Runs a line of a page in `folder`; gives standard output.
+fn run(line: &str, folder: &Path) -> String {
+    let program = Path::new(env!("CARGO_BIN_EXE_excavator"));
+    let path = format!("{}:{}", program.parent().unwrap().display(), std::env::var("PATH").unwrap());
+    let output = Command::new("bash")
+        .args(["-euc", line])
+        .current_dir(folder)
+        .env("PATH", path)
+        .env("REPO", std::fs::canonicalize(REPOSITORY).unwrap())
+        .output()
+        .unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{line}\n{errors}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Words and numbers of a line of a table; numbers by their value.
+fn cells(line: &str) -> Vec<String> {
+    line.split(['│', '┆']).map(|cell| cell.trim().to_string()).filter(|cell| !cell.is_empty()).collect()
+}
+
+/// Whether two cells say the same: numbers within 5 %, so that another processor's last digits do not matter.
+fn is_same(one: &str, other: &str) -> bool {
+    match (one.parse::<f64>(), other.parse::<f64>()) {
+        (Ok(one), Ok(other)) => (one - other).abs() <= 0.05 * other.abs(),
+        _ => one == other,
+    }
+}
+
+/// Every command of the page, in order; rows of tables and sentences that it shows are in the output.
+#[test]
+fn the_page_on_own_physics_is_true() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = std::fs::read_to_string(format!("{REPOSITORY}/docs/own-physics.md")).unwrap();
+    let law = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    std::fs::write(folder.path().join("seal.toml"), law).unwrap();
+    let mut output = String::new();
+    let mut commands = 0;
+    let mut shows = false;
+    for line in page.lines() {
+        if let Some(command) = line.strip_prefix("    $ ") {
+            output = run(command, folder.path());
+            commands += 1;
+            shows = true;
+        } else if let Some(shown) = line.strip_prefix("    ").filter(|_| shows) {
+            let wanted = cells(shown);
+            let row = |line: &str| {
+                let found = cells(line);
+                found.len() == wanted.len() && found.iter().zip(&wanted).all(|(found, wanted)| is_same(found, wanted))
+            };
+            assert!(output.contains(shown) || output.lines().any(row), "{shown}\nis not in\n{output}");
+        } else {
+            shows = false;
+        }
+    }
+    assert!(commands >= 6, "{commands}");
+    let model = std::fs::read_to_string(folder.path().join("own.toml")).unwrap();
+    assert!(model.contains("[[formula]]") && model.starts_with("format = 2"));
+}
+
+#[test]
+fn a_wrong_sign_is_seen_before_a_fit() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |formula: &str| {
+        format!(
+            "[[formula]]\nname = \"drag\"\nacts_on = \"piston_force\"\nformula = \"{formula}\"\n\
+             parameters.k = {{ unit = \"N s2/m2\", start = [100.0] }}\n"
+        )
+    };
+    let check = |formula: &str| {
+        std::fs::write(folder.path().join("drag.toml"), file(formula)).unwrap();
+        run("excavator effects --check drag.toml || true", folder.path())
+    };
+    assert!(check("-k*v*abs(v)").contains("dissipates"));
+    assert!(check("k*v*abs(v)").contains("PUTS ENERGY IN"));
+    assert!(check("k*v*v").contains("a loss never puts energy in"));
+    assert!(check("-k*v^3/(abs(v) - v)").contains("not finite"));
+    assert!(check("-k*v*v*v/abs(v)").contains("not finite where v = 0"));
+    assert!(check("-k*v*v*sqrt(abs(v)/v)*0").contains("PROBLEM"));
+}
+
+fn practice() -> Option<PathBuf> {
+    let folder = PathBuf::from(format!("{REPOSITORY}/../shared/practice-laws"));
+    let found = folder.join("answers.json").exists();
+    if !found {
+        println!("skipped: {} is not here", folder.display());
+    }
+    found.then_some(folder)
+}
+
+/// The laws of the practice recordings, as their users would write them.
+const LAWS: &str = r#"
+[[formula]]
+name = "distance_friction"
+acts_on = "piston_force"
+formula = "-k*abs(s)*sign(v)"
+parameters.k = { unit = "N/m", maximum = 1e6, start = [1000.0] }
+
+[[formula]]
+name = "load_damping"
+acts_on = "piston_force"
+formula = "-k*v*abs(p_cap - p_rod)"
+parameters.k = { unit = "N s/(m Pa)", maximum = 1.0, start = [1e-3] }
+
+[[formula]]
+name = "turbulent_leak"
+acts_on = "piston_leak"
+formula = "k*(p_cap - p_rod)*abs(p_cap - p_rod)"
+parameters.k = { unit = "m3/(s Pa2)", maximum = 1e-12, start = [1e-18] }
+
+[[formula]]
+name = "pressed_opening"
+acts_on = "opening"
+formula = "u*(1 - k*p_pump)"
+parameters.k = { unit = "1/Pa", maximum = 1e-5, start = [1e-9, 1e-8, 1e-7] }
+"#;
+
+/// Named first and alone, the coefficient within 5 %, the squared error at least ten times smaller.
+fn is_named(case: &str, law: &str) {
+    let Some(practice) = practice() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("laws.toml"), LAWS).unwrap();
+    let data = std::fs::canonicalize(practice.join(case)).unwrap();
+    run(
+        &format!(
+            "excavator diagnose --model zx30u-arm --catalogue laws.toml --identification {0}/identification \
+             --validation {0}/validation --json found.json",
+            data.display()
+        ),
+        folder.path(),
+    );
+    let read = |path: &Path| -> Value { serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap() };
+    let found = read(&folder.path().join("found.json"));
+    let truth = read(&practice.join("answers.json"))[case]["k"].as_f64().unwrap();
+    assert_eq!(found["verdict"], "missing_effect", "{case}");
+    let together = found["together"].as_array().unwrap();
+    assert_eq!(together.len(), 1, "{case}: {together:?}");
+    let first = &found["candidates"][0];
+    assert_eq!((&first["effect"], &first["tied_with_first"]), (&law.into(), &false.into()), "{case}");
+    let value = first["parameters"][0]["value"].as_f64().unwrap();
+    assert!((value / truth - 1.0).abs() < 0.05, "{case}: {value}, true {truth}");
+    let error = |key: &str| first[key].as_f64().unwrap();
+    assert!(error("validation_error_after") < 0.1 * error("validation_error_before"), "{case}");
+}
+
+#[test]
+fn a_law_of_the_user_is_named_like_a_built_in_one() {
+    is_named("q01", "load_damping");
+}
+
+#[test]
+#[ignore = "a minute and a half; tests/run --long"]
+fn so_are_the_others() {
+    is_named("q00", "distance_friction");
+    is_named("q02", "turbulent_leak");
+    is_named("q03", "pressed_opening");
+}
