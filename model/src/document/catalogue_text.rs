@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 
-use super::DocumentError;
+use super::{DocumentError, syntax};
 use crate::effects::{AnyEffect, Catalogue};
 use crate::formula::{FormulaText, Law};
 
@@ -20,10 +20,8 @@ struct CatalogueText {
 /// # Errors
 /// [`DocumentError`] in one line that points at the place in the formula.
 pub fn parse_catalogue(name: &str, text: &str, catalogue: &Catalogue) -> Result<Catalogue, DocumentError> {
-    let parsed: CatalogueText = toml::from_str(text).map_err(|error| DocumentError::Catalogue {
-        name: name.to_string(),
-        reason: error.to_string().trim().replace('\n', " "),
-    })?;
+    let parsed: CatalogueText = toml::from_str(text)
+        .map_err(|error| DocumentError::Catalogue { name: name.to_string(), reason: syntax(text, &error) })?;
     if parsed.formula.is_empty() {
         let reason = "it has no [[formula]]".to_string();
         return Err(DocumentError::Catalogue { name: name.to_string(), reason });

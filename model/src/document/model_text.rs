@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::DocumentError;
 use super::catalogue_text::with_formulas;
 use super::machine_text::MachineText;
+use super::{DocumentError, syntax};
 use crate::effects::{Catalogue, Kind, ParameterCard};
 use crate::formula::FormulaText;
 use crate::model::{site_name, site_named};
@@ -65,10 +65,8 @@ fn first_format() -> u32 {
 /// # Errors
 /// [`DocumentError`] in one line that says which number is wrong.
 pub fn parse(name: &str, text: &str, catalogue: &Catalogue) -> Result<Model, DocumentError> {
-    let parsed: ModelText = toml::from_str(text).map_err(|error| DocumentError::Syntax {
-        name: name.to_string(),
-        reason: error.to_string().trim().replace('\n', " "),
-    })?;
+    let parsed: ModelText = toml::from_str(text)
+        .map_err(|error| DocumentError::Syntax { name: name.to_string(), reason: syntax(text, &error) })?;
     if parsed.format > FORMAT {
         return Err(DocumentError::Inconsistent {
             name: name.to_string(),

@@ -173,10 +173,10 @@ fn text_of(path: &Path) -> Option<String> {
     Some(text)
 }
 
-/// Line and column of a syntax error, without the excerpt that follows.
+/// Line and column of a syntax error, without the message that follows.
 fn place(error: &DocumentError) -> String {
     let DocumentError::Syntax { reason, .. } = error else { return String::new() };
-    let numbers = reason.strip_prefix("TOML parse error at line ").and_then(|rest| {
+    let numbers = reason.strip_prefix("line ").and_then(|rest| {
         let (line, rest) = rest.split_once(", column ")?;
         let column: String = rest.chars().take_while(char::is_ascii_digit).collect();
         Some((line.parse::<u64>().ok()?, column.parse::<u64>().ok()?))

@@ -121,6 +121,7 @@ targets! {
     packed_bags "packed",
     can_databases "can-database",
     can_logs "can-log",
+    formulas "formula",
     yaml_texts "yaml",
 }
 

@@ -2,6 +2,7 @@
 
 mod bag;
 mod can;
+mod formula;
 mod map;
 mod message;
 mod schema;
@@ -27,7 +28,7 @@ pub struct Target {
 const MB: usize = 1 << 20;
 
 /// All targets.
-pub const TARGETS: [Target; 12] = [
+pub const TARGETS: [Target; 13] = [
     Target { name: "message", run: message::run, seeds: message::seeds, cases: 2_000, memory: (100, MB) },
     Target { name: "schema", run: schema::run, seeds: schema::seeds, cases: 3_000, memory: (200, MB) },
     Target { name: "map", run: map::run, seeds: map::seeds, cases: 300, memory: (200, 8 * MB) },
@@ -40,5 +41,6 @@ pub const TARGETS: [Target; 12] = [
     Target { name: "packed", run: bag::run, seeds: bag::packed_seeds, cases: 30, memory: (200, 64 * MB) },
     Target { name: "can-database", run: can::database, seeds: can::database_seeds, cases: 600, memory: (400, MB) },
     Target { name: "can-log", run: can::log, seeds: can::log_seeds, cases: 1_000, memory: (100, MB) },
+    Target { name: "formula", run: formula::run, seeds: formula::seeds, cases: 2_000, memory: (1_000, 4 * MB) },
     Target { name: "yaml", run: yaml::run, seeds: yaml::seeds, cases: 2_000, memory: (1_000, 4 * MB) },
 ];
