@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+mod common;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -91,7 +93,7 @@ fn a_wrong_sign_is_seen_before_a_fit() {
 }
 
 fn practice() -> Option<PathBuf> {
-    let folder = PathBuf::from(format!("{REPOSITORY}/../shared/practice-laws"));
+    let folder = common::shared()?.join("practice-laws");
     let found = folder.join("answers.json").exists();
     if !found {
         println!("skipped: {} is not here", folder.display());

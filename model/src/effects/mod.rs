@@ -6,7 +6,7 @@
 //! 3. *power*: its forces times velocities and its flows times pressures ([`crate::energy`]);
 //! 4. *how it shows*: its [`Card`], in words a machine engineer understands, with the experiment that shows it best.
 //!
-//! To add one to the program: write a file with a unit struct and its [`Physics`], and add a line to [`built_in`]. One of your own needs no
+//! To add one to the program: write a file with a unit struct and its [`Physics`], and add a line to `built_in.rs`. One of your own needs no
 //! Rust ([`crate::formula`]), or a [`Physics`] in your own crate that [`Catalogue::with`] adds.
 
 mod built_in;

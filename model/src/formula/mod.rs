@@ -1,7 +1,7 @@
 //! Laws that a user writes as text.
 //!
-//! A formula is read ([`parser`]), checked for units and compiled ([`compile`]), and evaluated with plain numbers or dual numbers
-//! ([`program`]). So one text serves simulation, regressor, power and sensitivities, as the code of a built-in effect does.
+//! A formula is read (`parser`), checked for units and compiled (`compile`), and evaluated with plain numbers or dual numbers
+//! (`program`). So one text serves simulation, regressor, power and sensitivities, as the code of a built-in effect does.
 
 mod check;
 mod compile;
