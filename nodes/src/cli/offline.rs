@@ -46,8 +46,8 @@ impl ModelChoice {
 
 #[derive(Debug, Args)]
 pub struct OwnEffects {
-    /// Your own effects, written as formulas: a file (TOML), or a folder with such files.
-    #[arg(long, num_args = 1.., value_name = "FILE|FOLDER")]
+    /// Your own effects, written as formulas: a file (TOML), or a folder with such files. Repeat it for several.
+    #[arg(long, value_name = "FILE|FOLDER")]
     pub catalogue: Vec<PathBuf>,
 }
 
