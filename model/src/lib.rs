@@ -12,6 +12,7 @@ pub mod document;
 pub mod effects;
 pub mod energy;
 pub mod equations;
+mod errors;
 pub mod formula;
 pub mod machine;
 mod model;
@@ -19,6 +20,5 @@ pub mod recording;
 pub mod scalar;
 pub mod simulation;
 
-pub use model::{
-    HistoryEntry, Model, ModelEffect, ModelError, Parameter, SignalError, addition_name, site_name, site_named,
-};
+pub use errors::{ModelError, SignalError};
+pub use model::{HistoryEntry, Model, ModelEffect, Parameter, addition_name, site_name, site_named};
