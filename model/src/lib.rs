@@ -8,6 +8,7 @@
 //! of Hydraulic Servomechanisms"; `docs/physics.md` lists where the code departs from print, and why. SI units
 //! everywhere, pressures are gauge. This crate reads no files, knows no ROS and does no statistics.
 
+pub mod check;
 pub mod document;
 pub mod effects;
 pub mod energy;

@@ -50,7 +50,7 @@ pub struct Parameter {
 }
 
 /// Something that was done to a model.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 pub struct HistoryEntry {
     /// When, ISO 8601.
     pub when: String,

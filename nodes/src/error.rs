@@ -55,6 +55,8 @@ pub enum VerbError {
     Write { path: PathBuf, source: std::io::Error },
     #[error("{wrong} of the laws, each at one place, {} a problem", if *wrong == 1 { "has" } else { "have" })]
     Laws { wrong: usize },
+    #[error("{oddities} {} odd in {name}", if *oddities == 1 { "thing is" } else { "things are" })]
+    OddModel { name: String, oddities: usize },
     #[error("--catalogue {}: {reason}", path.display())]
     Catalogue { path: PathBuf, reason: String },
     #[error("{} is not a profile: {reason}", path.display())]

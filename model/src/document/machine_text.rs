@@ -1,104 +1,165 @@
 //! The machine part of a model file.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::DocumentError;
-use super::quantity::{Must, Quantity};
+use super::quantity::{Acceleration, Angle, Area, Flow, Length, Measure, Pressure, Quantity, TankPressure, Volume};
 use crate::machine::{
     Chambers, Cylinder, ImposedMotion, Linkage, Machine, Mechanism, PressureSource, PumpLine, Supply,
 };
 use crate::model::PLACES_BESIDE_CYLINDERS;
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// The machine: geometry and constants, nothing that has to be identified.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MachineText {
+    /// Short name, a word.
     name: String,
+    /// What the machine is, for people.
     description: String,
-    gravity: Quantity,
+    /// Gravity acceleration.
+    gravity: Quantity<Acceleration>,
+    /// How joints move.
     mechanism: MechanismText,
+    /// Where the oil comes from.
     supply: SupplyText,
+    /// One cylinder for each joint, in the order of the joints.
     cylinders: Vec<CylinderText>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// How joints move.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 enum MechanismText {
-    SingleLink { base_angle: Quantity },
+    /// One link that turns about a joint whose base is held.
+    SingleLink {
+        /// Angle at which everything before the joint is held; the link hangs straight down where it and the joint's angle add up to zero.
+        base_angle: Quantity<Angle>,
+    },
+    /// Two links, the second on the end of the first, in one vertical plane.
     TwoLink,
-    PlanarChain { link_lengths: Vec<Quantity> },
+    /// A chain of links in one vertical plane, each on the end of the one before.
+    PlanarChain {
+        /// Distance from each joint to the next: one less than there are joints.
+        link_lengths: Vec<Quantity<Length>>,
+    },
+    /// A mass on the rod.
     LinearLoad,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Where the oil comes from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 enum SupplyText {
-    PumpLine { volume: Quantity, flow: Quantity, tank_pressure: Quantity },
-    PressureSource { pressure: Quantity, tank_pressure: Quantity },
+    /// A pump of constant flow that feeds a volume; its pressure moves.
+    PumpLine {
+        /// Volume of the oil between pump and valves.
+        volume: Quantity<Volume>,
+        /// Flow of the pump.
+        flow: Quantity<Flow>,
+        /// Gauge pressure of the tank.
+        tank_pressure: Quantity<TankPressure>,
+    },
+    /// A supply that is kept at one pressure. A recording that measures it overrides it.
+    PressureSource {
+        /// Gauge pressure of the supply.
+        pressure: Quantity<Pressure>,
+        /// Gauge pressure of the tank.
+        tank_pressure: Quantity<TankPressure>,
+    },
+    /// No oil: cylinders without chambers, driven by a measured force or moved from outside.
     None,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A cylinder.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct CylinderText {
+    /// Its name, a word; "pump" and "machine" are taken.
     name: String,
-    stroke: Quantity,
+    /// Full stroke; displacement is counted from its middle.
+    stroke: Quantity<Length>,
+    /// How the cylinder drives its joint.
     linkage: LinkageText,
+    /// Its chambers; left out where a measured force drives it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     chambers: Option<ChambersText>,
+    /// For a rod that is moved from outside, where pressures and displacement are measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     imposed_motion: Option<ImposedMotionText>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// How a cylinder drives its joint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 enum LinkageText {
-    Triangle { foot_arm: Quantity, rod_arm: Quantity, mid_stroke_length: Quantity, mirrored: bool },
+    /// A cylinder pinned across a joint: cosine law.
+    Triangle {
+        /// Distance from the joint to the cylinder's foot pin.
+        foot_arm: Quantity<Length>,
+        /// Distance from the joint to the rod's pin.
+        rod_arm: Quantity<Length>,
+        /// Distance from pin to pin at mid-stroke.
+        mid_stroke_length: Quantity<Length>,
+        /// Whether extension lowers the joint's angle, as on an arm; false on a boom.
+        mirrored: bool,
+    },
+    /// The piston carries the load itself.
     Direct,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// The two chambers of a cylinder and the valve at them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ChambersText {
-    cap_area: Quantity,
-    rod_area: Quantity,
-    cap_dead_volume: Quantity,
-    rod_dead_volume: Quantity,
-    maximum_orifice_area: Quantity,
+    /// Piston area on the cap side.
+    cap_area: Quantity<Area>,
+    /// Piston area on the rod side.
+    rod_area: Quantity<Area>,
+    /// Oil volume of the cap side beyond the stroke: hoses, ports.
+    cap_dead_volume: Quantity<Volume>,
+    /// Oil volume of the rod side beyond the stroke.
+    rod_dead_volume: Quantity<Volume>,
+    /// Orifice area of a fully open metering edge.
+    maximum_orifice_area: Quantity<Area>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Piston areas of a rod that is moved from outside.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ImposedMotionText {
-    cap_area: Quantity,
-    rod_area: Quantity,
+    /// Piston area on the cap side.
+    cap_area: Quantity<Area>,
+    /// Piston area on the rod side.
+    rod_area: Quantity<Area>,
 }
 
 impl MachineText {
     /// The machine, every unit and range checked.
     pub fn machine(&self, name: &str) -> Result<Machine, DocumentError> {
-        use Must::{BeAboveVacuum, BeFinite, BePositive, NotBeNegative};
         let mechanism = match &self.mechanism {
             MechanismText::SingleLink { base_angle } => {
-                Mechanism::SingleLink { base_angle: base_angle.checked(name, "base_angle", "rad", BeFinite)? }
+                Mechanism::SingleLink { base_angle: base_angle.checked(name, "base_angle")? }
             }
             MechanismText::TwoLink => Mechanism::TwoLink,
             MechanismText::PlanarChain { link_lengths } => Mechanism::PlanarChain {
                 link_lengths: link_lengths
                     .iter()
-                    .map(|length| length.checked(name, "link_lengths", "m", BePositive))
+                    .map(|length| length.checked(name, "link_lengths"))
                     .collect::<Result<_, _>>()?,
             },
             MechanismText::LinearLoad => Mechanism::LinearLoad,
         };
         let supply = match &self.supply {
             SupplyText::PumpLine { volume, flow, tank_pressure } => Supply::PumpLine(PumpLine {
-                volume: volume.checked(name, "supply.volume", "m3", BePositive)?,
-                flow: flow.checked(name, "supply.flow", "m3/s", BePositive)?,
-                tank_pressure: tank_pressure.checked(name, "supply.tank_pressure", "Pa", BeAboveVacuum)?,
+                volume: volume.checked(name, "supply.volume")?,
+                flow: flow.checked(name, "supply.flow")?,
+                tank_pressure: tank_pressure.checked(name, "supply.tank_pressure")?,
             }),
             SupplyText::PressureSource { pressure, tank_pressure } => Supply::PressureSource(PressureSource {
-                pressure: pressure.checked(name, "supply.pressure", "Pa", BePositive)?,
-                tank_pressure: tank_pressure.checked(name, "supply.tank_pressure", "Pa", BeAboveVacuum)?,
+                pressure: pressure.checked(name, "supply.pressure")?,
+                tank_pressure: tank_pressure.checked(name, "supply.tank_pressure")?,
             }),
             SupplyText::None => Supply::None,
         };
@@ -133,7 +194,7 @@ impl MachineText {
         Ok(Machine {
             name: self.name.clone(),
             description: self.description.clone(),
-            gravity: self.gravity.checked(name, "gravity", "m/s2", NotBeNegative)?,
+            gravity: self.gravity.checked(name, "gravity")?,
             mechanism,
             cylinders,
             supply,
@@ -145,26 +206,26 @@ impl MachineText {
         MachineText {
             name: machine.name.clone(),
             description: machine.description.clone(),
-            gravity: Quantity::new(machine.gravity, "m/s2"),
+            gravity: Quantity::new(machine.gravity),
             mechanism: match &machine.mechanism {
                 Mechanism::SingleLink { base_angle } => {
-                    MechanismText::SingleLink { base_angle: Quantity::new(*base_angle, "rad") }
+                    MechanismText::SingleLink { base_angle: Quantity::new(*base_angle) }
                 }
                 Mechanism::TwoLink => MechanismText::TwoLink,
                 Mechanism::PlanarChain { link_lengths } => MechanismText::PlanarChain {
-                    link_lengths: link_lengths.iter().map(|&length| Quantity::new(length, "m")).collect(),
+                    link_lengths: link_lengths.iter().map(|&length| Quantity::new(length)).collect(),
                 },
                 Mechanism::LinearLoad => MechanismText::LinearLoad,
             },
             supply: match machine.supply {
                 Supply::PumpLine(line) => SupplyText::PumpLine {
-                    volume: Quantity::new(line.volume, "m3"),
-                    flow: Quantity::new(line.flow, "m3/s"),
-                    tank_pressure: Quantity::new(line.tank_pressure, "Pa"),
+                    volume: Quantity::new(line.volume),
+                    flow: Quantity::new(line.flow),
+                    tank_pressure: Quantity::new(line.tank_pressure),
                 },
                 Supply::PressureSource(source) => SupplyText::PressureSource {
-                    pressure: Quantity::new(source.pressure, "Pa"),
-                    tank_pressure: Quantity::new(source.tank_pressure, "Pa"),
+                    pressure: Quantity::new(source.pressure),
+                    tank_pressure: Quantity::new(source.tank_pressure),
                 },
                 Supply::None => SupplyText::None,
             },
@@ -174,15 +235,17 @@ impl MachineText {
 }
 
 impl CylinderText {
+    /// A constant of this cylinder.
+    fn checked<M: Measure>(&self, name: &str, quantity: &Quantity<M>, what: &str) -> Result<f64, DocumentError> {
+        quantity.checked(name, &format!("{}.{what}", self.name))
+    }
+
     fn cylinder(&self, name: &str) -> Result<Cylinder, DocumentError> {
-        let positive = |quantity: &Quantity, what: &str, unit: &'static str| {
-            quantity.checked(name, &format!("{}.{what}", self.name), unit, Must::BePositive)
-        };
         let linkage = match &self.linkage {
             LinkageText::Triangle { foot_arm, rod_arm, mid_stroke_length, mirrored } => Linkage::Triangle {
-                foot_arm: positive(foot_arm, "linkage.foot_arm", "m")?,
-                rod_arm: positive(rod_arm, "linkage.rod_arm", "m")?,
-                mid_stroke_length: positive(mid_stroke_length, "linkage.mid_stroke_length", "m")?,
+                foot_arm: self.checked(name, foot_arm, "linkage.foot_arm")?,
+                rod_arm: self.checked(name, rod_arm, "linkage.rod_arm")?,
+                mid_stroke_length: self.checked(name, mid_stroke_length, "linkage.mid_stroke_length")?,
                 mirrored: *mirrored,
             },
             LinkageText::Direct => Linkage::Direct,
@@ -190,21 +253,25 @@ impl CylinderText {
         let chambers = match &self.chambers {
             None => None,
             Some(text) => Some(Chambers {
-                cap_area: positive(&text.cap_area, "chambers.cap_area", "m2")?,
-                rod_area: positive(&text.rod_area, "chambers.rod_area", "m2")?,
-                cap_dead_volume: positive(&text.cap_dead_volume, "chambers.cap_dead_volume", "m3")?,
-                rod_dead_volume: positive(&text.rod_dead_volume, "chambers.rod_dead_volume", "m3")?,
-                maximum_orifice_area: positive(&text.maximum_orifice_area, "chambers.maximum_orifice_area", "m2")?,
+                cap_area: self.checked(name, &text.cap_area, "chambers.cap_area")?,
+                rod_area: self.checked(name, &text.rod_area, "chambers.rod_area")?,
+                cap_dead_volume: self.checked(name, &text.cap_dead_volume, "chambers.cap_dead_volume")?,
+                rod_dead_volume: self.checked(name, &text.rod_dead_volume, "chambers.rod_dead_volume")?,
+                maximum_orifice_area: self.checked(
+                    name,
+                    &text.maximum_orifice_area,
+                    "chambers.maximum_orifice_area",
+                )?,
             }),
         };
         let imposed_motion = match &self.imposed_motion {
             None => None,
             Some(text) => Some(ImposedMotion {
-                cap_area: positive(&text.cap_area, "imposed_motion.cap_area", "m2")?,
-                rod_area: positive(&text.rod_area, "imposed_motion.rod_area", "m2")?,
+                cap_area: self.checked(name, &text.cap_area, "imposed_motion.cap_area")?,
+                rod_area: self.checked(name, &text.rod_area, "imposed_motion.rod_area")?,
             }),
         };
-        let stroke = positive(&self.stroke, "stroke", "m")?;
+        let stroke = self.checked(name, &self.stroke, "stroke")?;
         for end in [-stroke / 2.0, stroke / 2.0] {
             if !linkage.joint(end).is_finite() {
                 return Err(DocumentError::Inconsistent {
@@ -219,26 +286,26 @@ impl CylinderText {
     fn of(cylinder: &Cylinder) -> Self {
         CylinderText {
             name: cylinder.name.clone(),
-            stroke: Quantity::new(cylinder.stroke, "m"),
+            stroke: Quantity::new(cylinder.stroke),
             linkage: match cylinder.linkage {
                 Linkage::Triangle { foot_arm, rod_arm, mid_stroke_length, mirrored } => LinkageText::Triangle {
-                    foot_arm: Quantity::new(foot_arm, "m"),
-                    rod_arm: Quantity::new(rod_arm, "m"),
-                    mid_stroke_length: Quantity::new(mid_stroke_length, "m"),
+                    foot_arm: Quantity::new(foot_arm),
+                    rod_arm: Quantity::new(rod_arm),
+                    mid_stroke_length: Quantity::new(mid_stroke_length),
                     mirrored,
                 },
                 Linkage::Direct => LinkageText::Direct,
             },
             chambers: cylinder.chambers.map(|chambers| ChambersText {
-                cap_area: Quantity::new(chambers.cap_area, "m2"),
-                rod_area: Quantity::new(chambers.rod_area, "m2"),
-                cap_dead_volume: Quantity::new(chambers.cap_dead_volume, "m3"),
-                rod_dead_volume: Quantity::new(chambers.rod_dead_volume, "m3"),
-                maximum_orifice_area: Quantity::new(chambers.maximum_orifice_area, "m2"),
+                cap_area: Quantity::new(chambers.cap_area),
+                rod_area: Quantity::new(chambers.rod_area),
+                cap_dead_volume: Quantity::new(chambers.cap_dead_volume),
+                rod_dead_volume: Quantity::new(chambers.rod_dead_volume),
+                maximum_orifice_area: Quantity::new(chambers.maximum_orifice_area),
             }),
             imposed_motion: cylinder.imposed_motion.map(|imposed| ImposedMotionText {
-                cap_area: Quantity::new(imposed.cap_area, "m2"),
-                rod_area: Quantity::new(imposed.rod_area, "m2"),
+                cap_area: Quantity::new(imposed.cap_area),
+                rod_area: Quantity::new(imposed.rod_area),
             }),
         }
     }

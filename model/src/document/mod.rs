@@ -7,10 +7,14 @@ mod catalogue_text;
 mod machine_text;
 mod model_text;
 mod quantity;
+mod reference;
+mod schema;
 
 pub use built_in::{BUILT_IN, built_in};
 pub use catalogue_text::parse_catalogue;
 pub use model_text::{parse, to_text};
+pub use reference::reference;
+pub use schema::schema;
 
 /// What can be wrong with a model text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::catalogue_text::with_formulas;
@@ -12,43 +13,57 @@ use crate::formula::FormulaText;
 use crate::model::{site_name, site_named};
 use crate::{HistoryEntry, Model, ModelEffect};
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A model: a machine and a list of physical effects. Numbers are in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct ModelText {
+pub(super) struct ModelText {
     /// Version of the form of the file; files without it are of the first one.
     #[serde(default = "first_format")]
     format: u32,
+    /// The machine.
     machine: MachineText,
     /// Formula effects that the model brings along.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     formula: Vec<FormulaText>,
+    /// The physical effects, in the order in which they act.
     #[serde(default)]
     effects: Vec<EffectText>,
+    /// What was done with the model, oldest first; written by `refine`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     history: Vec<HistoryEntry>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A physical effect.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct EffectText {
+pub(super) struct EffectText {
+    /// Its name: of the program, of a catalogue file, or of a formula in this file.
     effect: String,
     /// A cylinder's name, "pump" or "machine".
     at: String,
+    /// Its parameters by name.
     #[serde(default)]
     parameters: BTreeMap<String, ParameterText>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A parameter of an effect.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ParameterText {
+    /// Its value; of what is to be identified, where the search begins.
     value: f64,
+    /// Its SI unit, "-" for a pure number.
     unit: String,
+    /// Whether it is known, and a fit leaves it alone.
     #[serde(default)]
     known: bool,
+    /// Standard error of an identified value; written by `identify` and `refine`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     standard_error: Option<f64>,
+    /// Half the width of the 95 % interval of an identified value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     margin_95: Option<f64>,
+    /// Where the number comes from.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     source: String,
 }

@@ -1,17 +1,32 @@
-//! A number with its unit and its source.
+//! A number with its unit and its source. What it measures is part of its type, so that reading, schema and reference page cannot
+//! differ in unit or range.
 
+use std::borrow::Cow;
+use std::marker::PhantomData;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use super::DocumentError;
 
-/// A known constant in a model file.
+/// A known constant in a model file: what `M` says.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Quantity {
+#[serde(deny_unknown_fields, bound = "")]
+pub(super) struct Quantity<M> {
     pub value: f64,
     pub unit: String,
     #[serde(default)]
     pub source: String,
+    #[serde(skip)]
+    measures: PhantomData<M>,
+}
+
+/// What a constant measures.
+pub(super) trait Measure {
+    /// The SI unit that it must be given in.
+    const UNIT: &'static str;
+    /// What it may be.
+    const MUST: Must;
 }
 
 /// What a known constant may be.
@@ -24,47 +39,110 @@ pub(super) enum Must {
     BeFinite,
 }
 
+macro_rules! measures {
+    ($($name:ident $unit:literal $must:ident;)*) => {$(
+        #[derive(Debug, Clone, PartialEq)]
+        pub(super) struct $name;
+        impl Measure for $name {
+            const UNIT: &'static str = $unit;
+            const MUST: Must = Must::$must;
+        }
+    )*};
+}
+
+measures! {
+    Acceleration "m/s2" NotBeNegative;
+    Angle "rad" BeFinite;
+    Area "m2" BePositive;
+    Flow "m3/s" BePositive;
+    Length "m" BePositive;
+    Pressure "Pa" BePositive;
+    TankPressure "Pa" BeAboveVacuum;
+    Volume "m3" BePositive;
+}
+
 /// Gauge pressure of a vacuum, Pa.
 const VACUUM: f64 = -101_325.0;
 
-impl Quantity {
-    /// A constant with its unit; the source is looked up by the caller who knows it.
-    pub fn new(value: f64, unit: &str) -> Self {
-        Quantity { value, unit: unit.to_string(), source: String::new() }
+impl Must {
+    fn allows(self, value: f64) -> bool {
+        value.is_finite()
+            && match self {
+                Must::BePositive => value > 0.0,
+                Must::NotBeNegative => value >= 0.0,
+                Must::BeAboveVacuum => value >= VACUUM,
+                Must::BeFinite => true,
+            }
+    }
+
+    fn words(self) -> String {
+        match self {
+            Must::BePositive => "a positive number".to_string(),
+            Must::NotBeNegative => {
+                "zero or a positive number; what turns the other way has a negative moment".to_string()
+            }
+            Must::BeAboveVacuum => format!("a gauge pressure of {VACUUM} Pa, a vacuum, or more"),
+            Must::BeFinite => "a finite number".to_string(),
+        }
+    }
+
+    fn schema(self) -> Schema {
+        match self {
+            Must::BePositive => json_schema!({ "type": "number", "exclusiveMinimum": 0.0 }),
+            Must::NotBeNegative => json_schema!({ "type": "number", "minimum": 0.0 }),
+            Must::BeAboveVacuum => json_schema!({ "type": "number", "minimum": VACUUM }),
+            Must::BeFinite => json_schema!({ "type": "number" }),
+        }
+    }
+}
+
+impl<M: Measure> Quantity<M> {
+    /// A constant; the source is looked up by the caller who knows it.
+    pub fn new(value: f64) -> Self {
+        Quantity { value, unit: M::UNIT.to_string(), source: String::new(), measures: PhantomData }
     }
 
     /// The value, after checking unit and range.
-    pub fn checked(&self, name: &str, quantity: &str, unit: &'static str, must: Must) -> Result<f64, DocumentError> {
-        if self.unit != unit {
+    pub fn checked(&self, name: &str, quantity: &str) -> Result<f64, DocumentError> {
+        if self.unit != M::UNIT {
             return Err(DocumentError::WrongUnit {
                 name: name.to_string(),
                 quantity: quantity.to_string(),
                 found: self.unit.clone(),
-                expected: unit.to_string(),
+                expected: M::UNIT.to_string(),
             });
         }
-        let possible = match must {
-            Must::BePositive => self.value.is_finite() && self.value > 0.0,
-            Must::NotBeNegative => self.value.is_finite() && self.value >= 0.0,
-            Must::BeAboveVacuum => self.value.is_finite() && self.value >= VACUUM,
-            Must::BeFinite => self.value.is_finite(),
-        };
-        if possible {
-            Ok(self.value)
-        } else {
-            Err(DocumentError::Impossible {
-                name: name.to_string(),
-                quantity: quantity.to_string(),
-                value: self.value,
-                must: match must {
-                    Must::BePositive => "a positive number".to_string(),
-                    Must::NotBeNegative => {
-                        "zero or a positive number; what turns the other way has a negative moment".to_string()
-                    }
-                    Must::BeAboveVacuum => format!("a gauge pressure of {VACUUM} Pa, a vacuum, or more"),
-                    Must::BeFinite => "a finite number".to_string(),
-                },
-            })
+        if M::MUST.allows(self.value) {
+            return Ok(self.value);
         }
+        Err(DocumentError::Impossible {
+            name: name.to_string(),
+            quantity: quantity.to_string(),
+            value: self.value,
+            must: M::MUST.words(),
+        })
+    }
+}
+
+impl<M: Measure> JsonSchema for Quantity<M> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("Quantity in {}", M::UNIT).into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "object",
+            "properties": {
+                "value": M::MUST.schema(),
+                "unit": { "const": M::UNIT },
+                "source": { "type": "string", "description": "where the number comes from" },
+            },
+            "required": ["value", "unit"],
+            "additionalProperties": false,
+        })
     }
 }

@@ -43,6 +43,11 @@ impl Physics for OilCompressibility {
         PARAMETERS
     }
 
+    /// Hoses full of foam, and water in a block of steel.
+    fn plausible(&self, _machine: &Machine, _site: Site, _parameter: &str) -> Option<[f64; 2]> {
+        Some([5e7, 4e9])
+    }
+
     fn has_constant_compliance(&self) -> bool {
         true
     }

@@ -22,6 +22,11 @@ pub trait Physics: Send + Sync {
         None
     }
 
+    /// Range in which a parameter of a real machine lies, where the limits of a search are wider than that.
+    fn plausible(&self, _machine: &Machine, _site: Site, _parameter: &str) -> Option<[f64; 2]> {
+        None
+    }
+
     /// Whether the maximum of a parameter is a size that machines have, as a check valve is tight, and not the end of what is plausible.
     fn has_natural_maximum(&self, _parameter: &str) -> bool {
         false
@@ -198,6 +203,7 @@ hooks! {
         fn card() -> &Card;
         fn parameters(machine: &Machine, site: Site) -> &[ParameterCard];
         fn value_where_left_out(parameter: &str) -> Option<f64>;
+        fn plausible(machine: &Machine, site: Site, parameter: &str) -> Option<[f64; 2]>;
         fn has_natural_maximum(parameter: &str) -> bool;
         fn is_practically_significant(parameters: &[f64]) -> bool;
         fn has_power() -> bool;

@@ -56,6 +56,13 @@ impl Physics for ValveDeadZone {
         PARAMETERS
     }
 
+    /// A valve that never leaves its dead zone lets no oil through.
+    fn plausible(&self, machine: &Machine, site: Site, _parameter: &str) -> Option<[f64; 2]> {
+        let Site::Cylinder(cylinder) = site else { return None };
+        let chambers = machine.cylinders.get(cylinder)?.chambers?;
+        Some([0.0, chambers.maximum_orifice_area])
+    }
+
     fn has_power(&self) -> bool {
         false
     }

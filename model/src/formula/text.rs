@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One `[[formula]]` of a catalogue or a model file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A formula effect: a `[[formula]]` of a catalogue or a model file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FormulaText {
     /// Name of the effect, a word of its own.
     pub name: String,
-    /// The row that the formula enters, as in [`super::ROWS`].
+    /// The row of the equations that the formula enters; `excavator effects --language` lists them.
     pub acts_on: String,
     /// The formula.
     pub formula: String,
@@ -35,7 +36,7 @@ pub struct FormulaText {
 }
 
 /// A parameter of a formula, or a constant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ParameterText {
     /// SI unit, "-" for a pure number.
@@ -61,7 +62,7 @@ pub struct ParameterText {
 }
 
 /// A state of a formula.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StateText {
     /// Formula of its value where a recording begins, in the state's unit.

@@ -44,6 +44,9 @@ pub enum Verb {
     Refine(RefineArguments),
     /// The catalogue of physical effects, or one of them in full.
     Effects(EffectsArguments),
+    /// Check a model file; schema and reference page of such files.
+    #[command(subcommand)]
+    Model(ModelVerb),
     /// What is in a bag: topics, clocks, signals, and what is missing for identification.
     Info(InfoArguments),
     /// Make a bag of a table (CSV, MATLAB, Parquet) or of other people's topics, through a map; or guess the map.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum};
 
 use super::numbers::{positive, profile_duration, stroke_margin};
 
@@ -44,7 +44,7 @@ impl ModelChoice {
     }
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct OwnEffects {
     /// Your own effects, written as formulas: a file (TOML), or a folder with such files. Repeat it for several.
     #[arg(long, value_name = "FILE|FOLDER")]
@@ -272,6 +272,28 @@ pub struct EffectsArguments {
     /// Print what a formula may use: rows, variables, functions.
     #[arg(long, conflicts_with_all = ["name", "catalogue", "check", "json"])]
     pub language: bool,
+    #[command(flatten)]
+    pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum ModelVerb {
+    /// Read a model, try the machine, and tell which of its numbers are odd.
+    Check(ModelCheckArguments),
+    /// Print the JSON schema of the model file, for editors that complete and check TOML.
+    Schema(OwnEffects),
+    /// Print the reference page of the model file: every table, key, unit and default.
+    Reference(OwnEffects),
+}
+
+#[derive(Debug, Args)]
+pub struct ModelCheckArguments {
+    /// Model file (TOML), or a built-in name.
+    pub file: String,
+    #[command(flatten)]
+    pub own: OwnEffects,
     #[command(flatten)]
     pub json: Json,
     #[command(flatten)]

@@ -10,6 +10,7 @@ mod energy;
 mod identify;
 mod import;
 mod info;
+mod model;
 mod node;
 mod refine;
 mod reindex;
@@ -36,6 +37,7 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Design(arguments) => design::run(&arguments),
         Verb::Refine(arguments) => refine::run(&arguments),
         Verb::Effects(arguments) => effects::run(&arguments),
+        Verb::Model(which) => model::run(&which),
         Verb::Info(arguments) => info::run(&arguments),
         Verb::Record(arguments) => crate::record::run(&arguments, ros),
         Verb::Play(arguments) => crate::play::run(&arguments, ros),

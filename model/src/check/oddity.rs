@@ -1,0 +1,209 @@
+//! Numbers of a model that can be read, but hardly be true.
+
+use super::{Trial, oscillations, trial};
+use crate::machine::{Chambers, Cylinder, Linkage};
+use crate::{Model, ModelEffect, Parameter};
+
+/// What is odd about a model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Oddity {
+    /// A parameter is where no machine has it.
+    #[error("{parameter} = {} {unit}: a plausible value lies between {} and {}", shown(*value), shown(*least), shown(*most))]
+    Parameter {
+        /// Its name with its place: `arm.mass`.
+        parameter: String,
+        /// Its value.
+        value: f64,
+        /// Its SI unit.
+        unit: String,
+        /// Least plausible value.
+        least: f64,
+        /// Largest plausible value.
+        most: f64,
+    },
+    /// The rod side's piston area is the larger one.
+    #[error("{cylinder}: rod_area {rod:e} m2 is larger than cap_area {cap:e} m2; are the two sides swapped?")]
+    SidesSwapped {
+        /// The cylinder.
+        cylinder: String,
+        /// Area of the cap side, m².
+        cap: f64,
+        /// Area of the rod side, m².
+        rod: f64,
+    },
+    /// A dead volume that dwarfs what the piston sweeps.
+    #[error("{cylinder}: {side}_dead_volume {volume:e} m3 is {times:.0} times what the piston sweeps; is it in m3?")]
+    DeadVolume {
+        /// The cylinder.
+        cylinder: String,
+        /// "cap" or "rod".
+        side: &'static str,
+        /// The volume, m³.
+        volume: f64,
+        /// Its ratio to the swept volume.
+        times: f64,
+    },
+    /// A valve that opens wider than the piston it feeds.
+    #[error("{cylinder}: maximum_orifice_area {area:e} m2 is larger than the piston's {piston:e} m2; is it in m2?")]
+    Orifice {
+        /// The cylinder.
+        cylinder: String,
+        /// The orifice area, m².
+        area: f64,
+        /// Piston area of the cap side, m².
+        piston: f64,
+    },
+    /// The cylinder passes a dead centre within its stroke.
+    #[error(
+        "{cylinder}: the lever of its linkage shrinks to {lever:.1e} m within the stroke; a dead centre lies there"
+    )]
+    DeadCentre {
+        /// The cylinder.
+        cylinder: String,
+        /// The least lever, m.
+        lever: f64,
+    },
+    /// A fully open valve moves the piston faster or slower than any.
+    #[error(
+        "{cylinder}: with its valve fully open it moves at {speed:.1e} m/s; check maximum_orifice_area and the flow gains"
+    )]
+    Speed {
+        /// The cylinder.
+        cylinder: String,
+        /// The speed, m/s.
+        speed: f64,
+    },
+    /// Pressures that burst hoses.
+    #[error(
+        "{cylinder}: with its valve fully open its pressure reaches {pressure:.1e} Pa; check areas, mass and supply"
+    )]
+    Pressure {
+        /// The cylinder.
+        cylinder: String,
+        /// The pressure, Pa.
+        pressure: f64,
+    },
+    /// The machine cannot be simulated.
+    #[error("{cylinder}: with its valve fully open there is no simulation: {reason}")]
+    NoSimulation {
+        /// The cylinder.
+        cylinder: String,
+        /// Why.
+        reason: String,
+    },
+    /// Rest at mid-stroke is no rest: an oscillation grows.
+    #[error(
+        "at rest with closed valves an oscillation of {frequency:.1} Hz grows; a friction or a gain has a wrong sign"
+    )]
+    Grows {
+        /// Its frequency, Hz.
+        frequency: f64,
+    },
+}
+
+/// A rod area may exceed the cap area by this share: both sides of a symmetric cylinder are measured.
+const SYMMETRIC: f64 = 1.02;
+/// Largest ratio of a dead volume to the volume that the piston sweeps: a short cylinder at the end of a long hose has ten.
+const DEAD_VOLUMES: f64 = 100.0;
+/// A lever below this share of its largest is near a dead centre.
+const NEAR_DEAD_CENTRE: f64 = 0.02;
+/// Speeds of pistons under an open valve, m/s: a creeping press, and a seismic damper thrown by an accumulator.
+const SPEEDS: [f64; 2] = [1e-4, 10.0];
+/// Largest pressure of an open valve, Pa: a burst test.
+const PRESSURE: f64 = 1.5e8;
+/// A growth that rounding could not bring about.
+const GROWS: f64 = -1e-3;
+
+/// A number as people write it: with a power of ten only where it saves zeros.
+fn shown(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
+/// What is odd about `model`; empty where nothing is.
+pub fn oddities(model: &Model) -> Vec<Oddity> {
+    let mut found: Vec<Oddity> = Vec::new();
+    let parameters = model.effects.iter().flat_map(|effect| effect.parameters.iter().map(move |one| (effect, one)));
+    for ((effect, parameter), name) in parameters.zip(model.parameter_names()) {
+        found.extend(implausible(model, effect, parameter, &name));
+    }
+    for (index, cylinder) in model.machine.cylinders.iter().enumerate() {
+        found.extend(dead_centre(cylinder));
+        if let Some(chambers) = &cylinder.chambers {
+            found.extend(chambers_of(cylinder, chambers));
+        }
+        match trial(model, index) {
+            Ok(None) => {}
+            Ok(Some(trial)) => found.extend(of_trial(cylinder, &trial)),
+            Err(error) => {
+                found.push(Oddity::NoSimulation { cylinder: cylinder.name.clone(), reason: error.to_string() });
+            }
+        }
+    }
+    let growing = oscillations(model).into_iter().find(|oscillation| oscillation.damping < GROWS);
+    found.extend(growing.map(|oscillation| Oddity::Grows { frequency: oscillation.frequency }));
+    found
+}
+
+/// A parameter's oddity: identified values count as much as given ones, searches of unknown ones only begin at theirs.
+fn implausible(model: &Model, effect: &ModelEffect, parameter: &Parameter, name: &str) -> Option<Oddity> {
+    let card = &parameter.card;
+    let plausible = effect.physics.plausible(&model.machine, effect.site, &card.name);
+    let [least, most] = plausible.unwrap_or([card.minimum, card.maximum]);
+    let odd = parameter.value < least || parameter.value > most;
+    odd.then(|| Oddity::Parameter {
+        parameter: name.to_string(),
+        value: parameter.value,
+        unit: card.unit.to_string(),
+        least,
+        most,
+    })
+}
+
+fn chambers_of(cylinder: &Cylinder, chambers: &Chambers) -> Vec<Oddity> {
+    let mut found = Vec::new();
+    if chambers.rod_area > SYMMETRIC * chambers.cap_area {
+        found.push(Oddity::SidesSwapped {
+            cylinder: cylinder.name.clone(),
+            cap: chambers.cap_area,
+            rod: chambers.rod_area,
+        });
+    }
+    if chambers.maximum_orifice_area > chambers.cap_area {
+        found.push(Oddity::Orifice {
+            cylinder: cylinder.name.clone(),
+            area: chambers.maximum_orifice_area,
+            piston: chambers.cap_area,
+        });
+    }
+    for (side, volume, area) in
+        [("cap", chambers.cap_dead_volume, chambers.cap_area), ("rod", chambers.rod_dead_volume, chambers.rod_area)]
+    {
+        let times = volume / (area * cylinder.stroke);
+        if times > DEAD_VOLUMES {
+            found.push(Oddity::DeadVolume { cylinder: cylinder.name.clone(), side, volume, times });
+        }
+    }
+    found
+}
+
+/// Whether the lever vanishes between the ends of the stroke. It is the sine of the joint over the length, so its least value is at
+/// an end, or the ends lie on both sides of a dead centre.
+fn dead_centre(cylinder: &Cylinder) -> Option<Oddity> {
+    if cylinder.linkage == Linkage::Direct {
+        return None;
+    }
+    let lever = |share: f64| cylinder.linkage.lever(cylinder.linkage.joint(share * cylinder.stroke)).abs();
+    let (ends, middle) = ([lever(-0.5), lever(0.5)], lever(0.0));
+    let least = ends[0].min(ends[1]);
+    (least < NEAR_DEAD_CENTRE * middle.max(ends[0]).max(ends[1]))
+        .then(|| Oddity::DeadCentre { cylinder: cylinder.name.clone(), lever: least })
+}
+
+fn of_trial(cylinder: &Cylinder, trial: &Trial) -> Vec<Oddity> {
+    let name = || cylinder.name.clone();
+    let odd_speed = trial.speeds.iter().find(|speed| !(SPEEDS[0]..=SPEEDS[1]).contains(*speed));
+    let speed = odd_speed.map(|&speed| Oddity::Speed { cylinder: name(), speed });
+    let pressure =
+        (trial.pressures[1] > PRESSURE).then(|| Oddity::Pressure { cylinder: name(), pressure: trial.pressures[1] });
+    speed.into_iter().chain(pressure).collect()
+}

@@ -1,0 +1,144 @@
+//! `excavator model`
+
+use std::path::Path;
+
+use excavator_model::check::{Oddity, Oscillation, Trial, oddities, oscillations, trial};
+use excavator_model::document::{reference, schema};
+use excavator_model::machine::{Cylinder, Supply};
+use excavator_model::{Model, addition_name, site_name};
+use serde_json::{Value, json};
+
+use super::print;
+use crate::cli::{ModelCheckArguments, ModelChoice, ModelVerb};
+use crate::error::VerbError;
+use crate::output::{number, write_json};
+use crate::outputs::{self, Inputs};
+use crate::sources;
+
+pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {
+    match verb {
+        ModelVerb::Check(arguments) => check(arguments),
+        ModelVerb::Schema(own) => {
+            print(&serde_json::to_string_pretty(&schema(&sources::catalogue(own)?))?);
+            Ok(())
+        }
+        ModelVerb::Reference(own) => {
+            print(reference(&sources::catalogue(own)?).trim_end());
+            Ok(())
+        }
+    }
+}
+
+fn check(arguments: &ModelCheckArguments) -> Result<(), VerbError> {
+    let choice = ModelChoice { model: arguments.file.clone(), own: arguments.own.clone() };
+    let inputs = Inputs::default().and_all(choice.files());
+    outputs::check(&[("--json", arguments.json.json.as_deref())], &inputs, arguments.overwriting)?;
+    let model = sources::model(&choice)?;
+    let trials: Vec<Option<Trial>> =
+        (0..model.machine.cylinders.len()).map(|cylinder| trial(&model, cylinder).ok().flatten()).collect();
+    let (oscillations, odd) = (oscillations(&model), oddities(&model));
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        describe(&model);
+        for (cylinder, trial) in model.machine.cylinders.iter().zip(&trials) {
+            print(&of_trial(cylinder, trial.as_ref()));
+        }
+        if let Some(text) = of_oscillations(&oscillations) {
+            print(&text);
+        }
+        unused_formulas(&model)
+            .iter()
+            .for_each(|name| print(&format!("note: no [[effects]] entry uses formula {name}")));
+        odd.iter().for_each(|oddity| print(&format!("odd: {oddity}")));
+        if odd.is_empty() {
+            print("nothing is odd");
+        }
+    }
+    if let Some(path) = &arguments.json.json {
+        write_json(path, &to_json(&model, &trials, &oscillations, &odd), arguments.overwriting)?;
+    }
+    match odd.len() {
+        0 => Ok(()),
+        oddities => Err(VerbError::OddModel { name: arguments.file.clone(), oddities }),
+    }
+}
+
+fn describe(model: &Model) {
+    let machine = &model.machine;
+    print(&format!("{}: {}", machine.name, machine.description));
+    let supply = match machine.supply {
+        Supply::PumpLine(line) => format!("pump line, {} l/min", number(6e4 * line.flow)),
+        Supply::PressureSource(source) => format!("supply at {} MPa", number(1e-6 * source.pressure)),
+        Supply::None => "no oil".to_string(),
+    };
+    let unknown = model.unknown_parameters().len();
+    let parameters = model.parameters().count();
+    print(&format!(
+        "{} effects with {parameters} parameters, {unknown} of them to identify; {supply}",
+        model.effects.len()
+    ));
+    let own: Vec<String> = model
+        .effects
+        .iter()
+        .filter(|effect| effect.physics.formula().is_some())
+        .map(|effect| addition_name(effect.name(), site_name(machine, effect.site)))
+        .collect();
+    if !own.is_empty() {
+        print(&format!("formulas: {}", own.join(", ")));
+    }
+    for entry in &model.history {
+        print(&format!("history: {} {}", entry.when, entry.what));
+    }
+}
+
+/// Formulas that the model brings along and does not use.
+fn unused_formulas(model: &Model) -> Vec<String> {
+    let is_used = |name: &str| model.effects.iter().any(|effect| effect.name() == name);
+    let own = model.catalogue.iter().filter(|effect| effect.formula().is_some());
+    own.map(|effect| effect.card().name.to_string()).filter(|name| !is_used(name)).collect()
+}
+
+fn of_trial(cylinder: &Cylinder, trial: Option<&Trial>) -> String {
+    let stroke = format!("{}: stroke {} mm", cylinder.name, number(1e3 * cylinder.stroke));
+    let Some(Trial { speeds: [retracting, extending], pressures: [least, most], duration }) = trial else {
+        return stroke;
+    };
+    format!(
+        "{stroke}; with its valve fully open for {duration} s it extends at {} mm/s and retracts at {} mm/s, at {:.1} to {:.1} MPa",
+        number(1e3 * extending),
+        number(1e3 * retracting),
+        1e-6 * least,
+        1e-6 * most,
+    )
+}
+
+fn of_oscillations(oscillations: &[Oscillation]) -> Option<String> {
+    let words: Vec<String> = oscillations
+        .iter()
+        .map(|one| format!("{} Hz (damping ratio {})", number(one.frequency), number(one.damping)))
+        .collect();
+    (!words.is_empty()).then(|| format!("oscillates at mid-stroke with closed valves: {}", words.join(", ")))
+}
+
+fn to_json(model: &Model, trials: &[Option<Trial>], oscillations: &[Oscillation], odd: &[Oddity]) -> Value {
+    let cylinders: Vec<Value> = model
+        .machine
+        .cylinders
+        .iter()
+        .zip(trials)
+        .map(|(cylinder, trial)| {
+            let mut value = json!({ "name": cylinder.name, "stroke_m": cylinder.stroke });
+            if let Some(Trial { speeds, pressures, duration }) = trial {
+                value["valve_fully_open"] = json!({
+                    "duration_s": duration, "retracting_m_s": speeds[0], "extending_m_s": speeds[1], "pressures_pa": pressures,
+                });
+            }
+            value
+        })
+        .collect();
+    let oscillations: Vec<Value> =
+        oscillations.iter().map(|one| json!({ "frequency_hz": one.frequency, "damping_ratio": one.damping })).collect();
+    json!({
+        "machine": model.machine.name, "cylinders": cylinders, "oscillations": oscillations,
+        "unused_formulas": unused_formulas(model), "oddities": odd.iter().map(ToString::to_string).collect::<Vec<_>>(),
+    })
+}
