@@ -81,10 +81,12 @@ impl ModelEffect {
                 reason,
             });
         }
+        let size = machine.size_at(site);
         let parameters = physics
             .parameters(machine, site)
             .iter()
             .map(|card| {
+                let card = card.for_size(&size);
                 // What acts in a window of time only where somebody looks for one acts always until then.
                 let always = match card.start {
                     effects::Start::Known(value) => Some(value),
@@ -99,7 +101,7 @@ impl ModelEffect {
                     | effects::Start::WorstStretchDuration => card.typical,
                 };
                 Parameter {
-                    card: Arc::new(card.clone()),
+                    card: Arc::new(card),
                     value: always.unwrap_or(first),
                     known: always.is_some(),
                     standard_error: None,

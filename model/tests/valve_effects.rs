@@ -8,6 +8,7 @@ use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{ActsOn, Card, Catalogue, Family, Number, Site};
 use excavator_model::equations::{Inputs, Rows, Situation, System};
+use excavator_model::machine::Size;
 use excavator_model::simulation::{InputSignals, Integrator, Tolerances};
 
 const CYLINDER: Site = Site::Cylinder(0);
@@ -176,7 +177,7 @@ fn only_valves_and_pump_line_have_a_say_in_the_way_of_oil() {
                     effect.parameters(&model.machine, site).iter().map(|parameter| parameter.typical).collect();
                 assert_eq!(effect.states(), 0, "{name}");
                 let hooks = <f64 as Number>::hooks(&**effect);
-                assert_eq!(hooks.spool(&typical, &[], &mut [], 3e-5), [3e-5, 3e-5], "{name}");
+                assert_eq!(hooks.spool(&Size::REFERENCE, &typical, &[], &mut [], 3e-5), [3e-5, 3e-5], "{name}");
                 let mut situation = Situation::<f64>::empty(&model.machine);
                 assert_eq!(hooks.opening(site, &typical, 3e-5, &situation), 3e-5, "{name}");
                 hooks.adjust(site, &typical, &mut situation);

@@ -1,6 +1,6 @@
 //! Drag of a tool in soil: a torque against the rate of the joint that grows with the square of the rate.
 
-use excavator_model::effects::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Site, Start, text};
+use excavator_model::effects::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Site, Start, text};
 use excavator_model::equations::{Rows, Situation};
 use excavator_model::machine::Machine;
 use excavator_model::scalar::Scalar;
@@ -27,6 +27,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("N m s2"),
     meaning: text("torque at a rate of 1 rad/s"),
     kind: Kind::Linear,
+    growth: Growth::TORQUE,
     minimum: 0.0,
     maximum: 1e6,
     typical: 5e3,

@@ -69,6 +69,7 @@ struct Done {
 impl<'m> Analyser<'m> {
     /// An analyser that has seen nothing.
     pub fn new(model: &'m Model, settings: EnergySettings) -> Self {
+        let settings = settings.for_size(&model.machine.size());
         let places = Place::all(model);
         let with_cylinder = places.iter().map(|&place| (place, place.cylinder(model))).collect();
         Analyser {
@@ -366,9 +367,12 @@ fn excitation(model: &Model, head: &Recording) -> (Option<f64>, Option<f64>) {
     } else {
         head.cylinders.first().map(|cylinder| cylinder.rod_force.as_slice())
     };
+    // Frequencies are those of a machine of the reference size.
+    let unit = model.machine.size().time();
     // The search takes the square of the time that it looks at.
-    let end = head.time.partition_point(|&t| t <= SEARCHED);
-    let frequency = strongest.and_then(|values| dominant_frequency(&head.time[..end], &values[..end]));
+    let end = head.time.partition_point(|&t| t <= SEARCHED * unit);
+    let time: Vec<f64> = head.time[..end].iter().map(|time| time / unit).collect();
+    let frequency = strongest.and_then(|values| Some(dominant_frequency(&time, &values[..end])? / unit));
     let found = strongest.zip(frequency).and_then(|(values, frequency)| period(&head.time, values, frequency));
     (found, frequency)
 }

@@ -1,6 +1,8 @@
 //! How the energy of a recording is analysed.
 
-/// Settings of an energy analysis.
+use excavator_model::machine::Size;
+
+/// Settings of an energy analysis, on a machine of [`Size::REFERENCE`]; an analysis stretches them to the time of its machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnergySettings {
     /// Half width of the parabola through pressures, and of the slope of the energy, s. As in the live monitor: an arm's
@@ -34,6 +36,22 @@ pub struct EnergySettings {
     pub gap: f64,
     /// Seed of the added noise.
     pub seed: u64,
+}
+
+impl EnergySettings {
+    /// The same on a machine of this size.
+    pub(crate) fn for_size(self, size: &Size) -> Self {
+        let time = size.time();
+        EnergySettings {
+            half_width: self.half_width * time,
+            motion_half_width: self.motion_half_width * time,
+            window_half_width: self.window_half_width * time,
+            head: self.head * time,
+            block: self.block * time,
+            gap: self.gap * time,
+            ..self
+        }
+    }
 }
 
 impl Default for EnergySettings {

@@ -6,7 +6,7 @@ use excavator_model::recording::Recording;
 use nalgebra::{DMatrix, DVector};
 
 use super::normal_equations::RawSums;
-use super::output_error::{bounded_step, held_at_bounds, parameter_step};
+use super::output_error::{LONGEST_SHIFT, bounded_step, held_at_bounds, parameter_step};
 use super::problem::Problem;
 use super::{FitError, FitSettings, Instrument};
 
@@ -70,6 +70,7 @@ impl LinearRefit {
                 *total += count;
             }
         }
+        let longest_shift = LONGEST_SHIFT * model.machine.size().time();
         let mut factors = vec![1.0; noise.len()];
         let mut squares = vec![0.0; noise.len()];
         for _ in 0..ROUNDS {
@@ -77,7 +78,7 @@ impl LinearRefit {
             let held = held_at_bounds(&sums, &values, &fitted, &bounds);
             let taken = parameter_step(&sums, &held, DAMPING).map_or_else(
                 || DVector::zeros(fitted.len()),
-                |step| bounded_step(&values, &step, &fitted, &scales, &cards, &bounds).1,
+                |step| bounded_step(&values, &step, &fitted, &scales, &cards, &bounds, longest_shift).1,
             );
             squares = vec![0.0; noise.len()];
             for (raw, sums) in raw.iter().zip(&sums) {

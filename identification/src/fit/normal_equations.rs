@@ -1,6 +1,7 @@
 //! Normal equations of one segment, its initial state eliminated.
 
 use excavator_model::equations::{Channel, System};
+use excavator_model::machine::{Growth, Mechanism};
 use excavator_model::simulation::{Integrator, Observer, Sensitivity, SimulationError, Tolerances};
 use nalgebra::{DMatrix, DVector};
 
@@ -46,7 +47,7 @@ pub(super) struct RawSums {
 }
 
 /// Length of the blocks whose gradients are taken as independent in standard errors, s: longer than any correlation of
-/// an arm's errors but drift, and short enough to give many blocks.
+/// an arm's errors but drift, and short enough to give many blocks. As all times here on a machine of the reference size.
 pub(super) const BLOCK_DURATION: f64 = 0.5;
 
 /// Readings this soon after the start of a segment are not compared, s: a late instrument would report what happened
@@ -64,10 +65,17 @@ pub(super) struct InitialStatePrior {
 impl InitialStatePrior {
     pub fn of(system: &System<'_>) -> Self {
         let layout = system.layout();
+        let machine = &system.model().machine;
+        let size = machine.size();
+        // Angles and speeds of pistons are alike on machines of every size.
+        let [joint_spread, rate_spread] = match machine.mechanism {
+            Mechanism::LinearLoad => [0.01 * size.factor(Growth::LENGTH), 0.5],
+            _ => [0.01, 0.5 / size.time()],
+        };
         let mut spread = vec![2e5; layout.len];
         for joint in 0..layout.joints {
-            spread[layout.joint(joint)] = 0.01;
-            spread[layout.rate(joint)] = 0.5;
+            spread[layout.joint(joint)] = joint_spread;
+            spread[layout.rate(joint)] = rate_spread;
         }
         for (state, scale) in system.state_scales() {
             spread[state] = 0.1 * scale;
@@ -118,8 +126,10 @@ impl Shared<'_, '_> {
         let mut blocks: Vec<Vec<DVector<f64>>> = Vec::new();
         let mut block_errors: Vec<Vec<(f64, usize)>> = Vec::new();
         let start = recording.recording.time[segment.first];
+        let time_scale = self.system.model().machine.size().time();
+        let (block_duration, settling) = (BLOCK_DURATION * time_scale, SETTLING * time_scale);
         for index in segment.first..=segment.last {
-            let block = ((recording.recording.time[index] - start) / BLOCK_DURATION) as usize;
+            let block = ((recording.recording.time[index] - start) / block_duration) as usize;
             if block >= blocks.len() {
                 add_rows(&mut rows, &mut information, &mut blocks);
                 while blocks.len() <= block {
@@ -127,7 +137,7 @@ impl Shared<'_, '_> {
                     block_errors.push(vec![(0.0, 0); self.instruments.len()]);
                 }
             }
-            let is_compared = recording.compared[index] && recording.recording.time[index] >= start + SETTLING;
+            let is_compared = recording.compared[index] && recording.recording.time[index] >= start + settling;
             if is_compared || observer.looks_back() {
                 observer.observe(&recording.inputs, index, &state, Some(&sensitivity));
             }

@@ -3,7 +3,8 @@
 //! They are estimated with every model, each with the prior of its card, and never attributed: a spool sensor that is read half a
 //! millisecond early, or a friction that reverses over 3 mm/s instead of 1 mm/s, looks like a little of many other effects.
 
-use excavator_model::effects::{Effect, Family, Site};
+use excavator_model::effects::{Corner, Effect, Family, Site};
+use excavator_model::machine::Cylinder;
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::{Model, ModelEffect, Parameter};
 
@@ -32,9 +33,22 @@ pub fn with_nuisances_of(model: &Model, families: &[Family], recordings: &[&Reco
     extended
 }
 
+/// Share of the stroke within which a piston is at its end.
+const AT_THE_END: f64 = 0.02;
+
+/// Whether the piston of this cylinder comes to one of its ends.
+fn comes_to_an_end(cylinder: &Cylinder, recordings: &[&Recording]) -> bool {
+    let near = (0.5 - AT_THE_END) * cylinder.stroke;
+    let signals = recordings.iter().filter_map(|recording| recording.cylinder(&cylinder.name).ok());
+    signals.flat_map(|signals| &signals.displacement).any(|displacement| displacement.abs() >= near)
+}
+
 /// Only a measured opening can be read at another time than the rest, or from another zero; a command acts when it is given.
 fn can_have(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Recording]) -> bool {
     match site {
+        Site::Cylinder(index) if physics.rounds() == Some(Corner::EndStop) => {
+            comes_to_an_end(&model.machine.cylinders[index], recordings) && model.has_corner(Corner::EndStop, site)
+        }
         Site::Cylinder(index) if physics.card().family == Family::Recording => {
             let name = &model.machine.cylinders[index].name;
             recordings.iter().all(|one| one.cylinder(name).is_ok_and(|signals| is_measured(&signals.orifice_area)))
@@ -45,7 +59,7 @@ fn can_have(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Reco
 
 /// Nuisance effects of `fitted` that `given` has not and that differ from nothing, in the order of `fitted`.
 pub fn nuisances_shown<'a>(given: &'a Model, fitted: &'a Model) -> impl Iterator<Item = &'a ModelEffect> {
-    fitted.effects.iter().filter(|effect| is_added(given, effect) && effect.parameters.iter().all(differs))
+    fitted.effects.iter().filter(|effect| is_added(given, effect) && effect.parameters.iter().any(differs))
 }
 
 /// A model without the nuisance effects that `given` has not and that do not differ from nothing: as simple as it can be.
@@ -60,7 +74,7 @@ pub struct Simplified {
 impl Simplified {
     /// Of a fitted model.
     pub fn of(given: &Model, fitted: &Model) -> Self {
-        let is_idle = |effect: &ModelEffect| is_added(given, effect) && !effect.parameters.iter().all(differs);
+        let is_idle = |effect: &ModelEffect| is_added(given, effect) && !effect.parameters.iter().any(differs);
         let mut model = fitted.clone();
         model.effects.retain(|effect| !is_idle(effect));
         let parameters = fitted.parameters().enumerate();

@@ -169,6 +169,7 @@ pub(super) fn run(
     let mut damping = 1e-3;
     let mut steps = 0;
     let mut converged = false;
+    let longest_shift = problem.longest_shift();
     while steps < maximum_steps {
         if watch(steps as f64 / maximum_steps as f64).is_break() {
             return Err(FitError::Stopped);
@@ -176,7 +177,7 @@ pub(super) fn run(
         steps += 1;
         let held = held_at_bounds(&current.sums, &current.values, fitted, bounds);
         let Some(step) = parameter_step(&current.sums, &held, damping) else { break };
-        let (trial_values, taken) = bounded_step(&current.values, &step, fitted, scales, cards, bounds);
+        let (trial_values, taken) = bounded_step(&current.values, &step, fitted, scales, cards, bounds, longest_shift);
         let mut trial = segments.clone();
         for (segment, sums) in trial.iter_mut().zip(&current.sums) {
             let change = sums.state_step(&taken, damping);
@@ -272,7 +273,7 @@ pub(super) fn parameter_step(sums: &[SegmentSums], held: &[bool], damping: f64) 
 
 /// Most that a step moves the edges of a window of time, s. An edge is seen only where it is: what lies beyond comes to
 /// light step by step, and a long one ends outside the recording, from where nothing leads back.
-const LONGEST_SHIFT: f64 = 1.0;
+pub(super) const LONGEST_SHIFT: f64 = 1.0;
 
 /// All values after a step of the fitted ones, which stay within their bounds, and what was taken of it, in scales.
 pub(super) fn bounded_step(
@@ -282,12 +283,13 @@ pub(super) fn bounded_step(
     scales: &[f64],
     cards: &[Arc<ParameterCard>],
     bounds: &[[f64; 2]],
+    longest_shift: f64,
 ) -> (Vec<f64>, DVector<f64>) {
     let mut stepped = values.to_vec();
     let mut taken = DVector::zeros(fitted.len());
     for (number, &index) in fitted.iter().enumerate() {
         let card = &cards[index];
-        let most = if card.start.is_a_time() { LONGEST_SHIFT } else { f64::INFINITY };
+        let most = if card.start.is_a_time() { longest_shift } else { f64::INFINITY };
         let wanted = values[index] + (step[number] * scales[number]).clamp(-most, most);
         let [lowest, highest] = bounds[index];
         stepped[index] = wanted.clamp(lowest, highest);

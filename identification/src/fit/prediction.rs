@@ -39,9 +39,15 @@ pub fn predict(model: &Model, recordings: &[&Recording], settings: &FitSettings)
     let sums = problem.weighed_with_priors(&raw, &weights, &values);
     let held = held_at_bounds(&sums, &values, &problem.fitted, &problem.priors.bounds);
     let (stepped, taken) = match parameter_step(&sums, &held, DAMPING) {
-        Some(step) => {
-            bounded_step(&values, &step, &problem.fitted, &problem.scales, &problem.cards, &problem.priors.bounds)
-        }
+        Some(step) => bounded_step(
+            &values,
+            &step,
+            &problem.fitted,
+            &problem.scales,
+            &problem.cards,
+            &problem.priors.bounds,
+            problem.longest_shift(),
+        ),
         None => (values, DVector::zeros(problem.fitted.len())),
     };
     let mut squares = vec![0.0; problem.noise.len()];

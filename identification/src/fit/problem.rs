@@ -10,6 +10,7 @@ use excavator_model::simulation::Tolerances;
 use rayon::prelude::*;
 
 use super::normal_equations::{BLOCK_DURATION, InitialStatePrior, RawSums, SegmentSums, Shared};
+use super::output_error::LONGEST_SHIFT;
 use super::priors::ParameterPriors;
 use super::{FitError, FitSettings, Instrument, Segment, SegmentedRecording, instruments, scales};
 
@@ -52,9 +53,11 @@ impl<'s, 'm> Problem<'s, 'm> {
         if instruments.is_empty() {
             return Err(FitError::NothingMeasured { machine: model.machine.name.clone() });
         }
+        let size = model.machine.size();
+        let (duration, rate) = (settings.segment_duration_for(&size), settings.sample_rate_for(&size));
         let recordings = recordings
             .iter()
-            .map(|recording| SegmentedRecording::new(model, recording, settings.segment_duration, settings.sample_rate))
+            .map(|recording| SegmentedRecording::new(model, recording, duration, rate))
             .collect::<Result<Vec<_>, _>>()?;
         let each = recordings.iter().enumerate();
         let (owners, segments): (Vec<usize>, Vec<Segment>) = each
@@ -110,14 +113,20 @@ impl<'s, 'm> Problem<'s, 'm> {
         Ok(shared.sums(&self.recordings[self.owners[number]], segment, &self.segments[number].state)?)
     }
 
+    /// Most that a step moves the edges of a window of time, s.
+    pub fn longest_shift(&self) -> f64 {
+        LONGEST_SHIFT * self.system.model().machine.size().time()
+    }
+
     /// Recording and begin (s after its first sample) of each block of `sums`, which are of all segments in order.
     pub fn block_places(&self, sums: &[SegmentSums]) -> Vec<(usize, f64)> {
+        let duration = BLOCK_DURATION * self.system.model().machine.size().time();
         let segments = self.owners.iter().zip(&self.segments).map(|(&owner, segment)| {
             let time = &self.recordings[owner].recording.time;
             (owner, time[segment.first] - time[0])
         });
         let blocks = segments.zip(sums).flat_map(|((recording, begin), sums)| {
-            (0..sums.block_errors.len()).map(move |block| (recording, begin + block as f64 * BLOCK_DURATION))
+            (0..sums.block_errors.len()).map(move |block| (recording, begin + block as f64 * duration))
         });
         blocks.collect()
     }

@@ -1,8 +1,9 @@
 //! Recordings cut into shooting segments.
 
+use excavator_model::effects::{Corner, Site};
 use excavator_model::equations::System;
 use excavator_model::recording::Recording;
-use excavator_model::simulation::{InputSignals, initial_state};
+use excavator_model::simulation::{InputSignals, first_known_position, initial_state};
 use excavator_model::{Model, SignalError};
 
 /// A recording with its inputs, cut into pieces that are simulated each from an own initial state.
@@ -10,8 +11,8 @@ use excavator_model::{Model, SignalError};
 pub struct SegmentedRecording {
     /// The recording, thinned.
     pub recording: Recording,
-    /// Whether the model is compared with each sample of it; the others are there because an input bends at them. All that are
-    /// compared are equally far apart, so that no moment counts more than another.
+    /// Whether the model is compared with each sample of it; the others are there because an input bends at them, or a piston arrives
+    /// at a stop. All that are compared are equally far apart, so that no moment counts more than another.
     pub compared: Vec<bool>,
     /// Inputs of the model on its clock.
     pub inputs: InputSignals,
@@ -36,6 +37,38 @@ const LARGEST_GAP: f64 = 10.0;
 /// Fewer samples than this say nothing beyond their own initial state.
 const FEWEST_SAMPLES: usize = 20;
 
+/// Share of the stroke within which a piston that comes from outside arrives at its stop.
+const AT_THE_END: f64 = 0.005;
+
+/// Time that an arrival takes, s, on a machine of the reference size: the bounce and the shock in the oil.
+const ARRIVAL: f64 = 0.3;
+
+/// Whether a piston is arriving at a stop, sample by sample. How it bounces there is a matter of a contact that nobody knows; where
+/// it stands afterwards, and with which pressures, says something of the machine.
+fn arrivals(model: &Model, recording: &Recording) -> Vec<bool> {
+    let mut arriving = vec![false; recording.len()];
+    let duration = ARRIVAL * model.machine.size().time();
+    for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
+        let Ok(signals) = recording.cylinder(&cylinder.name) else { continue };
+        if !model.has_corner(Corner::EndStop, Site::Cylinder(number)) {
+            continue;
+        }
+        let near = (0.5 - AT_THE_END) * cylinder.stroke;
+        let (mut was_near, mut until) = (false, f64::NEG_INFINITY);
+        for (sample, (&time, position)) in recording.time.iter().zip(&signals.displacement).enumerate() {
+            if position.is_finite() {
+                let is_near = position.abs() >= near;
+                if is_near && !was_near {
+                    until = time + duration;
+                }
+                was_near = is_near;
+            }
+            arriving[sample] |= time < until;
+        }
+    }
+    arriving
+}
+
 impl SegmentedRecording {
     /// Cuts `recording` into segments of about `duration` s, all of the same length, never across a gap of the clock,
     /// after thinning it to about `sample_rate` samples per second.
@@ -51,7 +84,8 @@ impl SegmentedRecording {
         let inputs = full_inputs.at(&kept);
         let full = recording;
         let recording = full.at(&kept);
-        let compared = kept.iter().map(|sample| sample.is_multiple_of(stride)).collect();
+        let arriving = arrivals(model, full);
+        let compared = kept.iter().map(|&sample| sample.is_multiple_of(stride) && !arriving[sample]).collect();
         let system = System::new(model);
         let interval = stride as f64 * full.sample_interval();
         let mut stretches = Vec::new();
@@ -74,6 +108,8 @@ impl SegmentedRecording {
             };
             for piece in 0..pieces {
                 let (from, to) = (end(piece), end(piece + 1));
+                // A hole in a displacement at the start costs no more than itself.
+                let from = first_known_position(model, &recording, from).unwrap_or(from);
                 if to < from + FEWEST_SAMPLES {
                     continue;
                 }

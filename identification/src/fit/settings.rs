@@ -1,6 +1,8 @@
 //! How a fit is done.
 
-/// Settings of an output-error fit.
+use excavator_model::machine::Size;
+
+/// Settings of an output-error fit, on a machine of [`Size::REFERENCE`]; a fit stretches them to the time of its machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitSettings {
     /// Length of one shooting segment, s. Long enough that slow effects (leakage, drift) show as displacement, short
@@ -15,6 +17,18 @@ pub struct FitSettings {
     pub maximum_steps: usize,
     /// A step that improves the loss by less than this fraction ends the fit.
     pub least_improvement: f64,
+}
+
+impl FitSettings {
+    /// Length of a shooting segment on a machine of this size, s.
+    pub(crate) fn segment_duration_for(&self, size: &Size) -> f64 {
+        self.segment_duration * size.time()
+    }
+
+    /// Samples per second that are compared on a machine of this size.
+    pub(crate) fn sample_rate_for(&self, size: &Size) -> f64 {
+        self.sample_rate / size.time()
+    }
 }
 
 impl Default for FitSettings {

@@ -31,11 +31,14 @@ const LEAST_WORKING_PRESSURE: f64 = 2e4;
 pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
     recording.validate()?;
     let machine = &model.machine;
-    if recording.duration() < SHORTEST || recording.len() < FEWEST_SAMPLES {
+    let time_scale = machine.size().time();
+    let needed = SHORTEST * time_scale;
+    if recording.duration() < needed || recording.len() < FEWEST_SAMPLES {
         return Err(GateError::TooShort {
             source_name: recording.source.clone(),
             duration: recording.duration(),
             samples: recording.len(),
+            needed,
         });
     }
     for cylinder in &machine.cylinders {
@@ -84,7 +87,7 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
             }
             let opening =
                 if is_measured(&signals.orifice_area) { &signals.orifice_area } else { &signals.orifice_command };
-            let correlation = travel_by_opening(&recording.time, &signals.displacement, opening);
+            let correlation = travel_by_opening(&recording.time, &signals.displacement, opening, time_scale);
             if correlation < AGAINST_THE_VALVE {
                 return Err(GateError::WrongSign {
                     source_name: recording.source.clone(),
@@ -92,10 +95,11 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
                     correlation,
                 });
             }
-            sensors_of_a_cylinder(recording, signals, opening, chambers)?;
+            sensors_of_a_cylinder(recording, signals, opening, chambers, time_scale)?;
         } else {
             at_most(model, recording, &name("rod_force"), &signals.rod_force, "N", 1e8)?;
-            if let Some(stretch) = never_changes(&recording.time, &signals.rod_force, &signals.displacement) {
+            if let Some(stretch) = never_changes(&recording.time, &signals.rod_force, &signals.displacement, time_scale)
+            {
                 return Err(stretch.error(recording, name("rod_force"), "N"));
             }
             if cylinder.imposed_motion.is_some() {
@@ -116,7 +120,7 @@ pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
             .filter(|signals| machine.cylinders.iter().any(|cylinder| cylinder.name == signals.name))
             .flat_map(|signals| [&signals.cap_pressure[..], &signals.rod_pressure])
             .collect();
-        pressure_sensor(recording, "pump_pressure", &recording.pump_pressure, &witnesses)?;
+        pressure_sensor(recording, "pump_pressure", &recording.pump_pressure, &witnesses, time_scale)?;
     }
     Ok(())
 }
@@ -127,6 +131,7 @@ fn sensors_of_a_cylinder(
     signals: &CylinderSignals,
     opening: &[f64],
     chambers: &Chambers,
+    time_scale: f64,
 ) -> Result<(), GateError> {
     let name = |signal: &str| format!("{}.{signal}", signals.name);
     let (cap, rod, displacement) = (&signals.cap_pressure[..], &signals.rod_pressure[..], &signals.displacement[..]);
@@ -136,12 +141,12 @@ fn sensors_of_a_cylinder(
             signals: [name("cap_pressure"), name("rod_pressure")],
         });
     }
-    pressure_sensor(recording, &name("cap_pressure"), cap, &[rod, displacement])?;
-    pressure_sensor(recording, &name("rod_pressure"), rod, &[cap, displacement])?;
-    if let Some(stretch) = stuck_position(&recording.time, displacement, opening, &[cap, rod]) {
+    pressure_sensor(recording, &name("cap_pressure"), cap, &[rod, displacement], time_scale)?;
+    pressure_sensor(recording, &name("rod_pressure"), rod, &[cap, displacement], time_scale)?;
+    if let Some(stretch) = stuck_position(&recording.time, displacement, opening, &[cap, rod], time_scale) {
         return Err(stretch.error(recording, name("displacement"), "m"));
     }
-    if let Some(shares) = swapped_chambers(recording, signals, opening, chambers) {
+    if let Some(shares) = swapped_chambers(recording, signals, opening, chambers, time_scale) {
         return Err(GateError::SwappedChambers {
             source_name: recording.source.clone(),
             cylinder: signals.name.clone(),
@@ -158,8 +163,14 @@ fn is_the_same(one: &[f64], other: &[f64]) -> bool {
     high > low && one.iter().zip(other).all(|(a, b)| a == b || a.is_nan() && b.is_nan())
 }
 
-fn pressure_sensor(recording: &Recording, name: &str, signal: &[f64], witnesses: &[&[f64]]) -> Result<(), GateError> {
-    if let Some(stretch) = stuck_pressure(&recording.time, signal, witnesses) {
+fn pressure_sensor(
+    recording: &Recording,
+    name: &str,
+    signal: &[f64],
+    witnesses: &[&[f64]],
+    time_scale: f64,
+) -> Result<(), GateError> {
+    if let Some(stretch) = stuck_pressure(&recording.time, signal, witnesses, time_scale) {
         return Err(stretch.error(recording, name.to_string(), "Pa"));
     }
     match clipped(&recording.time, signal) {
@@ -182,10 +193,10 @@ const AGAINST_THE_VALVE: f64 = -0.5;
 const TRAVEL_TIME: f64 = 0.2;
 
 /// Correlation of the piston's travel over [`TRAVEL_TIME`] with the mean opening meanwhile; zero where there is none.
-fn travel_by_opening(time: &[f64], displacement: &[f64], opening: &[f64]) -> f64 {
+fn travel_by_opening(time: &[f64], displacement: &[f64], opening: &[f64], time_scale: f64) -> f64 {
     let (mut first, mut sums, mut count) = (0, [0.0; 3], 0usize);
     while let Some(&start) = time.get(first) {
-        let last = time.partition_point(|&t| t < start + TRAVEL_TIME);
+        let last = time.partition_point(|&t| t < start + TRAVEL_TIME * time_scale);
         let Some(&end) = displacement.get(last) else { break };
         let known: Vec<f64> = opening[first..last].iter().copied().filter(|area| area.is_finite()).collect();
         let travel = end - displacement[first];

@@ -1,17 +1,17 @@
 //! Why a recording cannot be used.
 
-/// Shortest recording that says anything, s: two swings of the slowest excitation in use.
-pub(super) const SHORTEST: f64 = 2.0;
+/// Shortest recording that says anything on a machine of the reference size, s: a stroke of a tenth of the cylinder.
+pub(super) const SHORTEST: f64 = 0.5;
 
-/// Fewest samples.
-pub(super) const FEWEST_SAMPLES: usize = 100;
+/// Fewest samples: a few for each number that a recording has of its own, its initial state and noise.
+pub(super) const FEWEST_SAMPLES: usize = 50;
 
 /// A recording that cannot be used, in one line that says what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GateError {
     /// Too short.
     #[error(
-        "{source_name} is too short: {duration:.2} s with {samples} samples; at least {SHORTEST} s and {FEWEST_SAMPLES} samples are needed"
+        "{source_name} is too short: {duration:.2} s with {samples} samples; at least {needed:.2} s and {FEWEST_SAMPLES} samples are needed"
     )]
     TooShort {
         /// The recording.
@@ -20,6 +20,8 @@ pub enum GateError {
         duration: f64,
         /// Its samples.
         samples: usize,
+        /// Least length on this machine, s.
+        needed: f64,
     },
     /// Nothing of a cylinder was measured.
     #[error("{source_name} does not measure {signal} (all {samples} values are NaN), which {machine} needs")]

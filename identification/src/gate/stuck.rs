@@ -47,21 +47,27 @@ impl Stretch {
 }
 
 /// The longest stretch in which a pressure keeps one value although all signals in `witnesses` that are measured move.
-pub(super) fn stuck_pressure(time: &[f64], signal: &[f64], witnesses: &[&[f64]]) -> Option<Stretch> {
+pub(super) fn stuck_pressure(time: &[f64], signal: &[f64], witnesses: &[&[f64]], time_scale: f64) -> Option<Stretch> {
     if resolution(signal) > COARSE * spread(signal) {
         return None;
     }
-    longest(time, signal, |run| run.value.abs() >= NEAR_TANK && all_move(witnesses, run))
+    longest(time, signal, time_scale, |run| run.value.abs() >= NEAR_TANK && all_move(witnesses, run))
 }
 
 /// The longest stretch in which a piston seems to stand still although both pressures change, and either its valve is open one way
 /// all the time and the piston is away from its ends, or its valve moves and the sensor has noise everywhere else.
-pub(super) fn stuck_position(time: &[f64], signal: &[f64], opening: &[f64], pressures: &[&[f64]]) -> Option<Stretch> {
+pub(super) fn stuck_position(
+    time: &[f64],
+    signal: &[f64],
+    opening: &[f64],
+    pressures: &[&[f64]],
+    time_scale: f64,
+) -> Option<Stretch> {
     let (least, most) = range(signal);
     let margin = NEAR_THE_END * (most - least);
     let largest = largest(opening);
     let has_noise = noise_level(signal) > ALIVE * resolution(signal);
-    longest(time, signal, |run| {
+    longest(time, signal, time_scale, |run| {
         let inside = run.value > least + margin && run.value < most - margin;
         let is_driven = inside && open_one_way(&opening[run.first..=run.last], largest);
         let is_silent = has_noise && all_move(&[opening], run);
@@ -70,19 +76,19 @@ pub(super) fn stuck_position(time: &[f64], signal: &[f64], opening: &[f64], pres
 }
 
 /// The whole recording, where a force keeps one value while the piston moves.
-pub(super) fn never_changes(time: &[f64], force: &[f64], displacement: &[f64]) -> Option<Stretch> {
+pub(super) fn never_changes(time: &[f64], force: &[f64], displacement: &[f64], time_scale: f64) -> Option<Stretch> {
     let (Some(&begin), Some(&end), Some(&value)) = (time.first(), time.last(), force.iter().find(|f| f.is_finite()))
     else {
         return None;
     };
     let moves = is_measured(displacement) && spread(displacement) > 0.0;
-    (moves && end - begin >= SHORTEST && spread(force) == 0.0).then_some(Stretch { begin, end, value })
+    (moves && end - begin >= SHORTEST * time_scale && spread(force) == 0.0).then_some(Stretch { begin, end, value })
 }
 
-fn longest(time: &[f64], signal: &[f64], is_stuck: impl Fn(&Run) -> bool) -> Option<Stretch> {
+fn longest(time: &[f64], signal: &[f64], time_scale: f64, is_stuck: impl Fn(&Run) -> bool) -> Option<Stretch> {
     runs(signal)
         .into_iter()
-        .filter(|run| time[run.last] - time[run.first] >= SHORTEST && is_stuck(run))
+        .filter(|run| time[run.last] - time[run.first] >= SHORTEST * time_scale && is_stuck(run))
         .max_by_key(Run::len)
         .map(|run| Stretch::of(run, time))
 }
@@ -110,27 +116,27 @@ mod tests {
     fn a_force_that_never_changes_is_found() {
         let time: Vec<f64> = (0..1000).map(|index| index as f64 * 0.01).collect();
         let piston = wave(0.1, &time);
-        assert!(never_changes(&time, &vec![0.0; 1000], &piston).is_some());
-        assert!(never_changes(&time, &wave(100.0, &time), &piston).is_none());
-        assert!(never_changes(&time, &vec![0.0; 1000], &vec![0.2; 1000]).is_none());
-        assert!(never_changes(&time, &vec![f64::NAN; 1000], &piston).is_none());
+        assert!(never_changes(&time, &vec![0.0; 1000], &piston, 1.0).is_some());
+        assert!(never_changes(&time, &wave(100.0, &time), &piston, 1.0).is_none());
+        assert!(never_changes(&time, &vec![0.0; 1000], &vec![0.2; 1000], 1.0).is_none());
+        assert!(never_changes(&time, &vec![f64::NAN; 1000], &piston, 1.0).is_none());
     }
 
     #[test]
     fn a_sensor_that_stops_is_found_and_one_at_tank_pressure_is_not() {
         let time: Vec<f64> = (0..1000).map(|index| index as f64 * 0.01).collect();
         let (mut cap, rod) = (wave(1e6, &time), wave(2e6, &time));
-        assert_eq!(stuck_pressure(&time, &cap, &[&rod]), None);
+        assert_eq!(stuck_pressure(&time, &cap, &[&rod], 1.0), None);
         let held = cap[300];
         cap[300..500].fill(held);
-        let found = stuck_pressure(&time, &cap, &[&rod]).unwrap();
+        let found = stuck_pressure(&time, &cap, &[&rod], 1.0).unwrap();
         assert_eq!((found.begin, found.end, found.value), (3.0, 4.99, held));
         cap[300..500].fill(0.0);
-        assert_eq!(stuck_pressure(&time, &cap, &[&rod]), None);
+        assert_eq!(stuck_pressure(&time, &cap, &[&rod], 1.0), None);
         // Nothing happens: a machine at rest.
         cap[300..500].fill(held);
         let resting = vec![1e6; 1000];
-        assert_eq!(stuck_pressure(&time, &cap, &[&resting]), None);
+        assert_eq!(stuck_pressure(&time, &cap, &[&resting], 1.0), None);
     }
 
     #[test]
@@ -140,19 +146,19 @@ mod tests {
         let witnesses: [&[f64]; 2] = [&pressures.0, &pressures.1];
         let open = vec![1e-5; 1000];
         let mut position: Vec<f64> = time.iter().map(|t| (t / 8.0).min(1.0)).collect();
-        assert_eq!(stuck_position(&time, &position, &open, &witnesses), None);
+        assert_eq!(stuck_position(&time, &position, &open, &witnesses, 1.0), None);
         position[300..450].fill(0.37);
-        assert_eq!(stuck_position(&time, &position, &open, &witnesses).unwrap().value, 0.37);
+        assert_eq!(stuck_position(&time, &position, &open, &witnesses, 1.0).unwrap().value, 0.37);
         let closed = vec![0.0; 1000];
-        assert_eq!(stuck_position(&time, &position, &closed, &witnesses), None);
+        assert_eq!(stuck_position(&time, &position, &closed, &witnesses, 1.0), None);
         // A valve that goes both ways may leave a piston where it is, but not its sensor without noise.
         let both_ways: Vec<f64> = time.iter().map(|t| 1e-5 * (3.0 * t).sin()).collect();
-        assert_eq!(stuck_position(&time, &position, &both_ways, &witnesses), None);
+        assert_eq!(stuck_position(&time, &position, &both_ways, &witnesses, 1.0), None);
         for (index, value) in position.iter_mut().enumerate() {
             *value += 1e-4 * ((index * index) as f64 * 0.7).sin();
         }
-        assert_eq!(stuck_position(&time, &position, &both_ways, &witnesses), None);
+        assert_eq!(stuck_position(&time, &position, &both_ways, &witnesses, 1.0), None);
         position[300..450].fill(0.37);
-        assert_eq!(stuck_position(&time, &position, &both_ways, &witnesses).unwrap().value, 0.37);
+        assert_eq!(stuck_position(&time, &position, &both_ways, &witnesses, 1.0).unwrap().value, 0.37);
     }
 }

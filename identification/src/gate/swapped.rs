@@ -37,22 +37,30 @@ pub(super) fn swapped_chambers(
     signals: &CylinderSignals,
     opening: &[f64],
     chambers: &Chambers,
+    time_scale: f64,
 ) -> Option<Shares> {
     let needed = [&signals.displacement, &signals.cap_pressure, &signals.rod_pressure, &recording.pump_pressure];
     if !needed.into_iter().all(|signal| is_measured(signal)) || !is_measured(opening) {
         return None;
     }
-    let shares = shares(recording, signals, opening, chambers)?;
+    let shares = shares(recording, signals, opening, chambers, time_scale)?;
     (shares.given > MUCH && shares.given > CLEARLY * shares.swapped).then_some(shares)
 }
 
-fn shares(recording: &Recording, signals: &CylinderSignals, opening: &[f64], chambers: &Chambers) -> Option<Shares> {
+fn shares(
+    recording: &Recording,
+    signals: &CylinderSignals,
+    opening: &[f64],
+    chambers: &Chambers,
+    time_scale: f64,
+) -> Option<Shares> {
     let time = &recording.time;
+    let window = WINDOW * time_scale;
     let largest = largest(opening);
     let mut sides = [[Side::default(); 2]; 2];
     let (mut first, mut windows) = (0, 0usize);
     while let Some(&start) = time.get(first) {
-        let last = time.partition_point(|&t| t < start + WINDOW);
+        let last = time.partition_point(|&t| t < start + window);
         let Some(&end) = time.get(last) else { break };
         let range = first..last;
         first = last;

@@ -79,7 +79,8 @@ fn observe_against(
         let displacement = displacement(signals, |joint| cylinder.linkage.displacement(joint));
         let joint: Vec<f64> = displacement.iter().map(|&s| cylinder.linkage.joint(s)).collect();
         let measured_velocity = signals.velocity.iter().any(|v| v.is_finite());
-        let half_width = SLOPE_HALF_WIDTH.max(SLOPE_HALF_WIDTH_SAMPLES * recording.sample_interval());
+        let half_width = (SLOPE_HALF_WIDTH * model.machine.size().time())
+            .max(SLOPE_HALF_WIDTH_SAMPLES * recording.sample_interval());
         let (smooth_displacement, slope) = parabolas(&recording.time, &displacement, half_width);
         cylinders.push(CylinderObservation {
             joint,

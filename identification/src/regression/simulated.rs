@@ -23,7 +23,8 @@ pub(super) struct Simulated {
 /// [`RegressionError`] when inputs or initial states are missing.
 pub(super) fn simulated(model: &Model, recording: &Recording, truth: &Recording) -> Result<Simulated, RegressionError> {
     let system = System::new(model);
-    let segmented = SegmentedRecording::new(model, recording, FitSettings::default().segment_duration, f64::INFINITY)?;
+    let duration = FitSettings::default().segment_duration_for(&model.machine.size());
+    let segmented = SegmentedRecording::new(model, recording, duration, f64::INFINITY)?;
     let mut copy = truth.clone();
     let channels = Channel::all(system.layout());
     let own_states: usize = model.effects.iter().map(|effect| effect.physics.states()).sum();

@@ -7,7 +7,7 @@ use super::weak_rows::Row;
 
 /// Length of the stretches that are left out in turn, s: twice as long as errors of the spool estimate last, and short
 /// enough for a recording of half a minute to have many.
-const STRETCH: f64 = 1.0;
+pub(super) const STRETCH: f64 = 1.0;
 
 /// How far noise spreads parameters.
 pub(super) struct Spread {
@@ -33,6 +33,7 @@ pub(super) fn jackknife(
     instruments: &DMatrix<f64>,
     regressors: &DMatrix<f64>,
     remaining: &DVector<f64>,
+    stretch: f64,
 ) -> Spread {
     let order = regressors.ncols();
     let matrix = instruments.transpose() * regressors;
@@ -43,7 +44,7 @@ pub(super) fn jackknife(
     for end in 1..=rows.len() {
         let same = |row: &Row| {
             let start = rows[first].centre;
-            row.recording == rows[first].recording && row.centre - start < STRETCH
+            row.recording == rows[first].recording && row.centre - start < stretch
         };
         if end < rows.len() && same(&rows[end]) {
             continue;

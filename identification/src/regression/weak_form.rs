@@ -55,9 +55,9 @@ impl Default for WeakFormSettings {
 
 impl WeakFormSettings {
     /// Half width and step of the windows for these recordings, s.
-    pub(super) fn widths(&self, recordings: &[&Recording]) -> (f64, f64) {
+    pub(super) fn widths(&self, model: &Model, recordings: &[&Recording]) -> (f64, f64) {
         let slowest = recordings.iter().map(|recording| recording.sample_interval()).fold(0.0, f64::max);
-        let half_width = self.half_width.max(self.least_half_width_samples * slowest);
+        let half_width = (self.half_width * model.machine.size().time()).max(self.least_half_width_samples * slowest);
         (half_width, half_width * self.step_fraction)
     }
 }

@@ -30,7 +30,7 @@ pub fn weak_residuals(
     settings: &WeakFormSettings,
 ) -> Result<Vec<WeakResidual>, RegressionError> {
     let (rows, _) = rows(model, &[recording], settings, &[], false, None)?;
-    let (half_width, _) = settings.widths(&[recording]);
+    let (half_width, _) = settings.widths(model, &[recording]);
     // Integral of the test function (1 - x²)^4 over [-1, 1].
     const BUMP_AREA: f64 = 256.0 / 315.0;
     let residuals = rows.iter().map(|row| WeakResidual {

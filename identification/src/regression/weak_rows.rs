@@ -1,6 +1,7 @@
 //! The rows of the weak form: every equation against every test function, with its instruments.
 
 use excavator_model::Model;
+use excavator_model::effects::{Corner, Site};
 use excavator_model::equations::System;
 use excavator_model::machine::Linkage;
 use excavator_model::recording::{Recording, noise_level, standard_deviation};
@@ -37,7 +38,10 @@ pub(super) fn rows(
 ) -> Result<(Vec<Row>, Vec<Recording>), RegressionError> {
     let system = System::new(model);
     let linkages: Vec<Linkage> = model.machine.cylinders.iter().map(|cylinder| cylinder.linkage).collect();
-    let (half_width, step) = settings.widths(recordings);
+    let (half_width, step) = settings.widths(model, recordings);
+    let has_stop: Vec<bool> = (0..model.machine.cylinders.len())
+        .map(|cylinder| model.has_corner(Corner::EndStop, Site::Cylinder(cylinder)))
+        .collect();
     let mut rows = Vec::new();
     let mut simulations = Vec::new();
     for (number, recording) in recordings.iter().enumerate() {
@@ -58,8 +62,13 @@ pub(super) fn rows(
             for (index, equation) in measured.iter().enumerate() {
                 if let EquationKind::Motion(cylinder) = equation.kind {
                     let inside = window.first..window.first + window.weights.len();
-                    let speeds = &observation.cylinders[cylinder].velocity[inside];
+                    let speeds = &observation.cylinders[cylinder].velocity[inside.clone()];
                     if speeds.iter().any(|speed| speed.is_nan() || speed.abs() <= settings.velocity_guard) {
+                        continue;
+                    }
+                    let away = (0.5 - AT_THE_END) * model.machine.cylinders[cylinder].stroke;
+                    let positions = &observation.cylinders[cylinder].smooth_displacement[inside];
+                    if has_stop[cylinder] && positions.iter().any(|position| position.abs() > away) {
                         continue;
                     }
                 }
@@ -90,6 +99,9 @@ pub(super) fn rows(
     }
     Ok((rows, simulations))
 }
+
+/// Share of the stroke at each end within which the force of a stop is a guess: it is stiff, and nobody measured where it begins.
+const AT_THE_END: f64 = 0.005;
 
 fn sensor_noise(recording: &Recording, model: &Model) -> Result<SensorNoise, RegressionError> {
     // A noiseless (simulated) signal would weigh its rows infinitely; rounding alone is of this size.

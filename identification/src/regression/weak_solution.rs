@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::equation::EquationKind;
 use super::solution::{ConditionNumber, condition_numbers};
-use super::weak_covariance::jackknife;
+use super::weak_covariance::{STRETCH, jackknife};
 use super::weak_form::sources;
 use super::weak_rows::Row;
 use super::{EquationGauge, Regression, RegressionError, WeakFormSettings};
@@ -40,7 +40,7 @@ pub(super) fn solve(
                 .into(),
         });
     }
-    let (half_width, step_width) = settings.widths(recordings);
+    let (half_width, step_width) = settings.widths(model, recordings);
     let independent = rows.len() as f64 * step_width / (2.0 * half_width);
     if independent < seen.len() as f64 * 2.0 {
         return Err(RegressionError::TooFewRows {
@@ -132,7 +132,7 @@ pub(super) fn solve(
     improved.set_parameter_values(&new_values);
 
     let (coefficient_covariance, quantiles) = if with_errors {
-        let spread = jackknife(rows, &instruments, &regressors, &remaining);
+        let spread = jackknife(rows, &instruments, &regressors, &remaining, STRETCH * model.machine.size().time());
         (spread.covariance, spread.quantiles)
     } else {
         (DMatrix::from_element(seen.len(), seen.len(), f64::NAN), DVector::from_element(seen.len(), f64::NAN))

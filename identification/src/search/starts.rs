@@ -13,8 +13,10 @@ use crate::regression::{WeakFormSettings, weak_form};
 /// Regressed starts come first.
 pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let plain = plain_starts(model, recordings);
+    let time_scale = model.machine.size().time();
     // Thinned to this rate a regression still sees what starts a fit, in half the time.
-    let thinned: Vec<Recording> = recordings.iter().map(|recording| thinned_to(recording, START_RATE)).collect();
+    let thinned: Vec<Recording> =
+        recordings.iter().map(|recording| thinned_to(recording, START_RATE / time_scale)).collect();
     let thinned: Vec<&Recording> = thinned.iter().collect();
     let quick =
         WeakFormSettings { rounds: 1, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
@@ -45,7 +47,7 @@ fn with_shape_of(start: &Model, mut model: Model) -> Model {
     model
 }
 
-/// Samples per second of the regressions that give starts. At 170 Hz the start of a contact that lasts seconds is lost.
+/// Samples per second of the regressions that give starts, on a machine of the reference size. At 170 Hz the start of a contact that lasts seconds is lost.
 const START_RATE: f64 = 250.0;
 
 fn thinned_to(recording: &Recording, rate: f64) -> Recording {
@@ -112,6 +114,7 @@ pub(super) fn half_open(model: &Model) -> Vec<Model> {
 fn in_window(model: &Model, begin: Option<f64>, end: Option<f64>) -> Model {
     let mut start = model.clone();
     let mut first = 0.0;
+    let shortest = SHORTEST * model.machine.size().time();
     for parameter in start.effects.iter_mut().rev().take(1).flat_map(|effect| &mut effect.parameters) {
         match &parameter.card.start {
             Start::WorstStretchBegin => {
@@ -120,7 +123,7 @@ fn in_window(model: &Model, begin: Option<f64>, end: Option<f64>) -> Model {
                 first = parameter.value;
             }
             Start::WorstStretchDuration => {
-                parameter.value = end.map_or(parameter.card.maximum, |end| (end - first).max(SHORTEST));
+                parameter.value = end.map_or(parameter.card.maximum, |end| (end - first).max(shortest));
                 parameter.known = end.is_none();
             }
             Start::At(_) | Start::PumpPressureQuantiles(_) | Start::Known(_) => {}
@@ -129,7 +132,7 @@ fn in_window(model: &Model, begin: Option<f64>, end: Option<f64>) -> Model {
     start
 }
 
-/// Shortest window that a search begins with, s.
+/// Shortest window that a search begins with, s, on a machine of the reference size.
 const SHORTEST: f64 = 0.2;
 
 fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {

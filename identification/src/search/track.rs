@@ -28,7 +28,8 @@ impl Track {
     /// model cannot be fitted to them.
     pub fn hard(screening: &Screening<'_>) -> Option<Self> {
         let effort = screening.effort;
-        let (base, duration) = (&screening.base.fit, effort.fit.segment_duration);
+        let (base, duration) =
+            (&screening.base.fit, effort.fit.segment_duration_for(&screening.base.fit.model.machine.size()));
         let recordings = hard_stretches(base, screening.identification, duration, effort.screening_share)?;
         // As many steps as the candidates get: an improvement that comes from fewer readings is none of theirs.
         let base = fit(&base.model, &recordings.iter().collect::<Vec<_>>(), &few_steps(effort)).ok()?;

@@ -22,6 +22,7 @@ pub(super) fn worst_stretches(model: &Model, site: Site, recordings: &[&Recordin
     let Site::Cylinder(cylinder) = site else { return Vec::new() };
     let settings = WeakFormSettings { velocity_guard: 0.0, ..WeakFormSettings::default() };
     let mut found: Vec<(f64, Stretch)> = Vec::new();
+    let shortest = SHORTEST * model.machine.size().time();
     for recording in recordings {
         let Ok(residuals) = weak_residuals(model, recording, &settings) else { continue };
         let points: Vec<(f64, f64)> = residuals
@@ -31,7 +32,8 @@ pub(super) fn worst_stretches(model: &Model, site: Site, recordings: &[&Recordin
             .collect();
         let mut free = vec![(0, points.len())];
         for _ in 0..count {
-            let best = free.iter().enumerate().filter_map(|(number, &part)| Some((number, scan(&points, part)?)));
+            let best =
+                free.iter().enumerate().filter_map(|(number, &part)| Some((number, scan(&points, part, shortest)?)));
             let Some((number, (gain, (first, last)))) = best.max_by(|a, b| a.1.0.total_cmp(&b.1.0)) else { break };
             let (part_first, part_last) = free.swap_remove(number);
             free.extend([(part_first, first), (last, part_last)]);
@@ -44,7 +46,7 @@ pub(super) fn worst_stretches(model: &Model, site: Site, recordings: &[&Recordin
 }
 
 /// The best stretch `first..last` among the points of one part, with its score.
-fn scan(points: &[(f64, f64)], (from, to): (usize, usize)) -> Option<(f64, (usize, usize))> {
+fn scan(points: &[(f64, f64)], (from, to): (usize, usize), shortest: f64) -> Option<(f64, (usize, usize))> {
     let mut sums = vec![0.0];
     for (_, residual) in points.get(from..to)? {
         sums.push(sums[sums.len() - 1] + residual);
@@ -52,7 +54,7 @@ fn scan(points: &[(f64, f64)], (from, to): (usize, usize)) -> Option<(f64, (usiz
     let mut best: Option<(f64, (usize, usize))> = None;
     for first in from..to {
         for last in first + 1..to {
-            if points[last - 1].0 - points[first].0 < SHORTEST {
+            if points[last - 1].0 - points[first].0 < shortest {
                 continue;
             }
             let sum: f64 = sums[last - from] - sums[first - from];
@@ -77,9 +79,9 @@ mod tests {
                 (f64::from(index) * 0.05, restless - if (60..90).contains(&index) { 2.0 } else { 0.0 })
             })
             .collect();
-        let (score, (first, last)) = scan(&points, (0, 200)).unwrap_or_else(|| unreachable!());
+        let (score, (first, last)) = scan(&points, (0, 200), SHORTEST).unwrap_or_else(|| unreachable!());
         assert!((59..=61).contains(&first) && (89..=91).contains(&last), "{first} {last}");
         assert!((score - 120.0).abs() < 10.0, "{score}");
-        assert_eq!(scan(&points, (10, 12)), None);
+        assert_eq!(scan(&points, (10, 12), SHORTEST), None);
     }
 }

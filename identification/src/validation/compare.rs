@@ -69,12 +69,17 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
         }
     }
     let inputs = InputSignals::from_recording(model, recording)?;
+    // Lags and frequencies are those of a machine of the reference size.
+    let unit = model.machine.size().time();
+    let time: Vec<f64> = recording.time.iter().map(|time| time / unit).collect();
+    let frequency = |signal: &[f64]| Some(dominant_frequency(&time, signal)? / unit);
+    let in_seconds = |found: Correlation| Correlation { lag: found.lag * unit, ..found };
     let excitation_frequency = if model.machine.has_chambers() {
-        dominant_frequency(&recording.time, inputs.orifice_area(0))
+        frequency(inputs.orifice_area(0))
     } else if model.machine.has_imposed_motion() {
         None
     } else {
-        dominant_frequency(&recording.time, &measured.cylinders[0].rod_force)
+        frequency(&measured.cylinders[0].rod_force)
     };
     // Each output with the number of the cylinder whose input drives it; the pump line has none of its own.
     let mut names = Vec::new();
@@ -105,8 +110,8 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
             Some(SignalComparison {
                 phase_delay_degrees: excitation_frequency
                     .and_then(|frequency| phase_delay_degrees(&recording.time, y, yhat, frequency)),
-                autocorrelation: autocorrelation(&recording.time, &error),
-                input_correlation: input_correlation(&recording.time, &error, &input),
+                autocorrelation: autocorrelation(&time, &error).map(in_seconds),
+                input_correlation: input_correlation(&time, &error, &input).map(in_seconds),
                 fit: fit_percent(normalised_error),
                 normalised_error,
                 name,

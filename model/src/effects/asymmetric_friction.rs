@@ -1,6 +1,8 @@
 //! Friction that differs by direction.
 
-use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{
+    ActsOn, Card, Corner, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text,
+};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -33,6 +35,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("N"),
     meaning: text("how much larger the friction of extension is than that of retraction"),
     kind: Kind::Linear,
+    growth: Growth::FORCE,
     minimum: -1e5,
     maximum: 1e5,
     typical: 200.0,

@@ -24,6 +24,7 @@ pub(super) fn built_in() -> Vec<AnyEffect> {
         Arc::new(friction_reversal::FrictionReversal),
         Arc::new(friction_corner::FrictionCorner),
         Arc::new(orifice_transition::OrificeTransition),
+        Arc::new(end_stop_correction::EndStopCorrection),
         Arc::new(pressure_compensation::PressureCompensation),
         Arc::new(joint_spring::JointSpring),
         Arc::new(valve_dead_zone::ValveDeadZone),

@@ -1,6 +1,6 @@
 //! A bypass that starts to close late.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -29,6 +29,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("m2"),
     meaning: text("spool travel before the bypass starts to close, as an orifice area"),
     kind: Kind::Shape,
+    growth: Growth::OPENING,
     minimum: 0.0,
     maximum: 1e-4,
     typical: 1e-5,

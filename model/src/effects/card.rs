@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::Prior;
+use crate::machine::{Growth, Size};
 
 /// A text of a card: that of a built-in effect is part of the program, that of a formula is its own.
 pub type Text = Cow<'static, str>;
@@ -56,6 +57,8 @@ pub enum Corner {
     Friction,
     /// The root of the pressure drop in the flow through the valve's edges.
     OrificeFlow,
+    /// The contact of the piston with the ends of the cylinder.
+    EndStop,
 }
 
 /// Whether the nominal model of \[A\] has the effect.
@@ -65,7 +68,7 @@ pub enum Family {
     Base,
     /// How recordings are made, not how the machine works: a nuisance, estimated with every model and never attributed.
     Recording,
-    /// How widely the equations round a corner, which no machine knows: a nuisance, estimated with every model and never attributed.
+    /// How widely the equations round a corner, or where a stop is, which nobody measures: a nuisance, estimated with every model and never attributed.
     Rounding,
     /// How a machine is built, which its data sheet says: added by hand, never a candidate.
     Construction,
@@ -138,16 +141,34 @@ pub struct ParameterCard {
     pub meaning: Text,
     /// How it enters the rows.
     pub kind: Kind,
+    /// How it grows from machine to machine. On the card of an effect, minimum, maximum, typical value and starts are those of the
+    /// machine of [`Size::REFERENCE`]; on that of a model's parameter, those of the model's machine.
+    pub growth: Growth,
     /// Least physically possible value.
     pub minimum: f64,
     /// Largest plausible value.
     pub maximum: f64,
-    /// Order of magnitude on a machine of the 3 t class; scales searches.
+    /// Order of magnitude; scales searches.
     pub typical: f64,
     /// Where a search begins.
     pub start: Start,
     /// What is known of a nuisance parameter before a recording is read; `None` for a property of the machine.
     pub prior: Option<Prior>,
+}
+
+impl ParameterCard {
+    /// The same for a machine of another size.
+    pub fn for_size(&self, size: &Size) -> ParameterCard {
+        let factor = size.factor(self.growth);
+        let start = match &self.start {
+            Start::At(values) if factor != 1.0 => Start::At(values.iter().map(|value| value * factor).collect()),
+            Start::Known(value) => Start::Known(value * factor),
+            other => other.clone(),
+        };
+        let prior = self.prior.map(|prior| prior.grown(factor));
+        let [minimum, maximum, typical] = [self.minimum, self.maximum, self.typical].map(|value| value * factor);
+        ParameterCard { minimum, maximum, typical, start, prior, ..self.clone() }
+    }
 }
 
 /// What is said about an effect.

@@ -1,6 +1,6 @@
 //! Oil boils instead of stretching.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -27,6 +27,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("Pa"),
         meaning: text("gauge pressure at which the oil boils"),
         kind: Kind::Shape,
+        growth: Growth::NONE,
         minimum: -101325.0,
         maximum: 0.0,
         typical: -9e4,
@@ -39,6 +40,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m3/(s Pa)"),
         meaning: text("make-up flow per pressure deficit"),
         kind: Kind::Linear,
+        growth: Growth::FLOW,
         minimum: 0.0,
         maximum: 1e-3,
         typical: 1e-7,

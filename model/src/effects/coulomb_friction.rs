@@ -1,6 +1,8 @@
 //! Coulomb friction of the piston.
 
-use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{
+    ActsOn, Card, Corner, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text,
+};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -29,6 +31,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("N"),
     meaning: text("friction force"),
     kind: Kind::Linear,
+    growth: Growth::FORCE,
     minimum: 0.0,
     maximum: 1e6,
     typical: 200.0,

@@ -1,6 +1,6 @@
 //! A displacement sensor whose zero is not at mid-stroke.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::{Channel, Instruments};
 use crate::machine::Machine;
 
@@ -30,6 +30,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("m"),
     meaning: text("what the displacement sensor adds"),
     kind: Kind::Shape,
+    growth: Growth::LENGTH,
     minimum: -0.5,
     maximum: 0.5,
     typical: 5e-3,

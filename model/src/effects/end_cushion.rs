@@ -1,6 +1,6 @@
 //! Cushions at the ends of the stroke.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -29,6 +29,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m"),
         meaning: text("length of the cushion before either end"),
         kind: Kind::Shape,
+        growth: Growth::LENGTH,
         minimum: 1e-3,
         maximum: 0.5,
         typical: 0.03,
@@ -41,6 +42,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("N s/m"),
         meaning: text("damping coefficient at the end of the stroke"),
         kind: Kind::Linear,
+        growth: Growth::FORCE,
         minimum: 0.0,
         maximum: 1e8,
         typical: 1e5,

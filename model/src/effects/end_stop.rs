@@ -1,6 +1,8 @@
 //! The piston meets the ends of the cylinder.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{
+    ActsOn, Card, Corner, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text,
+};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -33,6 +35,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("N/m"),
         meaning: text("contact stiffness"),
         kind: Kind::Linear,
+        growth: Growth::STIFFNESS,
         minimum: 0.0,
         maximum: 1e12,
         typical: 5e7,
@@ -45,6 +48,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("s/m"),
         meaning: text("damping factor of the contact"),
         kind: Kind::Shape,
+        growth: Growth::NONE,
         minimum: 0.0,
         maximum: 1e3,
         typical: 5.0,
@@ -52,6 +56,9 @@ static PARAMETERS: &[ParameterCard] = &[
         prior: None,
     },
 ];
+
+/// Depth over which a viscous damping of the contact sets in, m, on a machine of the reference size: a jump would stall a simulation.
+const ONSET: f64 = 2e-5;
 
 impl Physics for EndStop {
     fn card(&self) -> &Card {
@@ -62,14 +69,31 @@ impl Physics for EndStop {
         PARAMETERS
     }
 
+    fn corner(&self, _parameters: &[f64]) -> Option<Corner> {
+        Some(Corner::EndStop)
+    }
+
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
         let half_stroke = now.machine.cylinders[cylinder].stroke / 2.0;
-        for side in [1.0, -1.0] {
-            let penetration = (piston.displacement * side - half_stroke).positive_part();
+        let (mut stiffness, mut damping, mut ends) = (parameters[0], parameters[1], [T::from(half_stroke); 2]);
+        let mut viscous = None;
+        if let Some(real) = &piston.rounding.end_stop {
+            stiffness *= real.stiffness;
+            damping *= real.damping;
+            viscous = Some(real.viscous_damping);
+            ends = real.shifts.map(|shift| shift + half_stroke);
+        }
+        for (side, end) in [1.0, -1.0].into_iter().zip(ends) {
+            let penetration = (piston.displacement * side - end).positive_part();
             let approach = piston.velocity * side;
-            let push = (penetration * parameters[0] * (parameters[1] * approach + 1.0)).positive_part();
+            let mut push = penetration * stiffness * (damping * approach + 1.0);
+            if let Some(viscous) = viscous {
+                let touched = ONSET * now.machine.size_at(site).factor(Growth::LENGTH);
+                push += viscous * approach * penetration / (penetration + touched);
+            }
+            let push = push.positive_part();
             rows.piston_force[cylinder] -= push * side;
         }
     }

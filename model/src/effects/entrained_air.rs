@@ -1,6 +1,6 @@
 //! Air bubbles in the oil.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -29,6 +29,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("-"),
     meaning: text("volume of air per volume of oil at ambient pressure"),
     kind: Kind::Linear,
+    growth: Growth::NONE,
     minimum: 0.0,
     maximum: 0.5,
     typical: 0.02,

@@ -1,6 +1,6 @@
 //! Something outside pushes for a while.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::smooth::window;
 use crate::machine::{Machine, Mechanism};
@@ -34,6 +34,7 @@ const START: ParameterCard = ParameterCard {
     unit: text("s"),
     meaning: text("time after the first sample at which the contact begins, -1 where it is there from the beginning"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: -1.0,
     maximum: 1e5,
     typical: 1.0,
@@ -47,6 +48,7 @@ const DURATION: ParameterCard = ParameterCard {
     unit: text("s"),
     meaning: text("how long it lasts"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: 0.02,
     maximum: 1e5,
     typical: 1.0,
@@ -63,6 +65,7 @@ static LINK: &[ParameterCard] = &[
         unit: text("N m"),
         meaning: text("torque on the joint, + = in the direction of growing angle"),
         kind: Kind::Linear,
+        growth: Growth::TORQUE,
         minimum: -1e6,
         maximum: 1e6,
         typical: 300.0,
@@ -80,6 +83,7 @@ static LOAD: &[ParameterCard] = &[
         unit: text("N"),
         meaning: text("force on the load, + = pushes the rod out"),
         kind: Kind::Linear,
+        growth: Growth::FORCE,
         minimum: -1e6,
         maximum: 1e6,
         typical: 100.0,
@@ -102,6 +106,6 @@ impl Physics for ExternalContact {
 
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
-        rows.torque[cylinder] += parameters[2] * window(now.time, parameters[0], parameters[1]);
+        rows.torque[cylinder] += parameters[2] * window(now.time, parameters[0], parameters[1], now.time_scale);
     }
 }

@@ -1,6 +1,6 @@
 //! Leakage out of the chambers.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -27,6 +27,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m3/(s Pa)"),
         meaning: text("leakage coefficient of the cap side"),
         kind: Kind::Linear,
+        growth: Growth::FLOW,
         minimum: 0.0,
         maximum: 1e-6,
         typical: 3e-12,
@@ -39,6 +40,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m3/(s Pa)"),
         meaning: text("leakage coefficient of the rod side"),
         kind: Kind::Linear,
+        growth: Growth::FLOW,
         minimum: 0.0,
         maximum: 1e-6,
         typical: 3e-12,

@@ -1,6 +1,6 @@
 //! A constant part of the resisting force.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -29,6 +29,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("N"),
     meaning: text("constant resisting force"),
     kind: Kind::Linear,
+    growth: Growth::FORCE,
     minimum: -1e6,
     maximum: 1e6,
     typical: 10.0,

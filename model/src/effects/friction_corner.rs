@@ -1,8 +1,8 @@
 //! How sharp a corner friction turns.
 
 use super::{
-    ActsOn, Card, Corner, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
-    Spread, Start, text,
+    ActsOn, Card, Corner, Family, Finding, Growth, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar,
+    Site, Spread, Start, text,
 };
 use crate::equations::Situation;
 use crate::machine::Machine;
@@ -41,6 +41,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("-"),
     meaning: text("-1 as x/sqrt(1 + x^2), 0 as tanh(x), 4 nearly straight up to one"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: -4.0,
     maximum: 20.0,
     typical: 1.0,

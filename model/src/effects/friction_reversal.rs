@@ -1,8 +1,8 @@
 //! How sharply friction turns round.
 
 use super::{
-    ActsOn, Card, Corner, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
-    Spread, Start, text,
+    ActsOn, Card, Corner, Family, Finding, Growth, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar,
+    Site, Spread, Start, text,
 };
 use crate::equations::Situation;
 use crate::equations::smooth::SLIP_SPEED;
@@ -41,6 +41,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("m/s"),
     meaning: text("speed over which the sign of the velocity changes"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: 1e-4,
     maximum: 2e-2,
     typical: 3e-3,

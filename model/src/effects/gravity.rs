@@ -1,6 +1,6 @@
 //! Weight of the links.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::planar_chain::{absolute_angle, add_weight};
 use crate::machine::Machine;
@@ -31,6 +31,7 @@ static LINK: &[ParameterCard] = &[ParameterCard {
     unit: text("kg m"),
     meaning: text("mass times distance of the centre of gravity"),
     kind: Kind::Linear,
+    growth: Growth::MASS_MOMENT,
     minimum: -1e6,
     maximum: 1e6,
     typical: 200.0,
@@ -44,6 +45,7 @@ static LOAD: &[ParameterCard] = &[ParameterCard {
     unit: text("N"),
     meaning: text("weight of the load along the cylinder"),
     kind: Kind::Linear,
+    growth: Growth::FORCE,
     minimum: -1e6,
     maximum: 1e6,
     typical: 1000.0,

@@ -1,6 +1,6 @@
 //! Pressure loss between valve and chamber.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -35,6 +35,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("Pa s2/m6"),
     meaning: text("pressure loss per square of the flow, in each of the two hoses"),
     kind: Kind::Shape,
+    growth: Growth::FLOW_RESISTANCE,
     minimum: 0.0,
     maximum: 1e15,
     typical: 1e12,

@@ -1,6 +1,6 @@
 //! Inertia of the links, or the mass of a linear load.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::planar_chain::{add_composite_inertia, add_first_moment};
 use crate::machine::Machine;
@@ -34,6 +34,7 @@ static SINGLE: &[ParameterCard] = &[ParameterCard {
     unit: text("kg m2"),
     meaning: text("moment of inertia about the joint"),
     kind: Kind::Linear,
+    growth: Growth::INERTIA,
     minimum: 1e-3,
     maximum: 1e7,
     typical: 200.0,
@@ -48,6 +49,7 @@ static FIRST_OF_TWO: &[ParameterCard] = &[
         unit: text("kg m2"),
         meaning: text("moment of inertia of both links about the first joint"),
         kind: Kind::Linear,
+        growth: Growth::INERTIA,
         minimum: 1e-3,
         maximum: 1e7,
         typical: 2000.0,
@@ -60,6 +62,7 @@ static FIRST_OF_TWO: &[ParameterCard] = &[
         unit: text("kg m2"),
         meaning: text("coupling m2 lg2 l1 between the links"),
         kind: Kind::Linear,
+        growth: Growth::INERTIA,
         minimum: -1e7,
         maximum: 1e7,
         typical: 500.0,
@@ -77,6 +80,7 @@ const CHAIN_INERTIA: ParameterCard = ParameterCard {
         "moments of inertia A of this link and all later ones, each about its own joint with later masses at its end",
     ),
     kind: Kind::Linear,
+    growth: Growth::INERTIA,
     minimum: 1e-3,
     maximum: 1e7,
     typical: 500.0,
@@ -98,6 +102,7 @@ static LATER_OF_CHAIN: &[ParameterCard] = &[
             "first moment of the link about its joint, with later masses at its end: couples it to the links before",
         ),
         kind: Kind::Linear,
+        growth: Growth::MASS_MOMENT,
         minimum: -1e6,
         maximum: 1e6,
         typical: 100.0,
@@ -112,6 +117,7 @@ static LOAD: &[ParameterCard] = &[ParameterCard {
     unit: text("kg"),
     meaning: text("mass of the load"),
     kind: Kind::Linear,
+    growth: Growth::MASS,
     minimum: 1e-3,
     maximum: 1e6,
     typical: 100.0,

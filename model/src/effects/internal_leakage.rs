@@ -1,6 +1,6 @@
 //! Leakage past the piston seal.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -26,6 +26,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("m3/(s Pa)"),
     meaning: text("leakage coefficient"),
     kind: Kind::Linear,
+    growth: Growth::FLOW,
     minimum: 0.0,
     maximum: 1e-6,
     typical: 1e-11,

@@ -1,6 +1,6 @@
 //! A spring at the joint.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::{Machine, Mechanism};
 
@@ -26,13 +26,14 @@ static CARD: Card = Card {
     energy: text("Stores k (q - qm)^2 / 2 - tau0 (q - qm)."),
 };
 
-const fn stiffness(unit: &'static str, typical: f64) -> ParameterCard {
+const fn stiffness(unit: &'static str, growth: Growth, typical: f64) -> ParameterCard {
     ParameterCard {
         name: text("spring_stiffness"),
         symbol: text("k"),
         unit: text(unit),
         meaning: text("stiffness of the spring; below zero where it pushes away from the middle"),
         kind: Kind::Linear,
+        growth,
         minimum: -1e6,
         maximum: 1e6,
         typical,
@@ -41,13 +42,20 @@ const fn stiffness(unit: &'static str, typical: f64) -> ParameterCard {
     }
 }
 
-const fn preload(name: &'static str, symbol: &'static str, unit: &'static str, meaning: &'static str) -> ParameterCard {
+const fn preload(
+    name: &'static str,
+    symbol: &'static str,
+    unit: &'static str,
+    growth: Growth,
+    meaning: &'static str,
+) -> ParameterCard {
     ParameterCard {
         name: text(name),
         symbol: text(symbol),
         unit: text(unit),
         meaning: text(meaning),
         kind: Kind::Linear,
+        growth,
         minimum: -1e6,
         maximum: 1e6,
         typical: 100.0,
@@ -57,12 +65,20 @@ const fn preload(name: &'static str, symbol: &'static str, unit: &'static str, m
 }
 
 static LINK: &[ParameterCard] = &[
-    stiffness("N m/rad", 300.0),
-    preload("spring_torque", "tau0", "N m", "its torque at mid-stroke, + = in the direction of growing angle"),
+    stiffness("N m/rad", Growth::TORQUE, 300.0),
+    preload(
+        "spring_torque",
+        "tau0",
+        "N m",
+        Growth::TORQUE,
+        "its torque at mid-stroke, + = in the direction of growing angle",
+    ),
 ];
 
-static LOAD: &[ParameterCard] =
-    &[stiffness("N/m", 1000.0), preload("spring_force", "F0", "N", "its force at mid-stroke, + = pushes the rod out")];
+static LOAD: &[ParameterCard] = &[
+    stiffness("N/m", Growth::STIFFNESS, 1000.0),
+    preload("spring_force", "F0", "N", Growth::FORCE, "its force at mid-stroke, + = pushes the rod out"),
+];
 
 impl Physics for JointSpring {
     fn card(&self) -> &Card {

@@ -1,6 +1,6 @@
 //! Check valve between pump line and metering edge.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -33,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("-"),
     meaning: text("share of the flow back that the check valve keeps: 0 none, 1 all"),
     kind: Kind::Linear,
+    growth: Growth::NONE,
     minimum: 0.0,
     maximum: 1.0,
     typical: 0.9,

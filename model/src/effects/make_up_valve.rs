@@ -1,7 +1,7 @@
 //! Valves that let oil from the tank line into a chamber that is drawn empty.
 
 use super::cavitation::fill_below;
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -32,6 +32,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("Pa"),
         meaning: text("how far below tank pressure a chamber must be drawn for its valve to open"),
         kind: Kind::Shape,
+        growth: Growth::NONE,
         minimum: 0.0,
         maximum: 2e6,
         typical: 2e4,
@@ -44,6 +45,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m3/(s Pa)"),
         meaning: text("flow per pressure beyond cracking"),
         kind: Kind::Linear,
+        growth: Growth::FLOW,
         minimum: 0.0,
         maximum: 1e-6,
         typical: 3e-9,

@@ -22,6 +22,7 @@ mod coulomb_friction;
 mod displacement_sensor_offset;
 mod end_cushion;
 mod end_stop;
+mod end_stop_correction;
 mod entrained_air;
 mod external_contact;
 mod external_leakage;
@@ -59,6 +60,7 @@ mod valve_lag;
 mod valve_leakage;
 mod viscous_damping;
 
+pub use crate::machine::Growth;
 pub use card::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Site, Start, Text, text};
 pub use catalogue::{AnyEffect, Catalogue, TwiceInCatalogue, UnknownEffect};
 pub use physics::{Effect, Hooks, Number, Physics};

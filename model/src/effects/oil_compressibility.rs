@@ -1,6 +1,6 @@
 //! Compressibility of the oil, with the walls and hoses around it.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 use crate::machine::Supply;
@@ -27,6 +27,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("Pa"),
     meaning: text("bulk modulus"),
     kind: Kind::Reciprocal,
+    growth: Growth::NONE,
     minimum: 1e5,
     maximum: 1e11,
     typical: 1e9,

@@ -1,6 +1,6 @@
 //! Open-centre bypass from pump to tank.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::smooth::{LAMINAR_PRESSURE, orifice_root};
 use crate::machine::Machine;
@@ -33,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("m/(s sqrt(Pa))"),
     meaning: text("flow gain of the bypass"),
     kind: Kind::Linear,
+    growth: Growth::FLOW_GAIN,
     minimum: 0.0,
     maximum: 1.0,
     typical: 1e-2,
@@ -63,7 +64,7 @@ pub(super) fn bypass_section<T: Scalar>(now: &Situation<T>) -> T {
         let Some(chambers) = now.chambers(cylinder) else { continue };
         let left = -piston.bypass_closing + chambers.maximum_orifice_area;
         // A spool at or past its end shuts the whole bypass; the sum would be infinite.
-        if left.value() <= CLOSED_AREA {
+        if left.value() <= CLOSED_SHARE * chambers.maximum_orifice_area {
             return T::from(0.0);
         }
         inverse_squares += (left * left).recip();
@@ -71,5 +72,5 @@ pub(super) fn bypass_section<T: Scalar>(now: &Situation<T>) -> T {
     inverse_squares.sqrt().recip()
 }
 
-/// Area under which a bypass section counts as shut, m²: a thousandth of a per cent of a usual spool's.
-const CLOSED_AREA: f64 = 1e-9;
+/// Share of the largest opening under which a bypass section counts as shut: a thousandth of a per cent.
+const CLOSED_SHARE: f64 = 1e-5;

@@ -1,6 +1,6 @@
 //! A full opening that is not what was assumed.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -33,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("-"),
     meaning: text("relative error of the full scale: recorded openings times 1 + k are the true ones"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: -0.9,
     maximum: 4.0,
     typical: 0.1,

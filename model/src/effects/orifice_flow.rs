@@ -1,6 +1,8 @@
 //! Turbulent flow through the metering edges of the valve.
 
-use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{
+    ActsOn, Card, Corner, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text,
+};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -34,6 +36,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m/(s sqrt(Pa))"),
         meaning: text("flow gain of the cap side edges"),
         kind: Kind::Linear,
+        growth: Growth::FLOW_GAIN,
         minimum: 0.0,
         maximum: 1.0,
         typical: 4e-3,
@@ -46,6 +49,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m/(s sqrt(Pa))"),
         meaning: text("flow gain of the rod side edges"),
         kind: Kind::Linear,
+        growth: Growth::FLOW_GAIN,
         minimum: 0.0,
         maximum: 1.0,
         typical: 4e-3,

@@ -1,8 +1,8 @@
 //! Where the flow through an orifice begins to be turbulent.
 
 use super::{
-    ActsOn, Card, Corner, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
-    Spread, Start, text,
+    ActsOn, Card, Corner, Family, Finding, Growth, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar,
+    Site, Spread, Start, text,
 };
 use crate::equations::Situation;
 use crate::equations::smooth::LAMINAR_PRESSURE;
@@ -42,6 +42,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("Pa"),
     meaning: text("pressure drop below which the flow is laminar"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: 1e2,
     maximum: 4e5,
     typical: 2e4,

@@ -1,6 +1,6 @@
 //! A mass that the link carries.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::planar_chain::{absolute_angle, add_first_moment, add_inertia, add_weight};
 use crate::equations::smooth::window;
@@ -40,6 +40,7 @@ const MASS: ParameterCard = ParameterCard {
     unit: text("kg"),
     meaning: text("added mass"),
     kind: Kind::Linear,
+    growth: Growth::MASS,
     minimum: 0.0,
     maximum: 1e5,
     typical: 100.0,
@@ -53,6 +54,7 @@ const DISTANCE: ParameterCard = ParameterCard {
     unit: text("m"),
     meaning: text("distance of its centre from the joint"),
     kind: Kind::Shape,
+    growth: Growth::LENGTH,
     minimum: 0.0,
     maximum: 20.0,
     typical: 1.5,
@@ -66,6 +68,7 @@ const START: ParameterCard = ParameterCard {
     unit: text("s"),
     meaning: text("time after the first sample at which it is picked up, -1 where it is there from the beginning"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: BEFORE,
     maximum: FOREVER,
     typical: 5.0,
@@ -79,6 +82,7 @@ const DURATION: ParameterCard = ParameterCard {
     unit: text("s"),
     meaning: text("how long it is carried, 1e9 where it is never put down"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: 0.02,
     maximum: FOREVER,
     typical: 5.0,
@@ -103,6 +107,7 @@ static SECOND_OF_TWO: &[ParameterCard] = &[
         unit: text("m"),
         meaning: text("distance between the two joints"),
         kind: Kind::Shape,
+        growth: Growth::LENGTH,
         minimum: 0.0,
         maximum: 20.0,
         typical: 2.5,
@@ -121,6 +126,7 @@ static LOAD: &[ParameterCard] = &[
         unit: text("-"),
         meaning: text("sine of the slope of the axis: 1 lifts, 0 level"),
         kind: Kind::Shape,
+        growth: Growth::NONE,
         minimum: -1.0,
         maximum: 1.0,
         typical: 0.5,
@@ -199,7 +205,7 @@ impl Physics for Payload {
 /// The mass that is carried at this instant.
 fn carried<T: Scalar>(parameters: &[T], now: &Situation<T>) -> T {
     match parameters {
-        [mass, .., begin, duration] => *mass * window(now.time, *begin, *duration),
+        [mass, .., begin, duration] => *mass * window(now.time, *begin, *duration, now.time_scale),
         _ => T::from(0.0),
     }
 }

@@ -6,7 +6,7 @@
 use super::{Card, Corner, Finding, ParameterCard, Rows, Scalar, Site};
 use crate::equations::{Instruments, Situation};
 use crate::formula::FormulaText;
-use crate::machine::Machine;
+use crate::machine::{Machine, Size};
 use crate::scalar::Dual;
 
 /// One physical effect, written once for any number type.
@@ -85,7 +85,7 @@ pub trait Physics: Send + Sync {
         false
     }
 
-    /// Order of magnitude of a state, in its unit: that of a spool's opening, m².
+    /// Order of magnitude of a state, in its unit: that of a spool's opening, m², on a machine of the reference size.
     fn state_scale(&self, _state: usize) -> f64 {
         1e-4
     }
@@ -96,8 +96,9 @@ pub trait Physics: Send + Sync {
     }
 
     /// Where the metering edges and where the bypass's really are (m²), given where the input says the spool is; `states` are the
-    /// effect's own, whose rates go to `rates`. Asked of effects of valves only, as is [`Physics::opening`].
-    fn spool<T: Scalar>(&self, _parameters: &[T], _states: &[T], _rates: &mut [T], spool: T) -> [T; 2] {
+    /// effect's own, whose rates go to `rates`. `size` is that of the valve's cylinder. Asked of effects of valves only, as is
+    /// [`Physics::opening`].
+    fn spool<T: Scalar>(&self, _size: &Size, _parameters: &[T], _states: &[T], _rates: &mut [T], spool: T) -> [T; 2] {
         [spool, spool]
     }
 
@@ -220,7 +221,7 @@ hooks! {
         fn reads_course() -> bool;
     }
     in number type T {
-        fn spool(parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2];
+        fn spool(size: &Size, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2];
         fn read(parameters: &[T], reading: T, course: [T; 2]) -> T;
         fn opening(site: Site, parameters: &[T], opening: T, now: &Situation<T>) -> T;
         fn adjust(site: Site, parameters: &[T], now: &mut Situation<T>);

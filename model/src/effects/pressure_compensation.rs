@@ -1,6 +1,6 @@
 //! Pressure compensator in front of the metering edges.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -36,6 +36,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("Pa"),
     meaning: text("pressure drop that the compensator leaves to the metering edge"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: 1e5,
     maximum: 5e6,
     typical: 1e6,

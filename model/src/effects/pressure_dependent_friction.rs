@@ -1,6 +1,8 @@
 //! Friction of seals that pressure pushes against the wall.
 
-use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{
+    ActsOn, Card, Corner, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text,
+};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -30,6 +32,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("m2"),
     meaning: text("friction force per sum of the chamber pressures"),
     kind: Kind::Linear,
+    growth: Growth::FORCE,
     minimum: 0.0,
     maximum: 1e-2,
     typical: 1e-4,

@@ -1,6 +1,6 @@
 //! Pressure sensors that do not read zero at ambient pressure.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::{Channel, Instruments};
 use crate::machine::Machine;
 
@@ -33,6 +33,7 @@ static CYLINDER: &[ParameterCard] = &[
         unit: text("Pa"),
         meaning: text("what the cap side sensor adds"),
         kind: Kind::Shape,
+        growth: Growth::NONE,
         minimum: -1e7,
         maximum: 1e7,
         typical: 5e4,
@@ -45,6 +46,7 @@ static CYLINDER: &[ParameterCard] = &[
         unit: text("Pa"),
         meaning: text("what the rod side sensor adds"),
         kind: Kind::Shape,
+        growth: Growth::NONE,
         minimum: -1e7,
         maximum: 1e7,
         typical: 5e4,
@@ -59,6 +61,7 @@ static PUMP_LINE: &[ParameterCard] = &[ParameterCard {
     unit: text("Pa"),
     meaning: text("what the pump pressure sensor adds"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: -1e7,
     maximum: 1e7,
     typical: 5e4,

@@ -62,6 +62,14 @@ pub struct RecordingScales {
 }
 
 impl Prior {
+    /// The same for a parameter that is `factor` times larger.
+    pub(super) fn grown(self, factor: f64) -> Self {
+        match (self.spread, self.scale) {
+            (Spread::Fixed(spread), PriorScale::Linear) => Prior { spread: Spread::Fixed(spread * factor), ..self },
+            _ => self,
+        }
+    }
+
     /// One standard deviation for recordings of these scales: in the parameter's unit, or a factor on the logarithmic scale.
     pub fn standard_deviation(&self, scales: &RecordingScales) -> f64 {
         match self.spread {

@@ -1,6 +1,6 @@
 //! Relief valve of the pump line.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -27,6 +27,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("Pa"),
         meaning: text("cracking pressure"),
         kind: Kind::Shape,
+        growth: Growth::NONE,
         minimum: 1e5,
         maximum: 1e8,
         typical: 2e6,
@@ -39,6 +40,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m3/(s Pa)"),
         meaning: text("flow per pressure above cracking"),
         kind: Kind::Linear,
+        growth: Growth::FLOW,
         minimum: 0.0,
         maximum: 1e-6,
         typical: 1e-9,

@@ -1,6 +1,6 @@
 //! Instruments that report late.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::{Channel, Instruments};
 use crate::machine::Machine;
 
@@ -37,6 +37,7 @@ const fn displacement_delay(meaning: &'static str) -> ParameterCard {
         unit: text("s"),
         meaning: text(meaning),
         kind: Kind::Shape,
+        growth: Growth::TIME,
         minimum: 0.0,
         maximum: 0.5,
         typical: 0.01,
@@ -52,6 +53,7 @@ const fn pressure_delay(meaning: &'static str) -> ParameterCard {
         unit: text("s"),
         meaning: text(meaning),
         kind: Kind::Shape,
+        growth: Growth::TIME,
         minimum: 0.0,
         maximum: 0.5,
         typical: 0.01,

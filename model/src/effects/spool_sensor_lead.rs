@@ -1,8 +1,8 @@
 //! A spool sensor that is read earlier than the other instruments.
 
 use super::{
-    ActsOn, Card, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
-    text,
+    ActsOn, Card, Family, Finding, Growth, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
+    Spread, Start, text,
 };
 use crate::machine::Machine;
 
@@ -53,6 +53,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("s"),
     meaning: text("how much later than its stamp the opening is what the sensor reports"),
     kind: Kind::Shape,
+    growth: Growth::NONE,
     minimum: -2e-2,
     maximum: 2e-2,
     typical: 5e-4,

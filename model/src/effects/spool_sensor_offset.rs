@@ -1,8 +1,8 @@
 //! A spool sensor that does not read zero where the valve closes.
 
 use super::{
-    ActsOn, Card, Family, Finding, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site, Spread, Start,
-    text,
+    ActsOn, Card, Family, Finding, Growth, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
+    Spread, Start, text,
 };
 use crate::machine::Machine;
 
@@ -37,6 +37,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("m2"),
     meaning: text("what the sensor reads where the valve is closed"),
     kind: Kind::Shape,
+    growth: Growth::OPENING,
     minimum: -1e-5,
     maximum: 1e-5,
     typical: 1e-7,

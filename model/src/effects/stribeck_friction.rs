@@ -1,6 +1,8 @@
 //! Stribeck friction.
 
-use super::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{
+    ActsOn, Card, Corner, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text,
+};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -27,6 +29,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("N"),
         meaning: text("friction at standstill above the Coulomb level"),
         kind: Kind::Linear,
+        growth: Growth::FORCE,
         minimum: 0.0,
         maximum: 1e6,
         typical: 500.0,
@@ -39,6 +42,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m/s"),
         meaning: text("speed at which it has fallen to 37 %"),
         kind: Kind::Shape,
+        growth: Growth::NONE,
         minimum: 1e-3,
         maximum: 0.2,
         typical: 0.015,

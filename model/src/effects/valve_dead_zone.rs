@@ -1,6 +1,6 @@
 //! Overlap of the spool.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -27,6 +27,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m2"),
         meaning: text("overlap towards the cap side"),
         kind: Kind::Shape,
+        growth: Growth::OPENING,
         minimum: 0.0,
         maximum: 1e-4,
         typical: 1e-5,
@@ -39,6 +40,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m2"),
         meaning: text("overlap towards the rod side"),
         kind: Kind::Shape,
+        growth: Growth::OPENING,
         minimum: 0.0,
         maximum: 1e-4,
         typical: 1e-5,

@@ -1,6 +1,6 @@
 //! A valve that meters differently in the two directions.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -34,6 +34,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m/(s sqrt(Pa))"),
         meaning: text("how much more the cap side edges pass for u < 0 than for u > 0"),
         kind: Kind::Linear,
+        growth: Growth::FLOW_GAIN,
         minimum: -0.02,
         maximum: 0.02,
         typical: 1e-3,
@@ -46,6 +47,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m/(s sqrt(Pa))"),
         meaning: text("how much more the rod side edges pass for u < 0 than for u > 0"),
         kind: Kind::Linear,
+        growth: Growth::FLOW_GAIN,
         minimum: -0.02,
         maximum: 0.02,
         typical: 1e-3,

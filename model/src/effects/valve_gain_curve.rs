@@ -1,6 +1,6 @@
 //! An area law that bends.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -32,6 +32,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("-"),
         meaning: text("relative change of the gain at full opening, linear part"),
         kind: Kind::Linear,
+        growth: Growth::NONE,
         minimum: -0.95,
         maximum: 5.0,
         typical: 0.3,
@@ -44,6 +45,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("-"),
         meaning: text("relative change of the gain at full opening, quadratic part"),
         kind: Kind::Linear,
+        growth: Growth::NONE,
         minimum: -0.95,
         maximum: 5.0,
         typical: 0.3,

@@ -1,7 +1,7 @@
 //! Play between spool and opening.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
-use crate::machine::{Machine, Supply};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use crate::machine::{Machine, Size, Supply};
 
 /// Play between spool and opening.
 ///
@@ -43,6 +43,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m2"),
         meaning: text("spool travel lost at each reversal, as an orifice area"),
         kind: Kind::Shape,
+        growth: Growth::OPENING,
         minimum: 0.0,
         maximum: 5e-5,
         typical: 1e-5,
@@ -57,6 +58,7 @@ static PARAMETERS: &[ParameterCard] = &[
             "how much of the play the bypass has: 1 where it is on the same spool, 0 where it follows the sensor",
         ),
         kind: Kind::Shape,
+        growth: Growth::NONE,
         minimum: 0.0,
         maximum: 1.0,
         typical: 1.0,
@@ -91,11 +93,11 @@ impl Physics for ValveHysteresis {
         1
     }
 
-    fn spool<T: Scalar>(&self, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2] {
+    fn spool<T: Scalar>(&self, size: &Size, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2] {
         let ahead = spool - states[0];
         let half = parameters[0] * 0.5;
         let pulled = (ahead - half).positive_part() - (-ahead - half).positive_part();
-        rates[0] = pulled / FOLLOW_TIME;
+        rates[0] = pulled / (FOLLOW_TIME * size.time());
         let opening = states[0] + pulled;
         let bypass = parameters.get(1).map_or(opening, |share| spool + *share * (opening - spool));
         [opening, bypass]

@@ -1,7 +1,7 @@
 //! Lag of the spool.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
-use crate::machine::Machine;
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
+use crate::machine::{Machine, Size};
 
 /// Lag of the spool.
 ///
@@ -37,6 +37,7 @@ static PARAMETERS: &[ParameterCard] = &[
             "time by which the opening comes late: the time constant of first order, the sum of all lags and delays else",
         ),
         kind: Kind::Shape,
+        growth: Growth::TIME,
         minimum: 1e-4,
         maximum: 2.0,
         typical: 0.02,
@@ -49,6 +50,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("-"),
         meaning: text("0 first order, 0.25 two equal lags, 0.5 like a pure delay, more overshoots"),
         kind: Kind::Shape,
+        growth: Growth::NONE,
         minimum: 0.0,
         maximum: 2.0,
         typical: 0.3,
@@ -78,11 +80,11 @@ impl Physics for ValveLag {
         2
     }
 
-    fn spool<T: Scalar>(&self, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2] {
+    fn spool<T: Scalar>(&self, size: &Size, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2] {
         let (lag, share) = (parameters[0], parameters[1]);
         let (before, opening) = (states[0], states[1]);
         rates[1] = (before - opening) / lag;
-        rates[0] = rates[1] + (spool - before) / (share * lag + FASTEST);
+        rates[0] = rates[1] + (spool - before) / (share * lag + FASTEST * size.time());
         [opening, opening]
     }
 }

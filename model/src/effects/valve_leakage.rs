@@ -1,6 +1,6 @@
 //! Leakage across the lands of the spool.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -33,6 +33,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m3/(s Pa)"),
         meaning: text("leakage pump to cap side"),
         kind: Kind::Linear,
+        growth: Growth::FLOW,
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
@@ -45,6 +46,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m3/(s Pa)"),
         meaning: text("leakage cap side to tank"),
         kind: Kind::Linear,
+        growth: Growth::FLOW,
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
@@ -57,6 +59,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m3/(s Pa)"),
         meaning: text("leakage pump to rod side"),
         kind: Kind::Linear,
+        growth: Growth::FLOW,
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,
@@ -69,6 +72,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m3/(s Pa)"),
         meaning: text("leakage rod side to tank"),
         kind: Kind::Linear,
+        growth: Growth::FLOW,
         minimum: 0.0,
         maximum: 1e-8,
         typical: 2e-11,

@@ -1,6 +1,6 @@
 //! Viscous damping of the piston.
 
-use super::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
@@ -26,6 +26,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("N s/m"),
     meaning: text("damping coefficient"),
     kind: Kind::Linear,
+    growth: Growth::FORCE,
     minimum: 0.0,
     maximum: 1e7,
     typical: 1e4,

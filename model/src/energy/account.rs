@@ -182,6 +182,7 @@ impl<T: Number> Account<'_, '_, T> {
     /// everything at rest but time.
     fn brought_along(&mut self, number: usize) -> T {
         let now = self.workspace.situation.time;
+        let instant = INSTANT * self.system.model().machine.size().time();
         let mut stored_at = |time: T| {
             self.workspace.situation.time = time;
             self.contribute_alone(number);
@@ -191,9 +192,9 @@ impl<T: Number> Account<'_, '_, T> {
             let potential = T::hooks(&*effect.physics).potential(effect.site, &self.parameters[first..last], situation);
             kinetic_energies(situation, rows).fold(potential.unwrap_or(T::from(0.0)), |sum, part| sum + part)
         };
-        let near = stored_at(now + INSTANT) - stored_at(now - INSTANT);
-        let far = stored_at(now + 2.0 * INSTANT) - stored_at(now - 2.0 * INSTANT);
-        let power = (near * 8.0 - far) / (12.0 * INSTANT);
+        let near = stored_at(now + instant) - stored_at(now - instant);
+        let far = stored_at(now + 2.0 * instant) - stored_at(now - 2.0 * instant);
+        let power = (near * 8.0 - far) / (12.0 * instant);
         self.workspace.situation.time = now;
         power
     }

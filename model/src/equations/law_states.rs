@@ -41,7 +41,7 @@ impl<'m> LawStates<'m> {
             return;
         }
         if let Some((before, values)) = &self.known
-            && (0.0..GAP).contains(&(time - before))
+            && (0.0..GAP * system.model().machine.size().time()).contains(&(time - before))
         {
             let step = time - before;
             for ((index, _), value) in own.iter().zip(values) {

@@ -17,7 +17,7 @@ pub use inputs::{ImposedState, Inputs};
 pub use instruments::{Distortion, Instruments};
 pub use law_states::LawStates;
 pub use layout::Layout;
-pub use rounding::Rounding;
+pub use rounding::{EndStopCorrection, Rounding};
 pub use rows::Rows;
 pub use situation::{Piston, Situation};
 pub use system::{System, Workspace};

@@ -12,6 +12,21 @@ pub struct Rounding<T> {
     pub corner_sharpness: Option<T>,
     /// Pressure drop below which the flow of the valve's edges is laminar, Pa.
     pub transition_pressure: T,
+    /// How the end stops differ from what the model file says of them; `None` where they do not.
+    pub end_stop: Option<EndStopCorrection<T>>,
+}
+
+/// How real end stops differ from those of a model file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndStopCorrection<T> {
+    /// Factor of the stiffness.
+    pub stiffness: T,
+    /// Factor of the damping.
+    pub damping: T,
+    /// Damping that does not grow with the depth, N s/m.
+    pub viscous_damping: T,
+    /// How much farther than half the stroke the piston moves: out, in, m.
+    pub shifts: [T; 2],
 }
 
 impl<T: Scalar> Rounding<T> {
@@ -21,6 +36,7 @@ impl<T: Scalar> Rounding<T> {
             reversal_speed: T::from(SLIP_SPEED),
             corner_sharpness: None,
             transition_pressure: T::from(LAMINAR_PRESSURE),
+            end_stop: None,
         }
     }
 

@@ -82,6 +82,8 @@ impl<T: Scalar> Piston<T> {
 pub struct Situation<'m, T> {
     /// The machine.
     pub machine: &'m Machine,
+    /// Its unit of time beside that of the reference ([`crate::machine::Size::time`]), a pure number.
+    pub time_scale: f64,
     /// Time since the first sample of the recording, s.
     pub time: T,
     /// One entry per cylinder.
@@ -122,6 +124,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
         };
         Situation {
             machine,
+            time_scale: machine.size().time(),
             time: zero,
             pistons: vec![piston; machine.cylinders.len()],
             pump_pressure: zero,

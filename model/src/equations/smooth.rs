@@ -55,10 +55,12 @@ pub fn rounded_step<T: Scalar>(ratio: T) -> T {
     ((ratio * -2.0).exp() + 1.0).recip()
 }
 
-/// One from `begin` on for `duration`, zero before and after (all s), its edges rounded over 30 ms.
-pub fn window<T: Scalar>(time: T, begin: T, duration: T) -> T {
+/// One from `begin` on for `duration`, zero before and after (all s), its edges rounded over 30 ms; as wide as `time_scale` says on a
+/// machine of another size.
+pub fn window<T: Scalar>(time: T, begin: T, duration: T, time_scale: f64) -> T {
+    let edge = EDGE * time_scale;
     let since = time - begin;
-    rounded_step(since / EDGE) * rounded_step((duration - since) / EDGE)
+    rounded_step(since / edge) * rounded_step((duration - since) / edge)
 }
 
 /// Time over which a window opens and closes, s: several steps of an integrator, and longer than a recorder's interval, so that

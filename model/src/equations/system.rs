@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{Inputs, Instruments, Layout, Rounding, Rows, Situation};
 use crate::Model;
 use crate::effects::{ActsOn, Family, Number, Site};
-use crate::machine::Supply;
+use crate::machine::{Growth, Size, Supply};
 
 /// A model's equations of motion `dx/dt = f(x, inputs, parameters)`.
 #[derive(Debug, Clone)]
@@ -22,6 +22,10 @@ pub struct System<'m> {
     /// Whether an effect needs the metering flows.
     reads_metering_flows: bool,
     own_instruments: Instruments<f64>,
+    /// Size of each cylinder.
+    sizes: Vec<Size>,
+    /// Size of the whole machine.
+    size: Size,
 }
 
 /// Memory for one evaluation, reused so that none allocates.
@@ -69,6 +73,10 @@ impl<'m> System<'m> {
             remembering,
             reads_metering_flows,
             own_instruments,
+            sizes: (0..model.machine.cylinders.len())
+                .map(|index| model.machine.size_at(Site::Cylinder(index)))
+                .collect(),
+            size: model.machine.size(),
         };
         system.own_instruments = system.instruments(&model.parameter_values());
         system
@@ -219,8 +227,8 @@ impl<'m> System<'m> {
                 let imposed = &inputs.imposed[index];
                 piston.cap_pressure = imposed.cap_pressure;
                 piston.rod_pressure = imposed.rod_pressure;
-                rates[layout.joint(index)] = imposed.rate + (imposed.joint - piston.joint) / TRACKING;
-                rates[layout.rate(index)] = imposed.acceleration + (imposed.rate - piston.rate) / TRACKING;
+                rates[layout.joint(index)] = imposed.rate + (imposed.joint - piston.joint) / self.tracking();
+                rates[layout.rate(index)] = imposed.acceleration + (imposed.rate - piston.rate) / self.tracking();
             }
             piston.command = inputs.orifice_area[index];
             piston.spool = piston.command;
@@ -255,8 +263,9 @@ impl<'m> System<'m> {
             let own_states = &state[state_first..state_first + states];
             let own_rates = &mut rates[state_first..state_first + states];
             let piston = &mut situation.pistons[index];
+            let size = &self.sizes[index];
             let [metering, bypass] =
-                T::hooks(&*effect.physics).spool(&parameters[first..last], own_states, own_rates, piston.spool);
+                T::hooks(&*effect.physics).spool(size, &parameters[first..last], own_states, own_rates, piston.spool);
             piston.bypass_closing += bypass - piston.spool;
             piston.spool = metering;
         }
@@ -337,7 +346,10 @@ impl<'m> System<'m> {
     pub fn state_scales(&self) -> impl Iterator<Item = (usize, f64)> {
         let each = self.model.effects.iter().zip(&self.layout.effect_states);
         each.flat_map(|(effect, &(first, states))| {
-            (0..states).map(move |state| (first + state, effect.physics.state_scale(state)))
+            let size = self.model.machine.size_at(effect.site);
+            // Memory is in the unit of its law; all else is an opening.
+            let factor = if effect.physics.has_memory() { 1.0 } else { size.factor(Growth::OPENING) };
+            (0..states).map(move |state| (first + state, factor * effect.physics.state_scale(state)))
         })
     }
 
@@ -380,6 +392,10 @@ impl<'m> System<'m> {
         }
     }
 
+    fn tracking(&self) -> f64 {
+        TRACKING * self.size.time()
+    }
+
     /// The force that each imposed motion takes: inertia, less what effects and pressures do.
     fn assemble_rod_forces<T: Number>(&self, workspace: &Workspace<'m, T>, state: &[T], rates: &mut [T]) {
         let layout = &self.layout;
@@ -397,7 +413,7 @@ impl<'m> System<'m> {
             }
             let pushed = imposed.pressure_force(piston.cap_pressure, piston.rod_pressure);
             let needed = torque / piston.lever - rows.piston_force[index] - pushed;
-            rates[force] = (needed - state[force]) / TRACKING;
+            rates[force] = (needed - state[force]) / self.tracking();
         }
     }
 }

@@ -69,7 +69,7 @@ impl Corner {
                 T::from(SHARE_WIDTH * largest)
             }
             Corner::Length => T::from(SHARE_WIDTH * own.map_or(0.0, |own| own.stroke)),
-            Corner::Time => T::from(TIME_WIDTH),
+            Corner::Time => T::from(TIME_WIDTH * now.time_scale),
             Corner::Pure => T::from(PURE_WIDTH),
             Corner::Sharp => T::from(0.0),
         }

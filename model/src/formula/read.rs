@@ -12,7 +12,7 @@ use super::program::Program;
 use super::row::{ROWS, Row};
 use super::text::{FormulaText, ParameterText, StateText};
 use super::variable::Variable;
-use crate::effects::{ActsOn, Card, Family, Kind, Needs, ParameterCard, Start, Text, nearest};
+use crate::effects::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Start, Text, nearest};
 
 /// A formula effect that cannot be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -317,6 +317,8 @@ fn parameter_card(name: &str, text: &ParameterText, is_linear: bool) -> Result<P
         unit: Text::Owned(text.unit.clone()),
         meaning: Text::Owned(text.meaning.clone()),
         kind: if is_linear { Kind::Linear } else { Kind::Shape },
+        // What a user writes is for the user's machine.
+        growth: Growth::NONE,
         minimum,
         maximum,
         typical,

@@ -3,11 +3,13 @@
 mod cylinder;
 mod linkage;
 mod mechanism;
+mod size;
 mod supply;
 
 pub use cylinder::{Chambers, Cylinder, ImposedMotion};
 pub use linkage::Linkage;
 pub use mechanism::Mechanism;
+pub use size::{Growth, Size};
 pub use supply::{PressureSource, PumpLine, Supply};
 
 /// A machine: a mechanism driven by one cylinder per joint, fed by one supply.

@@ -8,8 +8,17 @@ use crate::{Model, SignalError};
 /// ten samples, short against the dynamics of an arm.
 const WINDOW: f64 = 0.02;
 
+/// The first sample from `from` on at which a measurement says where every piston is.
+pub fn first_known_position(model: &Model, recording: &Recording, from: usize) -> Option<usize> {
+    let signals: Vec<_> =
+        model.machine.cylinders.iter().filter_map(|cylinder| recording.cylinder(&cylinder.name).ok()).collect();
+    (from..recording.len()).find(|&sample| {
+        signals.iter().all(|own| own.displacement[sample].is_finite() || own.joint_angle[sample].is_finite())
+    })
+}
+
 /// State of `model` at sample `index` of a recording. Positions and pressures come from straight lines through the
-/// samples within 0.02 s after it, velocity is the slope of the displacement's line (\[A\] Section 4.1: "estimated by just
+/// samples within 0.02 s after it (on a machine of the reference size), velocity is the slope of the displacement's line (\[A\] Section 4.1: "estimated by just
 /// first order differentiation") unless it is measured. Pressures that nobody measures start where forces balance. `spool`
 /// gives the valve openings at the sample, m². What the model's sensor effects add to measurements is taken away.
 ///
@@ -24,9 +33,10 @@ pub fn initial_state(
 ) -> Result<Vec<f64>, SignalError> {
     let model: &Model = system.model();
     let layout: &Layout = system.layout();
+    let window = WINDOW * model.machine.size().time();
     let line = |channel: Channel, signal: &[f64]| {
         let Distortion { offset, delay } = system.own_instruments().of(channel);
-        start_line(&recording.time, signal, index, delay).map(|(value, slope)| (value - offset, slope))
+        start_line(&recording.time, signal, index, delay, window).map(|(value, slope)| (value - offset, slope))
     };
     let mut state = vec![0.0; layout.len];
     let mut unmeasured = Vec::new();
@@ -111,15 +121,15 @@ fn balance(system: &System<'_>, spool: &[f64], tank_pressure: f64, unmeasured: &
 }
 
 /// Value and slope of a signal that is `delay` s late, at sample `index`: of the straight line through the values that
-/// were reported within [`WINDOW`] after the delay.
-fn start_line(time: &[f64], signal: &[f64], index: usize, delay: f64) -> Option<(f64, f64)> {
+/// were reported within `window` s after the delay.
+fn start_line(time: &[f64], signal: &[f64], index: usize, delay: f64, window: f64) -> Option<(f64, f64)> {
     let start = *time.get(index)? + delay;
     // A clock's last digit must not cost the first point.
     let first = time.partition_point(|&t| t < start - 1e-9);
     let points: Vec<(f64, f64)> = time[first..]
         .iter()
         .zip(&signal[first..])
-        .take_while(|(t, _)| **t - start <= WINDOW)
+        .take_while(|(t, _)| **t - start <= window)
         .filter(|(_, value)| value.is_finite())
         .map(|(t, value)| (t - start, *value))
         .collect();

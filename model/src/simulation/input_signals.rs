@@ -5,7 +5,7 @@ use super::imposed_motion::imposed_signals;
 use super::spool_estimate::spool_estimate;
 use crate::effects::Site;
 use crate::equations::{ImposedState, Inputs};
-use crate::machine::Supply;
+use crate::machine::{Growth, Size, Supply};
 use crate::recording::{CylinderSignals, Recording, is_measured, standard_deviation};
 use crate::{Model, SignalError};
 
@@ -48,6 +48,8 @@ pub struct InputSignals {
     supply_pressure: Vec<f64>,
     tank_pressure: Vec<f64>,
     pump_flow: Vec<f64>,
+    /// Of the machine: what is straight for one is bent for a smaller one.
+    size: Size,
 }
 
 impl InputSignals {
@@ -116,6 +118,7 @@ impl InputSignals {
             tank_pressure: smoothed(&or_constant(&recording.tank_pressure, machine.supply.tank_pressure())),
             pump_flow: or_constant(&recording.pump_flow, machine.supply.pump_flow()),
             time: recording.time.clone(),
+            size: machine.size(),
         })
     }
 
@@ -136,6 +139,7 @@ impl InputSignals {
             .collect();
         InputSignals {
             time,
+            size: self.size,
             orifice_area,
             orifice_rate,
             rod_force: self.rod_force.iter().map(|values| lines(values)).collect(),
@@ -210,6 +214,7 @@ impl InputSignals {
     /// as a force, so every sample of it matters.
     pub fn is_straight(&self, first: usize, last: usize) -> bool {
         let (start, duration) = (self.time[first], self.time[last] - self.time[first]);
+        let straight_rate = STRAIGHT_RATE * self.size.factor(Growth::OPENING) / self.size.time();
         let near_line = |values: &[f64], most: f64| {
             let slope = (values[last] - values[first]) / duration;
             (first + 1..last)
@@ -217,16 +222,19 @@ impl InputSignals {
         };
         self.orifice_area.iter().all(|(interpolation, values)| match interpolation {
             // Another edge of the valve opens where the sign changes.
-            Interpolation::Linear => near_line(values, STRAIGHT_AREA) && !changes_sign(&values[first..=last]),
+            Interpolation::Linear => {
+                near_line(values, STRAIGHT_AREA * self.size.factor(Growth::OPENING))
+                    && !changes_sign(&values[first..=last])
+            }
             Interpolation::Hold => values[first + 1..last].iter().all(|&value| value == values[first]),
         }) && self.orifice_rate.iter().flatten().all(|rates| {
             // With the interval before, whose rate counts at the first sample.
-            rates[first.saturating_sub(1)..=last].iter().all(|rate| (rate - rates[first]).abs() <= STRAIGHT_RATE)
+            rates[first.saturating_sub(1)..=last].iter().all(|rate| (rate - rates[first]).abs() <= straight_rate)
         }) && self.imposed.iter().all(Option::is_none)
-            && self.rod_force.iter().all(|values| near_line(values, STRAIGHT_FORCE))
+            && self.rod_force.iter().all(|values| near_line(values, STRAIGHT_FORCE * self.size.factor(Growth::FORCE)))
             && near_line(&self.supply_pressure, STRAIGHT_PRESSURE)
             && near_line(&self.tank_pressure, STRAIGHT_PRESSURE)
-            && near_line(&self.pump_flow, STRAIGHT_FLOW)
+            && near_line(&self.pump_flow, STRAIGHT_FLOW * self.size.factor(Growth::FLOW))
     }
 
     /// Inputs at the first sample.

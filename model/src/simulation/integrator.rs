@@ -13,6 +13,7 @@ use super::factors::Factors;
 use super::sensitivity::Sensitivity;
 use super::{InputSignals, Linearisation};
 use crate::equations::{Inputs, System, Workspace};
+use crate::machine::{Growth, Machine, Mechanism};
 
 /// Why a simulation ended early.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -59,7 +60,7 @@ pub enum SimulationError {
     },
 }
 
-/// How exact a simulation is.
+/// How exact a simulation is, on a machine of [`crate::machine::Size::REFERENCE`]; the integrator adapts it to its machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerances {
     /// Relative error per step. 1e-4, because a step's error decays with the dynamics and the embedded estimate is of
@@ -99,6 +100,20 @@ impl Default for Tolerances {
 }
 
 impl Tolerances {
+    /// The same on a machine of another size. Relative errors, pressures and speeds of pistons stay.
+    fn for_machine(self, machine: &Machine) -> Self {
+        let time = machine.size().time();
+        let is_linear = matches!(machine.mechanism, Mechanism::LinearLoad);
+        Tolerances {
+            joint: if is_linear { self.joint * machine.size().factor(Growth::LENGTH) } else { self.joint },
+            rate: if is_linear { self.rate } else { self.rate / time },
+            minimum_step: self.minimum_step * time,
+            maximum_step: self.maximum_step * time,
+            most_steps_per_second: self.most_steps_per_second / time,
+            ..self
+        }
+    }
+
     /// All tolerances scaled by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         Tolerances {
@@ -150,6 +165,7 @@ impl<'m, 's> Integrator<'m, 's> {
         sensitivity_parameters: &[usize],
         settings: Tolerances,
     ) -> Self {
+        let settings = settings.for_machine(&system.model().machine);
         let layout = system.layout();
         let mut tolerances = vec![settings.pressure; layout.len];
         for joint in 0..layout.joints {

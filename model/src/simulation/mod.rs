@@ -20,7 +20,7 @@ mod spool_memory;
 mod trajectory;
 mod undistorted;
 
-pub use initial::initial_state;
+pub use initial::{first_known_position, initial_state};
 pub use input_signals::{InputSignals, Interpolation};
 pub use integrator::{Integrator, SimulationError, Tolerances};
 pub use linearisation::Linearisation;

@@ -1,6 +1,8 @@
 //! Whole simulations.
 
-use super::{InputSignals, Integrator, Observer, SimulationError, Tolerances, initial_state, rest_state};
+use super::{
+    InputSignals, Integrator, Observer, SimulationError, Tolerances, first_known_position, initial_state, rest_state,
+};
 use crate::Model;
 use crate::SignalError;
 use crate::equations::{Channel, System};
@@ -22,20 +24,23 @@ pub enum RunError {
 /// recording's clock and inputs, and displacement, velocity, joint angle and pressures as its instruments report them.
 ///
 /// Each piece of the recording ([`Recording::pieces`]) is simulated from its own start: what happened between is not known.
-/// A piece that does not say where the machine is has `NaN` for what is simulated.
+/// What comes before the first measured position of a piece has `NaN` for what is simulated.
 ///
 /// # Errors
 /// [`RunError`].
 pub fn simulate(model: &Model, recording: &Recording) -> Result<Recording, RunError> {
     let pieces = recording.pieces();
-    if pieces.len() < 2 {
+    if pieces.len() < 2 && matches!(first_known_position(model, recording, 0), Some(0) | None) {
         return simulate_piece(model, recording);
     }
     let mut simulated = recording.clone();
     simulated.source = format!("{} simulated", model.machine.name);
+    fill_simulated(model, &mut simulated, f64::NAN);
     let mut known = 0;
     let mut failure = None;
     for piece in pieces {
+        let first = first_known_position(model, recording, piece.start).unwrap_or(piece.start);
+        let piece = if piece.contains(&first) { first..piece.end } else { piece };
         let mut part = recording.at(&piece.clone().collect::<Vec<usize>>());
         match simulate_piece(model, &part) {
             Ok(simulated) => {
@@ -43,12 +48,7 @@ pub fn simulate(model: &Model, recording: &Recording) -> Result<Recording, RunEr
                 known += 1;
             }
             Err(RunError::Signal(error)) => {
-                let system = System::new(model);
-                for channel in Channel::all(system.layout()) {
-                    if let Some(values) = channel.signal_mut(&model.machine, &mut part) {
-                        values.fill(f64::NAN);
-                    }
-                }
+                fill_simulated(model, &mut part, f64::NAN);
                 failure.get_or_insert(error);
             }
             Err(error) => return Err(error),
@@ -60,6 +60,16 @@ pub fn simulate(model: &Model, recording: &Recording) -> Result<Recording, RunEr
     match failure {
         Some(error) if known == 0 => Err(error.into()),
         _ => Ok(simulated),
+    }
+}
+
+/// Sets what a simulation gives, all the time.
+fn fill_simulated(model: &Model, recording: &mut Recording, value: f64) {
+    let system = System::new(model);
+    for channel in Channel::all(system.layout()) {
+        if let Some(values) = channel.signal_mut(&model.machine, recording) {
+            values.fill(value);
+        }
     }
 }
 

@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::servo::{Between, Courses, Servo, misfit};
 
-/// Time constants that are tried, s: from faster than any sampling to a slow pilot stage.
-const LAGS: [f64; 10] = [0.001, 0.002, 0.004, 0.007, 0.012, 0.02, 0.035, 0.06, 0.1, 0.2];
+/// Time constants that are tried, in sample intervals: from faster than any sampling to a slow pilot stage.
+const LAGS: [f64; 12] = [0.5, 1.0, 2.0, 3.5, 6.0, 10.0, 17.5, 30.0, 50.0, 100.0, 200.0, 400.0];
 
 /// Samples that the servo is searched on; longer recordings are thinned, two numbers need no more for a start, and
 /// are polished on all samples.
@@ -24,7 +24,7 @@ pub(super) fn servo_follower(time: &[f64], measured: &[f64], command: &[f64], no
     let thin = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
     let interval = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
     let shortest_lag = SHORTEST_LAG * interval;
-    let lines = best_servo(&thin(time), &thin(measured), &thin(command), shortest_lag)?;
+    let lines = best_servo(&thin(time), &thin(measured), &thin(command), interval)?;
     // A held command is the line between its samples half an interval later.
     let held = Servo { delay: lines.delay - interval / 2.0, between: Between::Held, ..lines };
     // A jump told by a message acts at once; a knob that was sampled ran on in between.
@@ -82,7 +82,7 @@ fn polished(time: &[f64], measured: &[f64], command: &[f64], servo: Servo, short
     let steps = if servo.rate.is_finite() { STEPS_LIMITED } else { STEPS };
     for _ in 0..steps {
         // Changes by which the course changes visibly and still in proportion.
-        let (lag_change, delay_change, rate_change) = (0.02 * servo.lag, 2e-4, 0.02 * servo.rate);
+        let (lag_change, delay_change, rate_change) = (0.02 * servo.lag, 0.4 * shortest_lag, 0.02 * servo.rate);
         let mut slopes = vec![
             slope(&here, &nearest(Servo { lag: servo.lag + lag_change, ..servo })?, lag_change),
             slope(&here, &nearest(Servo { delay: servo.delay + delay_change, ..servo })?, delay_change),
@@ -124,10 +124,10 @@ fn slope(here: &[f64], there: &[f64], change: f64) -> Vec<f64> {
     here.iter().zip(there).map(|(here, there)| (there - here) / change).collect()
 }
 
-fn best_servo(time: &[f64], measured: &[f64], command: &[f64], shortest_lag: f64) -> Option<Servo> {
+fn best_servo(time: &[f64], measured: &[f64], command: &[f64], interval: f64) -> Option<Servo> {
     let mut best = (f64::INFINITY, 0.0, 0.0);
     let consider = |lag: f64, delay: f64, best: &mut (f64, f64, f64)| {
-        let lag = lag.max(shortest_lag);
+        let lag = lag.max(SHORTEST_LAG * interval);
         let servo = Servo { lag, delay, rate: f64::INFINITY, between: Between::Lines };
         let Some(nearest) = Courses::new(time, command, servo).nearest(measured) else { return };
         let squares = misfit(measured, &nearest);
@@ -136,10 +136,10 @@ fn best_servo(time: &[f64], measured: &[f64], command: &[f64], shortest_lag: f64
         }
     };
     for lag in LAGS {
-        consider(lag, 0.0, &mut best);
+        consider(lag * interval, 0.0, &mut best);
     }
     // Coordinate search from the best of the grid; the misfit is smooth in both.
-    let (mut lag_factor, mut delay_step) = (1.3_f64, 0.004);
+    let (mut lag_factor, mut delay_step) = (1.3_f64, 2.0 * interval);
     for _ in 0..24 {
         let (before, lag, delay) = (best.0, best.1, best.2);
         consider(lag * lag_factor, delay, &mut best);
