@@ -17,3 +17,4 @@ pub mod regression;
 pub mod report;
 pub mod search;
 pub mod validation;
+pub mod value_marks;

@@ -15,7 +15,7 @@ use excavator_model::{Model, ModelEffect};
 const SCALES: [(f64, f64); 3] = [(0.125, 1.0), (4.0, 1.0), (1.0, 1024.0)];
 
 fn size_of((length, unit): (f64, f64)) -> Size {
-    Size { stroke: length, area: length * length, opening: length * length * unit }
+    Size { stroke: length, area: length * length, opening: length * length * unit, speed: 1.0 }
 }
 
 /// The machine with every length times `length`, its openings in another unit, and its parameters in proportion.

@@ -25,7 +25,7 @@ pub enum VerbError {
     Bag(#[from] BagError),
     #[error(transparent)]
     Document(#[from] DocumentError),
-    #[error(transparent)]
+    #[error("{}", refusal(.0))]
     Gate(#[from] GateError),
     #[error(transparent)]
     Regression(#[from] RegressionError),
@@ -116,4 +116,10 @@ impl VerbError {
             _ => 1,
         }
     }
+}
+
+/// A refusal, with how to overrule it.
+fn refusal(error: &GateError) -> String {
+    let how = error.name().map(|name| format!("; if this is right, say --accept {name}"));
+    format!("{error}{}", how.unwrap_or_default())
 }

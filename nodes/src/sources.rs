@@ -72,7 +72,9 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
     for problem in report.problems() {
         complain(&format!("{}: {problem}", path.display()));
     }
-    gate::check(model, &recording)?;
+    for overruled in gate::check(model, &recording, &map.accept)? {
+        complain(&format!("accepted: {overruled}"));
+    }
     for remark in gate::remarks(model, &recording) {
         complain(&format!("{}: {remark}", path.display()));
     }

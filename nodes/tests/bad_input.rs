@@ -208,7 +208,15 @@ fn chambers_whose_sensors_are_swapped() {
     assert_eq!(write("right", &recording).status.code(), Some(0));
     let arm = &mut recording.cylinders[0];
     std::mem::swap(&mut arm.cap_pressure, &mut arm.rod_pressure);
-    assert_one_clear_line(&write("swapped", &recording), &["cap_pressure and rod_pressure of arm look swapped"]);
+    let wanted = ["cap_pressure and rod_pressure of arm look swapped", "say --accept swapped-pressures"];
+    assert_one_clear_line(&write("swapped", &recording), &wanted);
+    // Whoever knows better has the last word, and is reminded of it.
+    let bag = folder.path().join("swapped");
+    let words = ["compare", "--model", "zx30u-arm", "--bag", bag.to_str().unwrap(), "--accept", "swapped-pressures"];
+    let accepted = excavator(folder.path(), &words);
+    assert_eq!(accepted.status.code(), Some(0));
+    let told = String::from_utf8_lossy(&accepted.stderr).to_string();
+    assert!(told.contains("accepted: ") && told.contains("look swapped"), "{told}");
 }
 
 #[test]

@@ -24,6 +24,40 @@ fn diagnose(case: &Path, model: &str) -> Value {
     json(&excavator(case, &words))
 }
 
+/// The verdict on a recording of a machine of another size, or on strokes onto the stops, is the right one.
+fn is_judged_right(case: &str) {
+    let Some(shared) = shared() else { return };
+    let folder = shared.join("practice-sizes");
+    let Ok(text) = std::fs::read_to_string(folder.join("answers.json")) else {
+        println!("skipped: {} is not here", folder.display());
+        return;
+    };
+    let answers: Value = serde_json::from_str(&text).unwrap();
+    let wanted = &answers[case]["effects"];
+    let diagnosis = diagnose(&folder.join(case), folder.join(case).join("model.toml").to_str().unwrap());
+    let Some(wanted) = wanted.get(0) else {
+        assert_eq!(diagnosis["verdict"], "adequate", "{case}: {diagnosis:#}");
+        return;
+    };
+    assert_eq!(diagnosis["verdict"], "missing_effect", "{case}: {diagnosis:#}");
+    let first = &diagnosis["candidates"][0];
+    assert_eq!((&first["effect"], &first["tied_with_first"]), (wanted, &Value::Bool(false)), "{case}");
+    let error = |key: &str| first[key].as_f64().unwrap();
+    assert!(error("validation_error_after") < 0.01 * error("validation_error_before"), "{case}");
+}
+
+#[test]
+fn a_machine_ten_times_smaller_is_judged_like_one_of_usual_size() {
+    is_judged_right("r00");
+    is_judged_right("r01");
+}
+
+#[test]
+#[ignore = "two minutes; tests/run --long"]
+fn so_are_larger_machines_and_strokes_onto_stops() {
+    ["r02", "r03", "r04", "r05"].into_iter().for_each(is_judged_right);
+}
+
 fn answers(shared: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(shared.join("practice/answers.json")).unwrap()).unwrap()
 }

@@ -67,9 +67,9 @@ impl InitialStatePrior {
         let layout = system.layout();
         let machine = &system.model().machine;
         let size = machine.size();
-        // Angles and speeds of pistons are alike on machines of every size.
+        // Angles are alike on machines of every size.
         let [joint_spread, rate_spread] = match machine.mechanism {
-            Mechanism::LinearLoad => [0.01 * size.factor(Growth::LENGTH), 0.5],
+            Mechanism::LinearLoad => [0.01 * size.factor(Growth::LENGTH), 0.5 * size.speed],
             _ => [0.01, 0.5 / size.time()],
         };
         let mut spread = vec![2e5; layout.len];

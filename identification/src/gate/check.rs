@@ -1,7 +1,7 @@
 //! All that is asked of a recording.
 
 use excavator_model::Model;
-use excavator_model::machine::{Chambers, Supply};
+use excavator_model::machine::{Chambers, Cylinder, Supply};
 use excavator_model::recording::{CylinderSignals, Recording, is_measured, noise_level};
 
 use super::GateError;
@@ -24,165 +24,239 @@ const LEAST_PRESSURE: f64 = 1e3;
 /// not even a seal; 3000 is what 3 MPa are in kPa.
 const LEAST_WORKING_PRESSURE: f64 = 2e4;
 
-/// Checks that `recording` can be used with `model`.
+/// Checks that `recording` can be used with `model`. A refusal whose name ([`GateError::name`]) is among `accepted` is overruled.
+/// Gives those that were.
 ///
 /// # Errors
-/// [`GateError`], the first thing that is wrong.
-pub fn check(model: &Model, recording: &Recording) -> Result<(), GateError> {
+/// [`GateError`], the first thing that is wrong and not overruled.
+pub fn check(model: &Model, recording: &Recording, accepted: &[String]) -> Result<Vec<GateError>, GateError> {
     recording.validate()?;
-    let machine = &model.machine;
-    let time_scale = machine.size().time();
-    let needed = SHORTEST * time_scale;
-    if recording.duration() < needed || recording.len() < FEWEST_SAMPLES {
-        return Err(GateError::TooShort {
-            source_name: recording.source.clone(),
-            duration: recording.duration(),
-            samples: recording.len(),
-            needed,
-        });
+    let time_scale = model.machine.size().time();
+    let mut gate = Gate { model, recording, time_scale, accepted, overruled: Vec::new() };
+    gate.length()?;
+    for cylinder in &model.machine.cylinders {
+        gate.cylinder(cylinder, recording.cylinder(&cylinder.name)?)?;
     }
-    for cylinder in &machine.cylinders {
-        let signals = recording.cylinder(&cylinder.name)?;
+    gate.supply()?;
+    Ok(gate.overruled)
+}
+
+struct Gate<'a> {
+    model: &'a Model,
+    recording: &'a Recording,
+    /// Unit of time of the machine beside that of the reference.
+    time_scale: f64,
+    accepted: &'a [String],
+    overruled: Vec<GateError>,
+}
+
+impl Gate<'_> {
+    fn refuse(&mut self, error: GateError) -> Result<(), GateError> {
+        if error.name().is_some_and(|name| self.accepted.iter().any(|accepted| accepted == name)) {
+            self.overruled.push(error);
+            return Ok(());
+        }
+        Err(error)
+    }
+
+    fn source(&self) -> String {
+        self.recording.source.clone()
+    }
+
+    fn length(&mut self) -> Result<(), GateError> {
+        let (duration, samples) = (self.recording.duration(), self.recording.len());
+        let needed = SHORTEST * self.time_scale;
+        if duration >= needed && samples >= FEWEST_SAMPLES {
+            return Ok(());
+        }
+        self.refuse(GateError::TooShort { source_name: self.source(), duration, samples, needed })
+    }
+
+    fn cylinder(&mut self, cylinder: &Cylinder, signals: &CylinderSignals) -> Result<(), GateError> {
         let name = |signal: &str| format!("{}.{signal}", cylinder.name);
-        let position = if is_measured(&signals.displacement) { &signals.displacement } else { &signals.joint_angle };
+        self.motion(cylinder, signals)?;
+        self.at_most(&name("displacement"), &signals.displacement, "m", 2.0 * cylinder.stroke)?;
+        self.within_stroke(&name("displacement"), &signals.displacement, cylinder.stroke)?;
+        if let Some(chambers) = &cylinder.chambers {
+            return self.chambers(signals, chambers);
+        }
+        self.at_most(&name("rod_force"), &signals.rod_force, "N", 1e8)?;
+        let time = &self.recording.time;
+        if let Some(stretch) = never_changes(time, &signals.rod_force, &signals.displacement, self.time_scale) {
+            self.refuse(stretch.error(self.recording, name("rod_force"), "N"))?;
+        }
+        if cylinder.imposed_motion.is_some() {
+            self.pressure(&name("cap_pressure"), &signals.cap_pressure, LEAST_PRESSURE)?;
+            self.pressure(&name("rod_pressure"), &signals.rod_pressure, LEAST_PRESSURE)?;
+        }
+        Ok(())
+    }
+
+    fn motion(&mut self, cylinder: &Cylinder, signals: &CylinderSignals) -> Result<(), GateError> {
+        let name = |signal: &str| format!("{}.{signal}", cylinder.name);
+        let is_position = is_measured(&signals.displacement);
+        let position = if is_position { &signals.displacement } else { &signals.joint_angle };
         if !is_measured(position) {
             return Err(GateError::NotMeasured {
-                source_name: recording.source.clone(),
+                source_name: self.source(),
                 signal: name("displacement"),
-                samples: recording.len(),
-                machine: machine.name.clone(),
+                samples: self.recording.len(),
+                machine: self.model.machine.name.clone(),
             });
         }
         let (low, high) = range(position);
         let noise = noise_level(position);
-        let unit = if is_measured(&signals.displacement) { "m" } else { "rad" };
-        if high - low <= LEAST_MOTION * noise || high - low < 1e-6 {
-            return Err(GateError::NoMotion {
-                source_name: recording.source.clone(),
-                signal: name(if unit == "m" { "displacement" } else { "joint_angle" }),
-                range: high - low,
-                unit,
-                times: if noise > 0.0 { (high - low) / noise } else { 0.0 },
-                noise,
-            });
+        if high - low > LEAST_MOTION * noise && high - low >= 1e-6 {
+            return Ok(());
         }
-        at_most(model, recording, &name("displacement"), &signals.displacement, "m", 2.0 * cylinder.stroke)?;
-        within_stroke(model, recording, &name("displacement"), &signals.displacement, cylinder.stroke)?;
-        if let Some(chambers) = &cylinder.chambers {
-            let limit = 3.0 * chambers.maximum_orifice_area;
-            at_most(model, recording, &name("orifice_area"), &signals.orifice_area, "m2", limit)?;
-            at_most(model, recording, &name("orifice_command"), &signals.orifice_command, "m2", limit)?;
-            for (signal, values) in [("cap_pressure", &signals.cap_pressure), ("rod_pressure", &signals.rod_pressure)] {
-                pressure(model, recording, &name(signal), values, LEAST_PRESSURE)?;
-            }
-            // Of one side alone nobody knows whether it is the one that works.
-            if is_measured(&signals.cap_pressure) && is_measured(&signals.rod_pressure) {
-                let cap_works = usual_size(&signals.cap_pressure) > usual_size(&signals.rod_pressure);
-                let (signal, working) = if cap_works {
-                    ("cap_pressure", &signals.cap_pressure)
-                } else {
-                    ("rod_pressure", &signals.rod_pressure)
-                };
-                pressure(model, recording, &name(signal), working, LEAST_WORKING_PRESSURE)?;
-            }
-            let opening =
-                if is_measured(&signals.orifice_area) { &signals.orifice_area } else { &signals.orifice_command };
-            let correlation = travel_by_opening(&recording.time, &signals.displacement, opening, time_scale);
-            if correlation < AGAINST_THE_VALVE {
-                return Err(GateError::WrongSign {
-                    source_name: recording.source.clone(),
-                    cylinder: cylinder.name.clone(),
-                    correlation,
-                });
-            }
-            sensors_of_a_cylinder(recording, signals, opening, chambers, time_scale)?;
-        } else {
-            at_most(model, recording, &name("rod_force"), &signals.rod_force, "N", 1e8)?;
-            if let Some(stretch) = never_changes(&recording.time, &signals.rod_force, &signals.displacement, time_scale)
-            {
-                return Err(stretch.error(recording, name("rod_force"), "N"));
-            }
-            if cylinder.imposed_motion.is_some() {
-                pressure(model, recording, &name("cap_pressure"), &signals.cap_pressure, LEAST_PRESSURE)?;
-                pressure(model, recording, &name("rod_pressure"), &signals.rod_pressure, LEAST_PRESSURE)?;
-            }
-        }
+        self.refuse(GateError::NoMotion {
+            source_name: self.source(),
+            signal: name(if is_position { "displacement" } else { "joint_angle" }),
+            range: high - low,
+            unit: if is_position { "m" } else { "rad" },
+            times: if noise > 0.0 { (high - low) / noise } else { 0.0 },
+            noise,
+        })
     }
-    if machine.has_chambers() {
-        pressure(model, recording, "pump_pressure", &recording.pump_pressure, LEAST_WORKING_PRESSURE)?;
-        at_most(model, recording, "tank_pressure", &recording.tank_pressure, "Pa", HIGHEST_PRESSURE)?;
-        at_most(model, recording, "pump_flow", &recording.pump_flow, "m3/s", 0.1)?;
-    }
-    if matches!(machine.supply, Supply::PumpLine(_)) {
-        let witnesses: Vec<&[f64]> = recording
-            .cylinders
-            .iter()
-            .filter(|signals| machine.cylinders.iter().any(|cylinder| cylinder.name == signals.name))
-            .flat_map(|signals| [&signals.cap_pressure[..], &signals.rod_pressure])
-            .collect();
-        pressure_sensor(recording, "pump_pressure", &recording.pump_pressure, &witnesses, time_scale)?;
-    }
-    Ok(())
-}
 
-/// Sensors that are stuck, cut off or swapped.
-fn sensors_of_a_cylinder(
-    recording: &Recording,
-    signals: &CylinderSignals,
-    opening: &[f64],
-    chambers: &Chambers,
-    time_scale: f64,
-) -> Result<(), GateError> {
-    let name = |signal: &str| format!("{}.{signal}", signals.name);
-    let (cap, rod, displacement) = (&signals.cap_pressure[..], &signals.rod_pressure[..], &signals.displacement[..]);
-    if is_measured(cap) && is_the_same(cap, rod) {
-        return Err(GateError::SameSignal {
-            source_name: recording.source.clone(),
-            signals: [name("cap_pressure"), name("rod_pressure")],
-        });
+    fn chambers(&mut self, signals: &CylinderSignals, chambers: &Chambers) -> Result<(), GateError> {
+        let name = |signal: &str| format!("{}.{signal}", signals.name);
+        let limit = 3.0 * chambers.maximum_orifice_area;
+        self.at_most(&name("orifice_area"), &signals.orifice_area, "m2", limit)?;
+        self.at_most(&name("orifice_command"), &signals.orifice_command, "m2", limit)?;
+        for (signal, values) in [("cap_pressure", &signals.cap_pressure), ("rod_pressure", &signals.rod_pressure)] {
+            self.pressure(&name(signal), values, LEAST_PRESSURE)?;
+        }
+        // Of one side alone nobody knows whether it is the one that works.
+        if is_measured(&signals.cap_pressure) && is_measured(&signals.rod_pressure) {
+            let cap_works = usual_size(&signals.cap_pressure) > usual_size(&signals.rod_pressure);
+            let (signal, working) = if cap_works {
+                ("cap_pressure", &signals.cap_pressure)
+            } else {
+                ("rod_pressure", &signals.rod_pressure)
+            };
+            self.pressure(&name(signal), working, LEAST_WORKING_PRESSURE)?;
+        }
+        let opening = if is_measured(&signals.orifice_area) { &signals.orifice_area } else { &signals.orifice_command };
+        let correlation = travel_by_opening(&self.recording.time, &signals.displacement, opening, self.time_scale);
+        if correlation < AGAINST_THE_VALVE {
+            self.refuse(GateError::WrongSign {
+                source_name: self.source(),
+                cylinder: signals.name.clone(),
+                correlation,
+            })?;
+        }
+        self.sensors(signals, opening, chambers)
     }
-    pressure_sensor(recording, &name("cap_pressure"), cap, &[rod, displacement], time_scale)?;
-    pressure_sensor(recording, &name("rod_pressure"), rod, &[cap, displacement], time_scale)?;
-    if let Some(stretch) = stuck_position(&recording.time, displacement, opening, &[cap, rod], time_scale) {
-        return Err(stretch.error(recording, name("displacement"), "m"));
+
+    /// Sensors that are stuck, cut off or swapped.
+    fn sensors(&mut self, signals: &CylinderSignals, opening: &[f64], chambers: &Chambers) -> Result<(), GateError> {
+        let name = |signal: &str| format!("{}.{signal}", signals.name);
+        let (cap, rod) = (&signals.cap_pressure[..], &signals.rod_pressure[..]);
+        let displacement = &signals.displacement[..];
+        if is_measured(cap) && is_the_same(cap, rod) {
+            self.refuse(GateError::SameSignal {
+                source_name: self.source(),
+                signals: [name("cap_pressure"), name("rod_pressure")],
+            })?;
+        }
+        self.pressure_sensor(&name("cap_pressure"), cap, &[rod, displacement])?;
+        self.pressure_sensor(&name("rod_pressure"), rod, &[cap, displacement])?;
+        let time = &self.recording.time;
+        if let Some(stretch) = stuck_position(time, displacement, opening, &[cap, rod], self.time_scale) {
+            self.refuse(stretch.error(self.recording, name("displacement"), "m"))?;
+        }
+        if let Some(shares) = swapped_chambers(self.recording, signals, opening, chambers, self.time_scale) {
+            self.refuse(GateError::SwappedChambers {
+                source_name: self.source(),
+                cylinder: signals.name.clone(),
+                given: 100.0 * shares.given,
+                swapped: 100.0 * shares.swapped,
+            })?;
+        }
+        Ok(())
     }
-    if let Some(shares) = swapped_chambers(recording, signals, opening, chambers, time_scale) {
-        return Err(GateError::SwappedChambers {
-            source_name: recording.source.clone(),
-            cylinder: signals.name.clone(),
-            given: 100.0 * shares.given,
-            swapped: 100.0 * shares.swapped,
-        });
+
+    fn supply(&mut self) -> Result<(), GateError> {
+        let (machine, recording) = (&self.model.machine, self.recording);
+        if machine.has_chambers() {
+            self.pressure("pump_pressure", &recording.pump_pressure, LEAST_WORKING_PRESSURE)?;
+            self.at_most("tank_pressure", &recording.tank_pressure, "Pa", HIGHEST_PRESSURE)?;
+            self.at_most("pump_flow", &recording.pump_flow, "m3/s", 0.1)?;
+        }
+        if matches!(machine.supply, Supply::PumpLine(_)) {
+            let witnesses: Vec<&[f64]> = recording
+                .cylinders
+                .iter()
+                .filter(|signals| machine.cylinders.iter().any(|cylinder| cylinder.name == signals.name))
+                .flat_map(|signals| [&signals.cap_pressure[..], &signals.rod_pressure])
+                .collect();
+            self.pressure_sensor("pump_pressure", &recording.pump_pressure, &witnesses)?;
+        }
+        Ok(())
     }
-    Ok(())
+
+    fn pressure_sensor(&mut self, name: &str, signal: &[f64], witnesses: &[&[f64]]) -> Result<(), GateError> {
+        if let Some(stretch) = stuck_pressure(&self.recording.time, signal, witnesses, self.time_scale) {
+            self.refuse(stretch.error(self.recording, name.to_string(), "Pa"))?;
+        }
+        let Some(cut) = clipped(&self.recording.time, signal) else { return Ok(()) };
+        self.refuse(GateError::Clipped {
+            source_name: self.source(),
+            signal: name.to_string(),
+            value: cut.value,
+            longest: cut.longest,
+            share: 100.0 * cut.share,
+        })
+    }
+
+    fn at_most(&mut self, name: &str, signal: &[f64], unit: &'static str, limit: f64) -> Result<(), GateError> {
+        let Some(value) = usual_size(signal).filter(|value| *value > limit) else { return Ok(()) };
+        self.refuse(GateError::ImpossibleValue {
+            source_name: self.source(),
+            signal: name.to_string(),
+            value,
+            unit,
+            limit,
+            machine: self.model.machine.name.clone(),
+        })
+    }
+
+    /// Another zero than mid-stroke makes chambers of impossible volumes, and a simulation that cannot go on.
+    fn within_stroke(&mut self, name: &str, signal: &[f64], stroke: f64) -> Result<(), GateError> {
+        if usual_size(signal).is_none_or(|size| size <= (0.5 + BEYOND_THE_END) * stroke) {
+            return Ok(());
+        }
+        let (from, to) = range(signal);
+        self.refuse(GateError::BeyondStroke {
+            source_name: self.source(),
+            signal: name.to_string(),
+            from,
+            to,
+            half: 0.5 * stroke,
+            machine: self.model.machine.name.clone(),
+        })
+    }
+
+    fn pressure(&mut self, name: &str, signal: &[f64], least: f64) -> Result<(), GateError> {
+        self.at_most(name, signal, "Pa", HIGHEST_PRESSURE)?;
+        match usual_size(signal) {
+            // Zero throughout is no measurement in another unit but a side that is open to the air, given as a constant.
+            Some(value) if value < least && value > 0.0 => self.refuse(GateError::TooSmall {
+                source_name: self.source(),
+                signal: name.to_string(),
+                value,
+                unit: "Pa",
+            }),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Whether two signals that move are one, reading for reading.
 fn is_the_same(one: &[f64], other: &[f64]) -> bool {
     let (low, high) = range(one);
     high > low && one.iter().zip(other).all(|(a, b)| a == b || a.is_nan() && b.is_nan())
-}
-
-fn pressure_sensor(
-    recording: &Recording,
-    name: &str,
-    signal: &[f64],
-    witnesses: &[&[f64]],
-    time_scale: f64,
-) -> Result<(), GateError> {
-    if let Some(stretch) = stuck_pressure(&recording.time, signal, witnesses, time_scale) {
-        return Err(stretch.error(recording, name.to_string(), "Pa"));
-    }
-    match clipped(&recording.time, signal) {
-        Some(cut) => Err(GateError::Clipped {
-            source_name: recording.source.clone(),
-            signal: name.to_string(),
-            value: cut.value,
-            longest: cut.longest,
-            share: 100.0 * cut.share,
-        }),
-        None => Ok(()),
-    }
 }
 
 /// Correlation of travel with opening below which a sign must be wrong: a load may move a piston against its valve now and
@@ -211,71 +285,12 @@ fn travel_by_opening(time: &[f64], displacement: &[f64], opening: &[f64], time_s
     if count >= 10 && size > 0.0 { sums[0] / size } else { 0.0 }
 }
 
+/// Part of the stroke that a piston may seem to be beyond its ends: an offset of the sensor, and what stops give.
+const BEYOND_THE_END: f64 = 0.1;
+
 /// A robust largest size: single spikes are for the noise model, not for the units.
 pub(super) fn usual_size(signal: &[f64]) -> Option<f64> {
     let mut sizes: Vec<f64> = signal.iter().filter(|value| value.is_finite()).map(|value| value.abs()).collect();
     let position = (sizes.len().checked_sub(1)? as f64 * 0.99) as usize;
     Some(*sizes.select_nth_unstable_by(position, f64::total_cmp).1)
-}
-
-fn at_most(
-    model: &Model,
-    recording: &Recording,
-    name: &str,
-    signal: &[f64],
-    unit: &'static str,
-    limit: f64,
-) -> Result<(), GateError> {
-    match usual_size(signal) {
-        Some(value) if value > limit => Err(GateError::ImpossibleValue {
-            source_name: recording.source.clone(),
-            signal: name.to_string(),
-            value,
-            unit,
-            limit,
-            machine: model.machine.name.clone(),
-        }),
-        _ => Ok(()),
-    }
-}
-
-/// Part of the stroke that a piston may seem to be beyond its ends: an offset of the sensor, and what stops give.
-const BEYOND_THE_END: f64 = 0.1;
-
-/// Another zero than mid-stroke makes chambers of impossible volumes, and a simulation that cannot go on.
-fn within_stroke(
-    model: &Model,
-    recording: &Recording,
-    name: &str,
-    signal: &[f64],
-    stroke: f64,
-) -> Result<(), GateError> {
-    match usual_size(signal) {
-        Some(size) if size > (0.5 + BEYOND_THE_END) * stroke => {
-            let (from, to) = range(signal);
-            Err(GateError::BeyondStroke {
-                source_name: recording.source.clone(),
-                signal: name.to_string(),
-                from,
-                to,
-                half: 0.5 * stroke,
-                machine: model.machine.name.clone(),
-            })
-        }
-        _ => Ok(()),
-    }
-}
-
-fn pressure(model: &Model, recording: &Recording, name: &str, signal: &[f64], least: f64) -> Result<(), GateError> {
-    at_most(model, recording, name, signal, "Pa", HIGHEST_PRESSURE)?;
-    match usual_size(signal) {
-        // Zero throughout is no measurement in another unit but a side that is open to the air, given as a constant.
-        Some(value) if value < least && value > 0.0 => Err(GateError::TooSmall {
-            source_name: recording.source.clone(),
-            signal: name.to_string(),
-            value,
-            unit: "Pa",
-        }),
-        _ => Ok(()),
-    }
 }

@@ -176,3 +176,36 @@ pub enum GateError {
     #[error(transparent)]
     Recording(#[from] excavator_model::recording::RecordingError),
 }
+
+/// Names of the refusals that can be overruled, as in `--accept swapped-pressures`.
+pub const OVERRULABLE: [&str; 10] = [
+    "too-short",
+    "no-motion",
+    "impossible-value",
+    "beyond-stroke",
+    "too-small",
+    "wrong-sign",
+    "stuck",
+    "cut-off",
+    "swapped-pressures",
+    "same-signal",
+];
+
+impl GateError {
+    /// The name by which it can be overruled; none where there is nothing to go on with.
+    pub fn name(&self) -> Option<&'static str> {
+        Some(match self {
+            GateError::TooShort { .. } => "too-short",
+            GateError::NoMotion { .. } => "no-motion",
+            GateError::ImpossibleValue { .. } => "impossible-value",
+            GateError::BeyondStroke { .. } => "beyond-stroke",
+            GateError::TooSmall { .. } => "too-small",
+            GateError::WrongSign { .. } => "wrong-sign",
+            GateError::Stuck { .. } => "stuck",
+            GateError::Clipped { .. } => "cut-off",
+            GateError::SwappedChambers { .. } => "swapped-pressures",
+            GateError::SameSignal { .. } => "same-signal",
+            GateError::NotMeasured { .. } | GateError::Recording(_) => return None,
+        })
+    }
+}

@@ -11,6 +11,6 @@ mod stuck;
 mod swapped;
 
 pub use check::check;
-pub use error::GateError;
+pub use error::{GateError, OVERRULABLE};
 pub use remarks::{Remark, remarks};
 pub use shared_readings::{SharedReadings, shared_readings};

@@ -94,6 +94,18 @@ pub enum RefineError {
     /// A simulation failed.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// A search ended farther from the recordings than it began: it says nothing of the effect.
+    #[error(
+        "{added} was not added: no fit with it comes as near to the identification recordings as the model without it (loss {after:.3}, without {before:.3}). Give the effect better start values in the model file, or recordings that show it"
+    )]
+    NoBetterFit {
+        /// What was to be added, `effect@place`.
+        added: String,
+        /// Loss of the model without it ([`Fit::loss`]).
+        before: f64,
+        /// The same with it.
+        after: f64,
+    },
 }
 
 impl From<AdditionError> for RefineError {
@@ -194,13 +206,20 @@ fn as_named(
     for (number, addition) in named.iter().enumerate() {
         let name = addition.name(model);
         progress(&name, (number + 1) as f64 / (named.len() + 1) as f64);
+        let before = current.loss();
         current = fit_addition(&current.model, addition, identification, fitting)?;
+        if current.loss() > before + LARGEST_RISE {
+            return Err(RefineError::NoBetterFit { added: name, before, after: current.loss() });
+        }
         added.push((addition.clone(), current.clone()));
         fits.push((Some(name), current.clone()));
     }
     let verdict = judge_named(&given, &added, identification, validation, fitting, &settings.policy)?;
     Ok((fits, Reason::Named(verdict)))
 }
+
+/// Rise of the loss by which two fits of one optimum may differ: neither is at it to the last digit.
+const LARGEST_RISE: f64 = 0.01;
 
 /// Words for a model's history: the step, and the nuisances that show since the model `before`.
 fn what_was_done(before: &Model, step: &Step) -> String {

@@ -9,6 +9,7 @@ use maud::{Markup, html};
 use super::numbers::{NOTHING, percent, with_error};
 use super::{units, words};
 use crate::fit::nuisances_shown;
+use crate::value_marks::{self, ValueMark};
 
 /// Standard error over value from which on a number is called poorly known.
 const POORLY_KNOWN: f64 = 0.5;
@@ -59,7 +60,8 @@ fn table(model: &Model, effects: &[&ModelEffect], marks: Option<BTreeMap<String,
                                     @if let Some(mark) = mark { " " span.chip.also { (mark) } }
                                 } }
                             }
-                            (cells(effect, place, parameter, relative))
+                            @let doubt = value_marks::mark(model, effect, parameter).filter(|_| parameter.source == "identified" || parameter.standard_error.is_some());
+                            (cells(effect, place, parameter, relative, doubt.as_ref()))
                         }
                     }
                 } }
@@ -71,7 +73,13 @@ fn table(model: &Model, effects: &[&ModelEffect], marks: Option<BTreeMap<String,
     }
 }
 
-fn cells(effect: &ModelEffect, place: &str, parameter: &Parameter, relative: Option<f64>) -> Markup {
+fn cells(
+    effect: &ModelEffect,
+    place: &str,
+    parameter: &Parameter,
+    relative: Option<f64>,
+    mark: Option<&ValueMark>,
+) -> Markup {
     // A window of time is read along the recording, a time constant is short.
     let is_a_time = parameter.card.start.is_a_time();
     let unit = if is_a_time { units::SECOND } else { units::of_parameter(&parameter.card.unit) };
@@ -94,7 +102,7 @@ fn cells(effect: &ModelEffect, place: &str, parameter: &Parameter, relative: Opt
         td.unit { (unit.symbol) }
         td.n { (relative) }
         td.meaning { (parameter.card.meaning) }
-        td { (origin(parameter)) }
+        td { (origin(parameter)) @if let Some(mark) = mark { "; " strong { (mark) } } }
     }
 }
 

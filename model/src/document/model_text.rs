@@ -171,7 +171,7 @@ fn what_it_must_be(given: &ParameterText, card: &ParameterCard) -> Option<String
 /// The text of a model. Sources of the machine's constants are not kept; its name says where to look them up.
 ///
 /// # Errors
-/// [`DocumentError::Syntax`] when a number cannot be written.
+/// [`DocumentError`] when the text could not be read again: a number that cannot be written, or is impossible.
 pub fn to_text(model: &Model) -> Result<String, DocumentError> {
     let formulas = model.effects.iter().filter_map(|effect| effect.physics.formula());
     let mut formula: Vec<FormulaText> = Vec::new();
@@ -210,6 +210,9 @@ pub fn to_text(model: &Model) -> Result<String, DocumentError> {
             .collect(),
         history: model.history.clone(),
     };
-    toml::to_string(&text)
-        .map_err(|error| DocumentError::Syntax { name: model.machine.name.clone(), reason: error.to_string() })
+    let text = toml::to_string(&text)
+        .map_err(|error| DocumentError::Syntax { name: model.machine.name.clone(), reason: error.to_string() })?;
+    // A file that cannot be read again is worse than none.
+    parse(&model.machine.name, &text, &model.catalogue)?;
+    Ok(text)
 }

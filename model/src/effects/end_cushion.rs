@@ -42,7 +42,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("N s/m"),
         meaning: text("damping coefficient at the end of the stroke"),
         kind: Kind::Linear,
-        growth: Growth::FORCE,
+        growth: Growth::DAMPING,
         minimum: 0.0,
         maximum: 1e8,
         typical: 1e5,

@@ -48,7 +48,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("s/m"),
         meaning: text("damping factor of the contact"),
         kind: Kind::Shape,
-        growth: Growth::NONE,
+        growth: Growth::PER_SPEED,
         minimum: 0.0,
         maximum: 1e3,
         typical: 5.0,

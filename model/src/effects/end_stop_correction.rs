@@ -81,7 +81,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("N s/m"),
         meaning: text("damping of the contact that does not grow with the depth"),
         kind: Kind::Shape,
-        growth: Growth::FORCE,
+        growth: Growth::DAMPING,
         minimum: 0.0,
         maximum: 1e6,
         typical: 1e4,

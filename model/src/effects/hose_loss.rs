@@ -26,7 +26,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("N s2/m2"),
     meaning: text("loss coefficient"),
     kind: Kind::Linear,
-    growth: Growth::FORCE,
+    growth: Growth::DRAG,
     minimum: 0.0,
     maximum: 1e9,
     typical: 3e5,

@@ -26,7 +26,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("N s/m"),
     meaning: text("damping coefficient"),
     kind: Kind::Linear,
-    growth: Growth::FORCE,
+    growth: Growth::DAMPING,
     minimum: 0.0,
     maximum: 1e7,
     typical: 1e4,

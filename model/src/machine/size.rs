@@ -6,79 +6,78 @@ use crate::effects::Site;
 /// How large a part of a machine is beside the arm of a 3 t excavator (`zx30u-arm`), for which limits, starts, windows of time and
 /// tolerances are written down.
 ///
-/// Machines of every size work with the same pressures and pistons of about the same speed. Lengths, areas and openings then say how
-/// everything else grows. Each ratio is a power of two: machines of nearly one size are treated alike.
+/// Machines of every size work with the same pressures. Lengths, areas, openings and speeds then say how everything else grows. Each
+/// ratio is a power of two: machines of nearly one size are treated alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Size {
-    /// Ratio of strokes; also that of times, at the same speed.
+    /// Ratio of strokes.
     pub stroke: f64,
-    /// Ratio of piston areas; also that of forces and flows.
+    /// Ratio of piston areas; also that of forces.
     pub area: f64,
     /// Ratio of largest orifice areas, in whatever unit a model file gives them: mm², volts, or a share.
     pub opening: f64,
+    /// Ratio of the speeds of pistons.
+    pub speed: f64,
 }
 
-/// Powers of the three ratios of a [`Size`] with which a quantity grows.
+/// Powers of the ratios of a [`Size`] with which a quantity grows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Growth {
     stroke: i32,
     area: i32,
     opening: i32,
+    speed: i32,
 }
 
 impl Growth {
-    /// Pressures, speeds, pure numbers, and what belongs to a recording.
-    pub const NONE: Growth = Growth::of(0, 0, 0);
+    /// Pressures, speeds of seals, pure numbers, and what belongs to a recording.
+    pub const NONE: Growth = Growth::of(0, 0, 0, 0);
     /// Positions and lengths, m.
-    pub const LENGTH: Growth = Growth::of(1, 0, 0);
+    pub const LENGTH: Growth = Growth::of(1, 0, 0, 0);
     /// Times in which a machine moves, s.
-    pub const TIME: Growth = Growth::of(1, 0, 0);
+    pub const TIME: Growth = Growth::of(1, 0, 0, -1);
     /// Orifice areas, m².
-    pub const OPENING: Growth = Growth::of(0, 0, 1);
-    /// Forces, N, and what is a force per speed, per square of speed, or per pressure.
-    pub const FORCE: Growth = Growth::of(0, 1, 0);
-    /// Flows, m³/s, and what is a flow per pressure.
-    pub const FLOW: Growth = Growth::of(0, 1, 0);
+    pub const OPENING: Growth = Growth::of(0, 0, 1, 0);
+    /// Forces, N, and forces per pressure, m².
+    pub const FORCE: Growth = Growth::of(0, 1, 0, 0);
+    /// Forces per speed, N s/m.
+    pub const DAMPING: Growth = Growth::of(0, 1, 0, -1);
+    /// Forces per square of speed, N s²/m².
+    pub const DRAG: Growth = Growth::of(0, 1, 0, -2);
+    /// Flows, m³/s, and flows per pressure, m³/(s Pa).
+    pub const FLOW: Growth = Growth::of(0, 1, 0, 1);
     /// Flow per opening and root of pressure, m/(s sqrt(Pa)).
-    pub const FLOW_GAIN: Growth = Growth::of(0, 1, -1);
+    pub const FLOW_GAIN: Growth = Growth::of(0, 1, -1, 1);
     /// Pressure per square of flow, Pa s²/m⁶.
-    pub const FLOW_RESISTANCE: Growth = Growth::of(0, -2, 0);
+    pub const FLOW_RESISTANCE: Growth = Growth::of(0, -2, 0, -2);
+    /// One over a speed of pistons, s/m.
+    pub const PER_SPEED: Growth = Growth::of(0, 0, 0, -1);
     /// Force per length, N/m.
-    pub const STIFFNESS: Growth = Growth::of(-1, 1, 0);
-    /// Torque per angle, N m/rad.
-    pub const TORQUE: Growth = Growth::of(1, 1, 0);
+    pub const STIFFNESS: Growth = Growth::of(-1, 1, 0, 0);
+    /// Torque, N m, and torque per angle, N m/rad.
+    pub const TORQUE: Growth = Growth::of(1, 1, 0, 0);
     /// Force per acceleration, kg.
-    pub const MASS: Growth = Growth::of(1, 1, 0);
+    pub const MASS: Growth = Growth::of(1, 1, 0, -2);
     /// Mass times length, kg m.
-    pub const MASS_MOMENT: Growth = Growth::of(2, 1, 0);
+    pub const MASS_MOMENT: Growth = Growth::of(2, 1, 0, -2);
     /// Mass times square of length, kg m².
-    pub const INERTIA: Growth = Growth::of(3, 1, 0);
+    pub const INERTIA: Growth = Growth::of(3, 1, 0, -2);
 
-    const fn of(stroke: i32, area: i32, opening: i32) -> Self {
-        Growth { stroke, area, opening }
+    const fn of(stroke: i32, area: i32, opening: i32, speed: i32) -> Self {
+        Growth { stroke, area, opening, speed }
     }
 }
 
 impl Size {
     /// The size of the machine for which numbers are written down.
-    pub const REFERENCE: Size = Size { stroke: 1.0, area: 1.0, opening: 1.0 };
-
-    /// Of a part with this stroke (m), piston area (m²) and largest orifice area (m²).
-    fn of(stroke: f64, area: f64, opening: f64) -> Self {
-        let ratio = |value: f64, reference: f64| {
-            let ratio = value / reference;
-            if ratio.is_finite() && ratio > 0.0 { ratio.log2().round().exp2() } else { 1.0 }
-        };
-        Size {
-            stroke: ratio(stroke, REFERENCE_STROKE),
-            area: ratio(area, REFERENCE_AREA),
-            opening: ratio(opening, REFERENCE_OPENING),
-        }
-    }
+    pub const REFERENCE: Size = Size { stroke: 1.0, area: 1.0, opening: 1.0, speed: 1.0 };
 
     /// The factor by which a quantity is larger than at the reference.
     pub fn factor(&self, growth: Growth) -> f64 {
-        self.stroke.powi(growth.stroke) * self.area.powi(growth.area) * self.opening.powi(growth.opening)
+        self.stroke.powi(growth.stroke)
+            * self.area.powi(growth.area)
+            * self.opening.powi(growth.opening)
+            * self.speed.powi(growth.speed)
     }
 
     /// The factor of times, a pure number.
@@ -87,44 +86,58 @@ impl Size {
     }
 }
 
+/// A ratio as the nearest power of two; one where it is none.
+fn rounded(ratio: f64) -> f64 {
+    if ratio.is_finite() && ratio > 0.0 { ratio.log2().round().exp2() } else { 1.0 }
+}
+
 /// Stroke of the arm cylinder, m, \[A\] Table 1.
 const REFERENCE_STROKE: f64 = 0.6;
 /// Its piston area on the cap side, m², \[A\] Table 1.
 const REFERENCE_AREA: f64 = 3.8e-3;
 /// Largest orifice area of its valve section, m².
 const REFERENCE_OPENING: f64 = 1.15e-4;
-/// Flow of its pump, m³/s, \[A\] Table 1.
-const REFERENCE_FLOW: f64 = 3.8e-4;
+/// Speed at which all of its pump's flow drives it, m/s, \[A\] Table 1.
+const REFERENCE_SPEED: f64 = 0.1;
 
 impl Machine {
     /// Size of the whole machine: that of its cylinder with the longest stroke.
     pub fn size(&self) -> Size {
-        let longest =
-            (0..self.cylinders.len()).max_by(|&a, &b| self.cylinders[a].stroke.total_cmp(&self.cylinders[b].stroke));
+        let stroke = |cylinder: &usize| self.cylinders[*cylinder].stroke;
+        let longest = (0..self.cylinders.len()).max_by(|a, b| stroke(a).total_cmp(&stroke(b)));
         longest.map_or(Size::REFERENCE, |cylinder| self.cylinder_size(cylinder))
     }
 
-    /// Size of the part of the machine at `site`. Flows at a pump line are those of the pump.
+    /// Size of the part of the machine at `site`.
     pub fn size_at(&self, site: Site) -> Size {
         match site {
             Site::Cylinder(cylinder) => self.cylinder_size(cylinder),
-            Site::PumpLine => {
-                let Supply::PumpLine(line) = self.supply else { return self.size() };
-                Size { area: Size::of(1.0, line.flow / REFERENCE_FLOW * REFERENCE_AREA, 1.0).area, ..self.size() }
-            }
-            Site::Machine => self.size(),
+            Site::PumpLine | Site::Machine => self.size(),
         }
     }
 
-    /// A drive whose force is measured shows no area: its forces are taken for those of the reference.
+    /// Speeds are those that the pump can drive, else those of the reference. A motion that is imposed takes the time of the
+    /// reference: no drive of the machine's own sets it. A drive whose force is measured shows no area: its forces are taken for those
+    /// of the reference.
     fn cylinder_size(&self, index: usize) -> Size {
         let Some(cylinder) = self.cylinders.get(index) else { return Size::REFERENCE };
-        let (area, opening) = match (&cylinder.chambers, &cylinder.imposed_motion) {
-            (Some(chambers), _) => (chambers.cap_area.max(chambers.rod_area), chambers.maximum_orifice_area),
-            (None, Some(motion)) => (motion.cap_area.max(motion.rod_area), REFERENCE_OPENING),
-            (None, None) => (REFERENCE_AREA, REFERENCE_OPENING),
-        };
-        Size::of(cylinder.stroke, area, opening)
+        let stroke = rounded(cylinder.stroke / REFERENCE_STROKE);
+        if let Some(chambers) = &cylinder.chambers {
+            let area = chambers.cap_area.max(chambers.rod_area);
+            let speed = match self.supply {
+                Supply::PumpLine(line) => rounded(line.flow / area / REFERENCE_SPEED),
+                Supply::PressureSource(_) | Supply::None => 1.0,
+            };
+            let opening = rounded(chambers.maximum_orifice_area / REFERENCE_OPENING);
+            return Size { stroke, area: rounded(area / REFERENCE_AREA), opening, speed };
+        }
+        match &cylinder.imposed_motion {
+            Some(motion) => {
+                let area = rounded(motion.cap_area.max(motion.rod_area) / REFERENCE_AREA);
+                Size { stroke, area, opening: 1.0, speed: stroke }
+            }
+            None => Size { stroke, ..Size::REFERENCE },
+        }
     }
 }
 
@@ -152,8 +165,10 @@ mod tests {
         let chambers = cylinder.chambers.as_mut().unwrap();
         chambers.cap_area *= 0.01;
         chambers.maximum_orifice_area = 5.0;
+        let Supply::PumpLine(line) = &mut machine.supply else { unreachable!() };
+        line.flow *= 0.01;
         let size = machine.size();
-        assert_eq!((size.stroke, size.area, size.opening), (0.125, 1.0 / 128.0, 32768.0));
+        assert_eq!(size, Size { stroke: 0.125, area: 1.0 / 128.0, opening: 32768.0, speed: 1.0 });
         assert_eq!(size.factor(Growth::FLOW_GAIN), 1.0 / 128.0 / 32768.0);
     }
 }

@@ -100,13 +100,13 @@ impl Default for Tolerances {
 }
 
 impl Tolerances {
-    /// The same on a machine of another size. Relative errors, pressures and speeds of pistons stay.
+    /// The same on a machine of another size. Relative errors and pressures stay.
     fn for_machine(self, machine: &Machine) -> Self {
         let time = machine.size().time();
         let is_linear = matches!(machine.mechanism, Mechanism::LinearLoad);
         Tolerances {
             joint: if is_linear { self.joint * machine.size().factor(Growth::LENGTH) } else { self.joint },
-            rate: if is_linear { self.rate } else { self.rate / time },
+            rate: if is_linear { self.rate * machine.size().speed } else { self.rate / time },
             minimum_step: self.minimum_step * time,
             maximum_step: self.maximum_step * time,
             most_steps_per_second: self.most_steps_per_second / time,

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand, ValueEnum};
+use excavator_identification::gate::OVERRULABLE;
 
 use super::numbers::{positive, profile_duration, stroke_margin};
 
@@ -20,12 +22,15 @@ pub struct Overwriting {
     pub force: bool,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct Mapping {
     /// Topic map (TOML): which field of which topic, or which column of a table, is which signal. Without, the map.toml
     /// in the bag's folder or FILE.map.toml beside the file is used, if there is one.
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
+    /// Use a recording although this check refuses it; the refusal says its name. Repeat it for several.
+    #[arg(long, value_name = "CHECK", value_parser = PossibleValuesParser::new(OVERRULABLE), hide_possible_values = true)]
+    pub accept: Vec<String>,
 }
 
 #[derive(Debug, Args)]
@@ -304,8 +309,9 @@ pub struct ModelCheckArguments {
 pub struct InfoArguments {
     /// Bag, or a table with a map.
     pub bag: PathBuf,
-    #[command(flatten)]
-    pub mapping: Mapping,
+    /// Topic map (TOML); without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
     #[command(flatten)]
@@ -316,8 +322,9 @@ pub struct InfoArguments {
 pub struct ImportArguments {
     /// Table (.csv, .tsv, .txt, .dat, .mat, .parquet) or bag.
     pub data: PathBuf,
-    #[command(flatten)]
-    pub mapping: Mapping,
+    /// Topic map (TOML); without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
     /// Print a map guessed from names, types, units and the shapes of the signals, with a reason for each line. Check it!
     #[arg(long, conflicts_with = "map")]
     pub guess: bool,

@@ -7,6 +7,7 @@ use excavator_identification::fit::{normalised_error, nuisances_shown};
 use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
 use excavator_identification::validation::{Comparison, Correlation};
+use excavator_identification::value_marks::value_mark;
 use excavator_model::effects::Site;
 use excavator_model::recording::Recording;
 use excavator_model::{Model, site_name};
@@ -32,13 +33,17 @@ fn parameters(model: &Model, fitted: &[usize]) -> Vec<Value> {
         .enumerate()
         .filter(|(index, _)| fitted.contains(index))
         .map(|(index, (_, parameter))| {
-            json!({
+            let mut value = json!({
                 "name": names[index],
                 "value": finite(parameter.value),
                 "std_error": parameter.standard_error.map_or(Value::Null, finite),
                 "margin_95": parameter.margin_95.map_or(Value::Null, finite),
                 "unit": parameter.card.unit,
-            })
+            });
+            if let Some(mark) = value_mark(model, index) {
+                value["remark"] = json!(mark.to_string());
+            }
+            value
         })
         .collect()
 }

@@ -7,6 +7,7 @@ use excavator_identification::fit::normalised_error;
 use excavator_identification::refinement::Refinement;
 use excavator_identification::search::Trial;
 use excavator_identification::validation::{Comparison, Correlation};
+use excavator_identification::value_marks::{remedies, value_mark};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
@@ -51,22 +52,35 @@ pub fn effect_table(effects: &[[&str; 3]], name_width: u16, place_width: u16) ->
     table
 }
 
-/// Identified parameters with 95 % intervals.
+/// Identified parameters with 95 % intervals, and a remark where a value is not to be taken as it is.
 pub fn parameter_table(model: &Model, fitted: &[usize]) -> Table {
-    let mut table = table(&["parameter", "value", "± 95 %", "unit"]);
+    let marks: Vec<Option<String>> =
+        fitted.iter().map(|&index| value_mark(model, index).map(|mark| mark.to_string())).collect();
+    let with_remarks = marks.iter().any(Option::is_some);
+    let heads = ["parameter", "value", "± 95 %", "unit", "remark"];
+    let mut table = table(if with_remarks { &heads } else { &heads[..4] });
     let names = model.parameter_names();
     for (index, (_, parameter)) in model.parameters().enumerate() {
-        if fitted.contains(&index) {
-            let margin = parameter.margin_95.map_or("-".into(), number);
-            table.add_row([
-                Cell::new(&names[index]),
-                right(number(parameter.value)),
-                right(margin),
-                Cell::new(&*parameter.card.unit),
-            ]);
+        let Some(place) = fitted.iter().position(|&fitted| fitted == index) else { continue };
+        let margin = parameter.margin_95.map_or("-".into(), number);
+        let mut row = vec![
+            Cell::new(&names[index]),
+            right(number(parameter.value)),
+            right(margin),
+            Cell::new(&*parameter.card.unit),
+        ];
+        if with_remarks {
+            row.push(Cell::new(marks[place].as_deref().unwrap_or_default()));
         }
+        table.add_row(row);
     }
     table
+}
+
+/// What would determine the values with a remark, a line for each effect.
+pub fn remedy_lines(model: &Model, fitted: &[usize]) -> Vec<String> {
+    let lines = remedies(model, fitted).into_iter();
+    lines.map(|(names, experiment)| format!("To determine {}: {experiment}", names.join(", "))).collect()
 }
 
 /// Errors of every signal.

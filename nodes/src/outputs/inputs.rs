@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use excavator_bags::map::TopicMap;
 
 use super::place::FileId;
-use crate::cli::Mapping;
 use crate::recording_part::Part;
 
 /// Files that a command reads, by their identity on the disk.
@@ -24,17 +23,17 @@ impl Inputs {
     }
 
     /// Recordings with their map: the one given, or those beside them.
-    pub fn recordings<'p>(paths: impl IntoIterator<Item = &'p PathBuf>, mapping: &Mapping) -> Self {
+    pub fn recordings<'p>(paths: impl IntoIterator<Item = &'p PathBuf>, map: Option<&Path>) -> Self {
         let mut inputs = Inputs::default();
         for path in paths {
             let whole = inputs.add_recording(path);
-            if mapping.map.is_none()
+            if map.is_none()
                 && let Some(map) = TopicMap::beside(&whole)
             {
                 inputs.add(&map);
             }
         }
-        mapping.map.iter().for_each(|map| inputs.add(map));
+        map.iter().for_each(|map| inputs.add(map));
         inputs
     }
 

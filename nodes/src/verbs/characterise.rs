@@ -15,7 +15,7 @@ use crate::sources;
 
 pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
-    let inputs = Inputs::recordings(&arguments.bags, &arguments.mapping).and_all(arguments.model.files());
+    let inputs = Inputs::recordings(&arguments.bags, arguments.mapping.map.as_deref()).and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let recordings = sources::recordings(&arguments.bags, &arguments.mapping, &model)?;

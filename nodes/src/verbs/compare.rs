@@ -14,7 +14,8 @@ use crate::sources;
 
 pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
-    let inputs = Inputs::recordings([&arguments.bag], &arguments.mapping).and_all(arguments.model.files());
+    let inputs =
+        Inputs::recordings([&arguments.bag], arguments.mapping.map.as_deref()).and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let recording = sources::recording(&arguments.bag, &arguments.mapping, &model)?;

@@ -23,8 +23,8 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         ("--scores", arguments.scores.as_deref()),
         ("--json", arguments.json.json.as_deref()),
     ];
-    let inputs =
-        Inputs::recordings(arguments.recordings.bags(), &arguments.recordings.mapping).and_all(arguments.model.files());
+    let inputs = Inputs::recordings(arguments.recordings.bags(), arguments.recordings.mapping.map.as_deref())
+        .and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;

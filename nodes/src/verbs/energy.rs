@@ -25,7 +25,8 @@ const WAITING: usize = 4;
 
 pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
-    let inputs = Inputs::recordings([&arguments.bag], &arguments.mapping).and_all(arguments.model.files());
+    let inputs =
+        Inputs::recordings([&arguments.bag], arguments.mapping.map.as_deref()).and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let analysis = analyse_bag(&model, &arguments.bag, &arguments.mapping)?;

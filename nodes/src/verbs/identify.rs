@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use super::print;
 use crate::cli::{IdentifyArguments, Method};
 use crate::error::VerbError;
-use crate::output::{identification_json, number, parameter_table, write_json};
+use crate::output::{identification_json, number, parameter_table, remedy_lines, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -35,7 +35,7 @@ struct Identified {
 
 pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     let outputs = [("-o", arguments.output.as_deref()), ("--json", arguments.json.json.as_deref())];
-    let inputs = Inputs::recordings(&arguments.bag, &arguments.mapping);
+    let inputs = Inputs::recordings(&arguments.bag, arguments.mapping.map.as_deref());
     // With --force the model may become its own successor: it has a history.
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     outputs::check(&outputs[1..], &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
@@ -177,6 +177,7 @@ fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
 
 fn show(given: &Model, result: &Identified) {
     print(&parameter_table(&result.model, &result.fitted).to_string());
+    remedy_lines(&result.model, &result.fitted).iter().for_each(|line| print(line));
     for condition in &result.conditions {
         print(&format!(
             "condition number, {}: {} in SI units, {} with columns scaled",

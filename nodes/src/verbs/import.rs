@@ -35,9 +35,9 @@ fn guess_map(arguments: &ImportArguments) -> Result<(), VerbError> {
 }
 
 fn import(arguments: &ImportArguments, bag: &Path) -> Result<(), VerbError> {
-    let inputs = Inputs::recordings([&arguments.data], &arguments.mapping);
+    let inputs = Inputs::recordings([&arguments.data], arguments.map.as_deref());
     outputs::check_bag(bag, &inputs, arguments.overwriting)?;
-    let (recording, report) = read_recording_or_mapped(&arguments.data, arguments.mapping.map.as_deref())?;
+    let (recording, report) = read_recording_or_mapped(&arguments.data, arguments.map.as_deref())?;
     for problem in report.problems() {
         terminal::complain(&format!("{}: {problem}", arguments.data.display()));
     }

@@ -20,13 +20,13 @@ const NOTABLE_DELAY: f64 = 0.1;
 
 pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     let path = &arguments.bag;
-    let inputs = Inputs::recordings([path], &arguments.mapping);
+    let inputs = Inputs::recordings([path], arguments.map.as_deref());
     outputs::check(&[("--json", arguments.json.json.as_deref())], &inputs, arguments.overwriting)?;
-    if DataTable::is_table(path) && arguments.mapping.map.is_none() && TopicMap::beside(path).is_none() {
+    if DataTable::is_table(path) && arguments.map.is_none() && TopicMap::beside(path).is_none() {
         return table_without_map(arguments);
     }
     let bag = if DataTable::is_table(path) { None } else { Some(info(path)?) };
-    let signals = read_recording_or_mapped(path, arguments.mapping.map.as_deref());
+    let signals = read_recording_or_mapped(path, arguments.map.as_deref());
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         if let Some(bag) = &bag {
             show_bag(bag);
@@ -48,7 +48,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     }
     // A bag without our topics is still a bag; a table or map that cannot be read is a failure.
     match signals {
-        Err(error) if bag.is_none() || arguments.mapping.map.is_some() => Err(error.into()),
+        Err(error) if bag.is_none() || arguments.map.is_some() => Err(error.into()),
         _ => Ok(()),
     }
 }

@@ -13,14 +13,14 @@ use excavator_model::recording::Recording;
 use super::print;
 use crate::cli::RefineArguments;
 use crate::error::VerbError;
-use crate::output::{Progress, parameter_table, refinement_json, step_table, write_json};
+use crate::output::{Progress, parameter_table, refinement_json, remedy_lines, step_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
 pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
     let others = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
     let outputs = [("-o", Some(arguments.output.as_path())), others[0], others[1]];
-    let inputs = Inputs::recordings(arguments.recordings.bags(), &arguments.recordings.mapping);
+    let inputs = Inputs::recordings(arguments.recordings.bags(), arguments.recordings.mapping.map.as_deref());
     // With --force the model may become its own successor: it has a history.
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     outputs::check(&others, &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
@@ -71,5 +71,6 @@ pub fn show(refinement: &Refinement) {
     print(&step_table(refinement).to_string());
     if let Some(last) = refinement.steps.last() {
         print(&parameter_table(&last.fit.model, &last.fit.fitted).to_string());
+        remedy_lines(&last.fit.model, &last.fit.fitted).iter().for_each(|line| print(line));
     }
 }

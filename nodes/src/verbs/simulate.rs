@@ -17,7 +17,8 @@ use crate::profile_file::ProfileFile;
 use crate::{sources, terminal};
 
 pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
-    let inputs = outputs::Inputs::recordings([&arguments.input], &arguments.mapping).and_all(arguments.model.files());
+    let inputs = outputs::Inputs::recordings([&arguments.input], arguments.mapping.map.as_deref())
+        .and_all(arguments.model.files());
     outputs::check_bag(&arguments.output, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let simulated = if arguments.input.extension().is_some_and(|extension| extension == "toml") {
