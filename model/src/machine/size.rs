@@ -164,6 +164,7 @@ mod tests {
         cylinder.stroke *= 0.1;
         let chambers = cylinder.chambers.as_mut().unwrap();
         chambers.cap_area *= 0.01;
+        chambers.rod_area *= 0.01;
         chambers.maximum_orifice_area = 5.0;
         let Supply::PumpLine(line) = &mut machine.supply else { unreachable!() };
         line.flow *= 0.01;
