@@ -12,6 +12,7 @@ use excavator_identification::refinement::RefineError;
 use excavator_identification::regression::RegressionError;
 use excavator_model::document::DocumentError;
 use excavator_model::effects::UnknownEffect;
+use excavator_model::formula::FormulaError;
 use excavator_model::simulation::{ProfileError, RunError};
 use excavator_model::{ModelError, SignalError};
 
@@ -25,6 +26,8 @@ pub enum VerbError {
     Bag(#[from] BagError),
     #[error(transparent)]
     Document(#[from] DocumentError),
+    #[error("--where \"{text}\": {error}")]
+    Condition { text: String, error: FormulaError },
     #[error("{}", refusal(.0))]
     Gate(#[from] GateError),
     #[error(transparent)]

@@ -8,6 +8,8 @@ use excavator_identification::gate;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse, parse_catalogue};
 use excavator_model::effects::Catalogue;
+use excavator_model::formula::Condition;
+use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
 
 use crate::cli::{self, Mapping};
@@ -78,7 +80,47 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
     for remark in gate::remarks(model, &recording) {
         complain(&format!("{}: {remark}", path.display()));
     }
+    for text in &map.conditions {
+        let condition = Condition::read(text).map_err(|error| VerbError::Condition { text: text.clone(), error })?;
+        let left_out = leave_out(model, &mut recording, &condition);
+        complain(&format!("{}: {:.0} % of the time is left out, where not {text}", path.display(), 100.0 * left_out));
+    }
     Ok(recording)
+}
+
+/// Takes away what is compared with a model where the condition does not hold; inputs stay. Gives the share of samples of all
+/// cylinders that are left out.
+fn leave_out(model: &Model, recording: &mut Recording, condition: &Condition) -> f64 {
+    let holds = condition.holds(&model.machine, recording);
+    let samples = recording.len();
+    let left_out = holds.iter().flatten().filter(|holds| !**holds).count();
+    for (cylinder, holds) in model.machine.cylinders.iter().zip(&holds) {
+        let Some(signals) = recording.cylinders.iter_mut().find(|signals| signals.name == cylinder.name) else {
+            continue;
+        };
+        let outputs: Vec<&mut Vec<f64>> = if cylinder.imposed_motion.is_some() {
+            vec![&mut signals.rod_force]
+        } else {
+            vec![
+                &mut signals.displacement,
+                &mut signals.joint_angle,
+                &mut signals.velocity,
+                &mut signals.cap_pressure,
+                &mut signals.rod_pressure,
+            ]
+        };
+        for output in outputs {
+            output.iter_mut().zip(holds).filter(|(_, holds)| !**holds).for_each(|(value, _)| *value = f64::NAN);
+        }
+    }
+    if matches!(model.machine.supply, Supply::PumpLine(_)) {
+        for (sample, value) in recording.pump_pressure.iter_mut().enumerate() {
+            if holds.iter().any(|holds| !holds[sample]) {
+                *value = f64::NAN;
+            }
+        }
+    }
+    left_out as f64 / (samples * holds.len()).max(1) as f64
 }
 
 /// Several recordings.

@@ -110,3 +110,33 @@ fn a_recording_that_judges_its_own_fit_is_told() {
     let apart = told("bag@0..3", "bag@3..5");
     assert!(!apart.contains("no evidence"), "{apart}");
 }
+
+#[test]
+fn a_piston_that_is_pressed_against_something_is_told() {
+    let held = |recording: &mut Recording| {
+        let arm = &mut recording.cylinders[0];
+        // Something stands in the way at 30 mm.
+        arm.displacement.iter_mut().for_each(|position| *position = position.min(0.03));
+    };
+    is_told(held, &["arm is pressed against something at +30.0 mm", "--where"]);
+}
+
+/// What a condition leaves out is simulated through and not compared.
+#[test]
+fn a_condition_leaves_samples_out() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "bag", &swinging(|_| ()));
+    let compare = |condition: &str| {
+        let words = ["compare", "--model", "zx30u-arm", "--bag", "bag", "--where", condition, "--json", "-"];
+        excavator(folder.path(), &words)
+    };
+    let some = compare("abs(v) > 0.05");
+    let told = complaint(&some);
+    assert_eq!(some.status.code(), Some(0), "{told}");
+    assert!(told.contains("% of the time is left out, where not abs(v) > 0.05"), "{told}");
+    let found: serde_json::Value = serde_json::from_slice(&some.stdout).unwrap();
+    let phases = found["signals"]["arm.displacement"]["phases"].as_array().unwrap();
+    assert!(phases.iter().all(|phase| phase["phase"] == "moving"), "{phases:?}");
+    assert_one_clear_line(&compare("abs(w) > 0.05"), &["--where \"abs(w) > 0.05\"", "unknown name \"w\""]);
+    assert_one_clear_line(&compare("v"), &["expected a comparison"]);
+}

@@ -1,9 +1,13 @@
 //! What is odd in a recording, but no reason to refuse it.
 
+use std::collections::BTreeMap;
+
 use excavator_model::Model;
+use excavator_model::machine::Cylinder;
 use excavator_model::recording::{Recording, is_measured, noise_level};
 
 use super::check::usual_size;
+use super::opening::{largest, open_one_way};
 use super::runs::range;
 
 /// Something odd in a recording, in one line that says what to do.
@@ -50,6 +54,23 @@ pub enum Remark {
         worst: f64,
         /// SI unit.
         unit: &'static str,
+    },
+    /// A piston stands at one place, away from its ends, though its valve is open.
+    #[error(
+        "{cylinder} is pressed against something at {position:+.1} mm from mid-stroke for {share:.0} % of the time; the stroke in {machine} \
+         ends at {end:+.1} mm. If that is its stop, correct the stroke or the sensor's zero; else leave it out (--where)"
+    )]
+    Pressed {
+        /// The cylinder.
+        cylinder: String,
+        /// Where, mm from mid-stroke.
+        position: f64,
+        /// Share of the time, %.
+        share: f64,
+        /// The end of the stroke on that side, mm.
+        end: f64,
+        /// The machine.
+        machine: String,
     },
     /// A cylinder that the model does not have moves.
     #[error(
@@ -105,6 +126,7 @@ pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
                 found.push(Remark::CommandNotFollowed { cylinder: cylinder.name.clone(), correlation });
             }
         }
+        found.extend(pressed(model, cylinder, &signals.displacement, opening));
         found.extend(spikes(name("cap_pressure"), &signals.cap_pressure, "Pa", LARGEST_PRESSURE));
         found.extend(spikes(name("rod_pressure"), &signals.rod_pressure, "Pa", LARGEST_PRESSURE));
     }
@@ -120,6 +142,40 @@ pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
         }
     }
     found
+}
+
+/// Share of the stroke within which a piston stands at one place, and within which it is at its end.
+const ONE_PLACE: f64 = 0.002;
+const AT_THE_END: f64 = 0.02;
+
+/// Share of the recording that a piston must be pressed for to be told.
+const LEAST_SHARE: f64 = 0.05;
+
+/// Samples over which a piston must not move to stand.
+const AFTER: usize = 20;
+
+/// Where a piston stands away from its ends while its valve is open, at whichever of such places it is longest.
+fn pressed(model: &Model, cylinder: &Cylinder, displacement: &[f64], opening: &[f64]) -> Option<Remark> {
+    let (largest, place) = (largest(opening), ONE_PLACE * cylinder.stroke);
+    let mut places: BTreeMap<(i64, bool), usize> = BTreeMap::new();
+    for sample in 0..displacement.len().saturating_sub(AFTER) {
+        let (here, later) = (displacement[sample], displacement[sample + AFTER]);
+        let is_open = open_one_way(&opening[sample..=sample + AFTER], largest);
+        let stands = (later - here).abs() < 0.1 * place && here.abs() < (0.5 - AT_THE_END) * cylinder.stroke;
+        if largest > 0.0 && is_open && stands {
+            *places.entry(((here / place).round() as i64, opening[sample] > 0.0)).or_default() += 1;
+        }
+    }
+    let (&(number, is_out), &count) = places.iter().max_by_key(|(_, count)| **count)?;
+    let share = count as f64 / displacement.len() as f64;
+    let side = if is_out { 0.5 } else { -0.5 };
+    (share >= LEAST_SHARE).then(|| Remark::Pressed {
+        cylinder: cylinder.name.clone(),
+        position: 1e3 * number as f64 * place,
+        share: 100.0 * share,
+        end: 1e3 * side * cylinder.stroke,
+        machine: model.machine.name.clone(),
+    })
 }
 
 fn spikes(signal: String, values: &[f64], unit: &'static str, limit: f64) -> Option<Remark> {

@@ -48,6 +48,7 @@ fn comparison(error: f64) -> Comparison {
             name: name.to_string(),
             normalised_error: error * error,
             fit: 100.0 * (1.0 - error),
+            phases: Vec::new(),
             phase_delay_degrees: (name != "arm.velocity").then_some(-1.25),
         })
         .to_vec();

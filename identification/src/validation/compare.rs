@@ -5,8 +5,8 @@ use excavator_model::recording::{Recording, is_measured};
 use excavator_model::simulation::{InputSignals, RunError, simulate};
 
 use super::{
-    Correlation, autocorrelation, dominant_frequency, fit_percent, input_correlation, normalised_mean_squared_error,
-    phase_delay_degrees,
+    Correlation, MotionPhase, PhaseShare, autocorrelation, dominant_frequency, fit_percent, input_correlation,
+    motion_phases, normalised_mean_squared_error, phase_delay_degrees, phase_shares,
 };
 use crate::regression::observe;
 
@@ -39,6 +39,9 @@ pub struct SignalComparison {
     /// What the error has of the machine's input: the valve opening of its cylinder (for the pump pressure the sum of all),
     /// the velocity of an imposed motion, or the force on the load.
     pub input_correlation: Option<Correlation>,
+    /// How the squared error spreads over what the piston of its cylinder does; for the pump line, over what all do: moving where one
+    /// moves, at an end only where no other is elsewhere.
+    pub phases: Vec<PhaseShare>,
 }
 
 impl Comparison {
@@ -81,6 +84,18 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
     } else {
         frequency(&measured.cylinders[0].rod_force)
     };
+    let own_phases: Vec<Vec<MotionPhase>> = model
+        .machine
+        .cylinders
+        .iter()
+        .map(|cylinder| {
+            let own = measured.cylinder(&cylinder.name).ok();
+            own.map_or_else(Vec::new, |own| motion_phases(&own.displacement, &own.velocity, cylinder.stroke))
+        })
+        .collect();
+    let together: Vec<MotionPhase> = (0..measured.len())
+        .filter_map(|sample| own_phases.iter().filter_map(|phases| phases.get(sample)).min().copied())
+        .collect();
     // Each output with the number of the cylinder whose input drives it; the pump line has none of its own.
     let mut names = Vec::new();
     for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
@@ -113,6 +128,7 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
                 autocorrelation: autocorrelation(&time, &error).map(in_seconds),
                 input_correlation: input_correlation(&time, &error, &input).map(in_seconds),
                 fit: fit_percent(normalised_error),
+                phases: phase_shares(cylinder.map_or(&together, |number| &own_phases[number]), &error),
                 normalised_error,
                 name,
             })

@@ -2,10 +2,12 @@
 
 mod compare;
 mod measures;
+mod motion_phase;
 mod phase;
 mod residual_test;
 
 pub use compare::{Comparison, SignalComparison, compare, measured_velocity};
 pub use measures::{fit_percent, normalised_mean_squared_error};
+pub use motion_phase::{MotionPhase, PhaseShare, motion_phases, phase_shares};
 pub use phase::{dominant_frequency, phase_delay_degrees};
 pub use residual_test::{Correlation, autocorrelation, input_correlation};

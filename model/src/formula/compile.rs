@@ -38,8 +38,7 @@ pub(super) fn compile(
     unit_of: &dyn Fn(&Symbol) -> Dimension,
     row: (&str, Dimension),
 ) -> Result<Program, FormulaError> {
-    let program = Program { operations: Vec::new(), inputs: Vec::new(), tables: Vec::new() };
-    let mut compiler = Compiler { text, unit_of, program };
+    let mut compiler = Compiler { text, unit_of, program: Program::empty(), numbers_have_units: false };
     let whole = compiler.part(expression)?;
     if let Unit::Of(found) = whole.unit
         && found != row.1
@@ -47,24 +46,43 @@ pub(super) fn compile(
         let problem = Problem::WrongRow { row: row.0.to_string(), wanted: row.1.text(), found: found.text() };
         return Err(compiler.error(problem, &expression.at));
     }
-    // The value of a program is that of its last register.
-    match whole.value {
-        Value::Register(register) if usize::from(register) + 1 == compiler.program.operations.len() => {}
-        Value::Register(register) => {
-            compiler.program.operations.push(Operation::Scale(register, 1.0));
-        }
-        Value::Number(number) => compiler.program.operations.push(Operation::Number(number)),
-    }
-    Ok(compiler.program)
+    Ok(compiler.finished(whole.value))
+}
+
+/// Compiles by how much the first of two expressions is larger. Numbers have the SI unit that their place asks for: a condition on a
+/// recording is read by whoever wrote it, and means nothing elsewhere.
+pub(super) fn compile_difference(
+    [larger, smaller]: &[Expression; 2],
+    text: &str,
+    unit_of: &dyn Fn(&Symbol) -> Dimension,
+) -> Result<Program, FormulaError> {
+    let mut compiler = Compiler { text, unit_of, program: Program::empty(), numbers_have_units: true };
+    let (one, other) = (compiler.part(larger)?, compiler.part(smaller)?);
+    let at = larger.at.start.min(smaller.at.start)..larger.at.end.max(smaller.at.end);
+    compiler.same("compare", one.unit, other.unit, &at)?;
+    let difference = compiler.two(one.value, other.value, |a, b| a - b, Operation::Subtract);
+    Ok(compiler.finished(difference))
 }
 
 struct Compiler<'a> {
     text: &'a str,
     unit_of: &'a dyn Fn(&Symbol) -> Dimension,
     program: Program,
+    /// Whether a number has the unit that its place asks for; else it is a pure number.
+    numbers_have_units: bool,
 }
 
 impl Compiler<'_> {
+    /// The program whose value is this one: that of its last register.
+    fn finished(mut self, value: Value) -> Program {
+        match value {
+            Value::Register(register) if usize::from(register) + 1 == self.program.operations.len() => {}
+            Value::Register(register) => self.program.operations.push(Operation::Scale(register, 1.0)),
+            Value::Number(number) => self.program.operations.push(Operation::Number(number)),
+        }
+        self.program
+    }
+
     fn error(&self, problem: Problem, at: &Range<usize>) -> FormulaError {
         FormulaError::new(problem, at.clone(), self.text)
     }
@@ -73,7 +91,7 @@ impl Compiler<'_> {
         let pure = Unit::Of(Dimension::PURE);
         match &expression.node {
             Node::Number(value) => {
-                let unit = if *value == 0.0 { Unit::Any } else { pure };
+                let unit = if *value == 0.0 || self.numbers_have_units { Unit::Any } else { pure };
                 Ok(Part { value: Value::Number(*value), unit })
             }
             Node::Name(symbol) => {

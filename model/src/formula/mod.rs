@@ -5,6 +5,7 @@
 
 mod check;
 mod compile;
+mod condition;
 mod corner;
 mod dimension;
 mod error;
@@ -23,6 +24,7 @@ mod token;
 mod variable;
 
 pub use check::{CheckProblem, Checked, Curve, check};
+pub use condition::Condition;
 pub use dimension::{Dimension, UnitError};
 pub use error::{FormulaError, Problem};
 pub use law::Law;

@@ -28,6 +28,27 @@ pub(super) fn parse(text: &str, names: &Names<'_>) -> Result<Expression, Formula
     }
 }
 
+/// Reads a comparison, as in `abs(v) > 0.002`: what is the larger side where it holds, then the other.
+pub(super) fn parse_condition(text: &str, names: &Names<'_>) -> Result<[Expression; 2], FormulaError> {
+    let mut parser = Parser { text, tokens: tokens(text)?, next: 0, depth: 0, operations: 0, names };
+    let left = parser.sum()?;
+    let is_less = match parser.token() {
+        Token::Less | Token::LessOrEqual => true,
+        Token::Greater | Token::GreaterOrEqual => false,
+        _ => return Err(parser.error(Problem::Expected("a comparison: <, <=, > or >="))),
+    };
+    parser.take();
+    let right = parser.sum()?;
+    match parser.token() {
+        Token::End if is_less => Ok([right, left]),
+        Token::End => Ok([left, right]),
+        Token::Less | Token::LessOrEqual | Token::Greater | Token::GreaterOrEqual => {
+            Err(parser.error(Problem::ChainedComparison))
+        }
+        _ => Err(parser.error(Problem::Trailing)),
+    }
+}
+
 struct Parser<'a> {
     text: &'a str,
     tokens: Vec<Placed>,

@@ -74,6 +74,11 @@ pub(super) struct Moment<'a, 'm, T> {
 const SMALL: usize = 24;
 
 impl Program {
+    /// A program without any operation.
+    pub fn empty() -> Self {
+        Program { operations: Vec::new(), inputs: Vec::new(), tables: Vec::new() }
+    }
+
     /// The formula's value.
     pub fn evaluate<T: Scalar>(&self, moment: &Moment<'_, '_, T>) -> T {
         let zero = T::from(0.0);

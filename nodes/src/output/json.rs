@@ -6,7 +6,7 @@ use excavator_identification::diagnosis::{Candidate, Diagnosis, Share};
 use excavator_identification::fit::{normalised_error, nuisances_shown};
 use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
-use excavator_identification::validation::{Comparison, Correlation};
+use excavator_identification::validation::{Comparison, Correlation, PhaseShare};
 use excavator_identification::value_marks::value_mark;
 use excavator_model::effects::Site;
 use excavator_model::recording::Recording;
@@ -87,16 +87,27 @@ fn signals(comparisons: &[Comparison]) -> Value {
             let beyond = |one: &Correlation| one.value.abs() / one.bound;
             found.into_iter().max_by(|a, b| beyond(a).total_cmp(&beyond(b))).map_or(Value::Null, correlation)
         };
-        let value = json!({
+        let mut value = json!({
             "nmse": finite(nmse),
             "fit": finite(fit),
             "phase_delay_deg": delay,
             "autocorrelation": worst(own().filter_map(|s| s.autocorrelation).collect()),
             "input_correlation": worst(own().filter_map(|s| s.input_correlation).collect()),
         });
+        if let [_] = comparisons {
+            value["phases"] = signal.phases.iter().map(phase_json).collect();
+        }
         (signal.name.clone(), value)
     });
     Value::Object(entries.collect())
+}
+
+fn phase_json(share: &PhaseShare) -> Value {
+    json!({
+        "phase": share.phase.to_string(),
+        "share_of_time": finite(share.of_time),
+        "share_of_error": finite(share.of_error),
+    })
 }
 
 fn correlation(found: Correlation) -> Value {

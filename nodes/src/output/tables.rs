@@ -6,7 +6,7 @@ use excavator_identification::diagnosis::Diagnosis;
 use excavator_identification::fit::normalised_error;
 use excavator_identification::refinement::Refinement;
 use excavator_identification::search::Trial;
-use excavator_identification::validation::{Comparison, Correlation};
+use excavator_identification::validation::{Comparison, Correlation, MotionPhase, SignalComparison};
 use excavator_identification::value_marks::{remedies, value_mark};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -97,6 +97,31 @@ pub fn comparison_table(comparison: &Comparison) -> Table {
         ]);
     }
     table
+}
+
+/// Where the squared error of each signal lies: while the piston moves, stands, or is at an end of its stroke. None where it does one
+/// of these all the time.
+pub fn phase_table(comparison: &Comparison) -> Option<Table> {
+    let share_of = |signal: &SignalComparison, phase| signal.phases.iter().find(|share| share.phase == phase).copied();
+    let seen: Vec<MotionPhase> = MotionPhase::ALL
+        .into_iter()
+        .filter(|&phase| comparison.signals.iter().any(|signal| share_of(signal, phase).is_some()))
+        .collect();
+    if seen.len() < 2 {
+        return None;
+    }
+    let heads: Vec<String> = std::iter::once("squared error while the piston is".to_string())
+        .chain(seen.iter().map(MotionPhase::to_string))
+        .collect();
+    let mut table = table(&heads.iter().map(String::as_str).collect::<Vec<_>>());
+    for signal in &comparison.signals {
+        let share = |&phase: &MotionPhase| match share_of(signal, phase) {
+            Some(share) => format!("{:.0} % in {:.0} % of the time", 100.0 * share.of_error, 100.0 * share.of_time),
+            None => "-".to_string(),
+        };
+        table.add_row(std::iter::once(Cell::new(&signal.name)).chain(seen.iter().map(share).map(right)));
+    }
+    Some(table)
 }
 
 /// A correlation with its lag, "no" where chance explains it, "-" where nothing can be said.

@@ -8,7 +8,7 @@ use excavator_identification::validation::compare;
 use super::print;
 use crate::cli::CompareArguments;
 use crate::error::VerbError;
-use crate::output::{comparison_json, comparison_table, write_json};
+use crate::output::{comparison_json, comparison_table, phase_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -23,6 +23,9 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         print(&format!("{} simulated with the input of {}", model.machine.name, recording.source));
         print(&comparison_table(&comparison).to_string());
+        if let Some(table) = phase_table(&comparison) {
+            print(&table.to_string());
+        }
     }
     if let Some(path) = &arguments.report {
         outputs::write(path, &comparison_page(&model, std::slice::from_ref(&comparison)), arguments.overwriting)?;
