@@ -211,7 +211,7 @@ fn what_is_rounded_is_there() {
         assert_eq!(effect.rounds().is_some(), card.family == Family::Rounding, "{}", card.name);
         rounded.extend(effect.rounds().map(|corner| format!("{corner:?}")));
     }
-    assert_eq!(rounded.len(), 2);
+    assert_eq!(rounded.len(), 3);
     let arm = &common::machines()[0];
     let site = Site::Cylinder(0);
     assert!(arm.has_corner(Corner::OrificeFlow, site) && !arm.has_corner(Corner::OrificeFlow, Site::PumpLine));
