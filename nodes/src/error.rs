@@ -27,7 +27,7 @@ pub enum VerbError {
     #[error(transparent)]
     Document(#[from] DocumentError),
     #[error("--where \"{text}\": {error}")]
-    Condition { text: String, error: FormulaError },
+    Condition { text: String, error: Box<FormulaError> },
     #[error("{}", refusal(.0))]
     Gate(#[from] GateError),
     #[error(transparent)]

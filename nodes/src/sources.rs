@@ -81,7 +81,8 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
         complain(&format!("{}: {remark}", path.display()));
     }
     for text in &map.conditions {
-        let condition = Condition::read(text).map_err(|error| VerbError::Condition { text: text.clone(), error })?;
+        let condition = Condition::read(text)
+            .map_err(|error| VerbError::Condition { text: text.clone(), error: Box::new(error) })?;
         let left_out = leave_out(model, &mut recording, &condition);
         complain(&format!("{}: {:.0} % of the time is left out, where not {text}", path.display(), 100.0 * left_out));
     }
