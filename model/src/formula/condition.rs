@@ -14,7 +14,6 @@ use crate::recording::{CylinderSignals, Recording, is_measured};
 /// A comparison of two expressions of what is measured. Numbers in it are in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
-    text: String,
     /// Above zero where the condition holds.
     difference: Program,
 }
@@ -39,12 +38,7 @@ impl Condition {
             // Without names there are none.
             Symbol::Parameter(_) | Symbol::State(_) => super::dimension::Dimension::PURE,
         };
-        Ok(Condition { text: text.to_string(), difference: compile_difference(&sides, text, &unit_of)? })
-    }
-
-    /// Its text.
-    pub fn text(&self) -> &str {
-        &self.text
+        Ok(Condition { difference: compile_difference(&sides, text, &unit_of)? })
     }
 
     /// Whether it holds, for each cylinder of `machine` sample by sample. It does not where something that it asks for was not

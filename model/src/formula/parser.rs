@@ -31,20 +31,9 @@ pub(super) fn parse(text: &str, names: &Names<'_>) -> Result<Expression, Formula
 /// Reads a comparison, as in `abs(v) > 0.002`: what is the larger side where it holds, then the other.
 pub(super) fn parse_condition(text: &str, names: &Names<'_>) -> Result<[Expression; 2], FormulaError> {
     let mut parser = Parser { text, tokens: tokens(text)?, next: 0, depth: 0, operations: 0, names };
-    let left = parser.sum()?;
-    let is_less = match parser.token() {
-        Token::Less | Token::LessOrEqual => true,
-        Token::Greater | Token::GreaterOrEqual => false,
-        _ => return Err(parser.error(Problem::Expected("a comparison: <, <=, > or >="))),
-    };
-    parser.take();
-    let right = parser.sum()?;
+    let sides = parser.comparison("a comparison: <, <=, > or >=")?;
     match parser.token() {
-        Token::End if is_less => Ok([right, left]),
-        Token::End => Ok([left, right]),
-        Token::Less | Token::LessOrEqual | Token::Greater | Token::GreaterOrEqual => {
-            Err(parser.error(Problem::ChainedComparison))
-        }
+        Token::End => Ok(sides),
         _ => Err(parser.error(Problem::Trailing)),
     }
 }
@@ -265,25 +254,30 @@ impl Parser<'_> {
         Ok(numbers)
     }
 
-    /// `if(a < b, then, otherwise)`
-    fn choice(&mut self) -> Result<Node, FormulaError> {
+    /// One comparison: the side that is larger where it holds, then the other. `expected` says what is needed where there is none.
+    fn comparison(&mut self, expected: &'static str) -> Result<[Expression; 2], FormulaError> {
         let left = self.sum()?;
         let is_less = match self.token() {
             Token::Less | Token::LessOrEqual => true,
             Token::Greater | Token::GreaterOrEqual => false,
-            _ => return Err(self.error(Problem::Expected("a comparison, as in if(v > 0, a, b)"))),
+            _ => return Err(self.error(Problem::Expected(expected))),
         };
         self.take();
         let right = self.sum()?;
         if matches!(self.token(), Token::Less | Token::LessOrEqual | Token::Greater | Token::GreaterOrEqual) {
             return Err(self.error(Problem::ChainedComparison));
         }
+        Ok(if is_less { [right, left] } else { [left, right] })
+    }
+
+    /// `if(a < b, then, otherwise)`
+    fn choice(&mut self) -> Result<Node, FormulaError> {
+        let [more, less] = self.comparison("a comparison, as in if(v > 0, a, b)")?;
         self.expect(',', "\",\" and the value where the condition holds")?;
         let then = Box::new(self.sum()?);
         self.expect(',', "\",\" and the value where the condition does not hold")?;
         let otherwise = Box::new(self.sum()?);
         self.expect(')', "\")\"")?;
-        let (less, more) = if is_less { (left, right) } else { (right, left) };
         Ok(Node::If { less: Box::new(less), more: Box::new(more), then, otherwise })
     }
 }
