@@ -1,0 +1,1 @@
+"""The ten cases, one per file; each has `build(rng)`."""
