@@ -1,4 +1,4 @@
-"""Case 5: pump straight on a double-rod cylinder, nothing hidden."""
+"""Case 5: pump straight on a double-rod cylinder, without a hidden effect."""
 
 from math import pi
 

@@ -1,4 +1,4 @@
-"""Case 8: winch with a hanging mass, nothing hidden."""
+"""Case 8: winch with a hanging mass, without a hidden effect."""
 
 from case import Case, Run, quantity
 from sensors import Sensor
