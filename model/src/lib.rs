@@ -20,6 +20,7 @@ mod model;
 pub mod recording;
 pub mod scalar;
 pub mod simulation;
+pub mod template;
 
 pub use errors::{ModelError, SignalError};
 pub use model::{HistoryEntry, Model, ModelEffect, Parameter, addition_name, site_name, site_named};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::effects::{self, ActsOn, AnyEffect, Catalogue, Corner, Effect, Finding, Needs, ParameterCard, Site, Text};
 use crate::errors::ModelError;
-use crate::machine::{Machine, Supply};
+use crate::machine::{Drive, Machine, Size, Supply};
 
 /// A machine plus a list of physical effects with parameter values.
 #[derive(Debug, Clone)]
@@ -27,6 +27,8 @@ pub struct ModelEffect {
     pub physics: AnyEffect,
     /// Where it sits.
     pub site: Site,
+    /// Size of the part of the machine where it sits.
+    pub size: Size,
     /// Its parameters, in the order of its cards.
     pub parameters: Vec<Parameter>,
 }
@@ -86,7 +88,7 @@ impl ModelEffect {
             .parameters(machine, site)
             .iter()
             .map(|card| {
-                let card = card.for_size(&size);
+                let card = card.for_place(machine, site);
                 // What acts in a window of time only where somebody looks for one acts always until then.
                 let always = match card.start {
                     effects::Start::Known(value) => Some(value),
@@ -110,7 +112,7 @@ impl ModelEffect {
                 }
             })
             .collect();
-        Ok(ModelEffect { physics: physics.clone(), site, parameters })
+        Ok(ModelEffect { physics: physics.clone(), site, size, parameters })
     }
 
     /// Name in the catalogue.
@@ -139,12 +141,14 @@ impl ModelEffect {
 
     /// Whether it is large enough to say anything about a machine.
     pub fn is_practically_significant(&self) -> bool {
-        self.physics.is_practically_significant(&self.values())
+        self.physics.is_practically_significant(&self.size, &self.values())
     }
 
     /// What a report says of it, for a nuisance.
     pub fn finding(&self) -> Option<Finding> {
-        self.physics.finding(&self.values())
+        let parameters: Vec<_> =
+            self.parameters.iter().map(|parameter| (parameter.value, &*parameter.card.unit)).collect();
+        self.physics.finding(&parameters)
     }
 
     /// The corner of its law that others can round, at its parameter values.
@@ -206,14 +210,18 @@ fn why_not_by_card(physics: &dyn Effect, machine: &Machine, site: Site) -> Optio
         (ActsOn::PumpLine, Site::Cylinder(_)) => Some("it acts on the pump line; leave out the cylinder or say @pump"),
         (_, Site::Cylinder(index)) => {
             let Some(cylinder) = machine.cylinders.get(index) else { return Some("no such cylinder") };
-            let has_oil = cylinder.chambers.is_some();
-            let has_what_it_needs = match card.needs {
-                Needs::Nothing => true,
+            let drive = cylinder.chambers.map(|chambers| chambers.drive);
+            match (card.needs, drive) {
+                (Needs::Nothing, _) => None,
                 // They are measured where the motion is imposed.
-                Needs::Pressures => has_oil || cylinder.imposed_motion.is_some(),
-                Needs::Oil => has_oil,
-            };
-            (!has_what_it_needs).then_some("it acts on oil, and this cylinder has no chambers")
+                (Needs::Pressures, None) if cylinder.imposed_motion.is_some() => None,
+                (_, None) => Some("it acts on oil, and this cylinder has no chambers"),
+                (Needs::Valve, Some(Drive::Pump { .. })) => Some("it acts on a valve, and a pump drives this cylinder"),
+                (Needs::Pump, Some(Drive::Valve { .. })) => {
+                    Some("it needs a pump that drives the cylinder, and a valve drives this one")
+                }
+                _ => None,
+            }
         }
         (ActsOn::PumpLine | ActsOn::CylinderOrPumpLine | ActsOn::Instruments, Site::PumpLine) => {
             (!pump_line).then_some("the machine has no pump line")

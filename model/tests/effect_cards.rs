@@ -230,7 +230,8 @@ fn an_imposed_motion_can_have_what_needs_pressures() {
     let needs = |name: &str| Catalogue::built_in().find(name).unwrap().card().needs;
     assert_eq!(needs("pressure_dependent_friction"), Needs::Pressures);
     assert_eq!([needs("coulomb_friction"), needs("sensor_delay")], [Needs::Nothing; 2]);
-    assert_eq!([needs("orifice_flow"), needs("cavitation"), needs("pressure_sensor_offset")], [Needs::Oil; 3]);
+    assert_eq!([needs("orifice_flow"), needs("pump_drive")], [Needs::Valve, Needs::Pump]);
+    assert_eq!([needs("cavitation"), needs("pressure_sensor_offset")], [Needs::Oil; 2]);
 }
 
 #[test]

@@ -31,7 +31,7 @@ fn flat<T: Copy>(rows: &Rows<T>) -> Vec<T> {
     ] {
         all.extend_from_slice(sums);
     }
-    all.extend([rows.pump_flow, rows.pump_compliance]);
+    all.extend([rows.pump_flow, rows.pump_compliance, rows.accumulator_compliance]);
     all
 }
 

@@ -11,7 +11,7 @@ fn displacement_and_joint_are_inverse() {
     for model in common::machines() {
         for cylinder in &model.machine.cylinders {
             for step in -100..=100 {
-                let displacement = cylinder.stroke / 2.0 * f64::from(step) / 100.0;
+                let displacement = cylinder.usual_travel() / 2.0 * f64::from(step) / 100.0;
                 let joint = cylinder.linkage.joint(displacement);
                 let back = cylinder.linkage.displacement(joint);
                 assert!((back - displacement).abs() < 1e-13, "{} {displacement} {back}", cylinder.name);
@@ -25,7 +25,7 @@ fn lever_is_the_slope_of_the_displacement() {
     for model in common::machines() {
         for cylinder in &model.machine.cylinders {
             for step in -20..=20 {
-                let joint = cylinder.linkage.joint(cylinder.stroke / 2.0 * f64::from(step) / 20.0);
+                let joint = cylinder.linkage.joint(cylinder.usual_travel() / 2.0 * f64::from(step) / 20.0);
                 let width = 1e-5;
                 let slope = (cylinder.linkage.displacement(joint + width)
                     - cylinder.linkage.displacement(joint - width))
@@ -92,7 +92,7 @@ fn the_built_in_arm_is_that_of_the_paper() {
     let chambers = cylinder.chambers.unwrap();
     assert_eq!((chambers.cap_area, chambers.rod_area), (3.8e-3, 2.6e-3));
     assert_eq!((chambers.cap_dead_volume, chambers.rod_dead_volume), (3.4e-4, 3.0e-4));
-    assert_eq!(chambers.maximum_orifice_area, 1.15e-4);
+    assert_eq!(chambers.full_command(), 1.15e-4);
     // V+ + V- changes by the rod's volume only.
     let mid: f64 = chambers.cap_volume(0.6, 0.0) + chambers.rod_volume(0.6, 0.0);
     let out = chambers.cap_volume(0.6, 0.1) + chambers.rod_volume(0.6, 0.1);

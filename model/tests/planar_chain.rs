@@ -13,7 +13,7 @@ use excavator_model::machine::Mechanism;
 /// Boom and arm as a chain, with the same physics: J1, J2, and R12 as length times first moment.
 fn as_chain(two: &Model, length: f64) -> Model {
     let mut chain = two.clone();
-    chain.machine.mechanism = Mechanism::PlanarChain { link_lengths: vec![length] };
+    chain.machine.mechanism = Mechanism::PlanarChain { link_lengths: vec![length], swing: None };
     chain.effects.clear();
     for effect in &two.effects {
         chain = chain.with_effect(&effect.physics, effect.site).unwrap();

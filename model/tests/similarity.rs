@@ -5,7 +5,7 @@ mod common;
 
 use excavator_model::document::built_in;
 use excavator_model::effects::{AnyEffect, Catalogue, Family, Growth, Site};
-use excavator_model::machine::{Linkage, Size, Supply};
+use excavator_model::machine::{Drive, Linkage, Size, Supply};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use excavator_model::{Model, ModelEffect};
@@ -15,7 +15,7 @@ use excavator_model::{Model, ModelEffect};
 const SCALES: [(f64, f64); 3] = [(0.125, 1.0), (4.0, 1.0), (1.0, 1024.0)];
 
 fn size_of((length, unit): (f64, f64)) -> Size {
-    Size { stroke: length, area: length * length, opening: length * length * unit, speed: 1.0 }
+    Size { stroke: length, area: length * length, opening: length * length * unit, lever: length, ..Size::REFERENCE }
 }
 
 /// The machine with every length times `length`, its openings in another unit, and its parameters in proportion.
@@ -30,6 +30,7 @@ fn scaled(model: &Model, scale: (f64, f64)) -> Model {
     }
     for cylinder in &mut scaled.machine.cylinders {
         cylinder.stroke *= length;
+        cylinder.ends.iter_mut().for_each(|end| *end *= length);
         if let Linkage::Triangle { foot_arm, rod_arm, mid_stroke_length, .. } = &mut cylinder.linkage {
             [foot_arm, rod_arm, mid_stroke_length].into_iter().for_each(|arm| *arm *= length);
         }
@@ -38,7 +39,8 @@ fn scaled(model: &Model, scale: (f64, f64)) -> Model {
         [&mut chambers.cap_dead_volume, &mut chambers.rod_dead_volume]
             .into_iter()
             .for_each(|volume| *volume *= length.powi(3));
-        chambers.maximum_orifice_area *= size.opening;
+        let Drive::Valve { full_command, .. } = &mut chambers.drive else { unreachable!() };
+        *full_command *= size.opening;
     }
     for parameter in scaled.parameters_mut() {
         parameter.value *= size.factor(parameter.card.growth);

@@ -121,7 +121,7 @@ fn hose_and_edge_share_the_pressure_drop() {
 #[test]
 fn a_gain_curve_bends_the_opening_but_not_the_bypass() {
     let model = arm_with("valve_gain_curve", CYLINDER, &[0.4, -0.2]);
-    let maximum = model.machine.cylinders[0].chambers.unwrap().maximum_orifice_area;
+    let maximum = model.machine.cylinders[0].chambers.unwrap().full_command();
     let system = System::new(&model);
     let mut workspace = system.workspace();
     for (state, mut inputs) in situations(22).take(3) {

@@ -106,7 +106,7 @@ impl ProfileFile {
     pub fn remarks(&self, machine: &Machine) -> Vec<String> {
         let opens_too_far = |profile: &Profile| {
             let cylinder = machine.cylinders.iter().find(|cylinder| cylinder.name == profile.cylinder)?;
-            let maximum = cylinder.chambers.as_ref()?.maximum_orifice_area;
+            let maximum = cylinder.chambers.as_ref()?.full_command();
             let asked = profile.segments.iter().map(Segment::largest_area).fold(0.0, f64::max);
             (asked > ROUNDING * maximum).then(|| {
                 format!(

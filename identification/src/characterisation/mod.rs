@@ -64,7 +64,7 @@ fn characterise_cylinder(model: &Model, cylinder: usize, recordings: &[&Recordin
     let constants = &model.machine.cylinders[cylinder];
     let found = Characterisation {
         cylinder: constants.name.clone(),
-        maximum_orifice_area: constants.chambers.map_or(1.0, |chambers| chambers.maximum_orifice_area),
+        maximum_orifice_area: constants.chambers.map_or(1.0, |chambers| chambers.full_command()),
         leakage: Err(Refusal::NoValve { cylinder: constants.name.clone() }),
         dead_zones: Vec::new(),
         gains: Vec::new(),

@@ -221,6 +221,6 @@ impl Track {
 
     /// Largest orifice area, m²; zero without a valve.
     pub fn maximum_opening(&self) -> f64 {
-        self.chambers.map_or(0.0, |chambers| chambers.maximum_orifice_area)
+        self.chambers.map_or(0.0, |chambers| chambers.full_command())
     }
 }

@@ -45,7 +45,7 @@ pub fn library(machine: &Machine, wanted: &[usize]) -> Vec<Manoeuvre> {
         .iter()
         .filter_map(|&cylinder| {
             let chambers = machine.cylinders.get(cylinder)?.chambers?;
-            Some(of_cylinder(cylinder, chambers.maximum_orifice_area))
+            Some(of_cylinder(cylinder, chambers.full_command()))
         })
         .flatten()
         .collect()
@@ -53,7 +53,7 @@ pub fn library(machine: &Machine, wanted: &[usize]) -> Vec<Manoeuvre> {
 
 /// The manoeuvre that keeps the base parameters identifiable from the profile alone: a moderate sine.
 pub(super) fn general(machine: &Machine, cylinder: usize) -> Option<Manoeuvre> {
-    let full = machine.cylinders.get(cylinder)?.chambers?.maximum_orifice_area;
+    let full = machine.cylinders.get(cylinder)?.chambers?.full_command();
     let sine = Segment::Sine { duration: 6.0, amplitude: 0.5 * full, frequency: 0.5 };
     Some(build(cylinder, "moderate sine".into(), "the machine's own parameters", 0.0, vec![sine]))
 }
@@ -176,7 +176,7 @@ mod tests {
         let all = library(&machine, &[0, 1]);
         assert!(all.len() > 60);
         for manoeuvre in &all {
-            let full = machine.cylinders[manoeuvre.cylinder].chambers.unwrap().maximum_orifice_area;
+            let full = machine.cylinders[manoeuvre.cylinder].chambers.unwrap().full_command();
             let profile = Profile { cylinder: "arm".into(), segments: manoeuvre.segments.clone() };
             profile.check().unwrap();
             let most = (0..10_000).map(|k| profile.area(f64::from(k) * 0.001).abs()).fold(0.0, f64::max);

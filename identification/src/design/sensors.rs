@@ -79,7 +79,7 @@ impl Sensors {
             if let Some(chambers) = cylinder.chambers
                 && let Some(signals) = recording.cylinders.iter_mut().find(|signals| signals.name == cylinder.name)
             {
-                add(&mut signals.orifice_area, self.spool * chambers.maximum_orifice_area);
+                add(&mut signals.orifice_area, self.spool * chambers.full_command());
             }
         }
     }

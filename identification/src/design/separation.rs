@@ -261,7 +261,7 @@ pub(super) fn moderate_sines(model: &Model, cylinders: &[usize]) -> Vec<Profile>
             continue;
         };
         for (share, frequency) in [(0.5, 0.5), (0.35, 0.8)] {
-            let amplitude = share * chambers.maximum_orifice_area;
+            let amplitude = share * chambers.full_command();
             plan.push((cylinder, Segment::Hold { duration: 0.5, area: 0.0 }));
             plan.push((cylinder, Segment::Sine { duration: 6.0, amplitude, frequency }));
         }

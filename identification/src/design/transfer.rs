@@ -39,7 +39,7 @@ pub(super) fn transfer(
     if way.abs() <= NEAR * own.stroke {
         return Ok(Vec::new());
     }
-    let amplitude = OPENING * chambers.maximum_orifice_area * way.signum();
+    let amplitude = OPENING * chambers.full_command() * way.signum();
     let stroke = |duration: f64| vec![Segment::Trapezoid { duration, amplitude, ramp: RAMP }];
     let goes = |duration: f64| -> Result<f64, DesignError> {
         let ride = rider.run(cylinder, &stroke(duration), state.to_vec(), from, rate)?;

@@ -92,7 +92,7 @@ fn window(
         .iter()
         .zip(&model.machine.cylinders)
         .map(|(cylinder, machine)| {
-            let largest = machine.chambers.map_or(f64::INFINITY, |chambers| chambers.maximum_orifice_area);
+            let largest = machine.chambers.map_or(f64::INFINITY, |chambers| chambers.full_command());
             let opening = |k: usize| cylinder.opening[k].abs() / largest;
             Situation {
                 velocity: mean(&|k| cylinder.velocity[k]),

@@ -38,9 +38,10 @@ const AT_THE_END: f64 = 0.02;
 
 /// Whether the piston of this cylinder comes to one of its ends.
 fn comes_to_an_end(cylinder: &Cylinder, recordings: &[&Recording]) -> bool {
-    let near = (0.5 - AT_THE_END) * cylinder.stroke;
     let signals = recordings.iter().filter_map(|recording| recording.cylinder(&cylinder.name).ok());
-    signals.flat_map(|signals| &signals.displacement).any(|displacement| displacement.abs() >= near)
+    signals
+        .flat_map(|signals| &signals.displacement)
+        .any(|displacement| cylinder.is_at_an_end(*displacement, AT_THE_END))
 }
 
 /// Only a measured opening can be read at another time than the rest, or from another zero; a command acts when it is given.

@@ -53,11 +53,10 @@ fn arrivals(model: &Model, recording: &Recording) -> Vec<bool> {
         if !model.has_corner(Corner::EndStop, Site::Cylinder(number)) {
             continue;
         }
-        let near = (0.5 - AT_THE_END) * cylinder.stroke;
         let (mut was_near, mut until) = (false, f64::NEG_INFINITY);
         for (sample, (&time, position)) in recording.time.iter().zip(&signals.displacement).enumerate() {
             if position.is_finite() {
-                let is_near = position.abs() >= near;
+                let is_near = cylinder.is_at_an_end(*position, AT_THE_END);
                 if is_near && !was_near {
                     until = time + duration;
                 }

@@ -114,7 +114,7 @@ pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
         let (area, command) = (&signals.orifice_area, &signals.orifice_command);
         let (signal, opening) = if is_measured(area) { ("orifice_area", area) } else { ("orifice_command", command) };
         let reached = usual_size(opening).unwrap_or(0.0);
-        let times = reached / chambers.maximum_orifice_area;
+        let times = reached / chambers.full_command();
         if times > OPENS_TOO_FAR {
             let machine = machine.name.clone();
             found.push(Remark::OpensTooFar { signal: name(signal), reached: 1e6 * reached, times, machine });
@@ -156,24 +156,23 @@ const AFTER: usize = 20;
 
 /// Where a piston stands away from its ends while its valve is open, at whichever of such places it is longest.
 fn pressed(model: &Model, cylinder: &Cylinder, displacement: &[f64], opening: &[f64]) -> Option<Remark> {
-    let (largest, place) = (largest(opening), ONE_PLACE * cylinder.stroke);
+    let (largest, place) = (largest(opening), ONE_PLACE * cylinder.usual_travel());
     let mut places: BTreeMap<(i64, bool), usize> = BTreeMap::new();
     for sample in 0..displacement.len().saturating_sub(AFTER) {
         let (here, later) = (displacement[sample], displacement[sample + AFTER]);
         let is_open = open_one_way(&opening[sample..=sample + AFTER], largest);
-        let stands = (later - here).abs() < 0.1 * place && here.abs() < (0.5 - AT_THE_END) * cylinder.stroke;
+        let stands = (later - here).abs() < 0.1 * place && !cylinder.is_at_an_end(here, AT_THE_END);
         if largest > 0.0 && is_open && stands {
             *places.entry(((here / place).round() as i64, opening[sample] > 0.0)).or_default() += 1;
         }
     }
     let (&(number, is_out), &count) = places.iter().max_by_key(|(_, count)| **count)?;
     let share = count as f64 / displacement.len() as f64;
-    let side = if is_out { 0.5 } else { -0.5 };
     (share >= LEAST_SHARE).then(|| Remark::Pressed {
         cylinder: cylinder.name.clone(),
         position: 1e3 * number as f64 * place,
         share: 100.0 * share,
-        end: 1e3 * side * cylinder.stroke,
+        end: 1e3 * cylinder.ends[usize::from(is_out)],
         machine: model.machine.name.clone(),
     })
 }

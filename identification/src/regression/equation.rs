@@ -193,7 +193,7 @@ pub fn equations(
                 }
             }
             pump_flow.set(sample, &rows.pump_flow, first, last);
-            pump_compliance.set(sample, &rows.pump_compliance, first, last);
+            pump_compliance.set(sample, &rows.pump_line_compliance(), first, last);
         }
     }
 

@@ -66,9 +66,9 @@ pub(super) fn rows(
                     if speeds.iter().any(|speed| speed.is_nan() || speed.abs() <= settings.velocity_guard) {
                         continue;
                     }
-                    let away = (0.5 - AT_THE_END) * model.machine.cylinders[cylinder].stroke;
+                    let own = &model.machine.cylinders[cylinder];
                     let positions = &observation.cylinders[cylinder].smooth_displacement[inside];
-                    if has_stop[cylinder] && positions.iter().any(|position| position.abs() > away) {
+                    if has_stop[cylinder] && positions.iter().any(|position| own.is_at_an_end(*position, AT_THE_END)) {
                         continue;
                     }
                 }

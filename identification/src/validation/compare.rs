@@ -90,7 +90,7 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
         .iter()
         .map(|cylinder| {
             let own = measured.cylinder(&cylinder.name).ok();
-            own.map_or_else(Vec::new, |own| motion_phases(&own.displacement, &own.velocity, cylinder.stroke))
+            own.map_or_else(Vec::new, |own| motion_phases(&own.displacement, &own.velocity, cylinder))
         })
         .collect();
     let together: Vec<MotionPhase> = (0..measured.len())

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use excavator_model::machine::Cylinder;
+
 /// What a piston is doing at one moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MotionPhase {
@@ -45,12 +47,12 @@ const STANDING: f64 = 0.05;
 /// Share of the stroke within which a piston is at its end.
 const AT_AN_END: f64 = 0.02;
 
-/// What the piston of a cylinder with this stroke (m) does, sample by sample, from its displacement (m) and velocity (m/s). What was not
+/// What the piston of this cylinder does, sample by sample, from its displacement (m) and velocity (m/s). What was not
 /// measured is taken for moving.
-pub fn motion_phases(displacement: &[f64], velocity: &[f64], stroke: f64) -> Vec<MotionPhase> {
+pub fn motion_phases(displacement: &[f64], velocity: &[f64], cylinder: &Cylinder) -> Vec<MotionPhase> {
     let fastest = velocity.iter().filter(|speed| speed.is_finite()).fold(0.0_f64, |most, speed| most.max(speed.abs()));
     let phase = |(position, speed): (&f64, &f64)| {
-        if position.abs() >= (0.5 - AT_AN_END) * stroke {
+        if cylinder.is_at_an_end(*position, AT_AN_END) {
             MotionPhase::AtAnEnd
         } else if speed.abs() < STANDING * fastest {
             MotionPhase::Standing
@@ -81,14 +83,17 @@ pub fn phase_shares(phases: &[MotionPhase], error: &[f64]) -> Vec<PhaseShare> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
+    use excavator_model::document::built_in;
+
     use super::*;
 
     #[test]
     fn an_error_at_an_end_is_told_from_one_on_the_way() {
         let displacement = [0.0, 0.1, 0.2, 0.299, 0.3, f64::NAN];
         let velocity = [0.0, 0.1, 0.1, 0.1, 0.0, 0.1];
-        let phases = motion_phases(&displacement, &velocity, 0.6);
+        let phases = motion_phases(&displacement, &velocity, &built_in("zx30u-arm").unwrap().machine.cylinders[0]);
         use MotionPhase::{AtAnEnd, Moving, Standing};
         assert_eq!(phases, [Standing, Moving, Moving, AtAnEnd, AtAnEnd, Moving]);
         let shares = phase_shares(&phases, &[1.0, 1.0, 1.0, 3.0, 2.0, f64::NAN]);

@@ -168,10 +168,10 @@ fn chambers_of(cylinder: &Cylinder, chambers: &Chambers) -> Vec<Oddity> {
             rod: chambers.rod_area,
         });
     }
-    if chambers.maximum_orifice_area > chambers.cap_area {
+    if chambers.full_command() > chambers.cap_area {
         found.push(Oddity::Orifice {
             cylinder: cylinder.name.clone(),
-            area: chambers.maximum_orifice_area,
+            area: chambers.full_command(),
             piston: chambers.cap_area,
         });
     }

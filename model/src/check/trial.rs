@@ -33,7 +33,7 @@ pub fn trial(model: &Model, cylinder: usize) -> Result<Option<Trial>, RunError> 
     let half_stroke = model.machine.cylinders[cylinder].stroke / 2.0;
     let mut last = Ok(None);
     for duration in DURATIONS {
-        let ways = [-1.0, 1.0].map(|way| thrown_open(model, cylinder, way * chambers.maximum_orifice_area, duration));
+        let ways = [-1.0, 1.0].map(|way| thrown_open(model, cylinder, way * chambers.full_command(), duration));
         let [retracting, extending] = match ways {
             [Ok(retracting), Ok(extending)] => [retracting, extending],
             [Err(error), _] | [_, Err(error)] => {

@@ -9,6 +9,7 @@ pub static BUILT_IN: &[(&str, &str)] = &[
     ("zx30u-arm", include_str!("../../../config/zx30u-arm.toml")),
     ("zx30u", include_str!("../../../config/zx30u.toml")),
     ("zx30u-bucket", include_str!("../../../config/zx30u-bucket.toml")),
+    ("zx30u-excavator", include_str!("../../../config/zx30u-excavator.toml")),
     ("servo-bench", include_str!("../../../config/servo-bench.toml")),
     ("emps", include_str!("../../../config/emps.toml")),
 ];

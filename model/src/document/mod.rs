@@ -4,6 +4,7 @@
 
 mod built_in;
 mod catalogue_text;
+mod cylinder_text;
 mod machine_text;
 mod model_text;
 mod quantity;
@@ -87,7 +88,7 @@ pub enum DocumentError {
     },
 }
 
-const BUILT_IN_NAMES: &str = "zx30u-arm, zx30u, zx30u-bucket, servo-bench, emps";
+const BUILT_IN_NAMES: &str = "zx30u-arm, zx30u, zx30u-bucket, zx30u-excavator, servo-bench, emps";
 
 /// Longest message of the reader of TOML that is passed on, characters: it may quote what it does not know.
 const LONGEST_MESSAGE: usize = 200;

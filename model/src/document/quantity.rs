@@ -56,6 +56,8 @@ measures! {
     Area "m2" BePositive;
     Flow "m3/s" BePositive;
     Length "m" BePositive;
+    Position "m" BeFinite;
+    MotorVolume "m3/rad" BePositive;
     Pressure "Pa" BePositive;
     TankPressure "Pa" BeAboveVacuum;
     Volume "m3" BePositive;

@@ -13,7 +13,7 @@ pub struct BypassOverlap;
 static CARD: Card = Card {
     name: text("bypass_overlap"),
     acts_on: ActsOn::PumpLine,
-    needs: Needs::Oil,
+    needs: Needs::Valve,
     family: Family::Candidate,
     summary: text("The open centre stays fully open until the spool has travelled some way."),
     equation: text("section of the bypass umax - max(0, |u| - o) in place of umax - |u|: travel past the edge counts"),

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::Prior;
-use crate::machine::{Growth, Size};
+use crate::machine::{Growth, Machine, Size};
 
 /// A text of a card: that of a built-in effect is part of the program, that of a formula is its own.
 pub type Text = Cow<'static, str>;
@@ -37,6 +37,10 @@ pub enum Needs {
     Pressures,
     /// Oil that flows: chambers.
     Oil,
+    /// Chambers that a valve section feeds.
+    Valve,
+    /// Chambers that a pump of their own feeds.
+    Pump,
 }
 
 /// Where one instance of an effect sits.
@@ -157,8 +161,19 @@ pub struct ParameterCard {
 }
 
 impl ParameterCard {
+    /// The same for a place of a machine: its size and its units.
+    pub fn for_place(&self, machine: &Machine, site: Site) -> ParameterCard {
+        let mut card = self.for_size(&machine.size_at(site));
+        if let Site::Cylinder(index) = site
+            && let Some(cylinder) = machine.cylinders.get(index)
+        {
+            card.unit = cylinder.unit_of(&card.unit, card.growth);
+        }
+        card
+    }
+
     /// The same for a machine of another size.
-    pub fn for_size(&self, size: &Size) -> ParameterCard {
+    fn for_size(&self, size: &Size) -> ParameterCard {
         let factor = size.factor(self.growth);
         let start = match &self.start {
             Start::At(values) if factor != 1.0 => Start::At(values.iter().map(|value| value * factor).collect()),

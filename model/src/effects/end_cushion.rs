@@ -1,5 +1,6 @@
 //! Cushions at the ends of the stroke.
 
+use super::end_stop::no_end;
 use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
@@ -60,12 +61,16 @@ impl Physics for EndCushion {
         PARAMETERS
     }
 
+    fn why_not(&self, machine: &Machine, site: Site) -> Option<String> {
+        no_end(machine, site)
+    }
+
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
-        let half_stroke = now.machine.cylinders[cylinder].stroke / 2.0;
-        for side in [1.0, -1.0] {
-            let depth = (piston.displacement * side - half_stroke + parameters[0]).positive_part();
+        let [retracted, extended] = now.machine.cylinders[cylinder].ends;
+        for (side, end) in [(1.0, extended), (-1.0, -retracted)] {
+            let depth = (piston.displacement * side - end + parameters[0]).positive_part();
             if depth.value() <= 0.0 {
                 continue;
             }

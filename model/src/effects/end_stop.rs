@@ -4,7 +4,7 @@ use super::{
     ActsOn, Card, Corner, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text,
 };
 use crate::equations::Situation;
-use crate::machine::Machine;
+use crate::machine::{Cylinder, Machine};
 
 /// The piston meets the ends of the cylinder.
 pub struct EndStop;
@@ -16,7 +16,7 @@ static CARD: Card = Card {
     family: Family::Base,
     summary: text("Stiff one-sided contact with damping outside the stroke."),
     equation: text(
-        "outside |s| < L/2: force -k x (1 + c v) against the penetration x with speed of approach v, \
+        "outside the ends of the stroke (+-L/2, or the file's own): force -k x (1 + c v) against the penetration x with speed of approach v, \
         never pulling",
     ),
     source: text(
@@ -57,6 +57,16 @@ static PARAMETERS: &[ParameterCard] = &[
     },
 ];
 
+/// Why an effect of the ends of a stroke cannot act at `site`: a motor turns on for ever.
+pub(super) fn no_end(machine: &Machine, site: Site) -> Option<String> {
+    match site {
+        Site::Cylinder(index) if machine.cylinders.get(index).is_some_and(Cylinder::is_motor) => {
+            Some("a motor has no end of stroke".to_string())
+        }
+        _ => None,
+    }
+}
+
 /// Depth over which a viscous damping of the contact sets in, m, on a machine of the reference size: a jump would stall a simulation.
 const ONSET: f64 = 2e-5;
 
@@ -69,6 +79,10 @@ impl Physics for EndStop {
         PARAMETERS
     }
 
+    fn why_not(&self, machine: &Machine, site: Site) -> Option<String> {
+        no_end(machine, site)
+    }
+
     fn corner(&self, _parameters: &[f64]) -> Option<Corner> {
         Some(Corner::EndStop)
     }
@@ -76,14 +90,15 @@ impl Physics for EndStop {
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
-        let half_stroke = now.machine.cylinders[cylinder].stroke / 2.0;
-        let (mut stiffness, mut damping, mut ends) = (parameters[0], parameters[1], [T::from(half_stroke); 2]);
+        let [retracted, extended] = now.machine.cylinders[cylinder].ends;
+        let (mut stiffness, mut damping) = (parameters[0], parameters[1]);
+        let mut ends = [T::from(extended), T::from(-retracted)];
         let mut viscous = None;
         if let Some(real) = &piston.rounding.end_stop {
             stiffness *= real.stiffness;
             damping *= real.damping;
             viscous = Some(real.viscous_damping);
-            ends = real.shifts.map(|shift| shift + half_stroke);
+            ends = [real.shifts[0] + extended, real.shifts[1] - retracted];
         }
         for (side, end) in [1.0, -1.0].into_iter().zip(ends) {
             let penetration = (piston.displacement * side - end).positive_part();

@@ -101,8 +101,8 @@ impl Physics for EndStopCorrection {
         PARAMETERS
     }
 
-    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
-        let &[stiffness, _, _, extended, retracted] = parameters else { return None };
+    fn finding(&self, parameters: &[(f64, &str)]) -> Option<Finding> {
+        let &[(stiffness, _), _, _, (extended, _), (retracted, _)] = parameters else { return None };
         let sentences =
             ["The end stops are not as the model file says", "The end stops are not as the model file says"];
         let value = format!(

@@ -100,7 +100,7 @@ impl Physics for ExternalContact {
     fn parameters(&self, machine: &Machine, _site: Site) -> &[ParameterCard] {
         match machine.mechanism {
             Mechanism::LinearLoad => LOAD,
-            Mechanism::SingleLink { .. } | Mechanism::TwoLink | Mechanism::PlanarChain { .. } => LINK,
+            _ => LINK,
         }
     }
 

@@ -58,8 +58,8 @@ impl Physics for FrictionCorner {
         PARAMETERS
     }
 
-    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
-        let sharpness = *parameters.first()?;
+    fn finding(&self, parameters: &[(f64, &str)]) -> Option<Finding> {
+        let (sharpness, _) = *parameters.first()?;
         let sentences = [
             "Friction reverses along another curve than the usual one",
             "Friction reverses along other curves than the usual one",

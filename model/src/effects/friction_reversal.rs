@@ -1,5 +1,6 @@
 //! How sharply friction turns round.
 
+use super::prior::for_people;
 use super::{
     ActsOn, Card, Corner, Family, Finding, Growth, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar,
     Site, Spread, Start, text,
@@ -41,7 +42,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     unit: text("m/s"),
     meaning: text("speed over which the sign of the velocity changes"),
     kind: Kind::Shape,
-    growth: Growth::NONE,
+    growth: Growth::SEAL_SPEED,
     minimum: 1e-4,
     maximum: 2e-2,
     typical: 3e-3,
@@ -58,13 +59,11 @@ impl Physics for FrictionReversal {
         PARAMETERS
     }
 
-    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
-        let speed = *parameters.first()?;
-        let sentences = [
-            "Friction reverses over another speed than the usual 1 mm/s",
-            "Friction reverses over other speeds than the usual 1 mm/s",
-        ];
-        Some(Finding { sentences, value: format!("over {:.1} mm/s", 1e3 * speed) })
+    fn finding(&self, parameters: &[(f64, &str)]) -> Option<Finding> {
+        let &[(speed, unit)] = parameters else { return None };
+        let sentences =
+            ["Friction reverses over another speed than usual", "Friction reverses over other speeds than usual"];
+        Some(Finding { sentences, value: format!("over {}", for_people(speed, unit)) })
     }
 
     fn has_power(&self) -> bool {

@@ -17,7 +17,7 @@ static CARD: Card = Card {
     summary: text("Weight of the link that the cylinder carries."),
     equation: text(
         "torque -W1 g sin q1 on the first joint, -W2 g sin(q1 + q2) on both; one link: -W2 g sin(q1const \
-        + q2); link i of a chain: -Wi g sin(q1 + ... + qi) on joints 1 to i; linear load: -Fg",
+        + q2); link i of a chain: -Wi g sin(q1 + ... + qi) on joints 1 to i; linear load: -Fg; rotor: -Tg",
     ),
     source: text("[A] Eq. 1, 4; the unit of W is kg m (Table 1), not m/s2 as in the text."),
     shows: text("Static pressure difference that changes with posture."),
@@ -53,6 +53,20 @@ static LOAD: &[ParameterCard] = &[ParameterCard {
     prior: None,
 }];
 
+static ROTOR: &[ParameterCard] = &[ParameterCard {
+    name: text("load_torque"),
+    symbol: text("Tg"),
+    unit: text("N m"),
+    meaning: text("torque of a hanging load on the joint: its weight times the radius of the drum"),
+    kind: Kind::Linear,
+    growth: Growth::TORQUE,
+    minimum: -1e6,
+    maximum: 1e6,
+    typical: 1000.0,
+    start: Start::at(&[1000.0]),
+    prior: None,
+}];
+
 impl Physics for Gravity {
     fn card(&self) -> &Card {
         &CARD
@@ -61,20 +75,30 @@ impl Physics for Gravity {
     fn parameters(&self, machine: &Machine, site: Site) -> &[ParameterCard] {
         match (&machine.mechanism, site) {
             (Mechanism::LinearLoad, _) => LOAD,
+            (Mechanism::Rotor, _) => ROTOR,
             _ => LINK,
         }
     }
 
-    /// `-W g cos` of the link's absolute angle, zero at level (\[A\] Eq. 9); `Fg q` for a linear load.
+    fn why_not(&self, machine: &Machine, site: Site) -> Option<String> {
+        match site {
+            Site::Cylinder(joint) if machine.mechanism.is_upright(joint) => {
+                Some("this joint's axis stands upright".to_string())
+            }
+            _ => None,
+        }
+    }
+
+    /// `-W g cos` of the link's absolute angle, zero at level (\[A\] Eq. 9); `Fg q` for a linear load, `Tg q` for a rotor.
     fn potential<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>) -> Option<T> {
         let Site::Cylinder(cylinder) = site else { return None };
         let joint = now.pistons[cylinder].joint;
         let angle = match (&now.machine.mechanism, cylinder) {
-            (Mechanism::LinearLoad, _) => return Some(parameters[0] * joint),
+            (Mechanism::LinearLoad | Mechanism::Rotor, _) => return Some(parameters[0] * joint),
             (Mechanism::SingleLink { base_angle }, _) => joint + *base_angle,
             (Mechanism::TwoLink, 0) => joint,
             (Mechanism::TwoLink, _) => now.pistons[0].joint + joint,
-            (Mechanism::PlanarChain { .. }, _) => absolute_angle(cylinder, now),
+            (mechanism, _) => absolute_angle(cylinder, mechanism.chain()?, now),
         };
         Some(-parameters[0] * now.machine.gravity * angle.cos())
     }
@@ -93,8 +117,12 @@ impl Physics for Gravity {
                 rows.torque[0] -= moment;
                 rows.torque[1] -= moment;
             }
-            (Mechanism::PlanarChain { .. }, _) => add_weight(cylinder, parameters[0], now, rows),
-            (Mechanism::LinearLoad, _) => rows.torque[cylinder] -= parameters[0],
+            (Mechanism::LinearLoad | Mechanism::Rotor, _) => rows.torque[cylinder] -= parameters[0],
+            (mechanism, _) => {
+                if let Some(chain) = mechanism.chain() {
+                    add_weight(cylinder, parameters[0], chain, now, rows);
+                }
+            }
         }
     }
 }

@@ -15,7 +15,7 @@ pub struct HosePressureLoss;
 static CARD: Card = Card {
     name: text("hose_pressure_loss"),
     acts_on: ActsOn::Valve,
-    needs: Needs::Oil,
+    needs: Needs::Valve,
     family: Family::Candidate,
     summary: text(
         "The hose between valve and chamber takes pressure in proportion to the square of the flow, before the sensor at the chamber.",

@@ -17,7 +17,7 @@ static CARD: Card = Card {
     summary: text("Inertia of the link that the cylinder moves."),
     equation: text(
         "mass matrix J(q) = [[J1 + 2 R12 cos q2, J2 + R12 cos q2], [., J2]] with the Coriolis torque \
-        c(q, qd); one link: J; chain: J_k = A_k + ... + A_n where joint k begins, h_j l_i cos(phi_j - phi_i) between links i < j; linear load: M",
+        c(q, qd); one link: J; chain: J_k = A_k + ... + A_n where joint k begins, h_j l_i cos(phi_j - phi_i) between links i < j; swing: the house's own inertia, with A_i sin(phi_i)^2 + 2 h_i sin(phi_i) (d + l_1 sin(phi_1) + ...) of the links; linear load: M",
     ),
     source: text(
         "[A] Eq. 1, [B] Eq. 5. Eq. 1 of [A] multiplies C(q, qd) by qd; as printed C already is the \
@@ -99,7 +99,7 @@ static LATER_OF_CHAIN: &[ParameterCard] = &[
         symbol: text("h"),
         unit: text("kg m"),
         meaning: text(
-            "first moment of the link about its joint, with later masses at its end: couples it to the links before",
+            "first moment of the link about its joint, with later masses at its end: couples it to the links before and to the swing",
         ),
         kind: Kind::Linear,
         growth: Growth::MASS_MOMENT,
@@ -134,6 +134,8 @@ impl Physics for Inertia {
         match (&machine.mechanism, site) {
             (Mechanism::LinearLoad, _) => LOAD,
             (Mechanism::TwoLink, Site::Cylinder(0)) => FIRST_OF_TWO,
+            (Mechanism::PlanarChain { swing: Some(_), .. }, Site::Cylinder(0)) => SINGLE,
+            (Mechanism::PlanarChain { swing: Some(_), .. }, _) => LATER_OF_CHAIN,
             (Mechanism::PlanarChain { .. }, Site::Cylinder(link)) if link > 0 => LATER_OF_CHAIN,
             (Mechanism::PlanarChain { .. }, _) => FIRST_OF_CHAIN,
             _ => SINGLE,
@@ -158,13 +160,15 @@ impl Physics for Inertia {
                     rows.add_mass(row, column, parameters[0]);
                 }
             }
-            (Mechanism::PlanarChain { link_lengths }, _) => {
-                add_composite_inertia(joint, parameters[0], rows);
-                if let Some(&moment) = parameters.get(1) {
-                    add_first_moment(joint, moment, link_lengths, now, rows);
+            (mechanism, _) => match mechanism.chain() {
+                Some(chain) if !chain.is_swing(joint) => {
+                    add_composite_inertia(joint, parameters[0], chain, now, rows);
+                    if let Some(&moment) = parameters.get(1) {
+                        add_first_moment(joint, moment, chain, now, rows);
+                    }
                 }
-            }
-            (Mechanism::SingleLink { .. } | Mechanism::LinearLoad, _) => rows.add_mass(joint, joint, parameters[0]),
+                _ => rows.add_mass(joint, joint, parameters[0]),
+            },
         }
     }
 }

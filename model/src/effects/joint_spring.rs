@@ -88,7 +88,7 @@ impl Physics for JointSpring {
     fn parameters(&self, machine: &Machine, _site: Site) -> &[ParameterCard] {
         match machine.mechanism {
             Mechanism::LinearLoad => LOAD,
-            Mechanism::SingleLink { .. } | Mechanism::TwoLink | Mechanism::PlanarChain { .. } => LINK,
+            _ => LINK,
         }
     }
 

@@ -13,7 +13,7 @@ pub struct LoadCheckValve;
 static CARD: Card = Card {
     name: text("load_check_valve"),
     acts_on: ActsOn::Valve,
-    needs: Needs::Oil,
+    needs: Needs::Valve,
     family: Family::Candidate,
     summary: text(
         "No oil runs back from a chamber to the pump while the pump pressure is below the chamber's: the load does not sag as the valve opens.",

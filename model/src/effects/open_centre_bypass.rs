@@ -62,9 +62,9 @@ pub(super) fn bypass_section<T: Scalar>(now: &Situation<T>) -> T {
     let mut inverse_squares = T::from(0.0);
     for (cylinder, piston) in now.pistons.iter().enumerate() {
         let Some(chambers) = now.chambers(cylinder) else { continue };
-        let left = -piston.bypass_closing + chambers.maximum_orifice_area;
+        let left = -piston.bypass_closing + chambers.full_command();
         // A spool at or past its end shuts the whole bypass; the sum would be infinite.
-        if left.value() <= CLOSED_SHARE * chambers.maximum_orifice_area {
+        if left.value() <= CLOSED_SHARE * chambers.full_command() {
             return T::from(0.0);
         }
         inverse_squares += (left * left).recip();

@@ -2,7 +2,7 @@
 
 use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
-use crate::machine::Machine;
+use crate::machine::{Machine, Size};
 
 /// A full opening that is not what was assumed.
 ///
@@ -57,7 +57,7 @@ impl Physics for OpeningScale {
         false
     }
 
-    fn is_practically_significant(&self, parameters: &[f64]) -> bool {
+    fn is_practically_significant(&self, _size: &Size, parameters: &[f64]) -> bool {
         parameters.first().is_some_and(|scale| scale.abs() >= ACCURACY)
     }
 

@@ -12,7 +12,7 @@ pub struct OrificeFlow;
 static CARD: Card = Card {
     name: text("orifice_flow"),
     acts_on: ActsOn::Valve,
-    needs: Needs::Oil,
+    needs: Needs::Valve,
     family: Family::Base,
     summary: text("Flow through the open metering edges."),
     equation: text(

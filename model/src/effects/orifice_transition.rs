@@ -18,7 +18,7 @@ pub struct OrificeTransition;
 static CARD: Card = Card {
     name: text("orifice_transition"),
     acts_on: ActsOn::Valve,
-    needs: Needs::Oil,
+    needs: Needs::Valve,
     family: Family::Rounding,
     summary: text(
         "The flow of the valve's edges turns turbulent at another pressure drop than the 2 kPa of the equations.",
@@ -59,8 +59,8 @@ impl Physics for OrificeTransition {
         PARAMETERS
     }
 
-    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
-        let drop = *parameters.first()?;
+    fn finding(&self, parameters: &[(f64, &str)]) -> Option<Finding> {
+        let (drop, _) = *parameters.first()?;
         let sentences = [
             "The valve's flow becomes turbulent at another pressure drop than the usual 2 kPa",
             "The valves' flows become turbulent at other pressure drops than the usual 2 kPa",

@@ -4,7 +4,7 @@ use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, R
 use crate::equations::Situation;
 use crate::equations::planar_chain::{absolute_angle, add_first_moment, add_inertia, add_weight};
 use crate::equations::smooth::window;
-use crate::machine::{Machine, Mechanism};
+use crate::machine::{Chain, Machine, Mechanism};
 
 /// A mass that the link carries.
 ///
@@ -22,7 +22,7 @@ static CARD: Card = Card {
         "Added mass at the tip, always or while it is carried: inertia and weight grow together, by mass times distance squared and mass times distance.",
     ),
     equation: text(
-        "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; link of a chain: the same with the known lengths; linear load: M += m, Fg += m g i; m times w(t), w = s(t - t0) s(t0 + d - t), s(x) = 1/(1 + exp(-2 x/e)), e = 30 ms",
+        "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; link of a chain: the same with the known lengths; linear load: M += m, Fg += m g i; rotor: J += m r^2; m times w(t), w = s(t - t0) s(t0 + d - t), s(x) = 1/(1 + exp(-2 x/e)), e = 30 ms",
     ),
     source: text("practice; point mass in [A] Eq. 1"),
     shows: text(
@@ -54,7 +54,7 @@ const DISTANCE: ParameterCard = ParameterCard {
     unit: text("m"),
     meaning: text("distance of its centre from the joint"),
     kind: Kind::Shape,
-    growth: Growth::LENGTH,
+    growth: Growth::LEVER,
     minimum: 0.0,
     maximum: 20.0,
     typical: 1.5,
@@ -107,7 +107,7 @@ static SECOND_OF_TWO: &[ParameterCard] = &[
         unit: text("m"),
         meaning: text("distance between the two joints"),
         kind: Kind::Shape,
-        growth: Growth::LENGTH,
+        growth: Growth::LEVER,
         minimum: 0.0,
         maximum: 20.0,
         typical: 2.5,
@@ -150,6 +150,15 @@ impl Physics for Payload {
         }
     }
 
+    fn why_not(&self, machine: &Machine, site: Site) -> Option<String> {
+        match site {
+            Site::Cylinder(joint) if machine.mechanism.is_upright(joint) => {
+                Some("this joint's axis stands upright; add it to the last link".to_string())
+            }
+            _ => None,
+        }
+    }
+
     fn value_where_left_out(&self, parameter: &str) -> Option<f64> {
         match parameter {
             "payload_start" => Some(BEFORE),
@@ -171,9 +180,12 @@ impl Physics for Payload {
                 let first = now.pistons[0].joint;
                 -weight * (parameters[2] * first.cos() + parameters[1] * (first + joint).cos())
             }
-            (Mechanism::PlanarChain { link_lengths }, _) => {
-                let carried = (0..cylinder).map(|link| absolute_angle(link, now).cos() * link_lengths[link]);
-                let own = parameters[1] * absolute_angle(cylinder, now).cos();
+            (Mechanism::Rotor, _) => T::from(0.0),
+            (mechanism @ Mechanism::PlanarChain { .. }, _) => {
+                let chain = mechanism.chain()?;
+                let carried =
+                    (chain.first..cylinder).map(|link| absolute_angle(link, chain, now).cos() * chain.length(link));
+                let own = parameters[1] * absolute_angle(cylinder, chain, now).cos();
                 -weight * carried.fold(own, |sum, drop| sum + drop)
             }
         })
@@ -190,10 +202,12 @@ impl Physics for Payload {
                 rows.torque[cylinder] -= weight * parameters[1];
             }
             (Mechanism::TwoLink, 1) => second_of_two(mass, weight, parameters[1], parameters[2], now, rows),
-            (Mechanism::PlanarChain { link_lengths }, _) => {
-                on_a_chain(cylinder, mass, parameters[1], link_lengths, now, rows);
-            }
+            (Mechanism::Rotor, _) => rows.add_mass(cylinder, cylinder, mass * parameters[1] * parameters[1]),
             (mechanism, _) => {
+                if let Some(chain) = mechanism.chain() {
+                    on_a_chain(cylinder, mass, parameters[1], chain, now, rows);
+                    return;
+                }
                 let base_angle = if let Mechanism::SingleLink { base_angle } = mechanism { *base_angle } else { 0.0 };
                 rows.add_mass(cylinder, cylinder, mass * parameters[1] * parameters[1]);
                 rows.torque[cylinder] -= weight * parameters[1] * (joint + base_angle).sin();
@@ -211,12 +225,15 @@ fn carried<T: Scalar>(parameters: &[T], now: &Situation<T>) -> T {
 }
 
 /// A mass on link `link` of a chain, at `distance` from its joint; each link before has it at its end.
-fn on_a_chain<T: Scalar>(link: usize, mass: T, distance: T, lengths: &[f64], now: &Situation<T>, rows: &mut Rows<T>) {
-    for carrier in 0..=link {
-        let reach = if carrier == link { distance } else { T::from(lengths[carrier]) };
-        add_inertia(carrier, mass * reach * reach, rows);
-        add_first_moment(carrier, mass * reach, lengths, now, rows);
-        add_weight(carrier, mass * reach, now, rows);
+fn on_a_chain<T: Scalar>(link: usize, mass: T, distance: T, chain: Chain<'_>, now: &Situation<T>, rows: &mut Rows<T>) {
+    for carrier in chain.first..=link {
+        let reach = if carrier == link { distance } else { T::from(chain.length(carrier)) };
+        add_inertia(carrier, mass * reach * reach, chain, now, rows);
+        add_first_moment(carrier, mass * reach, chain, now, rows);
+        add_weight(carrier, mass * reach, chain, now, rows);
+    }
+    if let Some(swing) = chain.swing {
+        rows.add_mass(0, 0, mass * swing.boom_foot * swing.boom_foot);
     }
 }
 

@@ -33,8 +33,8 @@ pub trait Physics: Send + Sync {
     }
 
     /// Whether an effect of this size says anything about a machine. One that is within the accuracy of good instruments, or whose
-    /// shape lies where nothing moves, is no answer to what is missing, however well it takes up an error.
-    fn is_practically_significant(&self, _parameters: &[f64]) -> bool {
+    /// shape lies where nothing moves, is no answer to what is missing, however well it takes up an error. `size` is that of its place.
+    fn is_practically_significant(&self, _size: &Size, _parameters: &[f64]) -> bool {
         true
     }
 
@@ -42,6 +42,11 @@ pub trait Physics: Send + Sync {
     /// instrument has none, and no line in an energy balance.
     fn has_power(&self) -> bool {
         true
+    }
+
+    /// Whether its flows into the chambers are paid for by a shaft of its own, and not by the supply.
+    fn takes_power_from_a_shaft(&self) -> bool {
+        false
     }
 
     /// Whether what it adds to a compliance does not depend on pressure, so that the energy stored there is known without integrating.
@@ -59,8 +64,8 @@ pub trait Physics: Send + Sync {
         None
     }
 
-    /// What a report says of a nuisance effect with these parameters; `None` for what a verdict names.
-    fn finding(&self, _parameters: &[f64]) -> Option<Finding> {
+    /// What a report says of a nuisance effect with these parameters in these units; `None` for what a verdict names.
+    fn finding(&self, _parameters: &[(f64, &str)]) -> Option<Finding> {
         None
     }
 
@@ -206,12 +211,13 @@ hooks! {
         fn value_where_left_out(parameter: &str) -> Option<f64>;
         fn plausible(machine: &Machine, site: Site, parameter: &str) -> Option<[f64; 2]>;
         fn has_natural_maximum(parameter: &str) -> bool;
-        fn is_practically_significant(parameters: &[f64]) -> bool;
+        fn is_practically_significant(size: &Size, parameters: &[f64]) -> bool;
         fn has_power() -> bool;
+        fn takes_power_from_a_shaft() -> bool;
         fn has_constant_compliance() -> bool;
         fn rounds() -> Option<Corner>;
         fn corner(parameters: &[f64]) -> Option<Corner>;
-        fn finding(parameters: &[f64]) -> Option<Finding>;
+        fn finding(parameters: &[(f64, &str)]) -> Option<Finding>;
         fn formula() -> Option<&FormulaText>;
         fn why_not(machine: &Machine, site: Site) -> Option<String>;
         fn states() -> usize;

@@ -14,7 +14,7 @@ pub struct PressureCompensation;
 static CARD: Card = Card {
     name: text("pressure_compensation"),
     acts_on: ActsOn::Valve,
-    needs: Needs::Oil,
+    needs: Needs::Valve,
     family: Family::Construction,
     summary: text(
         "A compensator between pump and metering edge holds flow, not opening: the edge sees no more than the compensator's margin of pressure drop.",

@@ -98,3 +98,13 @@ impl Prior {
         }
     }
 }
+
+/// A value of this SI unit in a unit for people.
+pub(super) fn for_people(value: f64, unit: &str) -> String {
+    match unit {
+        "m/s" => format!("{:.1} mm/s", 1e3 * value),
+        "m2" => format!("{:.3} mm2", 1e6 * value),
+        "-" => format!("{:.2} %", 1e2 * value),
+        unit => format!("{value:.3} {unit}"),
+    }
+}

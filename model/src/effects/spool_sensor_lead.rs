@@ -70,8 +70,8 @@ impl Physics for SpoolSensorLead {
         PARAMETERS
     }
 
-    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
-        let time = *parameters.first()?;
+    fn finding(&self, parameters: &[(f64, &str)]) -> Option<Finding> {
+        let (time, _) = *parameters.first()?;
         let sentences = [
             "The spool sensor is not read together with the other instruments",
             "The spool sensors are not read together with the other instruments",

@@ -1,5 +1,6 @@
 //! A spool sensor that does not read zero where the valve closes.
 
+use super::prior::for_people;
 use super::{
     ActsOn, Card, Family, Finding, Growth, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar, Site,
     Spread, Start, text,
@@ -54,13 +55,13 @@ impl Physics for SpoolSensorOffset {
         PARAMETERS
     }
 
-    fn finding(&self, parameters: &[f64]) -> Option<Finding> {
-        let area = *parameters.first()?;
+    fn finding(&self, parameters: &[(f64, &str)]) -> Option<Finding> {
+        let &[(offset, unit)] = parameters else { return None };
         let sentences = [
             "The spool sensor does not read zero where its valve is closed",
             "The spool sensors do not read zero where their valves are closed",
         ];
-        Some(Finding { sentences, value: format!("{:+.3} mm2", 1e6 * area) })
+        Some(Finding { sentences, value: format!("reads {} there", for_people(offset, unit)) })
     }
 
     fn has_power(&self) -> bool {

@@ -4,7 +4,7 @@ use super::{
     ActsOn, Card, Corner, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text,
 };
 use crate::equations::Situation;
-use crate::machine::Machine;
+use crate::machine::{Machine, Size};
 
 /// Stribeck friction.
 pub struct StribeckFriction;
@@ -42,7 +42,7 @@ static PARAMETERS: &[ParameterCard] = &[
         unit: text("m/s"),
         meaning: text("speed at which it has fallen to 37 %"),
         kind: Kind::Shape,
-        growth: Growth::NONE,
+        growth: Growth::SEAL_SPEED,
         minimum: 1e-3,
         maximum: 0.2,
         typical: 0.015,
@@ -64,8 +64,8 @@ impl Physics for StribeckFriction {
         PARAMETERS
     }
 
-    fn is_practically_significant(&self, parameters: &[f64]) -> bool {
-        parameters.get(1).is_some_and(|speed| *speed >= SLOWEST)
+    fn is_practically_significant(&self, size: &Size, parameters: &[f64]) -> bool {
+        parameters.get(1).is_some_and(|speed| *speed >= SLOWEST * size.factor(Growth::SEAL_SPEED))
     }
 
     fn corner(&self, parameters: &[f64]) -> Option<Corner> {

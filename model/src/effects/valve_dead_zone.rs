@@ -62,7 +62,7 @@ impl Physics for ValveDeadZone {
     fn plausible(&self, machine: &Machine, site: Site, _parameter: &str) -> Option<[f64; 2]> {
         let Site::Cylinder(cylinder) = site else { return None };
         let chambers = machine.cylinders.get(cylinder)?.chambers?;
-        Some([0.0, chambers.maximum_orifice_area])
+        Some([0.0, chambers.full_command()])
     }
 
     fn has_power(&self) -> bool {

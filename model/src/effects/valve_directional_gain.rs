@@ -13,7 +13,7 @@ pub struct ValveDirectionalGain;
 static CARD: Card = Card {
     name: text("valve_directional_gain"),
     acts_on: ActsOn::Valve,
-    needs: Needs::Oil,
+    needs: Needs::Valve,
     family: Family::Candidate,
     summary: text("The flow gains for u < 0 differ from those for u > 0, on the cap side and on the rod side."),
     equation: text(

@@ -10,7 +10,7 @@ pub struct ValveLeakage;
 static CARD: Card = Card {
     name: text("valve_leakage"),
     acts_on: ActsOn::Valve,
-    needs: Needs::Oil,
+    needs: Needs::Valve,
     family: Family::Candidate,
     summary: text("Laminar leakage between pump, chambers and tank across the spool's lands."),
     equation: text(

@@ -1,5 +1,6 @@
 //! From a state to its ledger.
 
+use super::oil::stored_beside;
 use super::{CylinderStorage, EffectPower, Ledger, OilEnergy};
 use crate::effects::{Number, Site};
 use crate::equations::{Inputs, Rows, Situation, System, Workspace};
@@ -32,7 +33,7 @@ pub fn ledger<'m, T: Number>(system: &System<'m>, parameters: &[T], state: &[T],
     let (pump_line, pump_potential) = match system.model().machine.supply {
         Supply::PumpLine(line) => {
             let oil = account.oil(Oil::PumpLine, supply_pressure, T::from(line.volume));
-            (oil.stored * line.volume, oil.potential)
+            (oil.stored * line.volume + account.stored_in_accumulators(supply_pressure, line.volume), oil.potential)
         }
         // A pressure given from outside has no volume that could store anything.
         Supply::PressureSource(_) => (zero, supply_pressure),
@@ -48,7 +49,15 @@ pub fn ledger<'m, T: Number>(system: &System<'m>, parameters: &[T], state: &[T],
     let rod_force_power = pistons
         .filter(|(_, cylinder)| cylinder.chambers.is_none())
         .fold(zero, |sum, (piston, _)| sum + piston.rod_force * piston.velocity);
-    Ledger { cylinders, pump_line, effects, pump_power, rod_force_power }
+    let machine = &system.model().machine;
+    let motors = machine.cylinders.iter().enumerate().filter(|(_, cylinder)| cylinder.is_motor());
+    let expansion_loss = motors.fold(zero, |sum, (index, _)| {
+        let (piston, (cap, rod)) = (&account.workspace.situation.pistons[index], potentials[index]);
+        let Some(chambers) = account.workspace.situation.chambers(index) else { return sum };
+        let stored = [cap - piston.cap_pressure, rod - piston.rod_pressure];
+        sum + (stored[0] * chambers.cap_area - stored[1] * chambers.rod_area) * piston.velocity
+    });
+    Ledger { cylinders, pump_line, effects, pump_power, rod_force_power, expansion_loss }
 }
 
 /// One volume of oil.
@@ -126,6 +135,34 @@ impl<T: Number> Account<'_, '_, T> {
         energy
     }
 
+    /// Energy of the gas behind oil of the pump line, which has this volume (m³).
+    fn stored_in_accumulators(&mut self, pressure: T, volume: f64) -> T {
+        let effects = 0..self.system.model().effects.len();
+        let accumulators: Vec<usize> = effects
+            .filter(|&number| {
+                self.contribute_alone(number);
+                self.workspace.rows.accumulator_compliance.value() != 0.0
+            })
+            .collect();
+        if accumulators.is_empty() {
+            return T::from(0.0);
+        }
+        let stored = stored_beside(
+            |pressure| {
+                let potential = self.oil(Oil::PumpLine, pressure, T::from(volume)).potential;
+                Oil::PumpLine.set_pressure(&mut self.workspace.situation, pressure);
+                let compliance = accumulators.iter().fold(T::from(0.0), |sum, &number| {
+                    self.contribute_alone(number);
+                    sum + self.workspace.rows.accumulator_compliance
+                });
+                (compliance, potential)
+            },
+            pressure,
+        );
+        Oil::PumpLine.set_pressure(&mut self.workspace.situation, pressure);
+        stored
+    }
+
     fn compliance(&self, oil: Oil) -> T {
         let rows = &self.workspace.rows;
         match oil {
@@ -149,7 +186,7 @@ impl<T: Number> Account<'_, '_, T> {
                 let has_mass = rows.mass.iter().any(|entry| entry.value() != 0.0);
                 let has_weight = T::hooks(&*effect.physics).potential(effect.site, parameters, situation).is_some();
                 let has_spring = rows.cap_compliance.iter().chain(&rows.rod_compliance).any(|c| c.value() != 0.0)
-                    || rows.pump_compliance.value() != 0.0;
+                    || rows.pump_line_compliance().value() != 0.0;
                 let (mut mechanical, mut cap, mut rod) = (zero, zero, zero);
                 for (index, piston) in situation.pistons.iter().enumerate() {
                     if !(has_mass || has_weight) {
@@ -159,7 +196,11 @@ impl<T: Number> Account<'_, '_, T> {
                     cap += rows.cap_flow[index] * potentials[index].0;
                     rod += rows.rod_flow[index] * potentials[index].1;
                 }
-                let (pump_line, acts_on) = (rows.pump_flow * pump_potential, effect.physics.card().acts_on);
+                let acts_on = effect.physics.card().acts_on;
+                let mut pump_line = rows.pump_flow * pump_potential;
+                if effect.physics.takes_power_from_a_shaft() {
+                    pump_line -= cap + rod;
+                }
                 if (has_mass || has_weight) && !effect.acts_always() {
                     mechanical += self.brought_along(number);
                 }

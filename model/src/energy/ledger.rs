@@ -35,7 +35,7 @@ pub struct EffectPower<T = f64> {
     pub cap: T,
     /// Flow into the rod side times e(p-), \[A\] Eq. 11.
     pub rod: T,
-    /// Flow into the pump line times e(pp).
+    /// Flow into the pump line times e(pp), less what the shaft of a cylinder's own pump gives.
     pub pump_line: T,
 }
 
@@ -49,10 +49,14 @@ pub struct Ledger<T = f64> {
     pub pump_line: T,
     /// One entry per effect of the model, in its order.
     pub effects: Vec<EffectPower<T>>,
-    /// Power of the pump `e(pp) Qp`, W; where the supply pressure is given, the power drawn from it.
+    /// Power of the pump `e(pp) Qp`, W; where the supply pressure is given, the power drawn from it and from the shafts of the cylinders' own
+    /// pumps.
     pub pump_power: T,
     /// Power of the measured rod forces on cylinders without chambers, W.
     pub rod_force_power: T,
+    /// Power that motors lose because oil expands in them, W: `(h(p+) A+ - h(p-) A-) v`. A piston makes room for the oil that it lets in
+    /// and its chamber keeps what the oil has stored; a motor passes oil on, and the shaft gets the pressures' work alone.
+    pub expansion_loss: T,
 }
 
 impl<T: Scalar> CylinderStorage<T> {
@@ -95,6 +99,7 @@ impl<T: Scalar> Ledger<T> {
     /// effects that give energy back (end stops) or bring it in (make-up flow).
     pub fn dissipation(&self) -> T {
         sum(self.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve).map(EffectPower::into_cylinders))
+            - self.expansion_loss
     }
 
     /// Power lost between pump line and tank without passing a cylinder, W: bypass, relief valve, pump leakage.
@@ -112,7 +117,7 @@ impl<T: Scalar> Ledger<T> {
     ///
     /// With no rod force, `pump_power = bypass_loss + metering_loss + supply + d(pump_line)/dt`.
     pub fn balance(&self) -> T {
-        self.pump_power + self.rod_force_power + sum(self.effects.iter().map(EffectPower::total))
+        self.pump_power + self.rod_force_power - self.expansion_loss + sum(self.effects.iter().map(EffectPower::total))
     }
 
     fn valve_effects(&self) -> impl Iterator<Item = &EffectPower<T>> {

@@ -60,6 +60,34 @@ impl<T: Scalar> OilEnergy<T> {
     }
 }
 
+/// Energy (J) that a line stores beside its oil, in what takes up oil without compressing it: the integral of `e C dp` from zero to
+/// `pressure` (Pa), where `at` gives C (m³/Pa) and e (J/m³) at a pressure.
+pub fn stored_beside<T: Scalar>(mut at: impl FnMut(T) -> (T, T), pressure: T) -> T {
+    let lowest = T::from(-GAS_LAW_DOWN_TO * AMBIENT);
+    let within = if pressure.value() > lowest.value() { pressure } else { lowest };
+    let height = (within / AMBIENT).ln_1p();
+    // The corner at a pre-charge is sharper than a gas law.
+    let panels = (2.0 * height.value().abs() / PANEL).ceil().max(1.0) as usize;
+    let width = height / panels as f64;
+    let nodes = gauss_nodes();
+    let mut stored = T::from(0.0);
+    for panel in 0..panels {
+        for (node, weight) in nodes.into_iter().zip(GAUSS_WEIGHTS) {
+            let pressure = (width * (panel as f64 + node)).exp_m1() * AMBIENT;
+            let (compliance, potential) = at(pressure);
+            stored += compliance * potential * (pressure + AMBIENT) * width * weight;
+        }
+    }
+    stored
+}
+
+/// Nodes and weights of Gauss quadrature of sixth order between zero and one.
+fn gauss_nodes() -> [f64; 3] {
+    let root = 15.0_f64.sqrt();
+    [0.5 - root / 10.0, 0.5, 0.5 + root / 10.0]
+}
+const GAUSS_WEIGHTS: [f64; 3] = [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0];
+
 /// Ambient pressure, Pa absolute.
 const AMBIENT: f64 = 101_325.0;
 
@@ -73,9 +101,8 @@ const PANEL: f64 = 0.05;
 /// Carries `stored` from `from` to `to`, where `at` gives pressure and c(p) dp/dy at a value of the variable y.
 fn integrate<T: Scalar>(from: T, to: T, stored: T, mut at: impl FnMut(T) -> (T, T)) -> T {
     let root = 15.0_f64.sqrt();
-    // Nodes, weights and integrals up to each node of the Gauss method with three stages.
-    let nodes = [0.5 - root / 10.0, 0.5, 0.5 + root / 10.0];
-    let weights = [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0];
+    // Integrals up to each node of the Gauss method with three stages.
+    let (nodes, weights) = (gauss_nodes(), GAUSS_WEIGHTS);
     let partial = [
         [5.0 / 36.0, 2.0 / 9.0 - root / 15.0, 5.0 / 36.0 - root / 30.0],
         [5.0 / 36.0 + root / 24.0, 2.0 / 9.0, 5.0 / 36.0 - root / 24.0],

@@ -8,7 +8,7 @@ use crate::scalar::Scalar;
 ///
 /// The equations are `mass qdd = torque + G (piston_force + A+ p+ - A- p-)`,
 /// `cap_compliance dp+/dt = cap_flow - A+ v`, `rod_compliance dp-/dt = rod_flow + A- v`,
-/// `pump_compliance dpp/dt = pump_flow` (with the pump's own flow Qp in `pump_flow`).
+/// `(pump_compliance + accumulator_compliance) dpp/dt = pump_flow` (with the pump's own flow Qp in `pump_flow`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows<T> {
     joints: usize,
@@ -30,6 +30,8 @@ pub struct Rows<T> {
     pub pump_flow: T,
     /// Volume times compressibility of the pump line, m³/Pa.
     pub pump_compliance: T,
+    /// What takes up oil of the pump line without compressing it, m³/Pa: gas behind a bladder.
+    pub accumulator_compliance: T,
 }
 
 impl<T: Scalar> Rows<T> {
@@ -47,6 +49,7 @@ impl<T: Scalar> Rows<T> {
             rod_compliance: vec![zero; joints],
             pump_flow: zero,
             pump_compliance: zero,
+            accumulator_compliance: zero,
         }
     }
 
@@ -66,6 +69,12 @@ impl<T: Scalar> Rows<T> {
         }
         self.pump_flow = zero;
         self.pump_compliance = zero;
+        self.accumulator_compliance = zero;
+    }
+
+    /// Flow into the pump line per rate of its pressure, m³/Pa.
+    pub fn pump_line_compliance(&self) -> T {
+        self.pump_compliance + self.accumulator_compliance
     }
 
     /// Adds to the mass matrix at (`row`, `column`).

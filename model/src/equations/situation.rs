@@ -3,7 +3,7 @@
 use super::Rounding;
 use super::smooth::at_most;
 use crate::effects::Site;
-use crate::machine::{Chambers, Machine};
+use crate::machine::{Chambers, Machine, Size};
 use crate::scalar::Scalar;
 
 /// State of one cylinder and its joint at one instant.
@@ -119,7 +119,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
             backflow: T::from(1.0),
             compensator_margin: None,
             hose_resistance: None,
-            rounding: Rounding::of_the_equations(),
+            rounding: Rounding::of_the_equations(&Size::REFERENCE),
             rod_force: zero,
         };
         Situation {
@@ -133,10 +133,10 @@ impl<'m, T: Scalar> Situation<'m, T> {
         }
     }
 
-    /// Largest opening of a cylinder's valve section, umax, m²; zero without chambers.
+    /// Largest input of a cylinder's drive, umax, m² or its own unit; zero without chambers.
     pub fn largest_opening(&self, site: Site) -> f64 {
         let Site::Cylinder(cylinder) = site else { return 0.0 };
-        self.chambers(cylinder).map_or(0.0, |chambers| chambers.maximum_orifice_area)
+        self.chambers(cylinder).map_or(0.0, |chambers| chambers.full_command())
     }
 
     /// Known constants of a cylinder's chambers; `None` for a cylinder driven by a measured force.

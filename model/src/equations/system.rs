@@ -269,13 +269,13 @@ impl<'m> System<'m> {
             piston.bypass_closing += bypass - piston.spool;
             piston.spool = metering;
         }
-        for piston in &mut situation.pistons {
+        for (piston, size) in situation.pistons.iter_mut().zip(&self.sizes) {
             piston.opening = piston.spool;
             piston.bypass_closing = piston.bypass_closing.abs();
             piston.backflow = T::from(1.0);
             piston.compensator_margin = None;
             piston.hose_resistance = None;
-            piston.rounding = Rounding::of_the_equations();
+            piston.rounding = Rounding::of_the_equations(size);
         }
         for &number in &self.adjusting {
             let effect = &self.model.effects[number];
@@ -388,7 +388,7 @@ impl<'m> System<'m> {
             rates[rod] = (rows.rod_flow[index] + piston.velocity * chambers.rod_area) / rows.rod_compliance[index];
         }
         if let Some(pump) = layout.pump {
-            rates[pump] = rows.pump_flow / rows.pump_compliance;
+            rates[pump] = rows.pump_flow / rows.pump_line_compliance();
         }
     }
 

@@ -130,7 +130,7 @@ impl Bench<'_, '_> {
             _ => 2.0 * stroke,
         };
         let force = chambers.map_or(1e4, |chambers| chambers.cap_area * pressure);
-        let opening = chambers.map_or(0.0, |chambers| chambers.maximum_orifice_area);
+        let opening = chambers.map_or(0.0, |chambers| chambers.full_command());
         let mut ranges = vec![
             [-stroke / 2.0, stroke / 2.0],
             [-speed, speed],

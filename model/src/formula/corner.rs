@@ -5,6 +5,7 @@
 
 use super::dimension::Dimension;
 use crate::equations::{Rounding, Situation};
+use crate::machine::{Cylinder, Size};
 use crate::scalar::Scalar;
 
 /// What a corner's argument is, which says how widely it is rounded.
@@ -60,15 +61,15 @@ impl Corner {
     pub fn width<T: Scalar>(self, now: &Situation<'_, T>, cylinder: Option<usize>) -> T {
         let own = cylinder.and_then(|cylinder| now.machine.cylinders.get(cylinder));
         let rounding = cylinder.and_then(|cylinder| now.pistons.get(cylinder)).map(|piston| piston.rounding);
-        let rounding = rounding.unwrap_or_else(Rounding::of_the_equations);
+        let rounding = rounding.unwrap_or_else(|| Rounding::of_the_equations(&Size::REFERENCE));
         match self {
             Corner::Speed => rounding.reversal_speed,
             Corner::Pressure => rounding.transition_pressure,
             Corner::Area => {
-                let largest = own.and_then(|own| own.chambers.as_ref()).map_or(0.0, |oil| oil.maximum_orifice_area);
+                let largest = own.and_then(|own| own.chambers.as_ref()).map_or(0.0, |oil| oil.full_command());
                 T::from(SHARE_WIDTH * largest)
             }
-            Corner::Length => T::from(SHARE_WIDTH * own.map_or(0.0, |own| own.stroke)),
+            Corner::Length => T::from(SHARE_WIDTH * own.map_or(0.0, Cylinder::usual_travel)),
             Corner::Time => T::from(TIME_WIDTH * now.time_scale),
             Corner::Pure => T::from(PURE_WIDTH),
             Corner::Sharp => T::from(0.0),

@@ -281,7 +281,7 @@ fn constant<T>(variable: Variable, now: &Situation<'_, T>, cylinder: Option<usiz
         Variable::CapArea => areas[0],
         Variable::RodArea => areas[1],
         Variable::Stroke => own.stroke,
-        Variable::LargestOpening => own.chambers.as_ref().map_or(f64::NAN, |oil| oil.maximum_orifice_area),
+        Variable::LargestOpening => own.chambers.as_ref().map_or(f64::NAN, |oil| oil.full_command()),
         _ => f64::NAN,
     }
 }

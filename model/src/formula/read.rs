@@ -249,7 +249,7 @@ impl<'a> Reader<'a> {
         let row = self.row.card();
         let or = |text: &str, other: &str| Text::Owned(if text.is_empty() { other } else { text }.to_string());
         let needs = match self.row.needs() {
-            Needs::Oil => Needs::Oil,
+            needs @ (Needs::Oil | Needs::Valve | Needs::Pump) => needs,
             _ if needs_oil => Needs::Oil,
             Needs::Pressures => Needs::Pressures,
             _ if needs_pressures => Needs::Pressures,

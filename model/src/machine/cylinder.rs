@@ -1,21 +1,45 @@
-//! One hydraulic cylinder and its valve section.
+//! One hydraulic cylinder or motor with its drive.
 
-use super::Linkage;
+use super::{CommandUnit, Linkage};
 use crate::scalar::Scalar;
 
-/// A cylinder, its linkage to the joint, and what is known of its chambers.
+/// A cylinder or motor, its linkage to the joint, and what is known of its chambers.
+///
+/// A motor is a cylinder without ends. Its displacement is the angle of its shaft in rad, its force is the torque on the shaft in N m,
+/// its areas are its displacement volume in m³/rad, and its chambers do not change their size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cylinder {
     /// "boom", "arm", "bucket", "load".
     pub name: String,
     /// How the piston drives the joint.
     pub linkage: Linkage,
-    /// Stroke L in m; the piston moves within ±L/2.
+    /// Stroke L in m; infinite for a motor. The sensor counts from mid-stroke.
     pub stroke: f64,
+    /// Where the piston meets its stops, m from mid-stroke: retracted, extended. ±L/2 unless the stops are elsewhere.
+    pub ends: [f64; 2],
     /// Oil chambers; `None` for a drive whose force is measured instead.
     pub chambers: Option<Chambers>,
     /// The rod is moved from outside, whatever force that takes; only without chambers.
     pub imposed_motion: Option<ImposedMotion>,
+}
+
+impl Cylinder {
+    /// Whether it is a motor.
+    pub fn is_motor(&self) -> bool {
+        self.stroke.is_infinite()
+    }
+
+    /// Whether a piston at this displacement (m) is within `share` of the stroke from one of its ends; never for a motor.
+    pub fn is_at_an_end(&self, displacement: f64, share: f64) -> bool {
+        let [retracted, extended] = self.ends;
+        let near = share * self.stroke;
+        displacement <= retracted + near || displacement >= extended - near
+    }
+
+    /// A travel that is usual for it, m: the stroke. Two turns of the shaft for a motor, rad.
+    pub fn usual_travel(&self) -> f64 {
+        if self.is_motor() { 4.0 * std::f64::consts::PI } else { self.stroke }
+    }
 }
 
 /// A rod that a testing machine moves: displacement and chamber pressures are inputs, the force on the rod is the output.
@@ -34,34 +58,81 @@ impl ImposedMotion {
     }
 }
 
-/// Known constants of the two oil chambers and of the valve section that feeds them.
+/// Known constants of the two oil chambers and of the drive that feeds them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chambers {
-    /// Piston area on the cap side A+, m².
+    /// Piston area on the cap side A+, m² (m³/rad for a motor, at port A).
     pub cap_area: f64,
-    /// Piston area on the rod side A-, m².
+    /// Piston area on the rod side A-, m² (m³/rad for a motor, at port B).
     pub rod_area: f64,
-    /// Volume of pipes and ports on the cap side V+min, m³.
+    /// Volume of pipes and ports on the cap side V+min, m³; for a motor all of the volume.
     pub cap_dead_volume: f64,
     /// Volume of pipes and ports on the rod side V-min, m³.
     pub rod_dead_volume: f64,
-    /// Largest orifice area umax of the valve section, m².
-    pub maximum_orifice_area: f64,
+    /// What feeds them.
+    pub drive: Drive,
+}
+
+/// What feeds the chambers of a cylinder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Drive {
+    /// A valve section on the machine's supply.
+    Valve {
+        /// Its input u where it is fully open, umax: the largest orifice area in m², or what commands it in its own unit.
+        full_command: f64,
+        /// Unit of that input.
+        unit: CommandUnit,
+    },
+    /// A pump of its own between both chambers: a closed circuit. Its input u is the flow in m³/s that it would give without losses:
+    /// speed times displacement.
+    Pump {
+        /// Largest such flow, m³/s.
+        full_flow: f64,
+    },
+}
+
+impl Drive {
+    /// Largest input umax, in the unit of the input.
+    pub fn full_command(&self) -> f64 {
+        match *self {
+            Drive::Valve { full_command, .. } => full_command,
+            Drive::Pump { full_flow } => full_flow,
+        }
+    }
+
+    /// Unit of the input.
+    pub fn command_unit(&self) -> CommandUnit {
+        match *self {
+            Drive::Valve { unit, .. } => unit,
+            Drive::Pump { .. } => CommandUnit::CubicMetrePerSecond,
+        }
+    }
 }
 
 impl Chambers {
-    /// Force of both pressures on the piston, N.
+    /// Largest input umax of the drive, m² for a valve whose orifice area is known.
+    pub fn full_command(&self) -> f64 {
+        self.drive.full_command()
+    }
+
+    /// Force of both pressures on the piston, N; for a motor the torque on its shaft, N m.
     pub fn pressure_force<T: Scalar>(&self, cap_pressure: T, rod_pressure: T) -> T {
         cap_pressure * self.cap_area - rod_pressure * self.rod_area
     }
 
-    /// Cap side volume V+ = V+min + (L/2 + s) A+ in m³, \[A\] Eq. 1.
+    /// Cap side volume V+ = V+min + (L/2 + s) A+ in m³, \[A\] Eq. 1. It is constant where the stroke is infinite.
     pub fn cap_volume<T: Scalar>(&self, stroke: f64, displacement: T) -> T {
+        if stroke.is_infinite() {
+            return T::from(self.cap_dead_volume);
+        }
         (displacement + stroke / 2.0) * self.cap_area + self.cap_dead_volume
     }
 
-    /// Rod side volume V- = V-min + (L/2 - s) A- in m³, \[A\] Eq. 1.
+    /// Rod side volume V- = V-min + (L/2 - s) A- in m³, \[A\] Eq. 1. It is constant where the stroke is infinite.
     pub fn rod_volume<T: Scalar>(&self, stroke: f64, displacement: T) -> T {
+        if stroke.is_infinite() {
+            return T::from(self.rod_dead_volume);
+        }
         (-displacement + stroke / 2.0) * self.rod_area + self.rod_dead_volume
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::scalar::Scalar;
 
-/// Kinematics between piston displacement s (m, from mid-stroke) and joint coordinate q (rad, or m for a linear load).
+/// Kinematics between piston displacement s (m from mid-stroke; shaft angle in rad for a motor) and joint coordinate q (rad, or m for a linear load).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Linkage {
     /// Cylinder pinned across a joint, cosine law: `l² = la² + lb² - 2 la lb cos(theta)`, `l = lc + s`.
@@ -19,6 +19,11 @@ pub enum Linkage {
     },
     /// The piston carries the load itself: q = s, \[B\] Eq. 5.
     Direct,
+    /// A motor turns the joint through a gear: shaft angle s = n q.
+    Gear {
+        /// Turns n of the shaft for one of the joint; below zero where they turn opposite ways.
+        ratio: f64,
+    },
 }
 
 impl Linkage {
@@ -31,6 +36,7 @@ impl Linkage {
                 squared.sqrt() - mid_stroke_length
             }
             Linkage::Direct => joint,
+            Linkage::Gear { ratio } => joint * ratio,
         }
     }
 
@@ -43,6 +49,7 @@ impl Linkage {
                 joint.sin() * (foot_arm * rod_arm) / length
             }
             Linkage::Direct => T::from(1.0),
+            Linkage::Gear { ratio } => T::from(ratio),
         }
     }
 
@@ -56,6 +63,7 @@ impl Linkage {
                 if mirrored { 2.0 * std::f64::consts::PI - interior } else { interior }
             }
             Linkage::Direct => displacement,
+            Linkage::Gear { ratio } => displacement / ratio,
         }
     }
 }

@@ -14,20 +14,69 @@ pub enum Mechanism {
     TwoLink,
     /// Any number of links in a vertical plane, each turning about a joint of the one before it.
     PlanarChain {
-        /// Distance from each joint to the next, m: one less than there are joints.
+        /// Distance from each joint to the next, m: one less than there are links.
         link_lengths: Vec<f64>,
+        /// What turns the plane of the links: its joint comes first.
+        swing: Option<Swing>,
     },
     /// A mass moving along the cylinder's own axis, \[B\] Eq. 5.
     LinearLoad,
+    /// An inertia that turns about a fixed axis through its centre of gravity: a drum, a wheel, a turntable.
+    Rotor,
+}
+
+/// A vertical axis about which the house turns with all links.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Swing {
+    /// How far the first link's joint is in front of the axis, m.
+    pub boom_foot: f64,
+}
+
+/// The links of a chain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chain<'m> {
+    /// Distance from each joint to the next, m.
+    pub lengths: &'m [f64],
+    /// Number of the first link's joint: one where a swing comes before it.
+    pub first: usize,
+    /// What turns the plane of the links.
+    pub swing: Option<Swing>,
+}
+
+impl Chain<'_> {
+    /// Whether `joint` is that of the swing.
+    pub fn is_swing(&self, joint: usize) -> bool {
+        joint < self.first
+    }
+
+    /// Distance from joint `joint` to the next one, m; zero for the last.
+    pub fn length(&self, joint: usize) -> f64 {
+        self.lengths.get(joint - self.first).copied().unwrap_or(0.0)
+    }
 }
 
 impl Mechanism {
     /// Number of joints.
     pub fn joints(&self) -> usize {
         match self {
-            Mechanism::SingleLink { .. } | Mechanism::LinearLoad => 1,
+            Mechanism::SingleLink { .. } | Mechanism::LinearLoad | Mechanism::Rotor => 1,
             Mechanism::TwoLink => 2,
-            Mechanism::PlanarChain { link_lengths } => link_lengths.len() + 1,
+            Mechanism::PlanarChain { link_lengths, swing } => link_lengths.len() + 1 + usize::from(swing.is_some()),
         }
+    }
+
+    /// The links, where they are a chain.
+    pub fn chain(&self) -> Option<Chain<'_>> {
+        match self {
+            Mechanism::PlanarChain { link_lengths, swing } => {
+                Some(Chain { lengths: link_lengths, first: usize::from(swing.is_some()), swing: *swing })
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether gravity has no hold on this joint, because its axis stands upright.
+    pub fn is_upright(&self, joint: usize) -> bool {
+        self.chain().is_some_and(|chain| chain.is_swing(joint))
     }
 }

@@ -5,14 +5,16 @@ mod linkage;
 mod mechanism;
 mod size;
 mod supply;
+mod units;
 
-pub use cylinder::{Chambers, Cylinder, ImposedMotion};
+pub use cylinder::{Chambers, Cylinder, Drive, ImposedMotion};
 pub use linkage::Linkage;
-pub use mechanism::Mechanism;
+pub use mechanism::{Chain, Mechanism, Swing};
 pub use size::{Growth, Size};
 pub use supply::{PressureSource, PumpLine, Supply};
+pub use units::CommandUnit;
 
-/// A machine: a mechanism driven by one cylinder per joint, fed by one supply.
+/// A machine: a mechanism driven by one cylinder or motor per joint, fed by one supply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Machine {
     /// Short name, as on the command line: `zx30u-arm`.
@@ -23,7 +25,7 @@ pub struct Machine {
     pub gravity: f64,
     /// How joints move.
     pub mechanism: Mechanism,
-    /// One cylinder per joint, in the order of the joints.
+    /// One cylinder or motor per joint, in the order of the joints.
     pub cylinders: Vec<Cylinder>,
     /// Where the oil comes from.
     pub supply: Supply,

@@ -1,6 +1,6 @@
 //! How large a machine is: what is large for one is nothing for another.
 
-use super::{Machine, Supply};
+use super::{Drive, Machine, Supply};
 use crate::effects::Site;
 
 /// How large a part of a machine is beside the arm of a 3 t excavator (`zx30u-arm`), for which limits, starts, windows of time and
@@ -18,6 +18,10 @@ pub struct Size {
     pub opening: f64,
     /// Ratio of the speeds of pistons.
     pub speed: f64,
+    /// Ratio of the levers between piston and joint: that of strokes, but for a gear.
+    pub lever: f64,
+    /// Ratio of the speeds at which seals and gaps begin to slide: one but for a motor, whose shaft turns where a piston moves.
+    pub sliding: f64,
 }
 
 /// Powers of the ratios of a [`Size`] with which a quantity grows.
@@ -27,16 +31,24 @@ pub struct Growth {
     area: i32,
     opening: i32,
     speed: i32,
+    lever: i32,
+    sliding: i32,
 }
 
 impl Growth {
-    /// Pressures, speeds of seals, pure numbers, and what belongs to a recording.
+    /// Pressures, pure numbers, and what belongs to a recording.
     pub const NONE: Growth = Growth::of(0, 0, 0, 0);
-    /// Positions and lengths, m.
+    /// Speeds at which seals begin to slide, m/s.
+    pub const SEAL_SPEED: Growth = Growth { sliding: 1, ..Growth::NONE };
+    /// Distances between joints and on links, m.
+    pub const LEVER: Growth = Growth::of(0, 0, 0, 0).with_levers(1);
+    /// Positions of pistons and lengths along a stroke, m.
     pub const LENGTH: Growth = Growth::of(1, 0, 0, 0);
     /// Times in which a machine moves, s.
     pub const TIME: Growth = Growth::of(1, 0, 0, -1);
-    /// Orifice areas, m².
+    /// Volumes of oil, m³.
+    pub const VOLUME: Growth = Growth::of(1, 1, 0, 0);
+    /// Orifice areas, m², or what commands them.
     pub const OPENING: Growth = Growth::of(0, 0, 1, 0);
     /// Forces, N, and forces per pressure, m².
     pub const FORCE: Growth = Growth::of(0, 1, 0, 0);
@@ -55,22 +67,26 @@ impl Growth {
     /// Force per length, N/m.
     pub const STIFFNESS: Growth = Growth::of(-1, 1, 0, 0);
     /// Torque, N m, and torque per angle, N m/rad.
-    pub const TORQUE: Growth = Growth::of(1, 1, 0, 0);
+    pub const TORQUE: Growth = Growth::of(0, 1, 0, 0).with_levers(1);
     /// Force per acceleration, kg.
     pub const MASS: Growth = Growth::of(1, 1, 0, -2);
     /// Mass times length, kg m.
-    pub const MASS_MOMENT: Growth = Growth::of(2, 1, 0, -2);
+    pub const MASS_MOMENT: Growth = Growth::of(1, 1, 0, -2).with_levers(1);
     /// Mass times square of length, kg m².
-    pub const INERTIA: Growth = Growth::of(3, 1, 0, -2);
+    pub const INERTIA: Growth = Growth::of(1, 1, 0, -2).with_levers(2);
 
     const fn of(stroke: i32, area: i32, opening: i32, speed: i32) -> Self {
-        Growth { stroke, area, opening, speed }
+        Growth { stroke, area, opening, speed, lever: 0, sliding: 0 }
+    }
+
+    const fn with_levers(self, lever: i32) -> Self {
+        Growth { lever, ..self }
     }
 }
 
 impl Size {
     /// The size of the machine for which numbers are written down.
-    pub const REFERENCE: Size = Size { stroke: 1.0, area: 1.0, opening: 1.0, speed: 1.0 };
+    pub const REFERENCE: Size = Size { stroke: 1.0, area: 1.0, opening: 1.0, speed: 1.0, lever: 1.0, sliding: 1.0 };
 
     /// The factor by which a quantity is larger than at the reference.
     pub fn factor(&self, growth: Growth) -> f64 {
@@ -78,6 +94,8 @@ impl Size {
             * self.area.powi(growth.area)
             * self.opening.powi(growth.opening)
             * self.speed.powi(growth.speed)
+            * self.lever.powi(growth.lever)
+            * self.sliding.powi(growth.sliding)
     }
 
     /// The factor of times, a pure number.
@@ -99,13 +117,20 @@ const REFERENCE_AREA: f64 = 3.8e-3;
 const REFERENCE_OPENING: f64 = 1.15e-4;
 /// Speed at which all of its pump's flow drives it, m/s, \[A\] Table 1.
 const REFERENCE_SPEED: f64 = 0.1;
+/// Lever of the arm's cylinder, m: about the distance of the rod's pin from the joint, \[A\] Table 1.
+const REFERENCE_LEVER: f64 = 0.33;
+/// Speed of a motor's shaft where no pump flow says better, rad/s: 500 revolutions per minute.
+const MOTOR_SPEED: f64 = 50.0;
+/// Distance of a motor's gaps from its axis, m: a few centimetres on motors of all sizes.
+const MOTOR_RADIUS: f64 = 0.03;
 
 impl Machine {
-    /// Size of the whole machine: that of its cylinder with the longest stroke.
+    /// Size of the whole machine: that of its cylinder with the longest stroke, or of its first motor where it has no cylinder.
     pub fn size(&self) -> Size {
         let stroke = |cylinder: &usize| self.cylinders[*cylinder].stroke;
-        let longest = (0..self.cylinders.len()).max_by(|a, b| stroke(a).total_cmp(&stroke(b)));
-        longest.map_or(Size::REFERENCE, |cylinder| self.cylinder_size(cylinder))
+        let cylinders = (0..self.cylinders.len()).filter(|&cylinder| !self.cylinders[cylinder].is_motor());
+        let longest = cylinders.max_by(|a, b| stroke(a).total_cmp(&stroke(b))).unwrap_or(0);
+        self.cylinder_size(longest)
     }
 
     /// Size of the part of the machine at `site`.
@@ -122,22 +147,37 @@ impl Machine {
     fn cylinder_size(&self, index: usize) -> Size {
         let Some(cylinder) = self.cylinders.get(index) else { return Size::REFERENCE };
         let stroke = rounded(cylinder.stroke / REFERENCE_STROKE);
-        if let Some(chambers) = &cylinder.chambers {
-            let area = chambers.cap_area.max(chambers.rod_area);
-            let speed = match self.supply {
-                Supply::PumpLine(line) => rounded(line.flow / area / REFERENCE_SPEED),
-                Supply::PressureSource(_) | Supply::None => 1.0,
+        let Some(chambers) = &cylinder.chambers else {
+            return match &cylinder.imposed_motion {
+                Some(motion) => {
+                    let area = rounded(motion.cap_area.max(motion.rod_area) / REFERENCE_AREA);
+                    Size { stroke, area, speed: stroke, lever: stroke, ..Size::REFERENCE }
+                }
+                None => Size { stroke, lever: stroke, ..Size::REFERENCE },
             };
-            let opening = rounded(chambers.maximum_orifice_area / REFERENCE_OPENING);
-            return Size { stroke, area: rounded(area / REFERENCE_AREA), opening, speed };
+        };
+        let area = chambers.cap_area.max(chambers.rod_area);
+        let pump_flow = match (self.supply, chambers.drive) {
+            (_, Drive::Pump { full_flow }) => Some(full_flow),
+            (Supply::PumpLine(line), _) => Some(line.flow),
+            (Supply::PressureSource(_) | Supply::None, _) => None,
+        };
+        let usual_speed = if cylinder.is_motor() { MOTOR_SPEED } else { REFERENCE_SPEED };
+        let speed = rounded(pump_flow.map_or(usual_speed, |flow| flow / area) / REFERENCE_SPEED);
+        let size = Size {
+            stroke,
+            area: rounded(area / REFERENCE_AREA),
+            opening: rounded(chambers.full_command() / REFERENCE_OPENING),
+            speed,
+            lever: stroke,
+            sliding: 1.0,
+        };
+        if !cylinder.is_motor() {
+            return size;
         }
-        match &cylinder.imposed_motion {
-            Some(motion) => {
-                let area = rounded(motion.cap_area.max(motion.rod_area) / REFERENCE_AREA);
-                Size { stroke, area, opening: 1.0, speed: stroke }
-            }
-            None => Size { stroke, ..Size::REFERENCE },
-        }
+        // A motor has no stroke: it turns in the time of the reference as far as it does at its usual speed.
+        let lever = rounded(cylinder.linkage.lever(0.0_f64).abs() / REFERENCE_LEVER);
+        Size { stroke: speed, lever, sliding: rounded(1.0 / MOTOR_RADIUS), ..size }
     }
 }
 
@@ -146,6 +186,7 @@ impl Machine {
 mod tests {
     use super::*;
     use crate::document::built_in;
+    use crate::machine::CommandUnit;
 
     #[test]
     fn machines_of_one_class_have_one_size() {
@@ -165,11 +206,11 @@ mod tests {
         let chambers = cylinder.chambers.as_mut().unwrap();
         chambers.cap_area *= 0.01;
         chambers.rod_area *= 0.01;
-        chambers.maximum_orifice_area = 5.0;
+        chambers.drive = Drive::Valve { full_command: 5.0, unit: CommandUnit::Volt };
         let Supply::PumpLine(line) = &mut machine.supply else { unreachable!() };
         line.flow *= 0.01;
         let size = machine.size();
-        assert_eq!(size, Size { stroke: 0.125, area: 1.0 / 128.0, opening: 32768.0, speed: 1.0 });
+        assert_eq!(size, Size { stroke: 0.125, area: 1.0 / 128.0, opening: 32768.0, lever: 0.125, ..Size::REFERENCE });
         assert_eq!(size.factor(Growth::FLOW_GAIN), 1.0 / 128.0 / 32768.0);
     }
 }

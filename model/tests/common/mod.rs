@@ -2,11 +2,12 @@
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 use excavator_model::Model;
-use excavator_model::document::{built_in, parse_catalogue};
+use excavator_model::document::{built_in, parse, parse_catalogue};
 use excavator_model::effects::{AnyEffect, Catalogue, Site};
 use excavator_model::equations::{Channel, Inputs, System};
 use excavator_model::machine::{Machine, Mechanism, PressureSource, Supply};
 use excavator_model::recording::Recording;
+use excavator_model::template::{Actuator, CylinderKind, DataSheet, DriveKind, Load, ValveCommand, model_text};
 
 /// Uniform random numbers that are the same on every machine (SplitMix64, Steele et al. 2014).
 pub struct Random(pub u64);
@@ -41,12 +42,62 @@ pub fn closed_centre() -> Model {
 }
 
 pub fn machines() -> Vec<Model> {
-    let mut models: Vec<Model> = ["zx30u-arm", "zx30u", "zx30u-bucket", "servo-bench", "emps"]
+    let mut models: Vec<Model> = ["zx30u-arm", "zx30u", "zx30u-bucket", "zx30u-excavator", "servo-bench", "emps"]
         .iter()
         .map(|name| built_in(name).unwrap())
         .collect();
     models.push(closed_centre());
+    models.extend(from_templates());
     models
+}
+
+/// A machine for each drive and actuator that no built-in model has, as its data sheet would make it: a pump-driven cylinder, a motor on a
+/// closed-centre valve, a load-sensing axis with an accumulator, a single-acting cylinder.
+pub fn from_templates() -> Vec<Model> {
+    let sheet = DataSheet {
+        name: "pump-driven".into(),
+        part: "axis".into(),
+        drive: DriveKind::Pump,
+        actuator: Actuator::Cylinder { bore: 0.08, rod: 0.045, stroke: 0.5, kind: CylinderKind::Differential },
+        load: Load::Mass { mass: 500.0, slope: 0.5 },
+        command: Some(ValveCommand::Area(1.15e-4)),
+        rated: None,
+        supply_pressure: Some(2e6),
+        pump_flow: Some(3e-4),
+        dead_volume: None,
+    };
+    let equal_areas = Actuator::Cylinder { bore: 0.08, rod: 0.045, stroke: 0.5, kind: CylinderKind::DoubleRod };
+    let single_acting = Actuator::Cylinder { bore: 0.05, rod: 0.03, stroke: 0.5, kind: CylinderKind::SingleActing };
+    let sheets = [
+        sheet.clone(),
+        DataSheet { name: "pump-driven-double-rod".into(), actuator: equal_areas, ..sheet.clone() },
+        DataSheet {
+            name: "motor".into(),
+            drive: DriveKind::Valve,
+            actuator: Actuator::Motor { displacement: 8e-6, ratio: 10.0 },
+            load: Load::Rotor { inertia: 40.0, torque: 50.0 },
+            supply_pressure: Some(1e7),
+            ..sheet.clone()
+        },
+        DataSheet {
+            name: "load-sensing".into(),
+            drive: DriveKind::LoadSensing,
+            supply_pressure: Some(2e7),
+            pump_flow: Some(4e-4),
+            ..sheet.clone()
+        },
+        DataSheet {
+            name: "single-acting".into(),
+            drive: DriveKind::Valve,
+            actuator: single_acting,
+            supply_pressure: Some(1e7),
+            ..sheet
+        },
+    ];
+    sheets
+        .iter()
+        .map(|sheet| parse(&sheet.name, &model_text(sheet).unwrap(), &Catalogue::built_in()).unwrap())
+        .collect()
 }
 
 /// The built-in effects, and formula effects: built-in ones written as formulas, and laws that no catalogue has.
@@ -102,7 +153,8 @@ pub fn label(model: &Model, effect: usize) -> String {
 
 /// Parameter values within 30 % of the model's; none zero.
 pub fn random_parameters(model: &Model, random: &mut Random) -> Vec<f64> {
-    let chain = matches!(&model.machine.mechanism, Mechanism::PlanarChain { link_lengths } if link_lengths.len() > 1);
+    let chain =
+        matches!(&model.machine.mechanism, Mechanism::PlanarChain { link_lengths, .. } if link_lengths.len() > 1);
     model
         .parameters()
         .map(|(_, parameter)| {
@@ -119,7 +171,7 @@ pub fn random_state(system: &System<'_>, random: &mut Random) -> Vec<f64> {
     let layout = system.layout();
     let mut state = vec![0.0; layout.len];
     for (index, cylinder) in system.model().machine.cylinders.iter().enumerate() {
-        let reach = cylinder.stroke / 2.0 + 1e-3;
+        let reach = cylinder.usual_travel() / 2.0 + 1e-3;
         let sides = [-reach, -reach + 2e-3, reach - 2e-3, reach];
         let displacement = match random.between(0.0, 4.0) as usize {
             0 => random.between(sides[0], sides[1]),

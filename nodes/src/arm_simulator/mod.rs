@@ -18,5 +18,5 @@ use excavator_model::Model;
 /// Largest orifice area of each cylinder's valve, m²; zero where it has none.
 fn valve_limits(model: &Model) -> Vec<f64> {
     let cylinders = model.machine.cylinders.iter();
-    cylinders.map(|cylinder| cylinder.chambers.map_or(0.0, |chambers| chambers.maximum_orifice_area)).collect()
+    cylinders.map(|cylinder| cylinder.chambers.map_or(0.0, |chambers| chambers.full_command())).collect()
 }

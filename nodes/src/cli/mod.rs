@@ -12,7 +12,7 @@ pub use offline::*;
 /// Which physics is your hydraulic arm's model missing?
 ///
 /// Compare a model with recordings, see where it fails, learn which physical effect is missing, add it, and watch the
-/// error fall. Models are built-in names (zx30u-arm, zx30u, zx30u-bucket, servo-bench, emps) or TOML files; bags are rosbag2 folders with MCAP
+/// error fall. Models are built-in names (zx30u-arm, zx30u, zx30u-bucket, zx30u-excavator, servo-bench, emps) or TOML files; bags are rosbag2 folders with MCAP
 /// or SQLite3 storage, or bare .mcap or .db3 files. With a map, any topic or column can be a signal.
 #[derive(Debug, Parser)]
 #[command(name = "excavator", version)]

@@ -1,0 +1,64 @@
+//! A valve that connects the side at lower pressure to the charge line.
+
+use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
+use crate::equations::Situation;
+use crate::equations::smooth::rounded_step;
+use crate::machine::Machine;
+
+/// A shuttle, or pilot-operated check valves: the side at lower pressure is open to the charge line, both ways, so that a cylinder of unequal areas can run in a closed circuit.
+pub struct ShuttleValve;
+
+static CARD: Card = Card {
+    name: text("shuttle_valve"),
+    acts_on: ActsOn::Valve,
+    needs: Needs::Pump,
+    family: Family::Construction,
+    summary: text(
+        "The side at lower pressure is open to the charge line, which takes or gives what unequal areas need.",
+    ),
+    equation: text("Q+ = k s(p- - p+) (pp - p+), Q- = k s(p+ - p-) (pp - p-), s(x) = 1/(1 + exp(-2 x/w)), w = 0.1 MPa"),
+    source: text("hydraulics practice (inverse shuttle, pilot-operated check valves); textbook (e.g. Murrenhoff)"),
+    shows: text(
+        "The side at lower pressure stays at charge pressure while the piston moves either way; the sides change over where the load turns round.",
+    ),
+    experiment: text("Drive with the load pushing and with it pulling."),
+    energy: text("Throttles between charge line and chamber."),
+};
+
+static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+    name: text("shuttle_gain"),
+    symbol: text("k"),
+    unit: text("m3/(s Pa)"),
+    meaning: text("flow per pressure difference"),
+    kind: Kind::Linear,
+    growth: Growth::FLOW,
+    minimum: 0.0,
+    maximum: 1e-5,
+    typical: 1e-9,
+    start: Start::at(&[1e-9]),
+    prior: None,
+}];
+
+impl Physics for ShuttleValve {
+    fn card(&self) -> &Card {
+        &CARD
+    }
+
+    fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
+        PARAMETERS
+    }
+
+    fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let piston = &now.pistons[cylinder];
+        let difference = (piston.rod_pressure - piston.cap_pressure) / CHANGEOVER;
+        let cap = parameters[0] * rounded_step(difference) * (now.pump_pressure - piston.cap_pressure);
+        let rod = parameters[0] * rounded_step(-difference) * (now.pump_pressure - piston.rod_pressure);
+        rows.cap_flow[cylinder] += cap;
+        rows.rod_flow[cylinder] += rod;
+        rows.pump_flow -= cap + rod;
+    }
+}
+
+/// Pressure difference over which the shuttle changes over, Pa: the force of its springs.
+const CHANGEOVER: f64 = 1e5;

@@ -1,0 +1,197 @@
+//! What an engineer knows of a machine before it is measured.
+
+/// A data sheet. All in SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataSheet {
+    /// Name of the machine, a word.
+    pub name: String,
+    /// Name of the cylinder or motor, a word.
+    pub part: String,
+    /// What drives it.
+    pub drive: DriveKind,
+    /// What is driven.
+    pub actuator: Actuator,
+    /// What it moves.
+    pub load: Load,
+    /// Input at which the valve is fully open; for drives with a valve.
+    pub command: Option<ValveCommand>,
+    /// Flow of the fully open valve; estimated where it is left out.
+    pub rated: Option<RatedFlow>,
+    /// Pressure of the supply, Pa: of a valve on constant pressure, of the charge line of a pump drive, or the cut-off of a load-sensing
+    /// pump.
+    pub supply_pressure: Option<f64>,
+    /// Largest flow of the pump, m³/s.
+    pub pump_flow: Option<f64>,
+    /// Oil volume between valve and each chamber, m³: hoses and ports. A tenth of the stroke's volume where it is left out.
+    pub dead_volume: Option<f64>,
+}
+
+/// What drives a cylinder or motor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DriveKind {
+    /// A valve on a supply of constant pressure.
+    Valve,
+    /// An open-centre valve on a pump of constant flow.
+    OpenCentre,
+    /// A valve with a pressure compensator on a load-sensing pump.
+    LoadSensing,
+    /// A pump of its own, in a closed circuit.
+    Pump,
+    /// A force that is measured.
+    Force,
+    /// A testing machine that moves the rod, whatever force that takes.
+    ImposedMotion,
+}
+
+/// What is driven.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Actuator {
+    /// A cylinder.
+    Cylinder {
+        /// Diameter of the piston, m.
+        bore: f64,
+        /// Diameter of the rod, m.
+        rod: f64,
+        /// Stroke, m.
+        stroke: f64,
+        /// How it is built.
+        kind: CylinderKind,
+    },
+    /// A hydraulic motor.
+    Motor {
+        /// Volume per angle of the shaft, m³/rad.
+        displacement: f64,
+        /// Turns of the shaft for one of the load; angle per travel in rad/m for a load that moves along a line.
+        ratio: f64,
+    },
+}
+
+/// How a cylinder is built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CylinderKind {
+    /// A rod on one side.
+    Differential,
+    /// A rod through both sides: equal areas.
+    DoubleRod,
+    /// Oil on the cap side only; the load brings it back.
+    SingleActing,
+}
+
+/// What is moved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Load {
+    /// A mass along a line.
+    Mass {
+        /// Mass with piston and rod, kg.
+        mass: f64,
+        /// Sine of the slope: 1 where extension lifts it, 0 on the level.
+        slope: f64,
+    },
+    /// A link that turns about a joint, driven by a cylinder pinned across it.
+    Link {
+        /// Distance from the joint to the cylinder's foot pin, m.
+        foot_arm: f64,
+        /// Distance from the joint to the rod's pin, m.
+        rod_arm: f64,
+        /// Distance from pin to pin at mid-stroke, m.
+        pin_length: f64,
+        /// Moment of inertia about the joint, kg m².
+        inertia: f64,
+        /// Mass times distance of its centre of gravity from the joint, kg m.
+        gravity_moment: f64,
+        /// Whether extension lowers the joint's angle.
+        mirrored: bool,
+    },
+    /// An inertia that turns about a fixed axis.
+    Rotor {
+        /// Moment of inertia on the load's side of the gear, kg m².
+        inertia: f64,
+        /// Torque of a hanging load on the same side, N m.
+        torque: f64,
+    },
+}
+
+/// Input at which a valve is fully open.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ValveCommand {
+    /// Orifice area, m².
+    Area(f64),
+    /// Voltage, V.
+    Volts(f64),
+    /// Current, A.
+    Amperes(f64),
+    /// A pure number: 1, or 100 for per cent.
+    Share(f64),
+}
+
+impl ValveCommand {
+    /// The number, in its unit.
+    pub fn value(self) -> f64 {
+        match self {
+            ValveCommand::Area(value)
+            | ValveCommand::Volts(value)
+            | ValveCommand::Amperes(value)
+            | ValveCommand::Share(value) => value,
+        }
+    }
+}
+
+/// Flow of a fully open valve over one of its edges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RatedFlow {
+    /// Flow, m³/s.
+    pub flow: f64,
+    /// Pressure drop over one edge, Pa.
+    pub drop: f64,
+}
+
+/// A number that nothing can stand in for.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("a machine with this drive needs {what}")]
+pub struct MissingFromDataSheet {
+    /// What is missing, for people.
+    pub what: &'static str,
+}
+
+impl DataSheet {
+    /// Pressure that the machine works at, Pa.
+    pub(super) fn working_pressure(&self) -> f64 {
+        match self.drive {
+            // The charge line of a closed circuit has nothing of what the pump gives.
+            DriveKind::Pump => USUAL_PRESSURE,
+            _ => self.supply_pressure.unwrap_or(USUAL_PRESSURE),
+        }
+    }
+
+    /// Areas of cap and rod side, m² (m³/rad for a motor).
+    pub(super) fn areas(&self) -> [f64; 2] {
+        match self.actuator {
+            Actuator::Cylinder { bore, rod, kind, .. } => {
+                let [piston, stem] = [bore, rod].map(|diameter| std::f64::consts::PI / 4.0 * diameter * diameter);
+                match kind {
+                    CylinderKind::DoubleRod => [piston - stem; 2],
+                    CylinderKind::Differential | CylinderKind::SingleActing => [piston, piston - stem],
+                }
+            }
+            Actuator::Motor { displacement, .. } => [displacement; 2],
+        }
+    }
+
+    /// Flow that the actuator is made for, m³/s.
+    pub(super) fn usual_flow(&self) -> f64 {
+        let by_speed = match self.actuator {
+            Actuator::Cylinder { stroke, .. } => stroke / STROKE_TIME,
+            Actuator::Motor { .. } => MOTOR_SPEED,
+        };
+        self.pump_flow.or(self.rated.map(|rated| rated.flow)).unwrap_or(by_speed * self.areas()[0])
+    }
+}
+
+/// A usual working pressure of mobile and bench hydraulics, Pa.
+const USUAL_PRESSURE: f64 = 1e7;
+
+/// Time in which a piston usually makes its stroke, s.
+const STROKE_TIME: f64 = 2.0;
+
+/// Usual speed of a motor's shaft, rad/s: 500 revolutions per minute.
+const MOTOR_SPEED: f64 = 50.0;
