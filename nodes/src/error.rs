@@ -60,6 +60,8 @@ pub enum VerbError {
     Laws { wrong: usize },
     #[error("{oddities} {} odd in {name}", if *oddities == 1 { "thing is" } else { "things are" })]
     OddModel { name: String, oddities: usize },
+    #[error("no model: {0}")]
+    NewModel(String),
     #[error("--catalogue {}: {reason}", path.display())]
     Catalogue { path: PathBuf, reason: String },
     #[error("{} is not a profile: {reason}", path.display())]

@@ -1,12 +1,14 @@
 //! The command line.
 
 mod live;
+mod new_model;
 mod numbers;
 mod offline;
 
 use clap::{Parser, Subcommand};
 
 pub use live::*;
+pub use new_model::*;
 pub use offline::*;
 
 /// Which physics is your hydraulic arm's model missing?
@@ -44,7 +46,7 @@ pub enum Verb {
     Refine(RefineArguments),
     /// The catalogue of physical effects, or one of them in full.
     Effects(EffectsArguments),
-    /// Check a model file; schema and reference page of such files.
+    /// Write a new model file, check one; schema and reference page of such files.
     #[command(subcommand)]
     Model(ModelVerb),
     /// What is in a bag: topics, clocks, signals, and what is missing for identification.

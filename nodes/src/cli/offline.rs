@@ -6,6 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand, ValueEnum};
 use excavator_identification::gate::OVERRULABLE;
 
+use super::NewModelArguments;
 use super::numbers::{positive, profile_duration, stroke_margin};
 
 #[derive(Debug, Args)]
@@ -15,7 +16,7 @@ pub struct Json {
     pub json: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, Copy, Args)]
+#[derive(Debug, Default, Clone, Copy, Args)]
 pub struct Overwriting {
     /// Replace files that exist; never one that this command reads.
     #[arg(long)]
@@ -289,6 +290,8 @@ pub struct EffectsArguments {
 
 #[derive(Debug, Subcommand)]
 pub enum ModelVerb {
+    /// Write a commented model file for a machine of which you have the data sheet: by options, or by five questions.
+    New(Box<NewModelArguments>),
     /// Read a model, try the machine, and tell which of its numbers are odd.
     Check(ModelCheckArguments),
     /// Print the JSON schema of the model file, for editors that complete and check TOML.

@@ -11,6 +11,7 @@ mod identify;
 mod import;
 mod info;
 mod model;
+mod new_model;
 mod node;
 mod refine;
 mod reindex;

@@ -8,7 +8,7 @@ use excavator_model::machine::{Cylinder, Supply};
 use excavator_model::{Model, addition_name, site_name};
 use serde_json::{Value, json};
 
-use super::print;
+use super::{new_model, print};
 use crate::cli::{ModelCheckArguments, ModelChoice, ModelVerb};
 use crate::error::VerbError;
 use crate::output::{number, write_json};
@@ -17,6 +17,7 @@ use crate::sources;
 
 pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {
     match verb {
+        ModelVerb::New(arguments) => new_model::run(arguments),
         ModelVerb::Check(arguments) => check(arguments),
         ModelVerb::Schema(own) => {
             print(&serde_json::to_string_pretty(&schema(&sources::catalogue(own)?))?);

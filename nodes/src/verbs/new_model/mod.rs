@@ -1,0 +1,46 @@
+//! `excavator model new`
+
+mod number;
+mod questions;
+mod sheet;
+
+use std::io::IsTerminal;
+use std::path::Path;
+
+use excavator_model::template::model_text;
+
+use super::print;
+use crate::cli::NewModelArguments;
+use crate::error::VerbError;
+use crate::outputs::{self, Inputs};
+
+pub fn run(arguments: &NewModelArguments) -> Result<(), VerbError> {
+    outputs::check(&[("-o", arguments.output.as_deref())], &Inputs::default(), arguments.overwriting)?;
+    let answered;
+    let arguments = if arguments.drive.is_some() {
+        arguments
+    } else if std::io::stdin().is_terminal() && std::io::stderr().is_terminal() {
+        answered = questions::ask(arguments.clone(), &mut std::io::stdin().lock(), &mut std::io::stderr())?;
+        &answered
+    } else {
+        return Err(VerbError::NewModel(
+            "say what drives it (--drive), or answer the questions at a terminal".to_string(),
+        ));
+    };
+    let text = model_text(&sheet::data_sheet(arguments)?).map_err(|error| VerbError::NewModel(error.to_string()))?;
+    match arguments.output.as_deref() {
+        Some(path) if path != Path::new("-") => {
+            outputs::write(path, &text, arguments.overwriting)?;
+            print(&format!(
+                "{}: a model of {} with {} of cylinder \"{}\"; `excavator model check {}` tries it",
+                path.display(),
+                arguments.name,
+                "starts for the parameters",
+                arguments.part,
+                path.display()
+            ));
+            Ok(())
+        }
+        _ => outputs::standard_output(&text),
+    }
+}
