@@ -22,6 +22,7 @@
 //! # Ok::<(), excavator_bags::BagError>(())
 //! ```
 
+pub mod can;
 pub mod cdr;
 mod container;
 pub mod dynamic;

@@ -104,6 +104,8 @@ pub enum VerbError {
     RecordingGone { bag: PathBuf, files: String },
     #[error("cannot print the result: {0}")]
     NotPrinted(String),
+    #[error("a map is guessed from one file, not from {0}; the others of the same recording take the same map")]
+    GuessOfSeveral(usize),
     #[error("cannot add {0} twice")]
     AddedTwice(String),
 }

@@ -11,7 +11,7 @@ cantools = pytest.importorskip("cantools", reason="PyPI's cantools is not instal
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 EXAMPLE = REPOSITORY / "config" / "can"
-VECTORS = REPOSITORY / "nodes" / "tests" / "can"
+VECTORS = REPOSITORY / "bags" / "tests" / "can"
 
 
 def test_the_vectors_are_what_cantools_reads():

@@ -1,7 +1,7 @@
 //! Definitions of common interfaces for bags without any: SQLite3 bags of ROS 2 Humble and before. Comments are left out.
 
 /// Name as `package/Type` and fields.
-pub(super) const TEXTS: [(&str, &str); 57] = [
+pub(super) const TEXTS: [(&str, &str); 58] = [
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec"),
     ("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec"),
     ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id"),
@@ -65,6 +65,10 @@ pub(super) const TEXTS: [(&str, &str); 57] = [
          float32 capacity\nfloat32 design_capacity\nfloat32 percentage\nuint8 power_supply_status\n\
          uint8 power_supply_health\nuint8 power_supply_technology\nbool present\nfloat32[] cell_voltage\n\
          float32[] cell_temperature\nstring location\nstring serial_number",
+    ),
+    (
+        "can_msgs/Frame",
+        "std_msgs/Header header\nuint32 id\nbool is_rtr\nbool is_extended\nbool is_error\nuint8 dlc\nuint8[8] data",
     ),
     ("control_msgs/InterfaceValue", "string[] interface_names\nfloat64[] values"),
     (

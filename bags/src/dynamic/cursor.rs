@@ -86,6 +86,11 @@ impl<'b> Cursor<'b> {
         Ok(bytes.strip_suffix(&[0]).unwrap_or(bytes))
     }
 
+    /// So many bytes.
+    pub fn octets(&mut self, count: usize) -> Result<&'b [u8], CdrError> {
+        self.take(count)
+    }
+
     /// How many elements come; for a sequence its length is read.
     pub fn count(&mut self, count: Count) -> Result<usize, CdrError> {
         match count {

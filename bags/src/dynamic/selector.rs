@@ -67,6 +67,41 @@ impl Selector {
         if is_time { Ok(selector) } else { Err(PathError::NotATime { path: path.to_string() }) }
     }
 
+    /// Looks up an array of bytes in the message itself.
+    ///
+    /// # Errors
+    /// [`PathError::NoField`], [`PathError::NotANumber`].
+    pub fn octets(layout: &Layout, field: &str) -> Result<Selector, PathError> {
+        let structure = layout.structure(0);
+        let members = structure.map_or(&[][..], |structure| &structure.members);
+        let Some(number) = members.iter().position(|member| member.name == field) else {
+            return Err(PathError::NoField {
+                type_name: structure.map_or(String::new(), |structure| structure.name.clone()),
+                wanted: field.to_string(),
+                existing: members.iter().map(|member| member.name.clone()).collect(),
+            });
+        };
+        let member = &members[number];
+        if member.kind != Kind::Primitive(Primitive::U8) || member.count == Count::One {
+            return Err(PathError::NotANumber { path: field.to_string(), found: "no array of bytes".to_string() });
+        }
+        let steps = vec![ResolvedStep { member: number, index: ResolvedIndex::Single }];
+        Ok(Selector { steps, kind: member.kind.clone() })
+    }
+
+    /// The bytes of the array in a message, for a selector of [`Selector::octets`].
+    ///
+    /// # Errors
+    /// As [`Selector::read`].
+    pub fn read_octets<'b>(&self, layout: &Layout, message: &'b [u8]) -> Result<&'b [u8], CdrError> {
+        let mut cursor = Cursor::new(message)?;
+        let (Some(step), Some(structure)) = (self.steps.first(), layout.structure(0)) else { return Ok(&[]) };
+        cursor.skip_members(layout, 0, step.member)?;
+        let Some(member) = structure.members.get(step.member) else { return Ok(&[]) };
+        let count = cursor.count(member.count)?;
+        cursor.octets(count)
+    }
+
     fn resolve(layout: &Layout, path: &FieldPath) -> Result<Selector, PathError> {
         let mut steps = Vec::new();
         let mut kind = Kind::Struct(0);

@@ -4,14 +4,14 @@ use std::path::Path;
 
 use excavator_model::recording::Recording;
 
-use super::document::{Resampling, SignalSource};
+use super::document::{SignalSource, TopicMap};
 use super::error::MapError;
 use super::resample::{Policy, resample};
-use super::signal::SignalKind;
 use super::track::Track;
+use super::wanted::{Computed, Wanted};
 use crate::reading::{ReadReport, count_late, gaps, steps_back};
 
-/// What was read for one signal.
+/// What was read for one signal or name.
 pub(super) enum Samples {
     /// Values with their stamps, ns.
     Timed(Vec<(i64, f64)>),
@@ -19,15 +19,64 @@ pub(super) enum Samples {
     Constant(f64),
 }
 
-/// Brings every signal onto the clock (stamps in ns, in the order of the data).
+/// A signal or name with what was read for it.
+pub(super) struct Input<'m> {
+    label: String,
+    signal: Option<&'m SignalSource>,
+    /// How it is brought onto the clock; `None` for a constant.
+    wanted: Option<Wanted<'m>>,
+    samples: Samples,
+}
+
+impl<'m> Input<'m> {
+    /// What was read for one that the map asks for.
+    pub fn read(wanted: Wanted<'m>, samples: Samples) -> Input<'m> {
+        Input { label: wanted.label.clone(), signal: wanted.signal, wanted: Some(wanted), samples }
+    }
+
+    /// Its values on the clock (ns, ascending).
+    fn on(self, clock: &[i64], report: &mut ReadReport) -> Vec<f64> {
+        match (self.samples, self.wanted) {
+            (Samples::Constant(value), _) => vec![value; clock.len()],
+            (Samples::Timed(_), None) => vec![f64::NAN; clock.len()],
+            (Samples::Timed(samples), Some(wanted)) => {
+                let track = Track::new(samples);
+                let policy = Policy::of(wanted.resampling(), wanted.from.maximum_gap, &track);
+                let values = resample(&track, clock, policy);
+                note_missing(&self.label, &track, &values, policy, report);
+                values
+            }
+        }
+    }
+}
+
+/// Signals of which the map itself gives the value.
+///
+/// # Errors
+/// [`MapError::BadQuantity`], [`MapError::BadNumber`].
+pub(super) fn constants(map: &TopicMap) -> Result<Vec<Input<'_>>, MapError> {
+    let mut constants = Vec::new();
+    for source in &map.signals {
+        if let Some(value) = &source.value {
+            let label = source.signal.to_string();
+            let value = value.to_si(&label, "value", source.signal.kind.dimension())?;
+            constants.push(Input { label, signal: Some(source), wanted: None, samples: Samples::Constant(value) });
+        }
+    }
+    Ok(constants)
+}
+
+/// Brings everything onto the clock (stamps in ns, in the order of the data), and computes what the map computes.
 ///
 /// # Errors
 /// [`MapError::EmptyClock`].
 pub(super) fn assemble(
-    source: &Path,
+    path: &Path,
     clock_name: &str,
     mut stamps: Vec<i64>,
-    signals: Vec<(&SignalSource, Samples)>,
+    map: &TopicMap,
+    inputs: Vec<Input>,
+    computed: &[Computed],
     report: &mut ReadReport,
 ) -> Result<Recording, MapError> {
     report.reordered = count_late(&stamps);
@@ -37,27 +86,45 @@ pub(super) fn assemble(
     stamps.dedup();
     report.duplicates = (count - stamps.len()) as u64;
     let Some(&start) = stamps.first() else {
-        return Err(MapError::EmptyClock { path: source.to_path_buf(), clock: clock_name.to_string() });
+        return Err(MapError::EmptyClock { path: path.to_path_buf(), clock: clock_name.to_string() });
     };
     let time: Vec<f64> = stamps.iter().map(|&stamp| stamp.saturating_sub(start) as f64 / 1e9).collect();
-    let mut recording = Recording::unmeasured(&source.display().to_string(), time, &[]);
+    let mut recording = Recording::unmeasured(&path.display().to_string(), time, &[]);
     recording.start_nanoseconds = start;
-    for (source, samples) in signals {
-        let values = match samples {
-            Samples::Constant(value) => vec![value; stamps.len()],
-            Samples::Timed(samples) => {
-                let track = Track::new(samples);
-                let usual = if source.signal.kind == SignalKind::OrificeCommand {
-                    Resampling::Hold
-                } else {
-                    Resampling::Linear
-                };
-                let policy = Policy::of(source.resample.unwrap_or(usual), source.maximum_gap, &track);
-                let values = resample(&track, &stamps, policy);
-                note_missing(&source.signal.to_string(), &track, &values, policy, report);
-                values
-            }
-        };
+    // Cylinders come in the order of the map.
+    for source in &map.signals {
+        source.signal.column(&mut recording);
+    }
+    let is_used = |label: &str| computed.iter().any(|computed| computed.inputs.iter().any(|input| input == label));
+    let mut used: Vec<(String, Vec<f64>)> = Vec::new();
+    for input in inputs {
+        let (label, signal) = (input.label.clone(), input.signal);
+        let is_used = is_used(&label);
+        if signal.is_none() && !is_used {
+            continue;
+        }
+        let values = input.on(&stamps, report);
+        if is_used {
+            used.push((label, values.clone()));
+        }
+        if let Some(source) = signal {
+            *source.signal.column(&mut recording) = values;
+        }
+    }
+    for Computed { source, formula, inputs, conversion } in computed {
+        // Names of the map come after signals, and are meant where both have the same.
+        let column =
+            |label: &String| used.iter().rfind(|(known, _)| known == label).map_or(&[][..], |(_, values)| values);
+        let columns: Vec<&[f64]> = inputs.iter().map(column).collect();
+        let values = formula.evaluate(&recording.time, &columns);
+        let values: Vec<f64> = values.into_iter().map(|value| conversion.apply(value)).collect();
+        let missing = values.iter().filter(|value| value.is_nan()).count();
+        if missing > 0 {
+            let (signal, samples) = (&source.signal, values.len());
+            report
+                .notes
+                .push(format!("{signal} has no value at {missing} of {samples} samples: its formula has none there"));
+        }
         *source.signal.column(&mut recording) = values;
     }
     report.gaps = gaps(&recording);

@@ -2,7 +2,7 @@
 
 use super::document::SignalSource;
 use super::error::MapError;
-use super::unit::Unit;
+use super::unit::{Dimension, Unit};
 
 /// Value of the signal = `factor` · number in SI units + `offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,11 +22,7 @@ impl Conversion {
         let dimension = source.signal.kind.dimension();
         let unit = match source.unit.as_deref().or(heading) {
             None => Unit::si(dimension),
-            Some(name) => Unit::named(name).ok_or_else(|| MapError::UnknownUnit {
-                signal: signal.clone(),
-                unit: name.to_string(),
-                known: Unit::names(),
-            })?,
+            Some(name) => unit_named(&signal, name)?,
         };
         let scale = match &source.scale {
             Some(scale) => scale.ratio_to_si(&signal, unit.dimension, dimension)?,
@@ -55,10 +51,30 @@ impl Conversion {
         Ok(Conversion { unit, factor: sign * scale, offset })
     }
 
+    /// The conversion of a name in formulas: to SI where it has a unit, else none. `place` is for messages.
+    ///
+    /// # Errors
+    /// [`MapError::UnknownUnit`].
+    pub(super) fn of_name(place: &str, unit: Option<&str>) -> Result<Conversion, MapError> {
+        let unit = match unit {
+            None => Unit::si(Dimension::Number),
+            Some(name) => unit_named(place, name)?,
+        };
+        Ok(Conversion { unit, factor: 1.0, offset: 0.0 })
+    }
+
     /// The value of the signal; what is not finite is not measured.
     pub fn apply(&self, number: f64) -> f64 {
         let value = self.unit.to_si(number) * self.factor;
         let value = if self.offset == 0.0 { value } else { value + self.offset };
         if value.is_finite() { value } else { f64::NAN }
     }
+}
+
+fn unit_named(place: &str, name: &str) -> Result<Unit, MapError> {
+    Unit::named(name).ok_or_else(|| MapError::UnknownUnit {
+        signal: place.to_string(),
+        unit: name.to_string(),
+        known: Unit::names(),
+    })
 }

@@ -1,6 +1,6 @@
 //! A topic map as text.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::conversion::Conversion;
 use super::error::MapError;
+use super::join::Join;
+use super::named::NamedColumn;
 use super::quantity::Quantity;
 use super::signal::SignalName;
 use crate::dynamic::FieldPath;
@@ -26,12 +28,21 @@ pub struct TopicMap {
     /// `.msg` files with types that neither the bag nor we define; relative to the map's own file.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub definitions: Vec<PathBuf>,
+    /// DBC file that says where signals stand in CAN frames; relative to the map's own file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dbc: Option<PathBuf>,
     /// At which times the recording has samples.
     #[serde(default, skip_serializing_if = "is_default")]
     pub clock: ClockSource,
     /// How a text table is laid out; most of it is found out without.
     #[serde(default, skip_serializing_if = "is_default")]
     pub table: TableFormat,
+    /// Other tables of the same time, whose columns are available too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub join: Vec<Join>,
+    /// Names for columns and fields, for formulas.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub names: BTreeMap<String, NamedColumn>,
     /// The signals; what is not here is not measured.
     #[serde(default)]
     pub signals: Vec<SignalSource>,
@@ -140,10 +151,19 @@ pub struct SignalSource {
     /// Bags: the field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field: Option<FieldPath>,
+    /// Topics of CAN frames: the message of the DBC file; `field` is a signal of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub message: Option<String>,
     /// Tables: the column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub column: Option<ColumnName>,
-    /// Neither: a known constant, in SI or with its unit.
+    /// The joined file that the column is in; without, the data themselves, else the joined file that has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<PathBuf>,
+    /// None of these: a formula over columns, names and other signals.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula: Option<String>,
+    /// None of these: a known constant, in SI or with its unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<Quantity>,
     /// Unit of the numbers; SI when not given.
@@ -180,7 +200,10 @@ impl SignalSource {
             signal,
             topic: None,
             field: None,
+            message: None,
             column: None,
+            file: None,
+            formula: None,
             value: None,
             unit: None,
             scale: None,
@@ -195,24 +218,44 @@ impl SignalSource {
 
     fn check(&self) -> Result<(), MapError> {
         let signal = self.signal.to_string();
-        let sources = (self.topic.is_some(), self.field.is_some(), self.column.is_some(), self.value.is_some());
-        match sources {
-            (true, true, false, false) | (false, false, true, false) => {}
-            (false, false, false, true) => {}
-            _ => return Err(MapError::NoSource { signal }),
+        let is_field = self.topic.is_some() && self.field.is_some();
+        let sources = [is_field, self.column.is_some(), self.formula.is_some(), self.value.is_some()];
+        let is_half_a_field = self.topic.is_some() != self.field.is_some();
+        if is_half_a_field || sources.iter().filter(|given| **given).count() != 1 {
+            return Err(MapError::NoSource { signal });
         }
-        if let Some(gap) = self.maximum_gap.filter(|gap| !(gap.is_finite() && *gap > 0.0)) {
-            return Err(MapError::BadNumber { place: signal, key: "maximum_gap", found: gap, wanted: "positive" });
-        }
-        if let Some(shift) = self.time_shift.filter(|shift| shift.is_nan() || shift.abs() > 1e6) {
-            return Err(MapError::BadNumber { place: signal, key: "time_shift", found: shift, wanted: "under 1e6 s" });
-        }
-        // The heading of a column may still name the unit, so a missing one is no fault here.
-        if self.column.is_none() || self.unit.is_some() {
+        check_place(&signal, self.message.is_some() && !is_field, self.file.is_some() && self.column.is_none())?;
+        check_times(&signal, self.maximum_gap, self.time_shift)?;
+        // The heading of a column or the DBC file may still name the unit, so a missing one is no fault here.
+        if self.column.is_none() && self.message.is_none() || self.unit.is_some() {
             Conversion::of(self, None)?;
         }
         Ok(())
     }
+}
+
+/// Refuses keys that say more about a place than its kind has.
+pub(super) fn check_place(place: &str, message_of_nothing: bool, file_of_nothing: bool) -> Result<(), MapError> {
+    for (wrong, key, wanted) in
+        [(message_of_nothing, "message", "`topic` and `field`"), (file_of_nothing, "file", "`column`")]
+    {
+        if wrong {
+            return Err(MapError::KeyWithout { place: place.to_string(), key, wanted });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses times (s) that make no sense.
+pub(super) fn check_times(place: &str, maximum_gap: Option<f64>, time_shift: Option<f64>) -> Result<(), MapError> {
+    let bad = |key, found, wanted| MapError::BadNumber { place: place.to_string(), key, found, wanted };
+    if let Some(gap) = maximum_gap.filter(|gap| !(gap.is_finite() && *gap > 0.0)) {
+        return Err(bad("maximum_gap", gap, "positive"));
+    }
+    if let Some(shift) = time_shift.filter(|shift| shift.is_nan() || shift.abs() > 1e6) {
+        return Err(bad("time_shift", shift, "under 1e6 s"));
+    }
+    Ok(())
 }
 
 impl TopicMap {
@@ -225,8 +268,8 @@ impl TopicMap {
         let mut map: TopicMap =
             text.parse().map_err(|source| MapError::InFile { path: path.to_path_buf(), source: Box::new(source) })?;
         let folder = path.parent().unwrap_or(Path::new("."));
-        for definition in &mut map.definitions {
-            *definition = folder.join(&*definition);
+        for beside in map.definitions.iter_mut().chain(&mut map.dbc) {
+            *beside = folder.join(&*beside);
         }
         Ok(map)
     }
@@ -262,12 +305,30 @@ impl TopicMap {
                 return Err(MapError::SignalTwice { signal: source.signal.to_string() });
             }
             source.check()?;
+            if source.message.is_some() && self.dbc.is_none() {
+                return Err(MapError::NoDbc { place: source.signal.to_string() });
+            }
         }
-        if let Some(rate) = self.clock.rate.filter(|rate| !(1e-6..=1e7).contains(rate)) {
-            let place = "[clock]".to_string();
-            return Err(MapError::BadNumber { place, key: "rate", found: rate, wanted: "between 1e-6 and 1e7 Hz" });
+        for (name, named) in &self.names {
+            named.check(name)?;
+            if named.message.is_some() && self.dbc.is_none() {
+                return Err(MapError::NoDbc { place: format!("[names] {name}") });
+            }
         }
-        Ok(())
+        self.join.iter().try_for_each(Join::check)?;
+        self.clock.check("[clock]")
+    }
+}
+
+impl ClockSource {
+    pub(super) fn check(&self, place: &str) -> Result<(), MapError> {
+        match self.rate.filter(|rate| !(1e-6..=1e7).contains(rate)) {
+            Some(found) => {
+                let wanted = "between 1e-6 and 1e7 Hz";
+                Err(MapError::BadNumber { place: place.to_string(), key: "rate", found, wanted })
+            }
+            None => Ok(()),
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use excavator_model::formula::FormulaError;
 use thiserror::Error;
 
 use super::unit::Dimension;
@@ -41,10 +42,141 @@ pub enum MapError {
         signal: String,
     },
     /// Not exactly one source.
-    #[error("{signal}: give either `topic` and `field`, or `column`, or `value`")]
+    #[error("{signal}: give either `topic` and `field`, or `column`, or `formula`, or `value`")]
     NoSource {
         /// The signal.
         signal: String,
+    },
+    /// A name that stands for nothing, or for two things.
+    #[error("{place}: give either a `column`, or `topic` and `field`")]
+    NoPlace {
+        /// The name.
+        place: String,
+    },
+    /// A name that no formula can write.
+    #[error("[names] \"{name}\" is no name: write it with letters, digits and _, as in p_hi")]
+    BadName {
+        /// The name.
+        name: String,
+    },
+    /// A key that says more about something that is not there.
+    #[error("{place}: `{key}` needs {wanted}")]
+    KeyWithout {
+        /// The signal, name or file.
+        place: String,
+        /// The key.
+        key: &'static str,
+        /// What it belongs to.
+        wanted: &'static str,
+    },
+    /// A formula that cannot be used.
+    #[error("{signal}: formula: {source}; it may use {}", known.join(", "))]
+    Formula {
+        /// The signal.
+        signal: String,
+        /// What is wrong with it, and where.
+        source: Box<FormulaError>,
+        /// The first names that there are.
+        known: Vec<String>,
+    },
+    /// A signal of a CAN frame in a map without DBC file.
+    #[error("{place}: a `message` needs a DBC file: put `dbc = \"FILE.dbc\"` at the top of the map")]
+    NoDbc {
+        /// The signal or name.
+        place: String,
+    },
+    /// A DBC file that cannot be used, or does not have what the map asks for.
+    #[error("{place}: {reason}")]
+    Dbc {
+        /// The signal, name or file.
+        place: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A message of the DBC file on a topic without frames.
+    #[error("{place}: topic {topic} carries {type_name}, not CAN frames; leave `message` out")]
+    NoFrames {
+        /// The signal or name.
+        place: String,
+        /// The topic.
+        topic: String,
+        /// Type of its messages.
+        type_name: String,
+    },
+    /// A file that the map does not join.
+    #[error("{place}: {} is not joined; the map joins {}", file.display(), listed(joined))]
+    NotJoined {
+        /// The signal or name.
+        place: String,
+        /// The file that it asks for.
+        file: PathBuf,
+        /// The joined files.
+        joined: Vec<PathBuf>,
+    },
+    /// A heading that several joined files have.
+    #[error("{place}: column \"{column}\" is in {}; say which with `file`", listed(files))]
+    Ambiguous {
+        /// The signal or name.
+        place: String,
+        /// The heading.
+        column: String,
+        /// The files.
+        files: Vec<PathBuf>,
+    },
+    /// Of two files only one says when it was.
+    #[error(
+        "{} and the data cannot be joined: only {} says when it was; give [[join]] `offset`, s from the first row of the data to \
+         its own",
+        file.display(),
+        if *is_dated { "the file" } else { "the data" }
+    )]
+    OneIsUndated {
+        /// The joined file.
+        file: PathBuf,
+        /// Whether the joined file has dates.
+        is_dated: bool,
+    },
+    /// Files that have no time in common.
+    #[error(
+        "{} has no time in common with the data: it is from {from:.3} s to {to:.3} s, the data from 0 s to {duration:.3} s; give \
+         [[join]] `offset`",
+        file.display()
+    )]
+    Apart {
+        /// The joined file.
+        file: PathBuf,
+        /// Its first row, s after the first of the data.
+        from: f64,
+        /// Its last row, s after the first of the data.
+        to: f64,
+        /// Length of the data, s.
+        duration: f64,
+    },
+    /// Files that follow each other, of which two are of the same time.
+    #[error(
+        "{} and {} overlap by {overlap:.3} s: one after the other they are no recording; import one with --join and the other",
+        first.display(),
+        second.display()
+    )]
+    PiecesOverlap {
+        /// The file that begins first.
+        first: PathBuf,
+        /// The next.
+        second: PathBuf,
+        /// Time that both have, s.
+        overlap: f64,
+    },
+    /// Tables beside several files.
+    #[error("--join goes with one file, not with {pieces}: import each of them with its table, then the bags together")]
+    JoinsOfPieces {
+        /// How many files there are.
+        pieces: usize,
+    },
+    /// A joined table without a map that says what its columns are.
+    #[error("{} has columns, but no map says which signals they are; give one with --map", file.display())]
+    JoinWithoutMap {
+        /// The joined file.
+        file: PathBuf,
     },
     /// A unit without meaning.
     #[error("{signal}: \"{unit}\" is no unit known here; known are {known}")]
@@ -159,4 +291,9 @@ pub enum MapError {
         /// Topic or column.
         clock: String,
     },
+}
+
+fn listed(files: &[PathBuf]) -> String {
+    let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+    if names.is_empty() { "no file".to_string() } else { names.join(", ") }
 }

@@ -7,6 +7,7 @@ use excavator_model::recording::Recording;
 use super::document::TopicMap;
 use super::read_bag::read_bag;
 use super::read_table::read_table;
+use super::table_clock::{Dating, EPOCH_SECONDS};
 use crate::reading::{ReadReport, read_recording};
 use crate::table::Table;
 use crate::{BagError, Topics};
@@ -22,9 +23,13 @@ use crate::{BagError, Topics};
 /// [`BagError::NoTopic`], [`BagError::NoMessages`], [`BagError::Undecodable`] for a mapped topic;
 /// [`BagError::BadTable`], [`BagError::BadDefinition`].
 pub fn read_mapped(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport), BagError> {
+    read_dated(path, map).map(|(recording, report, _)| (recording, report))
+}
+
+/// As [`read_mapped`]; also says what the times are.
+pub(super) fn read_dated(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport, Dating), BagError> {
     if Table::is_table(path) {
-        let table = Table::read(path, &map.table)?;
-        return Ok(read_table(path, &table, map)?);
+        return read_table(path, Table::read(path, &map.table)?, map);
     }
     read_bag(path, map)
 }
@@ -35,17 +40,32 @@ pub fn read_mapped(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport
 /// # Errors
 /// All of [`read_mapped`] and [`read_recording`](crate::read_recording); [`BagError::BadTable`] for a table without map.
 pub fn read_recording_or_mapped(path: &Path, map: Option<&Path>) -> Result<(Recording, ReadReport), BagError> {
-    if !path.exists() {
-        return Err(BagError::DoesNotExist { path: path.to_path_buf() });
+    let map = map_of(path, map)?;
+    read_with(path, map.as_ref()).map(|(recording, report, _)| (recording, report))
+}
+
+/// The map in the given file, else the one beside the data, if there is one.
+pub(super) fn map_of(data: &Path, map: Option<&Path>) -> Result<Option<TopicMap>, BagError> {
+    if !data.exists() {
+        return Err(BagError::DoesNotExist { path: data.to_path_buf() });
     }
-    match map.map(Path::to_path_buf).or_else(|| TopicMap::beside(path)) {
-        Some(map) => read_mapped(path, &TopicMap::read(&map)?),
+    map.map(Path::to_path_buf).or_else(|| TopicMap::beside(data)).map(|map| TopicMap::read(&map)).transpose()
+}
+
+/// Reads data with this map, or without any as a bag of our own topics.
+pub(super) fn read_with(path: &Path, map: Option<&TopicMap>) -> Result<(Recording, ReadReport, Dating), BagError> {
+    match map {
+        Some(map) => read_dated(path, map),
         None if Table::is_table(path) => Err(BagError::BadTable {
             path: path.to_path_buf(),
             reason: "a table needs a map that says which column is which signal: give one with --map, or let \
                      `excavator import --guess` propose one"
                 .to_string(),
         }),
-        None => read_recording(path, &Topics::default()),
+        None => {
+            let (recording, report) = read_recording(path, &Topics::default())?;
+            let is_dated = recording.start_nanoseconds as f64 / 1e9 > EPOCH_SECONDS;
+            Ok((recording, report, if is_dated { Dating::Dated } else { Dating::Undated(0) }))
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Everything about the reading of a bag that was not perfect.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use serde::Serialize;
 
@@ -71,6 +72,21 @@ impl ReadReport {
                 self.commands_without_cylinder.push(name);
             }
         }
+    }
+
+    /// Adds what was found in one file of several that are one recording. Gaps are those of the whole recording.
+    pub(crate) fn add_piece(&mut self, path: &Path, piece: ReadReport) {
+        for (topic, count) in piece.messages.clone() {
+            *self.messages.entry(topic).or_default() += count;
+        }
+        self.undecodable += piece.undecodable;
+        self.missing_messages += piece.missing_messages;
+        self.damage.extend(piece.damage.iter().cloned());
+        self.first_undecodable = self.first_undecodable.take().or(piece.first_undecodable.clone());
+        self.truncated_after = self.truncated_after.or(piece.truncated_after);
+        let notes = piece.notes.iter().map(|note| format!("{}: {note}", path.display()));
+        self.notes.extend(notes);
+        self.add_block(ReadReport { gaps: Vec::new(), ..piece });
     }
 
     /// Bytes lost to damage, in all files together.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How a text table is laid out. What is not given is found out from the text.
+/// How a text table or a sheet is laid out. What is not given is found out.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TableFormat {
@@ -18,6 +18,9 @@ pub struct TableFormat {
     /// Lines to leave out at the start.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub skip_lines: usize,
+    /// Spreadsheets: name of the sheet; without, the first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sheet: Option<String>,
     /// Names of the columns of a table without headings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub columns: Vec<String>,

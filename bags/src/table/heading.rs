@@ -3,7 +3,7 @@
 use crate::map::{Dimension, Unit};
 
 /// Name and unit of a heading: `p_A [bar]`, `stroke (mm)`, `flow / l/min`, `pressure_bar`.
-pub(super) fn split(heading: &str) -> (String, Option<String>) {
+pub(crate) fn split(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim().trim_start_matches('\u{feff}').trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {
         if let Some((name, rest)) = heading.rsplit_once(open)

@@ -1,15 +1,20 @@
-//! Tables: columns of numbers from text files, MATLAB files and Parquet files.
+//! Tables: columns of numbers from text files, spreadsheets, MATLAB files and Parquet files.
 
+mod cell;
 mod dates;
 mod fault;
 mod format;
+mod guard;
 mod heading;
 mod mat;
 mod mat4;
 mod mat5;
 mod parquet;
+mod preamble;
+mod sampling;
 mod text;
 mod text_lines;
+mod xlsx;
 
 use std::io::Cursor;
 use std::path::Path;
@@ -20,6 +25,8 @@ use fault::TableFault;
 
 pub use dates::parse_date;
 pub use format::TableFormat;
+pub(crate) use heading::split as heading_of;
+pub use sampling::Sampling;
 
 /// The values of one column.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +57,7 @@ impl Values {
 pub struct Column {
     /// Heading without its unit, or name of the variable; `column_3` without heading.
     pub name: String,
-    /// Unit that the heading names, if it is one that is known here.
+    /// Unit that the heading names, else the one that every cell has; if it is one that is known here.
     pub unit: Option<String>,
     /// The values.
     pub values: Values,
@@ -61,14 +68,17 @@ pub struct Column {
 pub struct Table {
     /// In the order of the file. Columns of a MATLAB file may have different lengths.
     pub columns: Vec<Column>,
+    /// How often rows were taken, where a line before them says so.
+    pub sampling: Option<Sampling>,
     /// What was not perfect, one line each.
     pub notes: Vec<String>,
 }
 
 impl Table {
-    /// Whether the file is a table, by its extension: `.csv`, `.tsv`, `.txt`, `.dat`, `.mat`, `.parquet` or `.pq`.
+    /// Whether the file is a table, by its extension: `.csv`, `.tsv`, `.txt`, `.dat`, `.xlsx`, `.xlsm`, `.mat`,
+    /// `.parquet` or `.pq`.
     pub fn is_table(path: &Path) -> bool {
-        let ends = ["csv", "tsv", "txt", "dat", "mat", "parquet", "pq"];
+        let ends = ["csv", "tsv", "txt", "dat", "xlsx", "xlsm", "mat", "parquet", "pq"];
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
         path.is_file() && extension.is_some_and(|end| ends.contains(&end.as_str()))
     }
@@ -93,6 +103,8 @@ impl Table {
             mat::parse(&whole()?, limits)
         } else if has_extension("parquet") || has_extension("pq") {
             parquet::parse(whole()?.into(), limits)
+        } else if has_extension("xlsx") || has_extension("xlsm") {
+            xlsx::parse(whole()?, format, limits)
         } else {
             let (mut file, length) = open_regular(path)?;
             text::parse(&mut file, length, format, limits)
@@ -119,6 +131,14 @@ impl Table {
     /// What is wrong, in one line.
     pub fn from_mat(bytes: &[u8]) -> Result<Table, String> {
         mat::parse(bytes, &ReadLimits::DEFAULT).map_err(|fault| fault.to_string())
+    }
+
+    /// The table in a sheet of a spreadsheet.
+    ///
+    /// # Errors
+    /// What is wrong, in one line.
+    pub fn from_xlsx(bytes: Vec<u8>, format: &TableFormat) -> Result<Table, String> {
+        xlsx::parse(bytes, format, &ReadLimits::DEFAULT).map_err(|fault| fault.to_string())
     }
 
     /// The table in a Parquet file.

@@ -3,15 +3,18 @@
 use std::borrow::Cow;
 use std::io::{Read, Seek};
 
+use super::cell::{self, Cells, Suffix, is_missing, number};
 use super::dates::parse_date;
 use super::fault::TableFault;
-use super::text_lines::{self, Rows};
-use super::{Column, Table, TableFormat, Values, heading};
+use super::text_lines::{self, Line, Rows};
+use super::{Column, Table, TableFormat, heading, preamble};
 use crate::limits::ReadLimits;
 use crate::map::Unit;
 
-/// Lines from which dialect and headings are told.
-const LINES_LOOKED_AT: usize = 20;
+/// Lines from which the dialect is told, and what is before the table.
+const LINES_LOOKED_AT: usize = 200;
+/// Rows from which headings are told.
+const ROWS_LOOKED_AT: usize = 20;
 
 /// Cells that a table may have whatever its length, and beyond that for each of its bytes. A table of equal rows has one
 /// cell in a byte at most.
@@ -26,9 +29,9 @@ pub(super) fn parse<R: Read + Seek>(
     limits: &ReadLimits,
 ) -> Result<Table, TableFault> {
     let head = text_lines::head(source, format.skip_lines, LINES_LOOKED_AT, limits.line)?;
-    if head.lines.is_empty() {
+    let Some(first_line) = head.lines.first() else {
         return Err("the table has no rows".into());
-    }
+    };
     let delimiter = match format.delimiter.as_deref() {
         None => guess_delimiter(&head.lines),
         Some("whitespace" | " ") => b' ',
@@ -36,11 +39,17 @@ pub(super) fn parse<R: Read + Seek>(
         Some(sign) if sign.len() == 1 => sign.as_bytes()[0],
         Some(other) => return Err(format!("delimiter = \"{other}\" must be one sign, tab or whitespace").into()),
     };
-    let first = FirstRows::of(&mut Rows::new(source, head.start, delimiter, limits.line)?, limits)?;
-    let layout = Layout::of(&first, bytes.saturating_sub(head.start), delimiter, format, limits)?;
+    let decimal = format.decimal.unwrap_or_else(|| decimal_of(&head.lines, delimiter));
+    let before = preamble::find(&head.skipped, &head.lines, delimiter, decimal);
+    let start = head.lines.get(before.lines).unwrap_or(first_line).begin;
+    let first = FirstRows::of(&mut Rows::new(source, start, delimiter, limits.line)?, limits)?;
+    let layout = Layout::of(&first, bytes.saturating_sub(start), delimiter, format, limits)?;
     limits.check_memory((first.count * layout.names.len() * size_of::<f64>()) as u64, bytes)?;
-    let mut rows = Rows::new(source, head.start, delimiter, limits.line)?;
-    fill(&mut rows, first, layout)
+    let mut rows = Rows::new(source, start, delimiter, limits.line)?;
+    let mut table = fill(&mut rows, first, layout)?;
+    table.notes.splice(0..0, before.notes);
+    table.sampling = before.sampling;
+    Ok(table)
 }
 
 /// The first rows, and how many there are in all.
@@ -55,7 +64,7 @@ impl FirstRows {
     fn of(rows: &mut Rows, limits: &ReadLimits) -> Result<FirstRows, TableFault> {
         let mut first = FirstRows { rows: Vec::new(), count: 0, longest: 0 };
         while let Some(row) = rows.next()? {
-            if first.count < LINES_LOOKED_AT {
+            if first.count < ROWS_LOOKED_AT {
                 first.longest = first.longest.max(row.len());
                 first.rows.push(row.iter().take(limits.fields).map(|cell| text(cell).trim().to_string()).collect());
             }
@@ -83,14 +92,12 @@ impl Layout {
         limits: &ReadLimits,
     ) -> Result<Layout, TableFault> {
         let FirstRows { rows, count, longest } = first;
-        let decimal = format.decimal.unwrap_or_else(|| guess_decimal(rows, delimiter));
+        let cells = || rows.iter().flatten();
+        let decimal = format.decimal.unwrap_or_else(|| guess_decimal(&cells, delimiter));
         if ![',', '.'].contains(&decimal) {
             return Err(format!("decimal = \"{decimal}\" must be . or ,").into());
         }
-        let has_header = format.header.unwrap_or_else(|| {
-            // A measurement that is missing in the first row makes no heading of it.
-            rows.first().is_some_and(|row| row.iter().any(|cell| is_word(cell, decimal)))
-        });
+        let has_header = format.header.unwrap_or_else(|| are_headings(rows, decimal));
         // One broken line of many cells would make as many columns of as many rows as the table has.
         let cells = usize::try_from(bytes).unwrap_or(usize::MAX).saturating_mul(CELLS_PER_BYTE);
         let width = (*longest).min(FEWEST_CELLS.saturating_add(cells) / (*count).max(1)).min(limits.fields);
@@ -119,7 +126,7 @@ impl Layout {
 /// Reads the values.
 fn fill(rows: &mut Rows, first: FirstRows, layout: Layout) -> Result<Table, TableFault> {
     let width = layout.names.len();
-    let mut columns: Vec<Cells> = (0..width).map(|_| Cells::default()).collect();
+    let mut columns: Vec<Cells> = layout.units.into_iter().map(Cells::new).collect();
     let (mut number, mut ragged) = (0, 0);
     while let Some(row) = rows.next()? {
         number += 1;
@@ -138,12 +145,9 @@ fn fill(rows: &mut Rows, first: FirstRows, layout: Layout) -> Result<Table, Tabl
     if ragged > 0 {
         table.notes.push(format!("{ragged} rows have another number of cells than {width}"));
     }
-    for ((name, unit), cells) in layout.names.into_iter().zip(layout.units).zip(columns) {
-        if cells.bad > 0 {
-            let bad = cells.bad;
-            table.notes.push(format!("column {name}: {bad} cells are no number and were taken as not measured"));
-        }
-        table.columns.push(Column { name, unit, values: cells.into_values() });
+    for (name, cells) in layout.names.into_iter().zip(columns) {
+        let (unit, values) = cells.finish(&name, &mut table.notes);
+        table.columns.push(Column { name, unit, values });
     }
     Ok(table)
 }
@@ -152,45 +156,50 @@ fn text(cell: &[u8]) -> Cow<'_, str> {
     String::from_utf8_lossy(cell)
 }
 
-/// The sign that stands equally often in the first lines, most often; blanks if none does.
-fn guess_delimiter(lines: &[String]) -> u8 {
+/// The sign that stands equally often in the first lines, most often; blanks if none does. A short table under a long text
+/// shows in the second half of these lines.
+fn guess_delimiter(lines: &[Line]) -> u8 {
+    let rows: Vec<&str> = lines.iter().map(|line| line.text.as_str()).filter(|line| !line.starts_with('#')).collect();
+    sign_between(&rows).or_else(|| sign_between(&rows[rows.len() / 2..])).unwrap_or(b' ')
+}
+
+fn sign_between(lines: &[&str]) -> Option<u8> {
     let count = |line: &str, sign: u8| line.bytes().filter(|&byte| byte == sign).count();
     // The comma last: in half of the world it is the decimal sign.
-    for sign in [b'\t', b';', b','] {
+    [b'\t', b';', b','].into_iter().find(|&sign| {
         let counts: Vec<usize> = lines.iter().map(|line| count(line, sign)).collect();
         let alike = |wanted: usize| counts.iter().filter(|&&count| count == wanted).count();
         // Titles and broken lines are few.
-        if counts.iter().any(|&count| count > 0 && 10 * alike(count) >= 7 * lines.len()) {
-            return sign;
-        }
+        counts.iter().any(|&count| count > 0 && 10 * alike(count) >= 7 * lines.len())
+    })
+}
+
+/// The decimal sign of lines, before it is known where the table begins.
+fn decimal_of(lines: &[Line], delimiter: u8) -> char {
+    let cells = || {
+        let is_between = move |c: char| if delimiter == b' ' { c.is_whitespace() } else { c == char::from(delimiter) };
+        lines.iter().flat_map(move |line| line.text.split(is_between))
+    };
+    guess_decimal(&cells, delimiter)
+}
+
+fn guess_decimal<'c, C: Iterator<Item = &'c str>>(cells: &dyn Fn() -> C, delimiter: u8) -> char {
+    let with = |sign: char| cells().filter(|cell| cell.contains(sign) && cell::read(cell, sign).is_some()).count();
+    if delimiter != b',' && with(',') > with('.') { ',' } else { '.' }
+}
+
+/// Whether the first row has headings. A measurement that is missing in it makes no heading of it.
+fn are_headings(rows: &[csv::StringRecord], decimal: char) -> bool {
+    let Some((first, below)) = rows.split_first() else { return false };
+    let is_plain = |cell: &str| is_missing(cell) || number(cell, decimal).is_some() || parse_date(cell).is_some();
+    let has_suffix = |cell: &str| cell::read(cell, decimal).is_some_and(|(_, suffix)| suffix != Suffix::None);
+    if first.iter().all(is_plain) {
+        return false;
     }
-    b' '
-}
-
-fn guess_decimal(rows: &[csv::StringRecord], delimiter: u8) -> char {
-    let cells = || rows.iter().take(LINES_LOOKED_AT).flatten();
-    let with_comma = cells().filter(|cell| cell.contains(',') && number(cell, ',').is_some()).count();
-    let with_point = cells().filter(|cell| cell.contains('.') && number(cell, '.').is_some()).count();
-    if delimiter != b',' && with_comma > with_point { ',' } else { '.' }
-}
-
-/// The number in a cell.
-fn number(cell: &str, decimal: char) -> Option<f64> {
-    let cell = cell.trim();
-    if decimal == '.' {
-        return cell.parse().ok();
-    }
-    // With a decimal comma a point would group thousands.
-    cell.replace('.', "").replace(',', ".").parse().ok()
-}
-
-fn is_missing(cell: &str) -> bool {
-    let cell = cell.trim();
-    cell.is_empty() || ["nan", "na", "n/a", "null", "none", "-", "--"].contains(&cell.to_lowercase().as_str())
-}
-
-fn is_word(cell: &str, decimal: char) -> bool {
-    !is_missing(cell) && number(cell, decimal).is_none() && parse_date(cell).is_none()
+    // A heading may be "5 bar", but then the cells below are plain numbers.
+    let is_row =
+        |row: &csv::StringRecord| first.iter().zip(row).any(|(cell, below)| has_suffix(cell) && has_suffix(below));
+    !(first.iter().all(|cell| is_plain(cell) || has_suffix(cell)) && below.iter().any(is_row))
 }
 
 /// Whether every cell is empty or a unit, and at least one is a unit.
@@ -198,46 +207,4 @@ fn is_row_of_units(row: &csv::StringRecord, decimal: char) -> bool {
     let unit = |cell: &str| Unit::named(cell.trim_matches(['[', ']', '(', ')', ' '])).is_some();
     row.iter().any(|cell| !cell.is_empty() && unit(cell) && number(cell, decimal).is_none())
         && row.iter().all(|cell| cell.is_empty() || unit(cell))
-}
-
-/// The values of one column as far as they are read.
-#[derive(Default)]
-struct Cells {
-    /// `None` before the first cell that is not empty: a column is one of dates if that is a date.
-    values: Option<Values>,
-    /// Empty cells before the first other one.
-    missing: usize,
-    /// Cells that are neither number nor empty.
-    bad: usize,
-}
-
-impl Cells {
-    fn push(&mut self, cell: &str, decimal: char) {
-        if self.values.is_none() {
-            if is_missing(cell) {
-                self.missing += 1;
-                return;
-            }
-            self.values = Some(match parse_date(cell) {
-                Some(_) => Values::Stamps(vec![None; self.missing]),
-                None => Values::Numbers(vec![f64::NAN; self.missing]),
-            });
-        }
-        match &mut self.values {
-            Some(Values::Stamps(stamps)) => {
-                let stamp = parse_date(cell);
-                self.bad += usize::from(stamp.is_none() && !is_missing(cell));
-                stamps.push(stamp);
-            }
-            Some(Values::Numbers(numbers)) => numbers.push(number(cell, decimal).unwrap_or_else(|| {
-                self.bad += usize::from(!is_missing(cell));
-                f64::NAN
-            })),
-            None => {}
-        }
-    }
-
-    fn into_values(self) -> Values {
-        self.values.unwrap_or_else(|| Values::Numbers(vec![f64::NAN; self.missing]))
-    }
 }

@@ -7,13 +7,26 @@ use std::rc::Rc;
 use super::fault::TableFault;
 use crate::limits::{Limit, LimitError};
 
-/// Where a table begins, and its first lines.
-pub(super) struct Head {
-    /// Bytes before the table: a mark of byte order and lines to leave out.
-    pub start: u64,
-    /// The first lines that are not blank.
-    pub lines: Vec<String>,
+/// A line and where it begins.
+pub(super) struct Line {
+    /// Bytes before it.
+    pub begin: u64,
+    /// Without its end.
+    pub text: String,
 }
+
+/// The first lines of a text.
+pub(super) struct Head {
+    /// Lines that are left out, as far as they are kept.
+    pub skipped: Vec<String>,
+    /// Those after them that are not blank.
+    pub lines: Vec<Line>,
+}
+
+/// Bytes of lines beyond which no more are looked at than the first few: lines can be long.
+const LOOKED_AT: usize = 1 << 20;
+/// These few.
+const FEW_LINES: usize = 20;
 
 /// Reads past the mark of byte order and `skip` lines, then the first `count` lines that are not blank.
 pub(super) fn head<R: Read + Seek>(
@@ -24,26 +37,33 @@ pub(super) fn head<R: Read + Seek>(
 ) -> std::result::Result<Head, TableFault> {
     source.rewind()?;
     let mut reader = BufReader::new(source);
-    let mut start = 0;
+    let mut begin = 0;
     while reader.fill_buf()?.starts_with("\u{feff}".as_bytes()) {
         reader.consume(3);
-        start += 3;
+        begin += 3;
     }
+    let mut head = Head { skipped: Vec::new(), lines: Vec::new() };
+    let shown = |line: &[u8]| String::from_utf8_lossy(line).trim_end_matches(['\n', '\r']).to_string();
+    let mut kept = 0;
     for _ in 0..skip {
-        match line(&mut reader, most)? {
-            Some(line) => start += line.len() as u64,
-            None => break,
-        }
-    }
-    let mut lines = Vec::new();
-    while lines.len() < count {
         let Some(line) = line(&mut reader, most)? else { break };
-        let text = String::from_utf8_lossy(&line);
-        if !text.trim().is_empty() {
-            lines.push(text.trim_end_matches(['\n', '\r']).to_string());
+        begin += line.len() as u64;
+        kept += line.len();
+        if kept < LOOKED_AT {
+            head.skipped.push(shown(&line));
         }
     }
-    Ok(Head { start, lines })
+    let mut bytes = 0;
+    while head.lines.len() < count && (bytes < LOOKED_AT || head.lines.len() < FEW_LINES) {
+        let Some(line) = line(&mut reader, most)? else { break };
+        let text = shown(&line);
+        bytes += line.len();
+        if !text.trim().is_empty() {
+            head.lines.push(Line { begin, text });
+        }
+        begin += line.len() as u64;
+    }
+    Ok(head)
 }
 
 /// The next line with its end, of at most `most` bytes.

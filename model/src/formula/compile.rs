@@ -38,7 +38,8 @@ pub(super) fn compile(
     unit_of: &dyn Fn(&Symbol) -> Dimension,
     row: (&str, Dimension),
 ) -> Result<Program, FormulaError> {
-    let mut compiler = Compiler { text, unit_of, program: Program::empty(), numbers_have_units: false };
+    let mut compiler =
+        Compiler { text, unit_of, program: Program::empty(), numbers_have_units: false, is_sharp: false };
     let whole = compiler.part(expression)?;
     if let Unit::Of(found) = whole.unit
         && found != row.1
@@ -56,12 +57,21 @@ pub(super) fn compile_difference(
     text: &str,
     unit_of: &dyn Fn(&Symbol) -> Dimension,
 ) -> Result<Program, FormulaError> {
-    let mut compiler = Compiler { text, unit_of, program: Program::empty(), numbers_have_units: true };
+    let mut compiler = Compiler { text, unit_of, program: Program::empty(), numbers_have_units: true, is_sharp: false };
     let (one, other) = (compiler.part(larger)?, compiler.part(smaller)?);
     let at = larger.at.start.min(smaller.at.start)..larger.at.end.max(smaller.at.end);
     compiler.same("compare", one.unit, other.unit, &at)?;
     let difference = compiler.two(one.value, other.value, |a, b| a - b, Operation::Subtract);
     Ok(compiler.finished(difference))
+}
+
+/// Compiles a formula over numbers without units. Its corners are sharp: how wide one of a column may be, nobody knows.
+pub(super) fn compile_plain(expression: &Expression, text: &str) -> Result<Program, FormulaError> {
+    let unit_of = |_: &Symbol| Dimension::PURE;
+    let mut compiler =
+        Compiler { text, unit_of: &unit_of, program: Program::empty(), numbers_have_units: false, is_sharp: true };
+    let whole = compiler.part(expression)?;
+    Ok(compiler.finished(whole.value))
 }
 
 struct Compiler<'a> {
@@ -70,6 +80,8 @@ struct Compiler<'a> {
     program: Program,
     /// Whether a number has the unit that its place asks for; else it is a pure number.
     numbers_have_units: bool,
+    /// Whether `sign`, `step`, `root` and `if` change at once.
+    is_sharp: bool,
 }
 
 impl Compiler<'_> {
@@ -85,6 +97,14 @@ impl Compiler<'_> {
 
     fn error(&self, problem: Problem, at: &Range<usize>) -> FormulaError {
         FormulaError::new(problem, at.clone(), self.text)
+    }
+
+    fn corner(&self, unit: Unit) -> Corner {
+        match unit {
+            _ if self.is_sharp => Corner::Sharp,
+            Unit::Of(dimension) => Corner::of(dimension),
+            Unit::Any => Corner::of(Dimension::PURE),
+        }
     }
 
     fn part(&mut self, expression: &Expression) -> Result<Part, FormulaError> {
@@ -182,10 +202,7 @@ impl Compiler<'_> {
         };
         let pure = Unit::Of(Dimension::PURE);
         let value = first.value;
-        let corner = Corner::of(match first.unit {
-            Unit::Of(dimension) => dimension,
-            Unit::Any => Dimension::PURE,
-        });
+        let corner = self.corner(first.unit);
         if let Some((fold, operation)) = of_pure_number(function) {
             self.pure(&first, || format!("the argument of {}", function.name()), &whole)?;
             return Ok(Part { value: self.unary(value, fold, operation), unit: pure });
@@ -259,10 +276,8 @@ impl Compiler<'_> {
     ) -> Result<Part, FormulaError> {
         let (low, high) = (self.part(less)?, self.part(more)?);
         let condition = less.at.start.min(more.at.start)..less.at.end.max(more.at.end);
-        let corner = Corner::of(match self.same("compare", low.unit, high.unit, &condition)? {
-            Unit::Of(dimension) => dimension,
-            Unit::Any => Dimension::PURE,
-        });
+        let unit = self.same("compare", low.unit, high.unit, &condition)?;
+        let corner = self.corner(unit);
         let difference = self.two(high.value, low.value, |a, b| a - b, Operation::Subtract);
         let difference = self.register(difference);
         let share = self.emit(Operation::Step(difference, corner));

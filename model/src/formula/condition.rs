@@ -9,7 +9,7 @@ use super::program::{Moment, Program};
 use super::variable::Variable;
 use crate::equations::Situation;
 use crate::machine::Machine;
-use crate::recording::{CylinderSignals, Recording, is_measured};
+use crate::recording::{CylinderSignals, Recording, is_measured, slopes};
 
 /// A comparison of two expressions of what is measured. Numbers in it are in SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +24,7 @@ impl Condition {
     /// # Errors
     /// [`FormulaError`], in one line that points at the place.
     pub fn read(text: &str) -> Result<Condition, FormulaError> {
-        let sides = parse_condition(text, &Names { parameters: &[], states: &[] })?;
+        let sides = parse_condition(text, &Names { parameters: &[], states: &[], rates: false })?;
         for (symbol, at) in sides.iter().flat_map(super::expression::Expression::names) {
             if let Symbol::Variable(variable, _) = symbol
                 && let Some(reason) = why_not(*variable)
@@ -101,22 +101,7 @@ fn velocity(time: &[f64], signals: &CylinderSignals, time_scale: f64) -> Vec<f64
     if is_measured(&signals.velocity) {
         return signals.velocity.clone();
     }
-    let half_width = HALF_WIDTH.0 * time_scale;
-    let slope = |sample: usize| {
-        let first = time.partition_point(|&t| t < time[sample] - half_width).min(sample.saturating_sub(HALF_WIDTH.1));
-        let last = time.partition_point(|&t| t <= time[sample] + half_width).max(sample + HALF_WIDTH.1 + 1);
-        let range = first..last.min(time.len());
-        let points = || {
-            let samples = time[range.clone()].iter().zip(&signals.displacement[range.clone()]);
-            samples.filter(|(_, position)| position.is_finite())
-        };
-        let count = points().count() as f64;
-        let mean = |value: fn((&f64, &f64)) -> f64| points().map(value).sum::<f64>() / count;
-        let (middle, position) = (mean(|(t, _)| *t), mean(|(_, s)| *s));
-        let spread: f64 = points().map(|(t, _)| (t - middle).powi(2)).sum();
-        points().map(|(t, s)| (t - middle) * (s - position)).sum::<f64>() / spread
-    };
-    (0..time.len()).map(slope).collect()
+    slopes(time, &signals.displacement, (HALF_WIDTH.0 * time_scale, HALF_WIDTH.1))
 }
 
 #[cfg(test)]

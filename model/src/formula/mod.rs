@@ -4,6 +4,7 @@
 //! (`program`). So one text serves simulation, regressor, power and sensitivities, as the code of a built-in effect does.
 
 mod check;
+mod column_formula;
 mod compile;
 mod condition;
 mod corner;
@@ -24,6 +25,7 @@ mod token;
 mod variable;
 
 pub use check::{CheckProblem, Checked, Curve, check};
+pub use column_formula::ColumnFormula;
 pub use condition::Condition;
 pub use dimension::{Dimension, UnitError};
 pub use error::{FormulaError, Problem};

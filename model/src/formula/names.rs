@@ -8,6 +8,8 @@ use super::variable::VARIABLES;
 pub(super) struct Names<'a> {
     pub parameters: &'a [String],
     pub states: &'a [String],
+    /// Whether `rate(x)` is the state that has the number of the parameter `x`: for formulas over columns.
+    pub rates: bool,
 }
 
 impl<'a> Names<'a> {

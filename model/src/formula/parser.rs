@@ -190,9 +190,11 @@ impl Parser<'_> {
         let node = match name {
             "table" => self.table()?,
             "if" => self.choice()?,
+            "rate" if self.names.rates => self.rate()?,
             _ => {
                 let Some(&(_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
-                    let known = FUNCTIONS.iter().map(|(name, _)| *name).chain(["table", "if"]);
+                    let rate = self.names.rates.then_some("rate");
+                    let known = FUNCTIONS.iter().map(|(name, _)| *name).chain(["table", "if"]).chain(rate);
                     let suggestion = nearest(name, known);
                     return Err(self.error_at(Problem::UnknownFunction { name: name.to_string(), suggestion }, at));
                 };
@@ -252,6 +254,21 @@ impl Parser<'_> {
         }
         self.expect(']', "\",\" or \"]\"")?;
         Ok(numbers)
+    }
+
+    /// `rate(x)` of a name.
+    fn rate(&mut self) -> Result<Node, FormulaError> {
+        let at = self.at();
+        let Token::Name(name) = self.token().clone() else {
+            return Err(self.error(Problem::Expected("a name, as in rate(x)")));
+        };
+        self.take();
+        let node = match self.name(&name, at)?.node {
+            Node::Name(Symbol::Parameter(number)) => Node::Name(Symbol::State(number)),
+            other => other,
+        };
+        self.expect(')', "\")\" after the name")?;
+        Ok(node)
     }
 
     /// One comparison: the side that is larger where it holds, then the other. `expected` says what is needed where there is none.

@@ -178,7 +178,7 @@ impl Program {
 }
 
 /// A machine without cylinders, for formulas of parameters alone.
-fn nowhere() -> Machine {
+pub(super) fn nowhere() -> Machine {
     Machine {
         name: String::new(),
         description: String::new(),

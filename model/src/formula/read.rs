@@ -173,7 +173,7 @@ impl<'a> Reader<'a> {
         row: (&str, Dimension),
     ) -> Result<(Expression, Program), LawProblem> {
         let problem = |error| LawProblem::Formula { what: what.to_string(), error: Box::new(error) };
-        let names = Names { parameters: &self.parameters, states };
+        let names = Names { parameters: &self.parameters, states, rates: false };
         let tree = parse(text, &names).map_err(problem)?;
         self.check_variables(&tree, text).map_err(problem)?;
         let unit_of = |symbol: &Symbol| match symbol {

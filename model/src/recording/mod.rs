@@ -7,6 +7,7 @@ mod interpolation;
 mod pieces;
 mod resolution;
 mod sample;
+mod slopes;
 mod standard_deviation;
 
 pub use cylinder_signals::CylinderSignals;
@@ -16,6 +17,7 @@ pub use interpolation::{cubic, linear, zero_order_hold};
 pub use pieces::{closed_gaps, longest_gap};
 pub use resolution::resolution;
 pub use sample::{CylinderSample, Sample};
+pub use slopes::slopes;
 pub use standard_deviation::standard_deviation;
 
 /// A recording of one machine: all signals sampled on one, possibly uneven, clock.

@@ -327,12 +327,17 @@ pub struct InfoArguments {
 
 #[derive(Debug, Args)]
 pub struct ImportArguments {
-    /// Table (.csv, .tsv, .txt, .dat, .mat, .parquet) or bag.
-    pub data: PathBuf,
+    /// Table (.csv, .tsv, .txt, .dat, .xlsx, .mat, .parquet) or bag. Several: one recording in pieces, one after the other.
+    #[arg(required = true, value_name = "DATA")]
+    pub data: Vec<PathBuf>,
     /// Topic map (TOML); without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
-    /// Print a map guessed from names, types, units and the shapes of the signals, with a reason for each line. Check it!
+    /// Table that was recorded beside DATA: its columns are available to the map, at the times of DATA. Repeat it for several.
+    #[arg(long, value_name = "FILE", conflicts_with = "guess")]
+    pub join: Vec<PathBuf>,
+    /// Print a map guessed from names, types, units and the shapes of the signals, with a reason for each line. Check it! On a
+    /// terminal, asks where it is not sure; else leaves that commented out.
     #[arg(long, conflicts_with = "map")]
     pub guess: bool,
     /// Cylinder that guessed signals belong to where their names do not say.

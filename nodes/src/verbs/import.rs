@@ -1,8 +1,11 @@
 //! `excavator import`
 
+mod questions;
+
+use std::io::IsTerminal;
 use std::path::Path;
 
-use excavator_bags::map::{guess, read_recording_or_mapped};
+use excavator_bags::map::{Confidence, Guess, guess, read_pieces};
 use excavator_bags::{Topics, WriteOptions, write_recording};
 use excavator_model::recording::is_measured;
 
@@ -13,19 +16,25 @@ use crate::outputs::{self, Inputs};
 use crate::terminal;
 
 pub fn run(arguments: &ImportArguments) -> Result<(), VerbError> {
-    match &arguments.output {
-        _ if arguments.guess => guess_map(arguments),
-        Some(bag) => import(arguments, bag),
+    match (&arguments.output, arguments.data.as_slice()) {
+        (_, [data]) if arguments.guess => guess_map(arguments, data),
+        (_, several) if arguments.guess => Err(VerbError::GuessOfSeveral(several.len())),
+        (Some(bag), _) => import(arguments, bag),
         // The command line does not let this happen.
-        None => Ok(()),
+        (None, _) => Ok(()),
     }
 }
 
-fn guess_map(arguments: &ImportArguments) -> Result<(), VerbError> {
+fn guess_map(arguments: &ImportArguments, data: &Path) -> Result<(), VerbError> {
     // The map beside the data is not read here, and may be made anew.
-    let inputs = Inputs::recording(&arguments.data);
+    let inputs = Inputs::recording(data);
     outputs::check(&[("-o", arguments.output.as_deref())], &inputs, arguments.overwriting)?;
-    let guessed = guess(&arguments.data, &arguments.cylinder)?;
+    let mut guessed = guess(data, &arguments.cylinder)?;
+    let (input, output) = (std::io::stdin(), std::io::stderr());
+    if input.is_terminal() && output.is_terminal() {
+        questions::ask(&mut guessed, &mut input.lock(), &mut output.lock())?;
+    }
+    tell_unsure(&guessed);
     let text = guessed.to_text().map_err(excavator_bags::BagError::from)?;
     outputs::standard_output(&text)?;
     match &arguments.output {
@@ -34,19 +43,32 @@ fn guess_map(arguments: &ImportArguments) -> Result<(), VerbError> {
     }
 }
 
+fn tell_unsure(guessed: &Guess) {
+    let unsure = guessed.signals.iter().filter(|guessed| guessed.confidence == Confidence::Unsure);
+    let names: Vec<String> = unsure.map(|guessed| guessed.source.signal.to_string()).collect();
+    if !names.is_empty() {
+        let (count, names) = (names.len(), names.join(", "));
+        terminal::complain(&format!("not sure of {count} signals, which are commented out in the map: {names}"));
+    }
+}
+
 fn import(arguments: &ImportArguments, bag: &Path) -> Result<(), VerbError> {
-    let inputs = Inputs::recordings([&arguments.data], arguments.map.as_deref());
+    let inputs = Inputs::recordings(&arguments.data, arguments.map.as_deref()).and_all(arguments.join.iter().cloned());
     outputs::check_bag(bag, &inputs, arguments.overwriting)?;
-    let (recording, report) = read_recording_or_mapped(&arguments.data, arguments.map.as_deref())?;
+    let (recording, report) = read_pieces(&arguments.data, arguments.map.as_deref(), &arguments.join)?;
     for problem in report.problems() {
-        terminal::complain(&format!("{}: {problem}", arguments.data.display()));
+        match arguments.data.as_slice() {
+            [data] => terminal::complain(&format!("{}: {problem}", data.display())),
+            _ => terminal::complain(&problem),
+        }
     }
     let options = WriteOptions { replace: arguments.overwriting.force, ..WriteOptions::default() };
     write_recording(bag, &recording, &Topics::default(), &options)?;
     let measured: Vec<String> =
         recording.signals().into_iter().filter(|(_, values)| is_measured(values)).map(|(name, _)| name).collect();
+    let pieces = if arguments.data.len() > 1 { format!("{} files, ", arguments.data.len()) } else { String::new() };
     print(&format!(
-        "{}: {} samples, {:.2} s, {}",
+        "{}: {pieces}{} samples, {:.2} s, {}",
         bag.display(),
         recording.len(),
         recording.duration(),

@@ -4,10 +4,11 @@ use std::collections::{BTreeSet, HashSet};
 
 use super::super::signal::{SignalKind, SignalName};
 use super::super::unit::{Dimension, Unit};
-use super::GuessedSignal;
 use super::candidate::Candidate;
+use super::confidence::{alternatives, confidence};
 use super::names;
 use super::shapes::{Shape, derivative, rest, short};
+use super::{Confidence, GuessedSignal, Possibility};
 
 /// Below this a name alone is no reason.
 const LEAST_SCORE: f64 = 0.5;
@@ -19,11 +20,13 @@ const LEAST_CORRELATION: f64 = 0.8;
 const LEAST_FOLLOWING: [f64; 2] = [0.5, 0.3];
 
 /// A candidate, a signal that it may be, and how good that is.
-struct Pair {
-    candidate: usize,
-    kind: SignalKind,
-    score: f64,
-    reason: String,
+pub(super) struct Pair {
+    pub candidate: usize,
+    pub kind: SignalKind,
+    pub score: f64,
+    pub reason: String,
+    /// Whether only order, size or motion speak for it.
+    pub is_weak: bool,
 }
 
 /// The signals, and the labels of what is left.
@@ -35,40 +38,70 @@ pub(super) fn choose(candidates: Vec<Candidate>, cylinder: &str) -> (Vec<Guessed
     let named: BTreeSet<&str> = candidates.iter().filter_map(|candidate| names::cylinder(&candidate.words)).collect();
     // Where names speak of one cylinder only, everything is of that one.
     let cylinder = if named.len() == 1 { named.first().copied().unwrap_or(cylinder) } else { cylinder };
-    for mut pair in pairs {
-        let candidate = &candidates[pair.candidate];
-        let own = names::cylinder(&candidate.words).unwrap_or(cylinder);
-        let name = SignalName { cylinder: pair.kind.is_of_cylinder().then(|| own.to_string()), kind: pair.kind };
+    let own = |candidate: usize| names::cylinder(&candidates[candidate].words).unwrap_or(cylinder).to_string();
+    let name_of = |pair: &Pair| {
+        let cylinder = pair.kind.is_of_cylinder().then(|| own(pair.candidate));
+        SignalName { cylinder, kind: pair.kind }
+    };
+    for (place, pair) in pairs.iter().enumerate() {
+        let name = name_of(pair);
         if pair.score < LEAST_SCORE || used.contains(&pair.candidate) || taken.contains(&name) {
             continue;
         }
+        let (confidence, remark) = confidence(&pairs, place, &used, &name_of);
         used.insert(pair.candidate);
         taken.insert(name.clone());
-        let (unit, unit_reason) = unit(candidate, shapes[pair.candidate], pair.kind.dimension());
-        let mut source = candidate.source(name, unit.as_ref().map(|unit| unit.name));
-        if let Some(unit) = unit.as_ref().filter(|unit| unit.dimension != pair.kind.dimension()) {
-            // A map needs a scale here; only the maker of the sensor knows it.
-            let text = format!("1 {}/{}", pair.kind.dimension().si_unit(), unit.name);
-            source.scale = Some(super::super::Quantity::Text(text));
-        }
-        if pair.kind == SignalKind::Displacement && shapes[pair.candidate].is_some_and(|shape| shape.least >= 0.0) {
-            pair.reason += "; never below 0: if it counts from one end, put mid-stroke as offset (\"-300 mm\")";
-        }
-        if pair.kind == SignalKind::OrificeCommand
-            && let Some((value, share)) = rest(&candidate.values)
-        {
-            let unit = unit.filter(|unit| unit.dimension == Dimension::Area).unwrap_or(Unit::si(Dimension::Area));
-            source.offset = Some(super::super::Quantity::Text(format!("{} {}", -value, unit.name)));
-            pair.reason += &format!(
-                "; rests at {value} for {:.0} % of the time, which is taken for closed (the offset goes with the scale)",
-                100.0 * share
-            );
-        }
-        signals.push(GuessedSignal { source, reason: pair.reason, unit_reason });
+        let Possibility { source, label, reason, unit_reason } =
+            possibility(&candidates[pair.candidate], shapes[pair.candidate], name, &pair.reason);
+        let reason = reason + &remark;
+        let guessed = GuessedSignal { source, label, reason, unit_reason, confidence, alternatives: Vec::new() };
+        signals.push((place, guessed));
     }
+    let sure: HashSet<usize> = signals
+        .iter()
+        .filter(|(_, guessed)| guessed.confidence > Confidence::Unsure)
+        .map(|(place, _)| pairs[*place].candidate)
+        .collect();
+    for (place, guessed) in &mut signals {
+        if guessed.confidence == Confidence::Unsure {
+            let others = alternatives(&pairs, *place, &sure, &name_of).into_iter();
+            let possible = others.map(|pair| {
+                possibility(&candidates[pair.candidate], shapes[pair.candidate], name_of(pair), &pair.reason)
+            });
+            guessed.alternatives = possible.collect();
+        }
+    }
+    let mut signals: Vec<GuessedSignal> = signals.into_iter().map(|(_, guessed)| guessed).collect();
     signals.sort_by(|a, b| a.source.signal.cmp(&b.source.signal));
     let left = (0..candidates.len()).filter(|index| !used.contains(index)).map(|index| candidates[index].label());
     (signals, left.collect())
+}
+
+/// A candidate as a signal: its entry in a map, and why.
+fn possibility(candidate: &Candidate, shape: Option<Shape>, name: SignalName, reason: &str) -> Possibility {
+    let kind = name.kind;
+    let mut reason = reason.to_string();
+    let (unit, unit_reason) = unit(candidate, shape, kind.dimension());
+    let mut source = candidate.source(name, unit.as_ref().map(|unit| unit.name));
+    if let Some(unit) = unit.as_ref().filter(|unit| unit.dimension != kind.dimension()) {
+        // A map needs a scale here; only the maker of the sensor knows it.
+        let text = format!("1 {}/{}", kind.dimension().si_unit(), unit.name);
+        source.scale = Some(super::super::Quantity::Text(text));
+    }
+    if kind == SignalKind::Displacement && shape.is_some_and(|shape| shape.least >= 0.0) {
+        reason += "; never below 0: if it counts from one end, put mid-stroke as offset (\"-300 mm\")";
+    }
+    if kind == SignalKind::OrificeCommand
+        && let Some((value, share)) = rest(&candidate.values)
+    {
+        let unit = unit.filter(|unit| unit.dimension == Dimension::Area).unwrap_or(Unit::si(Dimension::Area));
+        source.offset = Some(super::super::Quantity::Text(format!("{} {}", -value, unit.name)));
+        reason += &format!(
+            "; rests at {value} for {:.0} % of the time, which is taken for closed (the offset goes with the scale)",
+            100.0 * share
+        );
+    }
+    Possibility { source, label: candidate.label(), reason, unit_reason }
 }
 
 fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {
@@ -81,7 +114,7 @@ fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {
                 let may_rest =
                     matches!(kind, SignalKind::TankPressure | SignalKind::PumpFlow | SignalKind::OilTemperature);
                 let score = if shape.is_constant() && !may_rest { 0.7 * score } else { score };
-                pairs.push(Pair { candidate: index, kind, score, reason });
+                pairs.push(Pair { candidate: index, kind, score, reason, is_weak: false });
             }
         }
     }
@@ -171,7 +204,8 @@ fn add_followers(candidates: &[Candidate], pairs: &mut Vec<Pair>) {
                 "its derivative follows {} (correlation {correlation:.2}{sign}); displacement, unless it is an angle",
                 command.label()
             );
-            found.push(Pair { candidate: index, kind: SignalKind::Displacement, score: LEAST_SCORE, reason });
+            let kind = SignalKind::Displacement;
+            found.push(Pair { candidate: index, kind, score: LEAST_SCORE, reason, is_weak: true });
         }
     }
     pairs.extend(found);
@@ -191,7 +225,7 @@ fn add_places_of_pressures(candidates: &[Candidate], shapes: &[Option<Shape>], p
     loose.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut found = Vec::new();
     let mut add = |candidate: usize, kind: SignalKind, why: String| {
-        found.push(Pair { candidate, kind, score: LEAST_SCORE, reason: why });
+        found.push(Pair { candidate, kind, score: LEAST_SCORE, reason: why, is_weak: true });
     };
     let mut open: Vec<SignalKind> =
         [SignalKind::CapPressure, SignalKind::RodPressure].into_iter().filter(|&kind| !has(kind)).collect();

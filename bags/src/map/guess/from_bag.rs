@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::super::document::ClockSource;
 use super::super::unit::{Dimension, Unit};
 use super::candidate::{Candidate, Origin, words};
+use crate::can::FrameReader;
 use crate::dynamic::{Definitions, FieldPath, Index, Layout, Selector, numeric_leaves};
 use crate::{BagError, RawMessages, Topic};
 
@@ -28,8 +29,9 @@ struct Seen {
     values: Vec<Vec<f64>>,
 }
 
-/// The fields that may be signals, and the clock.
-pub(super) fn candidates(path: &Path) -> Result<(Vec<Candidate>, (ClockSource, String)), BagError> {
+/// The fields that may be signals, the clock, and topics of CAN frames, of which nothing is known without their DBC file.
+pub(super) fn candidates(path: &Path) -> Result<(Vec<Candidate>, (ClockSource, String), Vec<String>), BagError> {
+    let mut frames: Vec<String> = Vec::new();
     let mut topics: HashMap<String, (Arc<Topic>, Option<Seen>)> = HashMap::new();
     let mut start = None;
     for message in RawMessages::open(path)? {
@@ -37,7 +39,16 @@ pub(super) fn candidates(path: &Path) -> Result<(Vec<Candidate>, (ClockSource, S
         let start = *start.get_or_insert(message.log_time);
         let topic = Arc::clone(&message.topic);
         let (_, seen) = topics.entry(topic.name.clone()).or_insert_with(|| {
-            let seen = look_at(&topic, &message.data);
+            let seen = look_at(&topic, &message.data).filter(|seen| {
+                let is_of_frames = FrameReader::of(&seen.layout).is_ok();
+                if is_of_frames {
+                    frames.push(format!(
+                        "{} (CAN frames: the map needs `dbc`, and each signal its `message`)",
+                        topic.name
+                    ));
+                }
+                !is_of_frames
+            });
             (topic, seen)
         });
         let Some(seen) = seen.as_mut().filter(|seen| seen.time.len() < MESSAGE_LIMIT) else { continue };
@@ -55,7 +66,7 @@ pub(super) fn candidates(path: &Path) -> Result<(Vec<Candidate>, (ClockSource, S
     let fastest = topics.iter().max_by_key(|(_, seen)| seen.time.len()).map(|(topic, _)| topic.name.clone());
     let clock = ClockSource { topic: fastest, ..ClockSource::default() };
     let candidates = topics.into_iter().flat_map(|(topic, seen)| of_topic(&topic, seen)).collect();
-    Ok((candidates, (clock, "the topic with numbers that has most messages".to_string())))
+    Ok((candidates, (clock, "the topic with numbers that has most messages".to_string()), frames))
 }
 
 /// Layout and fields of a topic, `None` when its type is not known.

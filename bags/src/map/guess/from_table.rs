@@ -1,27 +1,28 @@
 //! Candidates of a table.
 
 use super::super::document::{ClockSource, ColumnName};
-use super::super::read_table::time_column;
+use super::super::table_clock::time_column;
 use super::super::unit::{Dimension, Unit};
 use super::candidate::{Candidate, Origin, words};
-use crate::table::{Table, Values};
+use crate::table::{Sampling, Table, Values};
 
 /// The columns that may be signals, and the clock.
 pub(super) fn candidates(table: &Table) -> (Vec<Candidate>, (ClockSource, String)) {
     let found = time_column(table).map(|column| (column, "named or written like a time")).or_else(|| {
-        // A column without name that only grows, from the first row on.
-        let column = table.columns.iter().find(|column| grows(&column.values))?;
+        // A column without name that only grows, from the first row on; unless a line says how often rows were taken.
+        let column = table.columns.iter().find(|column| table.sampling.is_none() && grows(&column.values))?;
         Some((column, "the first column that only grows"))
     });
     let rows = found.map_or(0, |(column, _)| column.values.len());
     let (clock, time) = match found {
-        None => (
-            (
-                ClockSource { rate: Some(100.0), ..ClockSource::default() },
-                "no time found: put the true rate in Hz".into(),
-            ),
-            Vec::new(),
-        ),
+        None => {
+            let clock = |rate: f64| ClockSource { rate: Some(rate), ..ClockSource::default() };
+            let clock = match &table.sampling {
+                Some(Sampling { rate, line }) => (clock(*rate), format!("the line \"{line}\" says so")),
+                None => (clock(GUESSED_RATE), "no time found: put the true rate in Hz".into()),
+            };
+            (clock, Vec::new())
+        }
         Some((column, reason)) => {
             let name = Some(ColumnName::Name(column.name.clone()));
             let mut clock = ClockSource { column: name, ..ClockSource::default() };
@@ -44,6 +45,9 @@ pub(super) fn candidates(table: &Table) -> (Vec<Candidate>, (ClockSource, String
     let name = clock.0.column.as_ref().map(ToString::to_string).unwrap_or_default();
     (columns(table, &name, rows, &time), clock)
 }
+
+/// Rows per second of a table that says nothing, Hz: a placeholder.
+const GUESSED_RATE: f64 = 100.0;
 
 fn columns(table: &Table, clock: &str, rows: usize, time: &[f64]) -> Vec<Candidate> {
     let mut candidates = Vec::new();

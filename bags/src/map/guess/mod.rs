@@ -2,6 +2,7 @@
 
 mod candidate;
 mod choose;
+mod confidence;
 mod from_bag;
 mod from_table;
 mod names;
@@ -14,15 +15,59 @@ use super::document::{ClockSource, SignalSource, TopicMap};
 use crate::BagError;
 use crate::table::{Table, TableFormat};
 
+/// How sure a guess is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Confidence {
+    /// Something else is nearly as likely, or only order and size speak for it.
+    Unsure,
+    /// Nothing speaks against it, and little for it.
+    Likely,
+    /// Name, unit or shape say so, and of nothing else.
+    Sure,
+    /// A person said so.
+    Chosen,
+}
+
+impl Confidence {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Confidence::Unsure => "unsure",
+            Confidence::Likely => "likely",
+            Confidence::Sure => "sure",
+            Confidence::Chosen => "chosen",
+        }
+    }
+}
+
+/// A column or field that may be a signal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Possibility {
+    /// As it would stand in the map.
+    pub source: SignalSource,
+    /// How people call the column or field.
+    pub label: String,
+    /// Why this source is this signal.
+    pub reason: String,
+    /// Why it has this unit.
+    pub unit_reason: String,
+}
+
 /// One guessed signal and why.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GuessedSignal {
     /// As it stands in the map.
     pub source: SignalSource,
+    /// How people call the column or field.
+    pub label: String,
     /// Why this source is this signal.
     pub reason: String,
     /// Why it has this unit.
     pub unit_reason: String,
+    /// How sure that is.
+    pub confidence: Confidence,
+    /// What else it may be, where it is not sure.
+    pub alternatives: Vec<Possibility>,
 }
 
 /// A guessed map.
@@ -32,21 +77,51 @@ pub struct Guess {
     pub data: String,
     /// The clock and why.
     pub clock: (ClockSource, String),
-    /// The signals, best founded first.
+    /// The signals, in the order of the messages.
     pub signals: Vec<GuessedSignal>,
     /// Columns and fields that are no signal as far as can be told.
     pub left: Vec<String>,
 }
 
 impl Guess {
-    /// The guess as a map.
+    /// The guess as a map, without what is not sure.
     pub fn map(&self) -> TopicMap {
+        let taken = self.signals.iter().filter(|guessed| guessed.confidence > Confidence::Unsure);
         TopicMap {
             description: format!("guessed from {}: check every line", self.data),
             clock: self.clock.0.clone(),
-            signals: self.signals.iter().map(|guessed| guessed.source.clone()).collect(),
+            signals: taken.map(|guessed| guessed.source.clone()).collect(),
             ..TopicMap::default()
         }
+    }
+
+    /// A person says which source a signal has: 0 the guessed one, 1 the first alternative. No other signal has it then.
+    pub fn choose(&mut self, signal: usize, choice: usize) {
+        let Some(guessed) = self.signals.get_mut(signal) else { return };
+        if let Some(number) = choice.checked_sub(1) {
+            if number >= guessed.alternatives.len() {
+                return;
+            }
+            guessed.take(number);
+        }
+        guessed.confidence = Confidence::Chosen;
+        guessed.alternatives.clear();
+        let label = guessed.label.clone();
+        for other in self.signals.iter_mut().filter(|other| other.confidence == Confidence::Unsure) {
+            other.alternatives.retain(|alternative| alternative.label != label);
+            if other.label == label && !other.alternatives.is_empty() {
+                other.take(0);
+            }
+        }
+        self.signals.retain(|other| other.confidence > Confidence::Unsure || other.label != label);
+    }
+}
+
+impl GuessedSignal {
+    /// Makes an alternative the guess.
+    fn take(&mut self, number: usize) {
+        let Possibility { source, label, reason, unit_reason } = self.alternatives.remove(number);
+        (self.source, self.label, self.reason, self.unit_reason) = (source, label, reason, unit_reason);
     }
 }
 
@@ -56,12 +131,14 @@ impl Guess {
 /// # Errors
 /// When the data cannot be read: those of [`RawMessages::open`](crate::RawMessages::open), [`BagError::BadTable`].
 pub fn guess(path: &Path, cylinder: &str) -> Result<Guess, BagError> {
-    let (candidates, clock) = if Table::is_table(path) {
-        from_table::candidates(&Table::read(path, &TableFormat::default())?)
+    let (candidates, clock, frames) = if Table::is_table(path) {
+        let (candidates, clock) = from_table::candidates(&Table::read(path, &TableFormat::default())?);
+        (candidates, clock, Vec::new())
     } else {
         from_bag::candidates(path)?
     };
-    let (signals, left) = choose::choose(candidates, cylinder);
+    let (signals, mut left) = choose::choose(candidates, cylinder);
+    left.extend(frames);
     Ok(Guess { data: path.display().to_string(), clock, signals, left })
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::super::error::MapError;
 use super::super::signal::SignalKind;
-use super::Guess;
+use super::{Confidence, Guess, GuessedSignal};
 
 /// Column at which reasons begin, so that the map can be read without them.
 const REASON_COLUMN: usize = 52;
@@ -15,22 +15,22 @@ impl Guess {
     /// # Errors
     /// [`MapError::Syntax`] when a number is none that TOML can hold.
     pub fn to_text(&self) -> Result<String, MapError> {
-        let mut text =
-            format!("# Guessed from {}. Check every line, above all units, signs and offsets.\n\n", self.data);
-        text.push_str("[clock]\n");
+        let mut text = format!("# Guessed from {}. Check every line, above all units, signs and offsets.\n", self.data);
+        let unsure = self.signals.iter().filter(|guessed| guessed.confidence == Confidence::Unsure).count();
+        if unsure > 0 {
+            let comment = format!(
+                "{unsure} of {} signals are not sure. They are commented out: put the right source, then delete \"# \" in front of \
+                 their lines.",
+                self.signals.len()
+            );
+            push_comment(&mut text, &comment);
+        }
+        text.push_str("\n[clock]\n");
         for line in toml_lines(&self.clock.0)? {
-            push_line(&mut text, &line, &self.clock.1);
+            push_line(&mut text, "", &line, &self.clock.1);
         }
         for guessed in &self.signals {
-            text.push_str("\n[[signals]]\n");
-            for line in toml_lines(&guessed.source)? {
-                let reason = match line.split_once(" = ").map_or("", |(key, _)| key) {
-                    "signal" => guessed.reason.as_str(),
-                    "unit" => guessed.unit_reason.as_str(),
-                    _ => "",
-                };
-                push_line(&mut text, &line, reason);
-            }
+            push_signal(&mut text, guessed)?;
         }
         let missing: Vec<&str> = SignalKind::ALL
             .into_iter()
@@ -48,12 +48,36 @@ impl Guess {
     }
 }
 
+/// The entry of a signal, with reasons; as a comment where it is not sure.
+fn push_signal(text: &mut String, guessed: &GuessedSignal) -> Result<(), MapError> {
+    let is_unsure = guessed.confidence == Confidence::Unsure;
+    let mark = if is_unsure { "# " } else { "" };
+    text.push('\n');
+    push_line(text, mark, "[[signals]]", "");
+    let reason = format!("{}: {}", guessed.confidence.name(), guessed.reason);
+    for line in toml_lines(&guessed.source)? {
+        let reason = match line.split_once(" = ").map_or("", |(key, _)| key) {
+            "signal" => reason.as_str(),
+            "unit" => guessed.unit_reason.as_str(),
+            _ => "",
+        };
+        push_line(text, mark, &line, reason);
+    }
+    for alternative in &guessed.alternatives {
+        let is_place = |line: &String| !line.starts_with("signal = ");
+        let lines: Vec<String> = toml_lines(&alternative.source)?.into_iter().filter(is_place).collect();
+        push_line(text, "#   or ", &lines.join(", "), &alternative.reason);
+    }
+    Ok(())
+}
+
 fn toml_lines<T: serde::Serialize>(value: &T) -> Result<Vec<String>, MapError> {
     let text = toml::to_string(value).map_err(|error| MapError::Syntax(error.to_string()))?;
     Ok(text.lines().map(str::to_string).collect())
 }
 
-fn push_line(text: &mut String, line: &str, reason: &str) {
+fn push_line(text: &mut String, mark: &str, line: &str, reason: &str) {
+    let line = format!("{mark}{line}");
     // Nothing that comes from the data may end a comment.
     let reason = reason.replace(char::is_control, " ");
     // Writing to a String cannot fail.

@@ -1,6 +1,5 @@
 //! Parquet files as tables: every column of numbers, switches, dates or times is a column.
 
-mod guard;
 mod kind;
 mod pages;
 mod values;
@@ -11,7 +10,7 @@ use parquet::file::metadata::ParquetMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use super::fault::TableFault;
-use super::{Column, Table, heading};
+use super::{Column, Table, guard, heading};
 use crate::limits::ReadLimits;
 use kind::Kind;
 use values::Cells;

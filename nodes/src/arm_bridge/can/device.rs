@@ -6,8 +6,8 @@ use std::time::{Duration, Instant, SystemTime};
 use socketcan::id::{CAN_EFF_FLAG, CAN_EFF_MASK, CAN_SFF_MASK};
 use socketcan::{CanFdSocket, CanFilter, ShouldRetry, Socket, SocketOptions};
 
-use super::database::Identifier;
 use super::{Counts, Frame, Wanted};
+use excavator_bags::can::Identifier;
 
 /// Longest time until the end of the node is seen, and pause after a failure.
 const GLANCE: Duration = Duration::from_millis(100);
@@ -28,7 +28,7 @@ impl Device {
     /// # Errors
     /// What is wrong, in one line.
     pub fn open(name: &str, wanted: &Wanted) -> Result<Self, String> {
-        let filters: Vec<CanFilter> = wanted.places.iter().map(|place| filter(place.identifier)).collect();
+        let filters: Vec<CanFilter> = wanted.places.iter().map(|place| filter(place.identifier())).collect();
         let socket = open(name, &filters).map_err(|error| format!("CAN device {name}: {error}"))?;
         Ok(Device { name: name.to_string(), filters, socket })
     }

@@ -2,10 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use excavator_bags::can::{Identifier, Place};
 use socketcan::{CanAnyFrame, EmbeddedFrame, Frame as _};
-
-use super::Place;
-use super::database::Identifier;
 
 /// A data frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +48,7 @@ impl Wanted {
     pub fn read(&self, frame: &Frame, counts: &Counts, mut take: impl FnMut(usize, f64)) {
         let mut short = false;
         for (index, place) in self.places.iter().enumerate() {
-            if place.identifier != frame.identifier || !place.is_selected(&frame.data) {
+            if place.identifier() != frame.identifier || !place.is_selected(&frame.data) {
                 continue;
             }
             match place.value(&frame.data) {

@@ -2,7 +2,7 @@
 
 /// Where the bits of a number stand and what they mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::arm_bridge) struct Bits {
+pub(super) struct Bits {
     /// First bit as the DBC file counts: the least significant of a little endian number, the most significant of a big
     /// endian one; bit 0 is the least significant of byte 0.
     pub start: usize,
@@ -17,7 +17,7 @@ pub(in crate::arm_bridge) struct Bits {
 /// What bits mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)]
-pub(in crate::arm_bridge) enum Coding {
+pub(super) enum Coding {
     Unsigned,
     /// Two's complement.
     Signed,

@@ -1,6 +1,6 @@
 """Makes vectors.json: random signals and frames, and what PyPI's cantools reads from them.
 
-    python nodes/tests/can/vectors.py          # writes the file beside this one
+    python bags/tests/can/vectors.py           # writes the file beside this one
 
 Signals of both byte orders, signed, unsigned and float, simple and extended multiplexers, 8 and 64 bytes.
 """

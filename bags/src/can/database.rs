@@ -3,12 +3,11 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+use super::bits::{Bits, Coding};
+use crate::{ReadLimits, read_regular};
 use can_dbc::{
     ByteOrder, Dbc, Message, MessageId, MultiplexIndicator, NumericValue, Signal, SignalExtendedValueType, ValueType,
 };
-use excavator_bags::{ReadLimits, read_regular};
-
-use super::bits::{Bits, Coding};
 
 /// Longest DBC file that is read, bytes: those of whole vehicles have one or two megabytes.
 const LONGEST: u64 = 16 << 20;
@@ -18,8 +17,8 @@ const DEEPEST: usize = 8;
 const LONGEST_FRAME: usize = 64;
 
 /// Identifier of a frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::arm_bridge) struct Identifier {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Identifier {
     /// 11 bits, or 29 of an extended one.
     pub number: u32,
     /// Whether it is extended.
@@ -31,18 +30,30 @@ type Selector = (Bits, Vec<RangeInclusive<u64>>);
 
 /// Where a signal stands.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::arm_bridge) struct Place {
-    pub(super) identifier: Identifier,
+pub struct Place {
+    identifier: Identifier,
     bits: Bits,
     factor: f64,
     offset: f64,
     /// Values that the file allows, in its unit.
     range: Option<(f64, f64)>,
+    /// As the file writes it; empty for none.
+    unit: String,
     /// From the signal upwards.
     selectors: Vec<Selector>,
 }
 
 impl Place {
+    /// Which frames may carry the signal.
+    pub fn identifier(&self) -> Identifier {
+        self.identifier
+    }
+
+    /// Unit that the file gives; empty for none.
+    pub fn unit(&self) -> &str {
+        &self.unit
+    }
+
     /// Whether the frame carries the signal. A frame too short for a multiplexer carries nothing of it.
     pub fn is_selected(&self, data: &[u8]) -> bool {
         self.selectors.iter().all(|(bits, values)| {
@@ -67,7 +78,7 @@ impl Place {
 
 /// A DBC file.
 #[derive(Debug)]
-pub(in crate::arm_bridge) struct Database {
+pub struct Database {
     dbc: Dbc,
 }
 
@@ -87,7 +98,10 @@ impl Database {
     }
 
     /// The database in the bytes of a file: UTF-8, or Windows' code page 1252, in which most of them are.
-    pub(super) fn parse(bytes: &[u8]) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// What is wrong, in one line.
+    pub fn parse(bytes: &[u8]) -> Result<Self, String> {
         let text = match std::str::from_utf8(bytes) {
             Ok(text) => text.into(),
             Err(_) => can_dbc::decode_cp1252(bytes).ok_or("neither UTF-8 nor code page 1252")?,
@@ -134,6 +148,7 @@ impl Database {
             offset: signal.offset,
             // [0|0] stands for no range.
             range: (least < largest).then_some((least, largest)),
+            unit: signal.unit.clone(),
             selectors: self.selectors(message, signal)?,
         })
     }
@@ -225,7 +240,7 @@ fn names<T>(all: &[T], name: impl Fn(&T) -> &String) -> String {
 
 impl Database {
     /// Names of messages and their signals.
-    pub(super) fn all_signals(&self) -> Vec<(String, String)> {
+    pub fn all_signals(&self) -> Vec<(String, String)> {
         let of = |message: &Message| {
             let name = message.name.clone();
             message.signals.iter().map(move |signal| (name.clone(), signal.name.clone())).collect::<Vec<_>>()
@@ -241,9 +256,9 @@ mod tests {
 
     use super::*;
 
-    const EXAMPLE: &[u8] = include_bytes!("../../../../config/can/excavator.dbc");
+    const EXAMPLE: &[u8] = include_bytes!("../../../config/can/excavator.dbc");
     /// Random signals and frames with what PyPI's cantools reads from them; made by the script beside the file.
-    const VECTORS: &str = include_str!("../../../tests/can/vectors.json");
+    const VECTORS: &str = include_str!("../../tests/can/vectors.json");
 
     fn bytes(hexadecimal: &str) -> Vec<u8> {
         let pairs = (0..hexadecimal.len()).step_by(2);

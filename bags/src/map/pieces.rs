@@ -1,0 +1,149 @@
+//! Several files that are one recording: pieces, one after the other.
+
+use std::path::{Path, PathBuf};
+
+use excavator_model::recording::{Recording, longest_gap};
+
+use super::document::TopicMap;
+use super::error::MapError;
+use super::join::Join;
+use super::read_mapped::{map_of, read_with};
+use super::signal::SignalName;
+use super::table_clock::Dating;
+use crate::BagError;
+use crate::reading::{ReadReport, gaps};
+
+/// One file of a recording.
+struct Piece {
+    path: PathBuf,
+    recording: Recording,
+    report: ReadReport,
+    is_dated: bool,
+}
+
+impl Piece {
+    fn first(&self) -> i64 {
+        self.recording.start_nanoseconds
+    }
+
+    fn last(&self) -> i64 {
+        self.first().saturating_add((self.recording.duration() * 1e9).round() as i64)
+    }
+}
+
+/// Reads files that are one recording: each with the given map, else with the one beside it, else with that beside the first.
+/// `joins` are tables beside a single file, for which the map needs no `[[join]]`.
+///
+/// Files that say when they were recorded keep their times. A file that counts from a time 0 of its own, and so would begin
+/// before the end of the one before it, is moved behind that: by the shortest pause that makes it a piece of its own (see
+/// [`Recording::pieces`]).
+///
+/// # Errors
+/// All of [`read_mapped`](super::read_mapped) and [`read_recording`](crate::read_recording); [`MapError::PiecesOverlap`] for
+/// files of the same time, [`MapError::JoinsOfPieces`], [`MapError::JoinWithoutMap`].
+pub fn read_pieces(
+    paths: &[PathBuf],
+    map: Option<&Path>,
+    joins: &[PathBuf],
+) -> Result<(Recording, ReadReport), BagError> {
+    if paths.len() > 1 && !joins.is_empty() {
+        return Err(MapError::JoinsOfPieces { pieces: paths.len() }.into());
+    }
+    let of_first = match paths.first() {
+        Some(first) => map_of(first, map)?,
+        None => None,
+    };
+    let mut pieces = Vec::new();
+    for (number, path) in paths.iter().enumerate() {
+        let own = if number == 0 { None } else { map_of(path, map)? };
+        let mut map = own.or_else(|| of_first.clone());
+        add_joins(path, map.as_mut(), joins)?;
+        let (recording, report, dating) = read_with(path, map.as_ref())?;
+        pieces.push(Piece { path: path.clone(), recording, report, is_dated: dating == Dating::Dated });
+    }
+    if pieces.iter().all(|piece| piece.is_dated) {
+        pieces.sort_by_key(Piece::first);
+    }
+    if pieces.len() == 1
+        && let Some(Piece { recording, report, .. }) = pieces.pop()
+    {
+        return Ok((recording, report));
+    }
+    let mut notes = Vec::new();
+    place(&mut pieces, &mut notes)?;
+    let recording = one_of(&pieces);
+    let mut report = ReadReport::default();
+    for piece in pieces {
+        report.add_piece(&piece.path, piece.report);
+    }
+    report.gaps = gaps(&recording);
+    report.notes.extend(notes);
+    Ok((recording, report))
+}
+
+/// Adds tables to those that the map joins.
+fn add_joins(data: &Path, map: Option<&mut TopicMap>, joins: &[PathBuf]) -> Result<(), BagError> {
+    let Some(first) = joins.first() else { return Ok(()) };
+    let Some(map) = map else { return Err(MapError::JoinWithoutMap { file: first.clone() }.into()) };
+    let folder = data.parent().unwrap_or(Path::new("."));
+    for join in joins {
+        let file = std::path::absolute(join).map_err(BagError::io("find", join))?;
+        let known = |other: &Join| std::path::absolute(folder.join(&other.file)).is_ok_and(|other| other == file);
+        if !map.join.iter().any(known) {
+            map.join.push(Join::of(&file));
+        }
+    }
+    Ok(())
+}
+
+/// Moves pieces without dates behind the one before them where they would overlap.
+fn place(pieces: &mut [Piece], notes: &mut Vec<String>) -> Result<(), MapError> {
+    // Longer than any gap within a piece, whichever of their intervals the whole recording has.
+    let interval = pieces.iter().map(|piece| piece.recording.sample_interval()).fold(0.0, f64::max);
+    let pause = longest_gap(interval) + interval;
+    for number in 1..pieces.len() {
+        let end = pieces[number - 1].last();
+        let before = pieces[number - 1].path.clone();
+        let piece = &mut pieces[number];
+        if piece.first() > end {
+            continue;
+        }
+        if piece.is_dated {
+            let overlap = end.saturating_sub(piece.first()) as f64 / 1e9;
+            return Err(MapError::PiecesOverlap { first: before, second: piece.path.clone(), overlap });
+        }
+        piece.recording.start_nanoseconds = end.saturating_add((pause * 1e9).ceil() as i64);
+        notes.push(format!(
+            "{} counts time from its own start: it begins {pause:.3} s after the end of {}, which makes it a piece of its own",
+            piece.path.display(),
+            before.display()
+        ));
+    }
+    Ok(())
+}
+
+/// The samples of all pieces on one clock; what a piece did not measure is `NaN` in it.
+fn one_of(pieces: &[Piece]) -> Recording {
+    let start = pieces.first().map_or(0, Piece::first);
+    let mut time = Vec::new();
+    for Piece { recording, .. } in pieces {
+        let shift = recording.start_nanoseconds.saturating_sub(start) as f64 / 1e9;
+        time.extend(recording.time.iter().map(|t| t + shift));
+    }
+    let sources: Vec<&str> = pieces.iter().map(|piece| piece.recording.source.as_str()).collect();
+    let mut whole = Recording::unmeasured(&sources.join(", "), time, &[]);
+    whole.start_nanoseconds = start;
+    let mut begin = 0;
+    for Piece { recording, .. } in pieces {
+        let end = begin + recording.len();
+        for (name, values) in recording.signals() {
+            if let Ok(name) = name.parse::<SignalName>()
+                && let Some(place) = name.column(&mut whole).get_mut(begin..end)
+            {
+                place.copy_from_slice(values);
+            }
+        }
+        begin = end;
+    }
+    whole
+}

@@ -1,0 +1,115 @@
+//! When the rows of a table were taken.
+
+use super::document::ClockSource;
+use super::error::MapError;
+use super::unit::{Dimension, Unit};
+use crate::table::{Column, Table, Values};
+
+/// Headings that are taken for the time when the map names no column.
+const TIME_NAMES: [&str; 6] = ["time", "t", "timestamp", "stamp", "zeit", "time_s"];
+/// Time 0 of a table that says nothing else: 1 January 2000. Not the epoch, since a stamp of zero means "not set".
+const DEFAULT_START: i64 = 946_684_800_000_000_000;
+/// Numbers above this are seconds since the epoch (1973 and later), below it since the start of the recording.
+pub(super) const EPOCH_SECONDS: f64 = 1e8;
+
+/// What stamps say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Dating {
+    /// When a row was taken.
+    Dated,
+    /// How long after a time 0 of its own, whose stamp this is.
+    Undated(i64),
+    /// How many rows were before it.
+    Counted,
+}
+
+/// The times of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TableClock {
+    /// For people.
+    pub name: String,
+    /// Of each row, ns since the epoch; `None` for rows without time.
+    pub stamps: Vec<Option<i64>>,
+    pub dating: Dating,
+    /// What was taken from lines before the table.
+    pub note: Option<String>,
+}
+
+impl TableClock {
+    /// The times of a table by what a map says of them. `rows` is how many there are.
+    ///
+    /// # Errors
+    /// [`MapError::NoColumn`], [`MapError::NoClock`], [`MapError::UnknownUnit`], [`MapError::BadStart`].
+    pub fn of(table: &Table, clock: &ClockSource, rows: usize) -> Result<TableClock, MapError> {
+        let start = clock.start.as_deref().map(parse_start).transpose()?;
+        if let Some(rate) = clock.rate {
+            return Ok(TableClock::even(rate, rows, start, None));
+        }
+        let column = match &clock.column {
+            Some(name) => Some(table.column(name)?),
+            None => time_column(table),
+        };
+        match (column, &table.sampling) {
+            (Some(column), _) => TableClock::of_column(column, clock, start),
+            (None, Some(sampling)) => {
+                let (rate, line) = (sampling.rate, &sampling.line);
+                let note = format!("no column of times: {rate} rows per second, as the line \"{line}\" says");
+                Ok(TableClock::even(rate, rows, start, Some(note)))
+            }
+            (None, None) => Err(MapError::NoClock),
+        }
+    }
+
+    fn even(rate: f64, rows: usize, start: Option<i64>, note: Option<String>) -> TableClock {
+        let zero = start.unwrap_or(DEFAULT_START);
+        let stamp = |row: usize| zero.checked_add((row as f64 / rate * 1e9).round() as i64);
+        let dating = if start.is_some() { Dating::Dated } else { Dating::Counted };
+        TableClock { name: format!("{rate} rows per second"), stamps: (0..rows).map(stamp).collect(), dating, note }
+    }
+
+    fn of_column(column: &Column, clock: &ClockSource, start: Option<i64>) -> Result<TableClock, MapError> {
+        let name = column.name.clone();
+        let times = match &column.values {
+            Values::Stamps(stamps) => {
+                return Ok(TableClock { name, stamps: stamps.clone(), dating: Dating::Dated, note: None });
+            }
+            Values::Numbers(times) => times,
+        };
+        let unit = clock.unit.as_deref().or(column.unit.as_deref()).unwrap_or("s");
+        let unit = Unit::named(unit).filter(|unit| unit.dimension == Dimension::Time).ok_or_else(|| {
+            let known = "s, ms, us, ns, min, h".to_string();
+            MapError::UnknownUnit { signal: "[clock]".to_string(), unit: unit.to_string(), known }
+        })?;
+        let first = times.iter().copied().find(|time| time.is_finite()).map_or(0.0, |time| unit.to_si(time));
+        let (zero, dating) = match start {
+            Some(start) => (start, Dating::Dated),
+            None if first > EPOCH_SECONDS => (0, Dating::Dated),
+            None => (DEFAULT_START, Dating::Undated(DEFAULT_START)),
+        };
+        let stamp = |&time: &f64| {
+            let nanoseconds = (unit.to_si(time) * 1e9).round();
+            // What a stamp cannot hold is no time.
+            let holds = nanoseconds.abs() < 9e18;
+            holds.then(|| zero.checked_add(nanoseconds as i64)).flatten()
+        };
+        Ok(TableClock { name, stamps: times.iter().map(stamp).collect(), dating, note: None })
+    }
+
+    /// The earliest and the latest stamp, ns; `None` without any.
+    pub fn range(&self) -> Option<(i64, i64)> {
+        let stamps = || self.stamps.iter().flatten().copied();
+        stamps().min().zip(stamps().max())
+    }
+}
+
+/// The column that is most likely the time: one of dates, else one with a usual heading.
+pub(super) fn time_column(table: &Table) -> Option<&Column> {
+    let by_name = |column: &&Column| TIME_NAMES.contains(&column.name.to_lowercase().as_str());
+    let dates = table.columns.iter().find(|column| matches!(column.values, Values::Stamps(_)));
+    dates.or_else(|| table.columns.iter().find(by_name))
+}
+
+fn parse_start(text: &str) -> Result<i64, MapError> {
+    crate::table::parse_date(text)
+        .ok_or_else(|| MapError::BadStart { text: text.to_string(), reason: "it is no date with time".to_string() })
+}
