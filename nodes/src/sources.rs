@@ -11,6 +11,7 @@ use excavator_model::effects::Catalogue;
 use excavator_model::formula::Condition;
 use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
+use excavator_model::simulation::input_holes;
 
 use crate::cli::{self, Mapping};
 use crate::error::VerbError;
@@ -76,6 +77,17 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
     }
     for overruled in gate::check(model, &recording, &map.accept)? {
         complain(&format!("accepted: {overruled}"));
+    }
+    let holes = input_holes(model, &recording);
+    if holes.count > 0 {
+        complain(&format!(
+            "{}: an input is missing for up to {:.2} s, {} time(s); these {:.2} s are left out",
+            path.display(),
+            holes.longest,
+            holes.count,
+            holes.total
+        ));
+        recording = recording.at(&holes.known);
     }
     for remark in gate::remarks(model, &recording) {
         complain(&format!("{}: {remark}", path.display()));

@@ -26,7 +26,7 @@ impl Conversion {
         };
         let scale = match &source.scale {
             Some(scale) => scale.ratio_to_si(&signal, unit.dimension, dimension)?,
-            None if unit.dimension == dimension => 1.0,
+            None if source.signal.kind.takes(unit.dimension) => 1.0,
             None => {
                 return Err(MapError::WrongDimension {
                     signal,
@@ -45,7 +45,10 @@ impl Conversion {
             }
         };
         let offset = match &source.offset {
-            Some(offset) => offset.to_si(&signal, "offset", dimension)?,
+            Some(offset) => {
+                let of_unit = source.scale.is_none() && source.signal.kind.takes(unit.dimension);
+                offset.to_si(&signal, "offset", if of_unit { unit.dimension } else { dimension })?
+            }
             None => 0.0,
         };
         Ok(Conversion { unit, factor: sign * scale, offset })

@@ -67,6 +67,20 @@ impl SignalKind {
         self <= SignalKind::OrificeCommand
     }
 
+    /// Whether a number of this dimension is a value of it as it stands. A motor turns where a cylinder moves, and what opens a valve may be
+    /// told as a voltage, a current or a share: the model then says so too.
+    pub fn takes(self, dimension: Dimension) -> bool {
+        dimension == self.dimension()
+            || match self {
+                SignalKind::Displacement => dimension == Dimension::Angle,
+                SignalKind::Velocity => dimension == Dimension::RotationalSpeed,
+                SignalKind::OrificeArea | SignalKind::OrificeCommand => {
+                    matches!(dimension, Dimension::Voltage | Dimension::Current | Dimension::Number | Dimension::Flow)
+                }
+                _ => false,
+            }
+    }
+
     /// What it measures.
     pub fn dimension(self) -> Dimension {
         match self {

@@ -16,7 +16,7 @@ static CARD: Card = Card {
         "The pump swivels so that its pressure is a margin above the highest load pressure, within its largest flow and pressure.",
     ),
     equation: text(
-        "Qp = q, T dq/dt = clamp(k (min(pl + pm, pc) - pp), 0, Qmax) - q, pl the highest pressure at a metering edge fed by the pump, tank pressure with all valves closed",
+        "Qp = clamp(k (ps - pp), 0, Qmax), T dps/dt = min(pl + pm, pc) - ps, pl the highest pressure at a metering edge fed by the pump, tank pressure with all valves closed",
     ),
     source: text("hydraulics practice (load-sensing systems); textbook (e.g. Murrenhoff)"),
     shows: text("Pump pressure follows the load a margin above it, and rests at the margin while nothing moves."),
@@ -55,7 +55,7 @@ static PARAMETERS: &[ParameterCard] = &[
         name: text("regulator_gain"),
         symbol: text("k"),
         unit: text("m3/(s Pa)"),
-        meaning: text("flow per pressure error of the regulator"),
+        meaning: text("flow per pressure that the pump lacks"),
         kind: Kind::Shape,
         growth: Growth::FLOW,
         minimum: 0.0,
@@ -65,10 +65,10 @@ static PARAMETERS: &[ParameterCard] = &[
         prior: None,
     },
     ParameterCard {
-        name: text("swivel_time"),
+        name: text("regulator_lag"),
         symbol: text("T"),
         unit: text("s"),
-        meaning: text("time constant of the swash plate"),
+        meaning: text("time constant with which the pump's pressure follows the load's"),
         kind: Kind::Shape,
         growth: Growth::NONE,
         minimum: 1e-3,
@@ -97,36 +97,35 @@ impl Physics for LoadSensingPump {
     }
 
     fn state_scale(&self, _state: usize) -> f64 {
-        1e-4
+        1e6
     }
 
     fn begin<T: Scalar>(&self, _site: Site, parameters: &[T], now: &Situation<T>, states: &mut [T]) {
-        states[0] = wanted_flow(parameters, now);
+        states[0] = wanted_pressure(parameters, now);
     }
 
     fn remember<T: Scalar>(&self, _site: Site, parameters: &[T], states: &[T], now: &Situation<T>, rates: &mut [T]) {
-        rates[0] = (wanted_flow(parameters, now) - states[0]) / parameters[3];
+        rates[0] = (wanted_pressure(parameters, now) - states[0]) / parameters[3];
     }
 
     fn contribute_remembering<T: Scalar>(
         &self,
         _site: Site,
-        _parameters: &[T],
+        parameters: &[T],
         states: &[T],
         now: &Situation<T>,
         rows: &mut Rows<T>,
     ) {
+        let wanted = ((states[0] - now.pump_pressure) * parameters[2]).positive_part();
         // The equations give the line all of the supply's flow.
-        rows.pump_flow += states[0] - now.pump_flow;
+        rows.pump_flow -= (-wanted + now.pump_flow).positive_part();
     }
 }
 
-/// Flow that the regulator asks for, m³/s.
-fn wanted_flow<T: Scalar>(parameters: &[T], now: &Situation<T>) -> T {
+/// Pressure that the regulator aims at, Pa.
+fn wanted_pressure<T: Scalar>(parameters: &[T], now: &Situation<T>) -> T {
     let above_load = highest_load(now) + parameters[0];
-    let target = above_load - (above_load - parameters[1]).positive_part();
-    let wanted = ((target - now.pump_pressure) * parameters[2]).positive_part();
-    wanted - (wanted - now.pump_flow).positive_part()
+    above_load - (above_load - parameters[1]).positive_part()
 }
 
 /// Highest pressure at a metering edge that the pump feeds, Pa; that of the tank where no valve is open.

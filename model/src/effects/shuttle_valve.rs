@@ -16,7 +16,9 @@ static CARD: Card = Card {
     summary: text(
         "The side at lower pressure is open to the charge line, which takes or gives what unequal areas need.",
     ),
-    equation: text("Q+ = k s(p- - p+) (pp - p+), Q- = k s(p+ - p-) (pp - p-), s(x) = 1/(1 + exp(-2 x/w)), w = 0.1 MPa"),
+    equation: text(
+        "Q+ = k s(p- - p+) (pp - p+), Q- = k s(p+ - p-) (pp - p-), s(x) = 1/(1 + exp(-2 (x - po)/w)), w = 0.45 po + 10 kPa",
+    ),
     source: text("hydraulics practice (inverse shuttle, pilot-operated check valves); textbook (e.g. Murrenhoff)"),
     shows: text(
         "The side at lower pressure stays at charge pressure while the piston moves either way; the sides change over where the load turns round.",
@@ -25,19 +27,34 @@ static CARD: Card = Card {
     energy: text("Throttles between charge line and chamber."),
 };
 
-static PARAMETERS: &[ParameterCard] = &[ParameterCard {
-    name: text("shuttle_gain"),
-    symbol: text("k"),
-    unit: text("m3/(s Pa)"),
-    meaning: text("flow per pressure difference"),
-    kind: Kind::Linear,
-    growth: Growth::FLOW,
-    minimum: 0.0,
-    maximum: 1e-5,
-    typical: 1e-9,
-    start: Start::at(&[1e-9]),
-    prior: None,
-}];
+static PARAMETERS: &[ParameterCard] = &[
+    ParameterCard {
+        name: text("shuttle_opening_pressure"),
+        symbol: text("po"),
+        unit: text("Pa"),
+        meaning: text("difference of the pressures at which the valve is half open"),
+        kind: Kind::Shape,
+        growth: Growth::NONE,
+        minimum: 0.0,
+        maximum: 2e6,
+        typical: 2e5,
+        start: Start::at(&[2e5]),
+        prior: None,
+    },
+    ParameterCard {
+        name: text("shuttle_gain"),
+        symbol: text("k"),
+        unit: text("m3/(s Pa)"),
+        meaning: text("flow per pressure difference"),
+        kind: Kind::Linear,
+        growth: Growth::FLOW,
+        minimum: 0.0,
+        maximum: 1e-5,
+        typical: 1e-9,
+        start: Start::at(&[1e-9]),
+        prior: None,
+    },
+];
 
 impl Physics for ShuttleValve {
     fn card(&self) -> &Card {
@@ -51,14 +68,20 @@ impl Physics for ShuttleValve {
     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
-        let difference = (piston.rod_pressure - piston.cap_pressure) / CHANGEOVER;
-        let cap = parameters[0] * rounded_step(difference) * (now.pump_pressure - piston.cap_pressure);
-        let rod = parameters[0] * rounded_step(-difference) * (now.pump_pressure - piston.rod_pressure);
+        let difference = piston.rod_pressure - piston.cap_pressure;
+        let [opening, gain] = [parameters[0], parameters[1]];
+        let width = opening * RAMP + SHARPEST;
+        let cap = gain * rounded_step((difference - opening) / width) * (now.pump_pressure - piston.cap_pressure);
+        let rod = gain * rounded_step((-difference - opening) / width) * (now.pump_pressure - piston.rod_pressure);
         rows.cap_flow[cylinder] += cap;
         rows.rod_flow[cylinder] += rod;
         rows.pump_flow -= cap + rod;
     }
 }
 
-/// Pressure difference over which the shuttle changes over, Pa: the force of its springs.
-const CHANGEOVER: f64 = 1e5;
+/// Half width of the ramp on which the valve opens, as a share of the pressure at which it is half open: its spring is a third longer when
+/// it is fully open than when it begins to move.
+const RAMP: f64 = 0.45;
+
+/// Half width of the ramp of a valve without a spring, Pa.
+const SHARPEST: f64 = 1e4;

@@ -4,6 +4,7 @@ mod coarse_inputs;
 mod factors;
 mod imposed_motion;
 mod initial;
+mod input_holes;
 mod input_signals;
 mod integrator;
 mod linearisation;
@@ -21,6 +22,7 @@ mod trajectory;
 mod undistorted;
 
 pub use initial::{first_known_position, initial_state};
+pub use input_holes::{InputHoles, input_holes};
 pub use input_signals::{InputSignals, Interpolation};
 pub use integrator::{Integrator, SimulationError, Tolerances};
 pub use linearisation::Linearisation;

@@ -22,8 +22,15 @@ pub struct DataSheet {
     pub supply_pressure: Option<f64>,
     /// Largest flow of the pump, m³/s.
     pub pump_flow: Option<f64>,
-    /// Oil volume between valve and each chamber, m³: hoses and ports. A tenth of the stroke's volume where it is left out.
-    pub dead_volume: Option<f64>,
+    /// Oil volumes between valve and cap side and between valve and rod side, m³: hoses and ports. A tenth of the stroke's volume where they
+    /// are left out.
+    pub dead_volumes: Option<[f64; 2]>,
+    /// Bulk modulus of the oil, Pa.
+    pub bulk_modulus: Option<f64>,
+    /// Pressure that a load-sensing pump keeps above the highest load, Pa.
+    pub load_sensing_margin: Option<f64>,
+    /// Pressure drop that a compensator leaves to the metering edge, Pa.
+    pub metering_drop: Option<f64>,
 }
 
 /// What drives a cylinder or motor.

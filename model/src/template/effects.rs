@@ -131,7 +131,8 @@ fn mechanical(sheet: &DataSheet) -> Vec<Entry> {
 
 fn hydraulic(sheet: &DataSheet) -> Vec<Entry> {
     let (flow, pressure) = (sheet.usual_flow(), sheet.working_pressure());
-    let modulus = ("bulk_modulus", 1e9, false, "start: mineral oil in hoses");
+    let (modulus, source) = sheet.bulk_modulus.map_or((1e9, "start: mineral oil in hoses"), |modulus| (modulus, SHEET));
+    let modulus = ("bulk_modulus", modulus, false, source);
     let leakage = LEAKAGE_SHARE * flow / pressure;
     let leaks = "start: half a per cent of the flow";
     let mut entries = vec![
@@ -155,11 +156,12 @@ fn hydraulic(sheet: &DataSheet) -> Vec<Entry> {
     if sheet.drive == DriveKind::Pump {
         entries.push(entry("pump_drive", vec![("pump_flow_share", PUMP_SHARE, false, "start: usual losses")]));
         let gain = flow / 1e5;
-        let (effect, parameter) = match sheet.actuator {
-            Actuator::Cylinder { kind: CylinderKind::Differential, .. } => ("shuttle_valve", "shuttle_gain"),
-            _ => ("charge_check_valve", "charge_valve_gain"),
-        };
-        entries.push(entry(effect, vec![(parameter, gain, true, "ours: full flow at 1 bar")]));
+        let source = "start: all of the flow at 1 bar";
+        entries.push(entry("charge_check_valve", vec![("charge_valve_gain", gain, false, source)]));
+        if matches!(sheet.actuator, Actuator::Cylinder { kind: CylinderKind::Differential, .. }) {
+            let opening = ("shuttle_opening_pressure", 2e5, false, "start: usual");
+            entries.push(entry("shuttle_valve", vec![opening, ("shuttle_gain", gain, false, source)]));
+        }
         return entries;
     }
     entries.push(entry("orifice_flow", flow_gains(sheet)));
@@ -176,16 +178,21 @@ fn hydraulic(sheet: &DataSheet) -> Vec<Entry> {
             entries.push(at_pump("open_centre_bypass", vec![bypass]));
         }
         DriveKind::LoadSensing => {
-            let margin = ("compensator_margin", 7e5, true, "usual: 7 bar; see the data sheet");
+            let (drop, source) =
+                sheet.metering_drop.map_or((7e5, "usual: 7 bar; see the data sheet"), |drop| (drop, SHEET));
+            let margin = ("compensator_margin", drop, true, source);
+            let (above, source) =
+                sheet.load_sensing_margin.map_or((2e6, "usual: 20 bar; see the data sheet"), |margin| (margin, SHEET));
             entries.push(entry("pressure_compensation", vec![margin]));
+            entries.push(entry("load_check_valve", vec![("check_tightness", 1.0, true, "usual with compensators")]));
             entries.push(at_pump("oil_compressibility", vec![line]));
             entries.push(at_pump(
                 "load_sensing_pump",
                 vec![
-                    ("load_sensing_margin", 2e6, false, "usual: 20 bar; see the data sheet"),
+                    ("load_sensing_margin", above, false, source),
                     ("cut_off_pressure", pressure, true, SHEET),
                     ("regulator_gain", flow / 2e5, false, "start: all of the flow at 2 bar"),
-                    ("swivel_time", 0.05, false, "start: usual"),
+                    ("regulator_lag", 0.05, false, "start: usual"),
                 ],
             ));
         }

@@ -100,15 +100,17 @@ fn actuator(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
     match sheet.actuator {
         Actuator::Motor { displacement, ratio } => {
             let unit = if matches!(sheet.load, Load::Mass { .. }) { "rad/m" } else { "-" };
-            let volume = sheet.dead_volume.unwrap_or(MOTOR_TURNS * std::f64::consts::TAU * displacement);
+            let estimated = [MOTOR_TURNS * std::f64::consts::TAU * displacement; 2];
+            let [cap, rod] = sheet.dead_volumes.unwrap_or(estimated);
+            let source = if sheet.dead_volumes.is_some() { SHEET } else { "estimated: oil between valve and motor" };
             let text = "# The motor's shaft turns the load through a gear. Displacement and velocity of a motor are those of its shaft, in rad\n\
                         # and rad/s; forces are torques on the shaft.\n[machine.cylinders.linkage]\nkind = \"gear\"\n"
                 .to_string()
                 + &constant("ratio", ratio, unit, SHEET)
                 + "\n[machine.cylinders.motor]\n"
                 + &constant("displacement", displacement, "m3/rad", "data sheet: volume of a turn divided by 2 pi")
-                + &constant("cap_volume", volume, "m3", "estimated: oil between valve and motor")
-                + &constant("rod_volume", volume, "m3", "estimated: oil between valve and motor");
+                + &constant("cap_volume", cap, "m3", source)
+                + &constant("rod_volume", rod, "m3", source);
             Ok(text + &drive(sheet)?)
         }
         Actuator::Cylinder { stroke, kind, .. } => {
@@ -122,15 +124,17 @@ fn actuator(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
                 DriveKind::Force => {}
                 DriveKind::ImposedMotion => text += &format!("\n[machine.cylinders.imposed_motion]\n{areas}"),
                 _ => {
-                    let dead = |area: f64| sheet.dead_volume.unwrap_or(DEAD_SHARE * area * stroke);
-                    let source = if sheet.dead_volume.is_some() { SHEET } else { "estimated: a tenth of the stroke's" };
+                    let estimated = [cap, rod].map(|area| DEAD_SHARE * area * stroke);
+                    let dead = sheet.dead_volumes.unwrap_or(estimated);
+                    let source =
+                        if sheet.dead_volumes.is_some() { SHEET } else { "estimated: a tenth of the stroke's" };
                     if kind == CylinderKind::SingleActing {
                         text += "\n# The rod side holds air: the effect vented_rod_side keeps it at tank pressure.";
                     }
                     text += "\n[machine.cylinders.chambers]\n";
                     text += &areas;
-                    text += &constant("cap_dead_volume", dead(cap), "m3", source);
-                    text += &constant("rod_dead_volume", dead(rod), "m3", source);
+                    text += &constant("cap_dead_volume", dead[0], "m3", source);
+                    text += &constant("rod_dead_volume", dead[1], "m3", source);
                     text += &drive(sheet)?;
                 }
             }

@@ -64,7 +64,10 @@ pub fn from_templates() -> Vec<Model> {
         rated: None,
         supply_pressure: Some(2e6),
         pump_flow: Some(3e-4),
-        dead_volume: None,
+        dead_volumes: None,
+        bulk_modulus: None,
+        load_sensing_margin: None,
+        metering_drop: None,
     };
     let equal_areas = Actuator::Cylinder { bore: 0.08, rod: 0.045, stroke: 0.5, kind: CylinderKind::DoubleRod };
     let single_acting = Actuator::Cylinder { bore: 0.05, rod: 0.03, stroke: 0.5, kind: CylinderKind::SingleActing };

@@ -67,9 +67,18 @@ pub struct NewModelArguments {
     /// Largest flow of the pump: "23 l/min".
     #[arg(long, value_name = "FLOW")]
     pub pump_flow: Option<String>,
-    /// Oil between valve and each chamber: "50 cm3".
-    #[arg(long, value_name = "VOLUME")]
+    /// Oil between valve and cap side and between valve and rod side, hoses included: "50 cm3, 45 cm3", or one number for both.
+    #[arg(long, value_name = "VOLUMES")]
     pub dead_volume: Option<String>,
+    /// Bulk modulus of the oil: "10000 bar".
+    #[arg(long, value_name = "PRESSURE")]
+    pub bulk_modulus: Option<String>,
+    /// Pressure that a load-sensing pump keeps above the highest load: "20 bar".
+    #[arg(long, value_name = "PRESSURE")]
+    pub margin: Option<String>,
+    /// Pressure drop that a compensator leaves to the metering edge: "7 bar".
+    #[arg(long, value_name = "PRESSURE")]
+    pub metering_drop: Option<String>,
     /// Name of the machine, a word.
     #[arg(long, default_value = "bench")]
     pub name: String,

@@ -83,7 +83,7 @@ fn possibility(candidate: &Candidate, shape: Option<Shape>, name: SignalName, re
     let mut reason = reason.to_string();
     let (unit, unit_reason) = unit(candidate, shape, kind.dimension());
     let mut source = candidate.source(name, unit.as_ref().map(|unit| unit.name));
-    if let Some(unit) = unit.as_ref().filter(|unit| unit.dimension != kind.dimension()) {
+    if let Some(unit) = unit.as_ref().filter(|unit| !kind.takes(unit.dimension)) {
         // A map needs a scale here; only the maker of the sensor knows it.
         let text = format!("1 {}/{}", kind.dimension().si_unit(), unit.name);
         source.scale = Some(super::super::Quantity::Text(text));

@@ -37,12 +37,20 @@ pub fn data_sheet(arguments: &NewModelArguments) -> Result<DataSheet, VerbError>
         rated,
         supply_pressure: arguments.supply.as_ref().map(|text| pressure("--supply", text)).transpose()?,
         pump_flow: arguments.pump_flow.as_ref().map(|text| flow("--pump-flow", text)).transpose()?,
-        dead_volume: arguments
-            .dead_volume
-            .as_deref()
-            .map(|text| number::other("--dead-volume", text, "m3", "50 cm3"))
-            .transpose()?,
+        dead_volumes: arguments.dead_volume.as_deref().map(volumes).transpose()?,
+        bulk_modulus: arguments.bulk_modulus.as_ref().map(|text| pressure("--bulk-modulus", text)).transpose()?,
+        load_sensing_margin: arguments.margin.as_ref().map(|text| pressure("--margin", text)).transpose()?,
+        metering_drop: arguments.metering_drop.as_ref().map(|text| pressure("--metering-drop", text)).transpose()?,
     })
+}
+
+/// One volume for both sides, or one for each.
+fn volumes(text: &str) -> Result<[f64; 2], VerbError> {
+    let one = |text: &str| number::other("--dead-volume", text, "m3", "50 cm3, 45 cm3");
+    match text.split_once([',', ';', '/']).filter(|(cap, _)| cap.contains(|c: char| c.is_ascii_alphabetic())) {
+        Some((cap, rod)) => Ok([one(cap)?, one(rod)?]),
+        None => one(text).map(|volume| [volume; 2]),
+    }
 }
 
 /// A name that can stand in a model file and in the names of signals.
