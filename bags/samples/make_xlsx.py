@@ -29,7 +29,7 @@ def main(csv: Path, target: Path) -> None:
         when = START + datetime.timedelta(milliseconds=cells[0])
         row = sheet.max_row + 1
         # Nothing was measured once, and a formula of which openpyxl keeps no value stands in the last column.
-        values = [None if number == 7 and at == 1 else cell for at, cell in enumerate(cells[1:])]
+        values = [None if number == 7 and at == 0 else cell for at, cell in enumerate(cells[1:])]
         sheet.append([when] + values + [f"=C{row}-D{row}"])
         sheet.cell(row, 1).number_format = "yyyy-mm-dd hh:mm:ss.000"
     notes = book.create_sheet("notes")

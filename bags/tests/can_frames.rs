@@ -116,7 +116,8 @@ fn signal(signal: &str, message: &str, field: &str, more: &str) -> String {
     )
 }
 
-const SCHEMA: &str = "std_msgs/Header header\nuint32 id\nbool is_rtr\nbool is_extended\nbool is_error\nuint8 dlc\nuint8[8] data";
+const SCHEMA: &str =
+    "std_msgs/Header header\nuint32 id\nbool is_rtr\nbool is_extended\nbool is_error\nuint8 dlc\nuint8[8] data";
 
 #[test]
 fn signals_of_frames_are_signals() {
@@ -149,7 +150,10 @@ fn signals_of_frames_are_signals() {
 fn what_does_not_fit_is_told_in_one_line() {
     let bag = Bag::new(SCHEMA);
     for (signals, parts) in [
-        (signal("arm.cap_pressure", "Pressures", "CapPressure", ""), &["no message Pressures", "ArmPressures, ArmMotion"][..]),
+        (
+            signal("arm.cap_pressure", "Pressures", "CapPressure", ""),
+            &["no message Pressures", "ArmPressures, ArmMotion"][..],
+        ),
         (signal("arm.cap_pressure", "ArmPressures", "Cap", ""), &["no signal Cap", "CapPressure, RodPressure"]),
         (signal("arm.displacement", "ArmPressures", "CapPressure", ""), &["is a length, but bar is a pressure"]),
         (signal("arm.displacement", "ArmMotion", "Odd", ""), &["\"furlong\" is no unit"]),

@@ -146,7 +146,8 @@ fn tables_beside_the_data_are_brought_onto_its_times() {
     let held = map("").replace("column = \"p\"\n", "column = \"p\"\nresample = \"hold\"\n");
     assert!(near(folder.read("drive.csv", &held).unwrap().0.cylinders[0].cap_pressure[9], 101.0 * 1e5));
     // Columns of the other table are named with the file, and computed with those of the data.
-    let formula = map("") + "[[signals]]\nsignal = \"pump_pressure\"\nformula = \"y * 1e5 + 0 * x\"\n\
+    let formula = map("")
+        + "[[signals]]\nsignal = \"pump_pressure\"\nformula = \"y * 1e5 + 0 * x\"\n\
                              [names]\ny = { column = 2, file = \"daq.csv\" }\n";
     assert!(near(folder.read("drive.csv", &formula).unwrap().0.pump_pressure[50], 110.0 * 1e5));
     let error = |map: &str| folder.read("drive.csv", map).unwrap_err();

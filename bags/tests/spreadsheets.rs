@@ -69,7 +69,9 @@ fn a_sheet_is_a_table_like_any_other() {
     assert_eq!((table.columns[1].unit.as_deref(), stroke[0], stroke[1]), (Some("mm"), -50.0, -50.00065));
     assert!(stroke[7].is_nan());
     assert_eq!(table.sampling.as_ref().map(|sampling| sampling.rate), Some(125.0));
-    assert!(table.notes.iter().any(|note| note.contains("sheet \"drive 1\" was read") && note.contains("notes, counted")));
+    assert!(
+        table.notes.iter().any(|note| note.contains("sheet \"drive 1\" was read") && note.contains("notes, counted"))
+    );
     assert!(table.notes.iter().any(|note| note.contains("1 line before the table")), "{:?}", table.notes);
     // Through a map it is the recording of the text table.
     let map = "[[signals]]\nsignal = \"arm.cap_pressure\"\ncolumn = \"p_A\"\n";

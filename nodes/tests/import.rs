@@ -160,7 +160,8 @@ fn several_files_become_one_recording() {
     assert!(output.status.success(), "{}", complaint(&output));
     assert!(complaint(&output).contains("10 rows per second"), "{}", complaint(&output));
     assert!(String::from_utf8_lossy(&output.stdout).contains("arm.rod_pressure"));
-    let output = excavator(folder.path(), &["import", "a.csv", "b.csv", "--join", "daq.csv", "--map", "join.toml", "-o", "c"]);
+    let output =
+        excavator(folder.path(), &["import", "a.csv", "b.csv", "--join", "daq.csv", "--map", "join.toml", "-o", "c"]);
     assert_one_clear_line(&output, &["--join goes with one file"]);
     let output = excavator(folder.path(), &["import", "a.csv", "--join", "daq.csv", "-o", "c"]);
     assert_one_clear_line(&output, &["daq.csv", "--map"]);
@@ -191,7 +192,8 @@ fn what_is_not_sure_is_not_taken() {
     let mut table = "t,stroke [mm],position [mm],p_pump [bar],pressure 1,pressure 2\n".to_string();
     for i in 0..300 {
         let swing = (0.05 * f64::from(i)).sin();
-        table += &format!("{},{},{},200,{},{}\n", 0.01 * f64::from(i), 90.0 * swing, 80.0 * swing, 9.0 + swing, 7.0 - swing);
+        table +=
+            &format!("{},{},{},200,{},{}\n", 0.01 * f64::from(i), 90.0 * swing, 80.0 * swing, 9.0 + swing, 7.0 - swing);
     }
     table = table.replace("pressure 1,pressure 2", "pressure x,pressure y");
     std::fs::write(folder.path().join("drive.csv"), table).unwrap();
@@ -203,10 +205,15 @@ fn what_is_not_sure_is_not_taken() {
     assert!(shown.contains("# signal = \"arm.displacement\"") && shown.contains("unsure: "), "{shown}");
     assert!(shown.contains("#   or column = \"position\""), "{shown}");
     let line = printed(folder.path(), &["import", "drive.csv", "--map", "map.toml", "-o", "bag"]);
-    assert!(line.contains("pump_pressure") && !line.contains("displacement") && !line.contains("cap_pressure"), "{line}");
+    assert!(
+        line.contains("pump_pressure") && !line.contains("displacement") && !line.contains("cap_pressure"),
+        "{line}"
+    );
     // Without the marks it is a map of everything.
     let bare = |line: &str| match line.strip_prefix("# ") {
-        Some(rest) if rest.starts_with("[[") || rest.split(" = ").next().is_some_and(|key| !key.contains(' ')) => rest.to_string(),
+        Some(rest) if rest.starts_with("[[") || rest.split(" = ").next().is_some_and(|key| !key.contains(' ')) => {
+            rest.to_string()
+        }
         _ => line.to_string(),
     };
     let map: String = shown.lines().map(|line| bare(line) + "\n").collect();
