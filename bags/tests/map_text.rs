@@ -102,7 +102,7 @@ fn the_page_about_maps_knows_every_unit_and_its_examples_are_maps() {
         assert!(listed.contains(&name), "{name} is not on the page");
     }
     let examples: Vec<&str> = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(examples.len(), 3);
+    assert_eq!(examples.len(), 6);
     for example in examples {
         let signals =
             if example.contains("[[signals]]") { "" } else { "[[signals]]\nsignal = \"pump_flow\"\nvalue = 1\n" };

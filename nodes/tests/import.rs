@@ -118,6 +118,110 @@ fn a_wrong_map_is_told_in_one_line() {
     }
 }
 
+/// Rows of a table at 100 Hz with a displacement in mm and a pressure in bar.
+fn rows(count: usize) -> String {
+    let row = |i: usize| format!("{},{},{}\n", i as f64 / 100.0, i % 50, 100 + i % 7);
+    "t,x [mm],Druck A [bar]\n".to_string() + &(0..count).map(row).collect::<String>()
+}
+
+const PIECES: &str = r#"
+[names]
+p = "Druck A [bar]"
+
+[[signals]]
+signal = "arm.displacement"
+column = "x"
+
+[[signals]]
+signal = "arm.cap_pressure"
+formula = "p * 1e5"
+"#;
+
+#[test]
+fn several_files_become_one_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("a.csv", &rows(300));
+    write("b.csv", &rows(200));
+    write("map.toml", PIECES);
+    let output = excavator(folder.path(), &["import", "a.csv", "b.csv", "--map", "map.toml", "-o", "drives"]);
+    assert!(output.status.success(), "{}", complaint(&output));
+    let (line, told) = (String::from_utf8_lossy(&output.stdout), complaint(&output));
+    assert!(line.contains("2 files, 500 samples") && line.contains("arm.cap_pressure"), "{line}");
+    assert!(told.contains("b.csv counts time from its own start: it begins 10.010 s after the end of a.csv"), "{told}");
+    // The bag has the pieces.
+    let info = json(&excavator(folder.path(), &["info", "drives", "--json", "-"]));
+    assert!(info["duration"].as_f64().unwrap() > 14.9, "{info:#}");
+    // A table beside the data, by the command line and with a clock of its own.
+    write("daq.csv", "Sampling rate: 10 Hz\np_B [bar]\n5\n6\n7\n8\n9\n10\n");
+    write("join.toml", &(PIECES.to_string() + "\n[[signals]]\nsignal = \"arm.rod_pressure\"\ncolumn = \"p_B\"\n"));
+    let words = ["import", "a.csv", "--join", "daq.csv", "--map", "join.toml", "-o", "joined"];
+    let output = excavator(folder.path(), &words);
+    assert!(output.status.success(), "{}", complaint(&output));
+    assert!(complaint(&output).contains("10 rows per second"), "{}", complaint(&output));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("arm.rod_pressure"));
+    let output =
+        excavator(folder.path(), &["import", "a.csv", "b.csv", "--join", "daq.csv", "--map", "join.toml", "-o", "c"]);
+    assert_one_clear_line(&output, &["--join goes with one file"]);
+    let output = excavator(folder.path(), &["import", "a.csv", "--join", "daq.csv", "-o", "c"]);
+    assert_one_clear_line(&output, &["daq.csv", "--map"]);
+    let output = excavator(folder.path(), &["import", "a.csv", "--join", "none.csv", "--map", "join.toml", "-o", "c"]);
+    assert_one_clear_line(&output, &["none.csv"]);
+    let output = excavator(folder.path(), &["import", "a.csv", "b.csv", "--guess"]);
+    assert_one_clear_line(&output, &["guessed from one file, not from 2"]);
+    write("wrong.toml", &PIECES.replace("p * 1e5", "q * 1e5"));
+    let output = excavator(folder.path(), &["import", "a.csv", "--map", "wrong.toml", "-o", "c"]);
+    assert_one_clear_line(&output, &["arm.cap_pressure: formula: unknown name \"q\"", "it may use p"]);
+}
+
+#[test]
+fn a_spreadsheet_is_guessed_and_imported() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(sample("xlsx/arm-swing.xlsx"), folder.path().join("drive.xlsx")).unwrap();
+    printed(folder.path(), &["import", "drive.xlsx", "--guess", "-o", "map.toml"]);
+    let line = printed(folder.path(), &["import", "drive.xlsx", "--map", "map.toml", "-o", "bag"]);
+    assert!(line.contains("60 samples") && line.contains("arm.displacement"), "{line}");
+    std::fs::write(folder.path().join("empty.xlsx"), "").unwrap();
+    let output = excavator(folder.path(), &["import", "empty.xlsx", "--map", "map.toml", "-o", "other"]);
+    assert_one_clear_line(&output, &["empty.xlsx", "no spreadsheet"]);
+}
+
+#[test]
+fn what_is_not_sure_is_not_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut table = "t,stroke [mm],position [mm],p_pump [bar],pressure 1,pressure 2\n".to_string();
+    for i in 0..300 {
+        let swing = (0.05 * f64::from(i)).sin();
+        table +=
+            &format!("{},{},{},200,{},{}\n", 0.01 * f64::from(i), 90.0 * swing, 80.0 * swing, 9.0 + swing, 7.0 - swing);
+    }
+    table = table.replace("pressure 1,pressure 2", "pressure x,pressure y");
+    std::fs::write(folder.path().join("drive.csv"), table).unwrap();
+    let output = excavator(folder.path(), &["import", "drive.csv", "--guess", "-o", "map.toml"]);
+    assert!(output.status.success(), "{}", complaint(&output));
+    let (shown, told) = (String::from_utf8_lossy(&output.stdout), complaint(&output));
+    assert!(told.contains("not sure of 3 signals") && told.contains("arm.cap_pressure"), "{told}");
+    assert!(shown.contains("# sure: named"), "{shown}");
+    assert!(shown.contains("# signal = \"arm.displacement\"") && shown.contains("unsure: "), "{shown}");
+    assert!(shown.contains("#   or column = \"position\""), "{shown}");
+    let line = printed(folder.path(), &["import", "drive.csv", "--map", "map.toml", "-o", "bag"]);
+    assert!(
+        line.contains("pump_pressure") && !line.contains("displacement") && !line.contains("cap_pressure"),
+        "{line}"
+    );
+    // Without the marks it is a map of everything.
+    let bare = |line: &str| match line.strip_prefix("# ") {
+        Some(rest) if rest.starts_with("[[") || rest.split(" = ").next().is_some_and(|key| !key.contains(' ')) => {
+            rest.to_string()
+        }
+        _ => line.to_string(),
+    };
+    let map: String = shown.lines().map(|line| bare(line) + "\n").collect();
+    std::fs::write(folder.path().join("whole.toml"), map).unwrap();
+    let line = printed(folder.path(), &["import", "drive.csv", "--map", "whole.toml", "-o", "whole"]);
+    assert!(line.contains("arm.displacement") && line.contains("arm.rod_pressure"), "{line}");
+}
+
 #[test]
 fn emps_is_identified_straight_from_its_matlab_file() {
     let Some(shared) = shared() else { return };

@@ -16,6 +16,8 @@ pub(crate) fn split(heading: &str) -> (String, Option<String>) {
     for separator in [" / ", " in ", ", ", "_", " "] {
         if let Some((name, unit)) = heading.rsplit_once(separator)
             && is_telling(unit)
+            // "3 bar" over forces are those at 3 bar.
+            && name.trim().parse::<f64>().is_err()
             && let Some(unit) = Unit::named(unit).filter(|found| !is_a_word(unit, found.dimension))
         {
             // The unit stays part of a name like `time_ms`: that is how the column is asked for.
@@ -55,6 +57,8 @@ mod tests {
             ("\u{feff}time", "time", None),
             ("p_A", "p_A", None),
             ("x_1", "x_1", None),
+            ("3 bar", "3 bar", None),
+            ("1 [bar]", "1", Some("bar")),
             ("count (of parts)", "count (of parts)", None),
             ("", "", None),
         ] {

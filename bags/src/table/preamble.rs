@@ -22,7 +22,9 @@ pub(super) fn find(skipped: &[String], lines: &[Line], delimiter: u8, decimal: c
     };
     let skipped: Vec<&str> = skipped.iter().map(String::as_str).collect();
     let width = usual_width(lines, delimiter);
-    let data = lines.iter().position(|line| is_data(&line.text, delimiter, width));
+    let is_row =
+        |line: &Line| is_data(&line.text, delimiter, width) && Sampling::of(&line.text, delimiter, decimal).is_none();
+    let data = lines.iter().position(is_row);
     // Without a row of data nobody can say what is before it.
     let before: Vec<&str> = lines.iter().take(data.unwrap_or(0)).map(|line| line.text.as_str()).collect();
     let mut begin = 0;

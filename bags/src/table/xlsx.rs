@@ -176,8 +176,7 @@ const EPOCH_DAYS: f64 = 25_569.0;
 const DAYS_TO_1904: f64 = 1462.0;
 const SECONDS_PER_DAY: f64 = 86_400.0;
 
-/// A date as ISO 8601; a duration, or a time of day without a date, as seconds. Both to the microsecond, which is what a number
-/// of days holds.
+/// A date as ISO 8601, to 10 µs: a number of days holds 0.6 µs. A duration, or a time of day without a date, as seconds.
 fn date_or_time(date: &ExcelDateTime, is_1904: bool) -> String {
     let days = date.as_f64();
     if date.is_duration() || days.abs() < 1.0 {
@@ -185,7 +184,7 @@ fn date_or_time(date: &ExcelDateTime, is_1904: bool) -> String {
         return if seconds.is_finite() { format!("{seconds} s") } else { String::new() };
     }
     let since_epoch = days - EPOCH_DAYS + if is_1904 { DAYS_TO_1904 } else { 0.0 };
-    let microseconds = (since_epoch * SECONDS_PER_DAY * 1e6).round();
+    let microseconds = 10.0 * (since_epoch * SECONDS_PER_DAY * 1e5).round();
     if microseconds.abs() > 9e17 || microseconds.is_nan() {
         return String::new();
     }

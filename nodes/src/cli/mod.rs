@@ -51,7 +51,7 @@ pub enum Verb {
     Model(ModelVerb),
     /// What is in a bag: topics, clocks, signals, and what is missing for identification.
     Info(InfoArguments),
-    /// Make a bag of a table (CSV, MATLAB, Parquet) or of other people's topics, through a map; or guess the map.
+    /// Make a bag of a table (CSV, spreadsheet, MATLAB, Parquet) or of other people's topics, through a map; or guess the map.
     Import(ImportArguments),
     /// Make a bag whose recorder was killed readable for ros2 bag and other readers.
     Reindex(ReindexArguments),

@@ -49,6 +49,11 @@ pub(super) fn choose(candidates: Vec<Candidate>, cylinder: &str) -> (Vec<Guessed
             continue;
         }
         let (confidence, remark) = confidence(&pairs, place, &used, &name_of);
+        let confidence = match &candidates[pair.candidate].unit {
+            Some((unit, _)) if unit.dimension == pair.kind.dimension() => confidence,
+            // Which signal it is may be sure, but its numbers are not.
+            _ => confidence.min(Confidence::Likely),
+        };
         used.insert(pair.candidate);
         taken.insert(name.clone());
         let Possibility { source, label, reason, unit_reason } =

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::super::document::ClockSource;
+use super::super::signal::SignalKind;
 use super::super::unit::{Dimension, Unit};
 use super::candidate::{Candidate, Origin, words};
 use crate::can::FrameReader;
@@ -121,6 +122,13 @@ fn of_topic(topic: &Topic, seen: Seen) -> Vec<Candidate> {
 /// What a field of a common type measures, and in which unit where that is fixed.
 fn by_type(type_name: &str, field: &str) -> (Option<Dimension>, Option<&'static str>) {
     let name = type_name.rsplit('/').next().unwrap_or_default();
+    if type_name.starts_with("excavator_msgs/") {
+        // Our own, in SI; its fields have the names of the signals.
+        let last = field.rsplit('.').next().unwrap_or_default();
+        let kind = SignalKind::ALL.into_iter().find(|kind| kind.name() == last);
+        let dimension = kind.map(SignalKind::dimension).or(last.starts_with("areas").then_some(Dimension::Area));
+        return (dimension, dimension.map(Dimension::si_unit));
+    }
     match (name, field.split(['[', '.']).next().unwrap_or_default()) {
         ("FluidPressure", _) => (Some(Dimension::Pressure), None),
         ("Temperature", _) => (Some(Dimension::Temperature), Some("degC")),

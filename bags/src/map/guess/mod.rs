@@ -20,7 +20,7 @@ use crate::table::{Table, TableFormat};
 pub enum Confidence {
     /// Something else is nearly as likely, or only order and size speak for it.
     Unsure,
-    /// Nothing speaks against it, and little for it.
+    /// Nothing speaks against it, and little for it; or its unit is only told by the size of its numbers.
     Likely,
     /// Name, unit or shape say so, and of nothing else.
     Sure,

@@ -33,5 +33,29 @@ pub fn seeds() -> Vec<Vec<u8>> {
         "config/maps/seal-friction.toml",
         "config/maps/sjoberg-actuator.toml",
     ];
-    names.map(samples::bytes).to_vec()
+    let mut seeds = names.map(samples::bytes).to_vec();
+    seeds.push(COMPUTED.as_bytes().to_vec());
+    seeds
 }
+
+/// Names, a formula, and a table beside the data.
+const COMPUTED: &str = r#"
+[names]
+p_hi = "p_A [bar]"
+s = { column = 2, unit = "mm", maximum_gap = 0.1 }
+
+[[join]]
+file = "snappy.parquet"
+offset = 0.004
+clock.column = 1
+
+[[signals]]
+signal = "arm.cap_pressure"
+formula = "if(p_hi > 0, (p_hi - p_B) * 1e5, 0) + 0*rate(s)"
+
+[[signals]]
+signal = "arm.displacement"
+column = "Weg"
+file = "snappy.parquet"
+resample = "hold"
+"#;

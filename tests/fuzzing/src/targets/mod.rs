@@ -28,7 +28,7 @@ pub struct Target {
 const MB: usize = 1 << 20;
 
 /// All targets.
-pub const TARGETS: [Target; 13] = [
+pub const TARGETS: [Target; 14] = [
     Target { name: "message", run: message::run, seeds: message::seeds, cases: 2_000, memory: (100, MB) },
     Target { name: "schema", run: schema::run, seeds: schema::seeds, cases: 3_000, memory: (200, MB) },
     Target { name: "map", run: map::run, seeds: map::seeds, cases: 300, memory: (200, 8 * MB) },
@@ -36,6 +36,7 @@ pub const TARGETS: [Target; 13] = [
     // What `ReadLimits` allow, and the copies that a guess has of it.
     Target { name: "matlab", run: table::matlab, seeds: table::matlab_seeds, cases: 1_000, memory: (400, 128 * MB) },
     Target { name: "parquet", run: table::parquet, seeds: table::parquet_seeds, cases: 800, memory: (400, 160 * MB) },
+    Target { name: "sheet", run: table::sheet, seeds: table::sheet_seeds, cases: 500, memory: (400, 160 * MB) },
     Target { name: "mcap", run: bag::run, seeds: bag::mcap_seeds, cases: 60, memory: (200, 64 * MB) },
     Target { name: "sqlite", run: bag::run, seeds: bag::sqlite_seeds, cases: 15, memory: (200, 64 * MB) },
     Target { name: "packed", run: bag::run, seeds: bag::packed_seeds, cases: 30, memory: (200, 64 * MB) },

@@ -1,6 +1,6 @@
 //! Bytes as tables, gone through as a user goes: read, a map guessed, the recording read through it.
 
-use std::io::Write;
+use std::io::{Cursor, Read, Write};
 
 use excavator_bags::map::{TopicMap, guess, read_mapped};
 use excavator_bags::table::{Table, TableFormat};
@@ -17,6 +17,37 @@ pub fn matlab(bytes: &[u8]) -> bool {
 
 pub fn parquet(bytes: &[u8]) -> bool {
     through(bytes, ".parquet")
+}
+
+/// The XML of a sheet, in a workbook that is well packed: checksums would stop most changes before anything reads them.
+pub fn sheet(bytes: &[u8]) -> bool {
+    workbook(bytes).is_some_and(|bytes| through(&bytes, ".xlsx"))
+}
+
+fn workbook(sheet: &[u8]) -> Option<Vec<u8>> {
+    const SHEET: &str = "xl/worksheets/sheet1.xml";
+    let whole = samples::bytes("bags/samples/xlsx/arm-swing.xlsx");
+    let mut from = zip::ZipArchive::new(Cursor::new(whole)).ok()?;
+    let mut to = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for number in 0..from.len() {
+        let part = from.by_index_raw(number).ok()?;
+        if part.name().ok()? != SHEET {
+            to.raw_copy_file(part).ok()?;
+        }
+    }
+    to.start_file(SHEET, zip::write::SimpleFileOptions::default()).ok()?;
+    to.write_all(sheet).ok()?;
+    Some(to.finish().ok()?.into_inner())
+}
+
+pub fn sheet_seeds() -> Vec<Vec<u8>> {
+    let whole = samples::bytes("bags/samples/xlsx/arm-swing.xlsx");
+    let sheet = |name: &str| {
+        let mut bytes = Vec::new();
+        zip::ZipArchive::new(Cursor::new(&whole)).ok()?.by_name(name).ok()?.read_to_end(&mut bytes).ok()?;
+        Some(bytes)
+    };
+    ["xl/worksheets/sheet1.xml", "xl/worksheets/sheet3.xml"].iter().filter_map(|name| sheet(name)).collect()
 }
 
 /// # Panics
@@ -45,8 +76,8 @@ fn through(bytes: &[u8], ending: &str) -> bool {
                 panic!("{error} through\n{text}");
             }
         }
-        // A table without any signal is guessed as a map without any, which is none.
-        Err(error) => assert!(guessed.signals.is_empty(), "{error} in\n{text}"),
+        // A table without any sure signal is guessed as a map without any, which is none.
+        Err(error) => assert!(guessed.map().signals.is_empty(), "{error} in\n{text}"),
     }
     true
 }
@@ -54,6 +85,7 @@ fn through(bytes: &[u8], ending: &str) -> bool {
 pub fn text_seeds() -> Vec<Vec<u8>> {
     let names = ["bags/samples/arm-swing.csv", "bags/samples/seal-friction/O-ring_1bar.csv"];
     let mut seeds = names.map(|name| samples::lines(name, 1_500)).to_vec();
+    seeds.push(b"Rig 3\nSampling rate: 500 Hz\nx;p;u\n25.1mm;1.2M;3 bar\n24.9mm;950k;4 bar\n".to_vec());
     seeds.push(b"time,x [mm],v [mm/s]\n2017-07-14T02:40:00.5Z,1,0\n2017-07-14 02:40:01.5,2,1\n".to_vec());
     seeds
 }
