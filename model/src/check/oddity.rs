@@ -1,7 +1,7 @@
 //! Numbers of a model that can be read, but hardly be true.
 
 use super::{Trial, oscillations, trial};
-use crate::machine::{Chambers, Cylinder, Linkage};
+use crate::machine::{Chambers, CommandUnit, Cylinder, Linkage};
 use crate::{Model, ModelEffect, Parameter};
 
 /// What is odd about a model.
@@ -65,13 +65,15 @@ pub enum Oddity {
     },
     /// A fully open valve moves the piston faster or slower than any.
     #[error(
-        "{cylinder}: with its valve fully open it moves at {speed:.1e} m/s; check maximum_orifice_area and the flow gains"
+        "{cylinder}: with its valve fully open it moves at {speed:.1e} {unit}; check its largest input and the flow gains"
     )]
     Speed {
         /// The cylinder.
         cylinder: String,
         /// The speed, m/s.
         speed: f64,
+        /// Its unit.
+        unit: &'static str,
     },
     /// Pressures that burst hoses.
     #[error(
@@ -109,6 +111,9 @@ const DEAD_VOLUMES: f64 = 100.0;
 const NEAR_DEAD_CENTRE: f64 = 0.02;
 /// Speeds of pistons under an open valve, m/s: a creeping press, and a seismic damper thrown by an accumulator.
 const SPEEDS: [f64; 2] = [1e-4, 10.0];
+
+/// Speed of a motor's shaft that is as usual as 1 m/s is for a piston, rad/s.
+const MOTOR_SPEED_UNIT: f64 = 100.0;
 /// Largest pressure of an open valve, Pa: a burst test.
 const PRESSURE: f64 = 1.5e8;
 /// A growth that rounding could not bring about.
@@ -168,7 +173,8 @@ fn chambers_of(cylinder: &Cylinder, chambers: &Chambers) -> Vec<Oddity> {
             rod: chambers.rod_area,
         });
     }
-    if chambers.full_command() > chambers.cap_area {
+    // A voltage is no area.
+    if chambers.drive.command_unit() == CommandUnit::SquareMetre && chambers.full_command() > chambers.cap_area {
         found.push(Oddity::Orifice {
             cylinder: cylinder.name.clone(),
             area: chambers.full_command(),
@@ -189,7 +195,7 @@ fn chambers_of(cylinder: &Cylinder, chambers: &Chambers) -> Vec<Oddity> {
 /// Whether the lever vanishes between the ends of the stroke. It is the sine of the joint over the length, so its least value is at
 /// an end, or the ends lie on both sides of a dead centre.
 fn dead_centre(cylinder: &Cylinder) -> Option<Oddity> {
-    if cylinder.linkage == Linkage::Direct {
+    if !matches!(cylinder.linkage, Linkage::Triangle { .. }) {
         return None;
     }
     let lever = |share: f64| cylinder.linkage.lever(cylinder.linkage.joint(share * cylinder.stroke)).abs();
@@ -201,8 +207,9 @@ fn dead_centre(cylinder: &Cylinder) -> Option<Oddity> {
 
 fn of_trial(cylinder: &Cylinder, trial: &Trial) -> Vec<Oddity> {
     let name = || cylinder.name.clone();
-    let odd_speed = trial.speeds.iter().find(|speed| !(SPEEDS[0]..=SPEEDS[1]).contains(*speed));
-    let speed = odd_speed.map(|&speed| Oddity::Speed { cylinder: name(), speed });
+    let unit = if cylinder.is_motor() { MOTOR_SPEED_UNIT } else { 1.0 };
+    let odd_speed = trial.speeds.iter().find(|speed| !(SPEEDS[0]..=SPEEDS[1]).contains(&(*speed / unit)));
+    let speed = odd_speed.map(|&speed| Oddity::Speed { cylinder: name(), speed, unit: cylinder.motion_units()[1] });
     let pressure =
         (trial.pressures[1] > PRESSURE).then(|| Oddity::Pressure { cylinder: name(), pressure: trial.pressures[1] });
     speed.into_iter().chain(pressure).collect()

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::machine::short;
 use super::{Actuator, CylinderKind, DataSheet, DriveKind, Load};
 use crate::Model;
 use crate::document::DocumentError;
@@ -42,8 +43,10 @@ pub(super) fn text(sheet: &DataSheet, bare: &Model) -> Result<String, DocumentEr
             let known = if known { "known = true, " } else { "" };
             let _ = writeln!(
                 text,
-                "{} = {{ value = {value:e}, unit = \"{}\", {known}source = \"{source}\" }}",
-                parameter.card.name, parameter.card.unit
+                "{} = {{ value = {}, unit = \"{}\", {known}source = \"{source}\" }}",
+                parameter.card.name,
+                short(value),
+                parameter.card.unit
             );
         }
     }

@@ -54,7 +54,13 @@ fn sentence(sheet: &DataSheet) -> String {
 
 /// A constant, as a line of TOML.
 fn constant(key: &str, value: f64, unit: &str, source: &str) -> String {
-    format!("{key} = {{ value = {value:e}, unit = \"{unit}\", source = \"{source}\" }}\n")
+    format!("{key} = {{ value = {}, unit = \"{unit}\", source = \"{source}\" }}\n", short(value))
+}
+
+/// A number with six digits, as people write it. TOML wants a point or an exponent in it.
+pub(super) fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded:?}") } else { format!("{rounded:e}") }
 }
 
 const SHEET: &str = "data sheet";

@@ -22,7 +22,7 @@ pub fn write_json(path: &Path, value: &Value, overwriting: Overwriting) -> Resul
 }
 
 /// JSON has no NaN: what is not a number is null.
-pub(super) fn finite(value: f64) -> Value {
+pub fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }
 

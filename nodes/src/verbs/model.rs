@@ -1,17 +1,18 @@
 //! `excavator model`
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use excavator_model::check::{Oddity, Oscillation, Trial, oddities, oscillations, trial};
 use excavator_model::document::{reference, schema};
-use excavator_model::machine::{Cylinder, Supply};
+use excavator_model::machine::{Cylinder, Drive, Supply};
 use excavator_model::{Model, addition_name, site_name};
 use serde_json::{Value, json};
 
 use super::{new_model, print};
 use crate::cli::{ModelCheckArguments, ModelChoice, ModelVerb};
 use crate::error::VerbError;
-use crate::output::{number, write_json};
+use crate::output::{finite, number, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -99,17 +100,25 @@ fn unused_formulas(model: &Model) -> Vec<String> {
 }
 
 fn of_trial(cylinder: &Cylinder, trial: Option<&Trial>) -> String {
-    let stroke = format!("{}: stroke {} mm", cylinder.name, number(1e3 * cylinder.stroke));
-    let Some(Trial { speeds: [retracting, extending], pressures: [least, most], duration }) = trial else {
-        return stroke;
+    let what = match (cylinder.is_motor(), &cylinder.chambers) {
+        (true, Some(motor)) => format!("motor of {} cm3 a turn", number(1e6 * TAU * motor.cap_area)),
+        _ => format!("stroke {} mm", number(1e3 * cylinder.stroke)),
     };
-    format!(
-        "{stroke}; with its valve fully open for {duration} s it extends at {} mm/s and retracts at {} mm/s, at {:.1} to {:.1} MPa",
-        number(1e3 * extending),
-        number(1e3 * retracting),
-        1e-6 * least,
-        1e-6 * most,
-    )
+    let what = format!("{}: {what}", cylinder.name);
+    let Some(Trial { speeds: [retracting, extending], pressures: [least, most], duration }) = trial else {
+        return what;
+    };
+    let drive = match cylinder.chambers.map(|chambers| chambers.drive) {
+        Some(Drive::Pump { .. }) => "its pump at full flow",
+        _ => "its valve fully open",
+    };
+    let speeds = if cylinder.is_motor() {
+        let turns = |speed: f64| number(60.0 * speed / TAU);
+        format!("its shaft turns at {} rpm, and at {} rpm the other way", turns(*extending), turns(*retracting))
+    } else {
+        format!("it extends at {} mm/s and retracts at {} mm/s", number(1e3 * extending), number(1e3 * retracting))
+    };
+    format!("{what}; with {drive} for {duration} s {speeds}, at {:.1} to {:.1} MPa", 1e-6 * least, 1e-6 * most)
 }
 
 fn of_oscillations(oscillations: &[Oscillation]) -> Option<String> {
@@ -127,7 +136,7 @@ fn to_json(model: &Model, trials: &[Option<Trial>], oscillations: &[Oscillation]
         .iter()
         .zip(trials)
         .map(|(cylinder, trial)| {
-            let mut value = json!({ "name": cylinder.name, "stroke_m": cylinder.stroke });
+            let mut value = json!({ "name": cylinder.name, "stroke_m": finite(cylinder.stroke) });
             if let Some(Trial { speeds, pressures, duration }) = trial {
                 value["valve_fully_open"] = json!({
                     "duration_s": duration, "retracting_m_s": speeds[0], "extending_m_s": speeds[1], "pressures_pa": pressures,
