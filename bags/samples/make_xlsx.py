@@ -23,7 +23,7 @@ def main(csv: Path, target: Path) -> None:
     sheet.append(["Arm swing on rig 3"])
     sheet.append(["Sampling rate:", "125 Hz"])
     sheet.append([])
-    sheet.append(["when"] + names[1:] + ["load"])
+    sheet.append(["when"] + names[1:] + ["dp"])
     for number, line in enumerate(lines[1 : ROWS + 1]):
         cells = [float(cell.replace(",", ".")) for cell in line.split(";")]
         when = START + datetime.timedelta(milliseconds=cells[0])

@@ -1,6 +1,6 @@
 //! Tables as people have them: computed columns, several files, lines above the headings, prefixes and units in cells.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::single_range_in_vec_init)]
 
 mod support;
 

@@ -61,7 +61,7 @@ fn rows(rows: &str) -> String {
 fn a_sheet_is_a_table_like_any_other() {
     let table = Table::read(&sample(), &TableFormat::default()).unwrap();
     let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
-    assert_eq!(names, ["when", "Weg", "p_A", "p_B", "Pumpendruck", "Tankdruck", "Ventil", "load"]);
+    assert_eq!(names, ["when", "Weg", "p_A", "p_B", "Pumpendruck", "Tankdruck", "Ventil", "dp"]);
     let Values::Stamps(stamps) = &table.columns[0].values else { unreachable!() };
     assert_eq!((stamps.len(), stamps[0]), (60, parse_date("2026-05-04T09:30:00Z")));
     assert_eq!(stamps[1].unwrap() - stamps[0].unwrap(), 8_000_000);

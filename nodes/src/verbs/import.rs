@@ -47,8 +47,12 @@ fn tell_unsure(guessed: &Guess) {
     let unsure = guessed.signals.iter().filter(|guessed| guessed.confidence == Confidence::Unsure);
     let names: Vec<String> = unsure.map(|guessed| guessed.source.signal.to_string()).collect();
     if !names.is_empty() {
-        let (count, names) = (names.len(), names.join(", "));
-        terminal::complain(&format!("not sure of {count} signals, which are commented out in the map: {names}"));
+        let what = if names.len() == 1 { "signal, which is" } else { "signals, which are" };
+        terminal::complain(&format!(
+            "not sure of {} {what} commented out in the map: {}",
+            names.len(),
+            names.join(", ")
+        ));
     }
 }
 

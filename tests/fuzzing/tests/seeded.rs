@@ -116,6 +116,7 @@ targets! {
     text_tables "text-table",
     matlab_tables "matlab",
     parquet_tables "parquet",
+    sheets "sheet",
     mcap_bags "mcap",
     sqlite_bags "sqlite",
     packed_bags "packed",

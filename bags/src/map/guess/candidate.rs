@@ -1,6 +1,6 @@
 //! A column or field that may be a signal.
 
-use super::super::document::{ColumnName, SignalSource};
+use super::super::document::{ClockSource, ColumnName, SignalSource};
 use super::super::signal::SignalName;
 use super::super::unit::{Dimension, Unit};
 use crate::dynamic::FieldPath;
@@ -25,6 +25,15 @@ pub(super) struct Candidate {
     /// s.
     pub time: Vec<f64>,
     pub values: Vec<f64>,
+}
+
+/// What data may have.
+pub(super) struct Found {
+    pub candidates: Vec<Candidate>,
+    /// The clock and why.
+    pub clock: (ClockSource, String),
+    /// What can only be read when more is known, with what that is.
+    pub unreadable: Vec<String>,
 }
 
 impl Candidate {

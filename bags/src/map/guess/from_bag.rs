@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::super::document::ClockSource;
 use super::super::signal::SignalKind;
 use super::super::unit::{Dimension, Unit};
-use super::candidate::{Candidate, Origin, words};
+use super::candidate::{Candidate, Found, Origin, words};
 use crate::can::FrameReader;
 use crate::dynamic::{Definitions, FieldPath, Index, Layout, Selector, numeric_leaves};
 use crate::{BagError, RawMessages, Topic};
@@ -31,7 +31,7 @@ struct Seen {
 }
 
 /// The fields that may be signals, the clock, and topics of CAN frames, of which nothing is known without their DBC file.
-pub(super) fn candidates(path: &Path) -> Result<(Vec<Candidate>, (ClockSource, String), Vec<String>), BagError> {
+pub(super) fn candidates(path: &Path) -> Result<Found, BagError> {
     let mut frames: Vec<String> = Vec::new();
     let mut topics: HashMap<String, (Arc<Topic>, Option<Seen>)> = HashMap::new();
     let mut start = None;
@@ -67,7 +67,8 @@ pub(super) fn candidates(path: &Path) -> Result<(Vec<Candidate>, (ClockSource, S
     let fastest = topics.iter().max_by_key(|(_, seen)| seen.time.len()).map(|(topic, _)| topic.name.clone());
     let clock = ClockSource { topic: fastest, ..ClockSource::default() };
     let candidates = topics.into_iter().flat_map(|(topic, seen)| of_topic(&topic, seen)).collect();
-    Ok((candidates, (clock, "the topic with numbers that has most messages".to_string()), frames))
+    let clock = (clock, "the topic with numbers that has most messages".to_string());
+    Ok(Found { candidates, clock, unreadable: frames })
 }
 
 /// Layout and fields of a topic, `None` when its type is not known.

@@ -3,11 +3,11 @@
 use super::super::document::{ClockSource, ColumnName};
 use super::super::table_clock::time_column;
 use super::super::unit::{Dimension, Unit};
-use super::candidate::{Candidate, Origin, words};
+use super::candidate::{Candidate, Found, Origin, words};
 use crate::table::{Sampling, Table, Values};
 
 /// The columns that may be signals, and the clock.
-pub(super) fn candidates(table: &Table) -> (Vec<Candidate>, (ClockSource, String)) {
+pub(super) fn candidates(table: &Table) -> Found {
     let found = time_column(table).map(|column| (column, "named or written like a time")).or_else(|| {
         // A column without name that only grows, from the first row on; unless a line says how often rows were taken.
         let column = table.columns.iter().find(|column| table.sampling.is_none() && grows(&column.values))?;
@@ -36,14 +36,18 @@ pub(super) fn candidates(table: &Table) -> (Vec<Candidate>, (ClockSource, String
                     let unit = Unit::named(name).unwrap_or(Unit::si(Dimension::Time));
                     clock.unit = Some(name.to_string());
                     let time: Vec<f64> = numbers.iter().map(|&number| unit.to_si(number)).collect();
-                    return (columns(table, &column.name, rows, &time), (clock, format!("{reason}; {why}")));
+                    return found_with(columns(table, &column.name, rows, &time), (clock, format!("{reason}; {why}")));
                 }
             };
             ((clock, reason.to_string()), time)
         }
     };
     let name = clock.0.column.as_ref().map(ToString::to_string).unwrap_or_default();
-    (columns(table, &name, rows, &time), clock)
+    found_with(columns(table, &name, rows, &time), clock)
+}
+
+fn found_with(candidates: Vec<Candidate>, clock: (ClockSource, String)) -> Found {
+    Found { candidates, clock, unreadable: Vec::new() }
 }
 
 /// Rows per second of a table that says nothing, Hz: a placeholder.

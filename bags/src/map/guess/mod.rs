@@ -11,6 +11,7 @@ mod text;
 
 use std::path::Path;
 
+use self::candidate::Found;
 use super::document::{ClockSource, SignalSource, TopicMap};
 use crate::BagError;
 use crate::table::{Table, TableFormat};
@@ -98,6 +99,7 @@ impl Guess {
     /// A person says which source a signal has: 0 the guessed one, 1 the first alternative. No other signal has it then.
     pub fn choose(&mut self, signal: usize, choice: usize) {
         let Some(guessed) = self.signals.get_mut(signal) else { return };
+        let before = guessed.label.clone();
         if let Some(number) = choice.checked_sub(1) {
             if number >= guessed.alternatives.len() {
                 return;
@@ -114,6 +116,10 @@ impl Guess {
             }
         }
         self.signals.retain(|other| other.confidence > Confidence::Unsure || other.label != label);
+        self.left.retain(|left| *left != label);
+        if self.signals.iter().all(|other| other.label != before) {
+            self.left.push(before);
+        }
     }
 }
 
@@ -131,18 +137,17 @@ impl GuessedSignal {
 /// # Errors
 /// When the data cannot be read: those of [`RawMessages::open`](crate::RawMessages::open), [`BagError::BadTable`].
 pub fn guess(path: &Path, cylinder: &str) -> Result<Guess, BagError> {
-    let (candidates, clock, frames) = if Table::is_table(path) {
-        let (candidates, clock) = from_table::candidates(&Table::read(path, &TableFormat::default())?);
-        (candidates, clock, Vec::new())
+    let Found { candidates, clock, unreadable } = if Table::is_table(path) {
+        from_table::candidates(&Table::read(path, &TableFormat::default())?)
     } else {
         from_bag::candidates(path)?
     };
     let (signals, mut left) = choose::choose(candidates, cylinder);
-    left.extend(frames);
+    left.extend(unreadable);
     Ok(Guess { data: path.display().to_string(), clock, signals, left })
 }
 
 /// The clock of a table and why.
 pub(crate) fn clock_of_table(table: &Table) -> (ClockSource, String) {
-    from_table::candidates(table).1
+    from_table::candidates(table).clock
 }

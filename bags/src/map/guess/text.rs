@@ -19,8 +19,8 @@ impl Guess {
         let unsure = self.signals.iter().filter(|guessed| guessed.confidence == Confidence::Unsure).count();
         if unsure > 0 {
             let comment = format!(
-                "{unsure} of {} signals are not sure. They are commented out: put the right source, then delete \"# \" in front of \
-                 their lines.",
+                "Not sure: {unsure} of {} signals. They are commented out: put the right source, then delete \"# \" in front of their \
+                 lines.",
                 self.signals.len()
             );
             push_comment(&mut text, &comment);

@@ -3,11 +3,11 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
+use excavator_bags::can::Identifier;
 use socketcan::id::{CAN_EFF_FLAG, CAN_EFF_MASK, CAN_SFF_MASK};
 use socketcan::{CanFdSocket, CanFilter, ShouldRetry, Socket, SocketOptions};
 
 use super::{Counts, Frame, Wanted};
-use excavator_bags::can::Identifier;
 
 /// Longest time until the end of the node is seen, and pause after a failure.
 const GLANCE: Duration = Duration::from_millis(100);
