@@ -52,7 +52,7 @@ pub use conversion::Conversion;
 pub use document::{ClockSource, ColumnName, Resampling, SignalSource, Stamp, TopicMap};
 pub use error::MapError;
 pub(crate) use guess::clock_of_table;
-pub use guess::{Confidence, Guess, GuessedSignal, Possibility, guess};
+pub use guess::{Confidence, Guess, GuessedSignal, Hints, Possibility, guess};
 pub use join::Join;
 pub use named::NamedColumn;
 pub use pieces::read_pieces;

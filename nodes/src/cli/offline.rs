@@ -54,7 +54,7 @@ impl ModelChoice {
     }
 }
 
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Default, Clone, Args)]
 pub struct OwnEffects {
     /// Your own effects, written as formulas: a file (TOML), or a folder with such files. Repeat it for several.
     #[arg(long, value_name = "FILE|FOLDER")]
@@ -340,9 +340,12 @@ pub struct ImportArguments {
     /// terminal, asks where it is not sure; else leaves that commented out.
     #[arg(long, conflicts_with = "map")]
     pub guess: bool,
-    /// Cylinder that guessed signals belong to where their names do not say.
-    #[arg(long, value_name = "NAME", default_value = "arm", requires = "guess")]
-    pub cylinder: String,
+    /// Cylinder that guessed signals belong to where their names do not say; without, the model's first one, or "arm".
+    #[arg(long, value_name = "NAME", requires = "guess")]
+    pub cylinder: Option<String>,
+    /// Model that the recording is for, which says names and strokes of cylinders.
+    #[arg(long, value_name = "MODEL", requires = "guess")]
+    pub model: Option<String>,
     /// Bag to write; with --guess, the file for the map.
     #[arg(short, long, value_name = "BAG|MAP", required_unless_present = "guess")]
     pub output: Option<PathBuf>,

@@ -5,14 +5,15 @@ mod questions;
 use std::io::IsTerminal;
 use std::path::Path;
 
-use excavator_bags::map::{Confidence, Guess, guess, read_pieces};
+use excavator_bags::map::{Confidence, Guess, Hints, guess, read_pieces};
 use excavator_bags::{Topics, WriteOptions, write_recording};
 use excavator_model::recording::is_measured;
 
 use super::print;
-use crate::cli::ImportArguments;
+use crate::cli::{ImportArguments, ModelChoice, OwnEffects};
 use crate::error::VerbError;
 use crate::outputs::{self, Inputs};
+use crate::sources;
 use crate::terminal;
 
 pub fn run(arguments: &ImportArguments) -> Result<(), VerbError> {
@@ -29,7 +30,17 @@ fn guess_map(arguments: &ImportArguments, data: &Path) -> Result<(), VerbError> 
     // The map beside the data is not read here, and may be made anew.
     let inputs = Inputs::recording(data);
     outputs::check(&[("-o", arguments.output.as_deref())], &inputs, arguments.overwriting)?;
-    let mut guessed = guess(data, &arguments.cylinder)?;
+    let model = arguments.model.as_ref().map(|model| {
+        sources::model(&ModelChoice { model: model.clone(), own: OwnEffects::default() })
+    });
+    let cylinders = model.transpose()?.map_or_else(Vec::new, |model| model.machine.cylinders);
+    let strokes: Vec<(String, f64)> = cylinders
+        .iter()
+        .filter(|cylinder| !cylinder.is_motor())
+        .map(|cylinder| (cylinder.name.clone(), cylinder.stroke))
+        .collect();
+    let cylinder = arguments.cylinder.as_deref().or_else(|| Some(&*cylinders.first()?.name)).unwrap_or("arm");
+    let mut guessed = guess(data, Hints { cylinder, strokes: &strokes })?;
     let (input, output) = (std::io::stdin(), std::io::stderr());
     if input.is_terminal() && output.is_terminal() {
         questions::ask(&mut guessed, &mut input.lock(), &mut output.lock())?;

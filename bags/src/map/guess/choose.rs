@@ -8,7 +8,7 @@ use super::candidate::Candidate;
 use super::confidence::{alternatives, confidence};
 use super::names;
 use super::shapes::{Shape, derivative, rest, short};
-use super::{Confidence, GuessedSignal, Possibility};
+use super::{Confidence, GuessedSignal, Hints, Possibility};
 
 /// Below this a name alone is no reason.
 const LEAST_SCORE: f64 = 0.5;
@@ -30,14 +30,14 @@ pub(super) struct Pair {
 }
 
 /// The signals, and the labels of what is left.
-pub(super) fn choose(candidates: Vec<Candidate>, cylinder: &str) -> (Vec<GuessedSignal>, Vec<String>) {
+pub(super) fn choose(candidates: Vec<Candidate>, hints: Hints<'_>) -> (Vec<GuessedSignal>, Vec<String>) {
     let shapes: Vec<Option<Shape>> = candidates.iter().map(|candidate| Shape::of(&candidate.values)).collect();
     let mut pairs = pairs(&candidates, &shapes);
     pairs.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.candidate.cmp(&b.candidate)));
     let (mut used, mut taken, mut signals) = (HashSet::new(), HashSet::new(), Vec::new());
     let named: BTreeSet<&str> = candidates.iter().filter_map(|candidate| names::cylinder(&candidate.words)).collect();
     // Where names speak of one cylinder only, everything is of that one.
-    let cylinder = if named.len() == 1 { named.first().copied().unwrap_or(cylinder) } else { cylinder };
+    let cylinder = if named.len() == 1 { named.first().copied().unwrap_or(hints.cylinder) } else { hints.cylinder };
     let own = |candidate: usize| names::cylinder(&candidates[candidate].words).unwrap_or(cylinder).to_string();
     let name_of = |pair: &Pair| {
         let cylinder = pair.kind.is_of_cylinder().then(|| own(pair.candidate));
@@ -50,14 +50,14 @@ pub(super) fn choose(candidates: Vec<Candidate>, cylinder: &str) -> (Vec<Guessed
         }
         let (confidence, remark) = confidence(&pairs, place, &used, &name_of);
         let confidence = match &candidates[pair.candidate].unit {
-            Some((unit, _)) if unit.dimension == pair.kind.dimension() => confidence,
+            Some((unit, _)) if pair.kind.takes(unit.dimension) => confidence,
             // Which signal it is may be sure, but its numbers are not.
             _ => confidence.min(Confidence::Likely),
         };
         used.insert(pair.candidate);
         taken.insert(name.clone());
         let Possibility { source, label, reason, unit_reason } =
-            possibility(&candidates[pair.candidate], shapes[pair.candidate], name, &pair.reason);
+            possibility(&candidates[pair.candidate], shapes[pair.candidate], name, &pair.reason, hints);
         let reason = reason + &remark;
         let guessed = GuessedSignal { source, label, reason, unit_reason, confidence, alternatives: Vec::new() };
         signals.push((place, guessed));
@@ -71,7 +71,7 @@ pub(super) fn choose(candidates: Vec<Candidate>, cylinder: &str) -> (Vec<Guessed
         if guessed.confidence == Confidence::Unsure {
             let others = alternatives(&pairs, *place, &sure, &name_of).into_iter();
             let possible = others.map(|pair| {
-                possibility(&candidates[pair.candidate], shapes[pair.candidate], name_of(pair), &pair.reason)
+                possibility(&candidates[pair.candidate], shapes[pair.candidate], name_of(pair), &pair.reason, hints)
             });
             guessed.alternatives = possible.collect();
         }
@@ -83,10 +83,25 @@ pub(super) fn choose(candidates: Vec<Candidate>, cylinder: &str) -> (Vec<Guessed
 }
 
 /// A candidate as a signal: its entry in a map, and why.
-fn possibility(candidate: &Candidate, shape: Option<Shape>, name: SignalName, reason: &str) -> Possibility {
-    let kind = name.kind;
+fn possibility(
+    candidate: &Candidate,
+    shape: Option<Shape>,
+    mut name: SignalName,
+    reason: &str,
+    hints: Hints<'_>,
+) -> Possibility {
     let mut reason = reason.to_string();
-    let (unit, unit_reason) = unit(candidate, shape, kind.dimension());
+    if name.kind == SignalKind::OrificeCommand && has_noise(&candidate.values) {
+        name.kind = SignalKind::OrificeArea;
+        reason += "; it has noise, so it was measured: it runs straight between samples, where a command is held";
+    }
+    let (kind, stroke) = (name.kind, hints.stroke(name.cylinder.as_ref()));
+    let (unit, mut unit_reason) = unit(candidate, shape, kind.dimension());
+    if let Some((own, who)) = &candidate.unit
+        && kind.takes(own.dimension)
+    {
+        unit_reason.clone_from(who);
+    }
     let mut source = candidate.source(name, unit.as_ref().map(|unit| unit.name));
     if let Some(unit) = unit.as_ref().filter(|unit| !kind.takes(unit.dimension)) {
         // A map needs a scale here; only the maker of the sensor knows it.
@@ -94,7 +109,14 @@ fn possibility(candidate: &Candidate, shape: Option<Shape>, name: SignalName, re
         source.scale = Some(super::super::Quantity::Text(text));
     }
     if kind == SignalKind::Displacement && shape.is_some_and(|shape| shape.least >= 0.0) {
-        reason += "; never below 0: if it counts from one end, put mid-stroke as offset (\"-300 mm\")";
+        match stroke {
+            Some(stroke) => {
+                let half = 500.0 * stroke;
+                source.offset = Some(super::super::Quantity::Text(format!("-{half} mm")));
+                reason += "; never below 0, so it counts from one end: the offset is half the stroke of the model";
+            }
+            None => reason += "; never below 0: if it counts from one end, put mid-stroke as offset (\"-300 mm\")",
+        }
     }
     if kind == SignalKind::OrificeCommand
         && let Some((value, share)) = rest(&candidate.values)
@@ -107,6 +129,23 @@ fn possibility(candidate: &Candidate, shape: Option<Shape>, name: SignalName, re
         );
     }
     Possibility { source, label: candidate.label(), reason, unit_reason }
+}
+
+/// Share of the samples at which a measured value differs from the one before. A command stands still between two words of its sender.
+const OFTEN_NEW: f64 = 0.1;
+
+/// Share of these at which it turns round: noise does at two of three, a ramp at none.
+const OFTEN_TURNS: f64 = 0.35;
+
+/// Whether a signal has the noise of a measurement.
+fn has_noise(values: &[f64]) -> bool {
+    let steps = || values.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| step.is_finite());
+    let changes: Vec<f64> = steps().filter(|step| *step != 0.0).collect();
+    let turns = changes.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
+    let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
+    changes.len() > 20
+        && share(changes.len(), steps().count()) > OFTEN_NEW
+        && share(turns, changes.len()) > OFTEN_TURNS
 }
 
 fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {

@@ -41,6 +41,28 @@ impl Confidence {
     }
 }
 
+/// What is known before the data are looked at.
+#[derive(Debug, Clone, Copy)]
+pub struct Hints<'h> {
+    /// The cylinder that signals belong to where their names do not say.
+    pub cylinder: &'h str,
+    /// Strokes of cylinders by name, m.
+    pub strokes: &'h [(String, f64)],
+}
+
+impl<'h> From<&'h str> for Hints<'h> {
+    /// Nothing is known but a cylinder's name.
+    fn from(cylinder: &'h str) -> Self {
+        Hints { cylinder, strokes: &[] }
+    }
+}
+
+impl Hints<'_> {
+    fn stroke(&self, cylinder: Option<&String>) -> Option<f64> {
+        self.strokes.iter().find(|(name, _)| Some(name) == cylinder).map(|(_, stroke)| *stroke)
+    }
+}
+
 /// A column or field that may be a signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Possibility {
@@ -136,13 +158,13 @@ impl GuessedSignal {
 ///
 /// # Errors
 /// When the data cannot be read: those of [`RawMessages::open`](crate::RawMessages::open), [`BagError::BadTable`].
-pub fn guess(path: &Path, cylinder: &str) -> Result<Guess, BagError> {
+pub fn guess<'h>(path: &Path, hints: impl Into<Hints<'h>>) -> Result<Guess, BagError> {
     let Found { candidates, clock, unreadable } = if Table::is_table(path) {
         from_table::candidates(&Table::read(path, &TableFormat::default())?)
     } else {
         from_bag::candidates(path)?
     };
-    let (signals, mut left) = choose::choose(candidates, cylinder);
+    let (signals, mut left) = choose::choose(candidates, hints.into());
     left.extend(unreadable);
     Ok(Guess { data: path.display().to_string(), clock, signals, left })
 }
