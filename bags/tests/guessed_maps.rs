@@ -6,7 +6,7 @@ mod support;
 
 use std::path::Path;
 
-use excavator_bags::map::{Guess, TopicMap, guess, read_mapped};
+use excavator_bags::map::{Confidence, Guess, TopicMap, guess, read_mapped};
 use support::shared;
 
 fn pairs(guess: &Guess) -> Vec<(String, String, String)> {
@@ -263,4 +263,34 @@ fn what_follows_a_command_is_its_position_and_where_that_rests_is_closed() {
     let (recording, _) = read_mapped(&path, &guessed.to_text().unwrap().parse().unwrap()).unwrap();
     let command = &recording.cylinder("boom").unwrap().orifice_command;
     assert!(command[0].abs() < 1e-15 && command.iter().any(|area| *area > 1.5e-6), "{}", command[0]);
+}
+
+/// Two columns that are equally likely: neither is taken, and both are told.
+#[test]
+fn what_may_be_another_is_not_sure() {
+    let columns =
+        [("t", 0.0, 1.0), ("position 3 [mm]", 9.0, 40.0), ("position 4 [mm]", 5.0, 30.0), ("p_B [bar]", 40.0, 9.0)];
+    let (_folder, path) = swings(&columns);
+    let mut guessed = guess(&path, "arm").unwrap();
+    let of = |guess: &Guess, signal: &str| {
+        let found = guess.signals.iter().find(|guessed| guessed.source.signal.to_string() == signal).unwrap();
+        let others: Vec<String> = found.alternatives.iter().map(|other| other.label.clone()).collect();
+        (found.confidence, found.label.clone(), others)
+    };
+    let first = "position 3".to_string();
+    assert_eq!(of(&guessed, "arm.displacement"), (Confidence::Unsure, first, vec!["position 4".to_string()]));
+    assert_eq!(of(&guessed, "arm.rod_pressure"), (Confidence::Sure, "p_B".to_string(), vec![]));
+    let text = guessed.to_text().unwrap();
+    for part in
+        ["\n# signal = \"arm.displacement\"", "another is as likely", "#   or column = \"position 4\"", "# sure: "]
+    {
+        assert!(text.contains(part), "{text}");
+    }
+    let map: TopicMap = text.parse().unwrap();
+    assert_eq!(map.signals.len(), 1, "{text}");
+    let number = guessed.signals.iter().position(|found| found.confidence == Confidence::Unsure).unwrap();
+    guessed.choose(number, 1);
+    assert_eq!(of(&guessed, "arm.displacement"), (Confidence::Chosen, "position 4".to_string(), vec![]));
+    assert!(guessed.left.contains(&"position 3".to_string()), "{:?}", guessed.left);
+    assert_eq!(guessed.to_text().unwrap().parse::<TopicMap>().unwrap().signals.len(), 2);
 }
