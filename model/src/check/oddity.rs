@@ -173,8 +173,9 @@ fn chambers_of(cylinder: &Cylinder, chambers: &Chambers) -> Vec<Oddity> {
             rod: chambers.rod_area,
         });
     }
-    // A voltage is no area.
-    if chambers.drive.command_unit() == CommandUnit::SquareMetre && chambers.full_command() > chambers.cap_area {
+    // A voltage is no area, nor is what a motor takes in a turn.
+    let is_area = chambers.drive.command_unit() == CommandUnit::SquareMetre && !cylinder.is_motor();
+    if is_area && chambers.full_command() > chambers.cap_area {
         found.push(Oddity::Orifice {
             cylinder: cylinder.name.clone(),
             area: chambers.full_command(),

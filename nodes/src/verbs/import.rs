@@ -30,9 +30,10 @@ fn guess_map(arguments: &ImportArguments, data: &Path) -> Result<(), VerbError> 
     // The map beside the data is not read here, and may be made anew.
     let inputs = Inputs::recording(data);
     outputs::check(&[("-o", arguments.output.as_deref())], &inputs, arguments.overwriting)?;
-    let model = arguments.model.as_ref().map(|model| {
-        sources::model(&ModelChoice { model: model.clone(), own: OwnEffects::default() })
-    });
+    let model = arguments
+        .model
+        .as_ref()
+        .map(|model| sources::model(&ModelChoice { model: model.clone(), own: OwnEffects::default() }));
     let cylinders = model.transpose()?.map_or_else(Vec::new, |model| model.machine.cylinders);
     let strokes: Vec<(String, f64)> = cylinders
         .iter()

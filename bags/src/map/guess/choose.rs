@@ -135,7 +135,7 @@ fn possibility(
 const OFTEN_NEW: f64 = 0.1;
 
 /// Share of these at which it turns round: noise does at two of three, a ramp at none.
-const OFTEN_TURNS: f64 = 0.35;
+const OFTEN_TURNS: f64 = 0.2;
 
 /// Whether a signal has the noise of a measurement.
 fn has_noise(values: &[f64]) -> bool {
@@ -143,9 +143,7 @@ fn has_noise(values: &[f64]) -> bool {
     let changes: Vec<f64> = steps().filter(|step| *step != 0.0).collect();
     let turns = changes.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
     let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
-    changes.len() > 20
-        && share(changes.len(), steps().count()) > OFTEN_NEW
-        && share(turns, changes.len()) > OFTEN_TURNS
+    changes.len() > 20 && share(changes.len(), steps().count()) > OFTEN_NEW && share(turns, changes.len()) > OFTEN_TURNS
 }
 
 fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {
