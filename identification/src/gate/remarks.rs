@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use excavator_model::Model;
 use excavator_model::machine::Cylinder;
-use excavator_model::recording::{Recording, is_measured, noise_level};
+use excavator_model::recording::{Recording, has_noise, is_measured, noise_level};
 
 use super::check::usual_size;
 use super::opening::{largest, open_one_way};
@@ -72,6 +72,14 @@ pub enum Remark {
         /// The machine.
         machine: String,
     },
+    /// A command that was measured.
+    #[error(
+        "{cylinder}.orifice_command has noise, so it was measured: as a command it is held between samples, as orifice_area it would run straight"
+    )]
+    MeasuredCommand {
+        /// The cylinder.
+        cylinder: String,
+    },
     /// A cylinder that the model does not have moves.
     #[error(
         "cylinder {cylinder} moves by {range:.3} m and is not in {machine}: it takes oil and swings what it carries; use a model that has it, or \
@@ -108,6 +116,9 @@ pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
     let machine = &model.machine;
     for cylinder in &machine.cylinders {
         let Ok(signals) = recording.cylinder(&cylinder.name) else { continue };
+        if !is_measured(&signals.orifice_area) && has_noise(&signals.orifice_command) {
+            found.push(Remark::MeasuredCommand { cylinder: cylinder.name.clone() });
+        }
         let name = |signal: &str| format!("{}.{signal}", cylinder.name);
         found.extend(spikes(name("displacement"), &signals.displacement, "m", 2.0 * cylinder.stroke));
         let Some(chambers) = &cylinder.chambers else { continue };

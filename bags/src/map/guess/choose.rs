@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeSet, HashSet};
 
+use excavator_model::recording::has_noise;
+
 use super::super::signal::{SignalKind, SignalName};
 use super::super::unit::{Dimension, Unit};
 use super::candidate::Candidate;
@@ -129,21 +131,6 @@ fn possibility(
         );
     }
     Possibility { source, label: candidate.label(), reason, unit_reason }
-}
-
-/// Share of the samples at which a measured value differs from the one before. A command stands still between two words of its sender.
-const OFTEN_NEW: f64 = 0.1;
-
-/// Share of these at which it turns round: noise does at two of three, a ramp at none.
-const OFTEN_TURNS: f64 = 0.2;
-
-/// Whether a signal has the noise of a measurement.
-fn has_noise(values: &[f64]) -> bool {
-    let steps = || values.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| step.is_finite());
-    let changes: Vec<f64> = steps().filter(|step| *step != 0.0).collect();
-    let turns = changes.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
-    let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
-    changes.len() > 20 && share(changes.len(), steps().count()) > OFTEN_NEW && share(turns, changes.len()) > OFTEN_TURNS
 }
 
 fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {
