@@ -92,19 +92,22 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
     for remark in gate::remarks(model, &recording) {
         complain(&format!("{}: {remark}", path.display()));
     }
-    for text in &map.conditions {
+    let kept = map.conditions.iter().map(|text| (text, true));
+    for (text, keeps) in kept.chain(report.left_out_where.iter().map(|text| (text, false))) {
         let condition = Condition::read(text)
             .map_err(|error| VerbError::Condition { text: text.clone(), error: Box::new(error) })?;
-        let left_out = leave_out(model, &mut recording, &condition);
-        complain(&format!("{}: {:.0} % of the time is left out, where not {text}", path.display(), 100.0 * left_out));
+        let left_out = leave_out(model, &mut recording, &condition, keeps);
+        let holds = if keeps { "where not" } else { "where" };
+        complain(&format!("{}: {:.0} % of the time is left out, {holds} {text}", path.display(), 100.0 * left_out));
     }
     Ok(recording)
 }
 
-/// Takes away what is compared with a model where the condition does not hold; inputs stay. Gives the share of samples of all
-/// cylinders that are left out.
-fn leave_out(model: &Model, recording: &mut Recording, condition: &Condition) -> f64 {
-    let holds = condition.holds(&model.machine, recording);
+/// Takes away what is compared with a model where the condition does not hold, or, unless it `keeps`, where it does; inputs stay. Gives
+/// the share of samples of all cylinders that are left out.
+fn leave_out(model: &Model, recording: &mut Recording, condition: &Condition, keeps: bool) -> f64 {
+    let mut holds = condition.holds(&model.machine, recording);
+    holds.iter_mut().flatten().for_each(|holds| *holds = *holds == keeps);
     let samples = recording.len();
     let left_out = holds.iter().flatten().filter(|holds| !**holds).count();
     for (cylinder, holds) in model.machine.cylinders.iter().zip(&holds) {

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::conversion::Conversion;
 use super::error::MapError;
+use super::leave_out::LeaveOut;
 use super::join::Join;
 use super::named::NamedColumn;
 use super::quantity::Quantity;
@@ -46,6 +47,9 @@ pub struct TopicMap {
     /// The signals; what is not here is not measured.
     #[serde(default)]
     pub signals: Vec<SignalSource>,
+    /// What is not compared with a model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub leave_out: Vec<LeaveOut>,
 }
 
 /// At which times the recording has samples.

@@ -28,10 +28,16 @@ pub fn read_mapped(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport
 
 /// As [`read_mapped`]; also says what the times are.
 pub(super) fn read_dated(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport, Dating), BagError> {
-    if Table::is_table(path) {
-        return read_table(path, Table::read(path, &map.table)?, map);
+    let (mut recording, mut report, dating) = if Table::is_table(path) {
+        read_table(path, Table::read(path, &map.table)?, map)?
+    } else {
+        read_bag(path, map)?
+    };
+    for stretch in &map.leave_out {
+        stretch.apply(&mut recording)?;
+        report.left_out_where.extend(stretch.condition.clone());
     }
-    read_bag(path, map)
+    Ok((recording, report, dating))
 }
 
 /// Reads the data at `path` with the given map, else with the one beside it (see [`TopicMap::beside`]), else as a bag of

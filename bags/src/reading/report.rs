@@ -50,6 +50,8 @@ pub struct ReadReport {
     pub missing_messages: u64,
     /// What a map or a table could not give, and where a clock was set back, one line each.
     pub notes: Vec<String>,
+    /// Conditions under which a map leaves measurements out. Who knows the machine evaluates them.
+    pub left_out_where: Vec<String>,
 }
 
 /// Gaps that a report keeps at most.
