@@ -60,6 +60,8 @@ pub enum VerbError {
     Laws { wrong: usize },
     #[error("{oddities} {} odd in {name}", if *oddities == 1 { "thing is" } else { "things are" })]
     OddModel { name: String, oddities: usize },
+    #[error("valve test: {0}")]
+    ValveTest(String),
     #[error("no model: {0}")]
     NewModel(String),
     #[error("--catalogue {}: {reason}", path.display())]

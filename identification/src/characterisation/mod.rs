@@ -21,6 +21,7 @@ mod friction;
 mod load;
 mod polynomial;
 mod refusal;
+mod static_valve;
 mod stretches;
 mod sweeps;
 mod track;
@@ -33,6 +34,7 @@ pub use estimate::Estimate;
 pub use friction::{ForcePoint, FrictionCurve, FrictionTerm, friction};
 pub use polynomial::Polynomial;
 pub use refusal::Refusal;
+pub use static_valve::{FlowReading, StaticEdge, static_valve};
 pub use track::Track;
 
 use excavator_model::Model;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::Overwriting;
+use super::{ModelChoice, Overwriting};
 
 /// What an engineer says of a machine. Numbers with their units, as on a data sheet.
 #[derive(Debug, Clone, Default, Args)]
@@ -107,4 +107,31 @@ pub enum DriveChoice {
     Force,
     /// A testing machine that moves the rod.
     ImposedMotion,
+}
+
+/// A table of a static valve test, and the model that it goes into.
+#[derive(Debug, Clone, Args)]
+pub struct ValveTestArguments {
+    #[command(flatten)]
+    pub model: ModelChoice,
+    /// Table of the test (.csv, .xlsx, .mat, .parquet).
+    #[arg(long, value_name = "FILE")]
+    pub table: PathBuf,
+    /// Heading of the column with the valve's input; in the model's unit, or with a unit in its heading.
+    #[arg(long, value_name = "COLUMN")]
+    pub input: String,
+    /// Heading of the column with the flow over one edge; its unit stands in the heading.
+    #[arg(long, value_name = "COLUMN")]
+    pub flow: String,
+    /// Pressure drop over that edge: "35 bar".
+    #[arg(long, value_name = "PRESSURE")]
+    pub drop: String,
+    /// The cylinder; without, the model's first one.
+    #[arg(long, value_name = "NAME")]
+    pub cylinder: Option<String>,
+    /// Model file to write.
+    #[arg(short, long, value_name = "MODEL")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
 }

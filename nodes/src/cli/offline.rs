@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand, ValueEnum};
 use excavator_identification::gate::OVERRULABLE;
 
-use super::NewModelArguments;
+use super::{NewModelArguments, ValveTestArguments};
 use super::numbers::{positive, profile_duration, stroke_margin};
 
 #[derive(Debug, Args)]
@@ -294,6 +294,8 @@ pub enum ModelVerb {
     New(Box<NewModelArguments>),
     /// Read a model, try the machine, and tell which of its numbers are odd.
     Check(ModelCheckArguments),
+    /// Take flow gains, dead zone and play of a valve from a static test: a table of flow against input.
+    Valve(ValveTestArguments),
     /// Print the JSON schema of the model file, for editors that complete and check TOML.
     Schema(OwnEffects),
     /// Print the reference page of the model file: every table, key, unit and default.

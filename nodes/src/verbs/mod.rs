@@ -16,6 +16,7 @@ mod node;
 mod refine;
 mod reindex;
 mod simulate;
+mod valve_test;
 
 use std::io::{Error, ErrorKind, Write};
 use std::sync::OnceLock;

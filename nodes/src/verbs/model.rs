@@ -9,7 +9,7 @@ use excavator_model::machine::{Cylinder, Drive, Supply};
 use excavator_model::{Model, addition_name, site_name};
 use serde_json::{Value, json};
 
-use super::{new_model, print};
+use super::{new_model, print, valve_test};
 use crate::cli::{ModelCheckArguments, ModelChoice, ModelVerb};
 use crate::error::VerbError;
 use crate::output::{finite, number, write_json};
@@ -20,6 +20,7 @@ pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {
     match verb {
         ModelVerb::New(arguments) => new_model::run(arguments),
         ModelVerb::Check(arguments) => check(arguments),
+        ModelVerb::Valve(arguments) => valve_test::run(arguments),
         ModelVerb::Schema(own) => {
             print(&serde_json::to_string_pretty(&schema(&sources::catalogue(own)?))?);
             Ok(())

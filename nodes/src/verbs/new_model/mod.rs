@@ -1,6 +1,6 @@
 //! `excavator model new`
 
-mod number;
+pub mod number;
 mod questions;
 mod sheet;
 
