@@ -65,7 +65,9 @@ fn steered(machine: &Model, scale: Scale, tempo: f64, duration: f64, seed: u64) 
     let mut seen = simulate_from_rest(machine, &recording, &rest, Tolerances::default().scaled(0.05)).unwrap();
     let random = &mut ChaCha8Rng::seed_from_u64(seed);
     let signals = &mut seen.cylinders[0];
-    [&mut signals.velocity, &mut signals.joint_angle, &mut signals.rod_force].into_iter().for_each(|s| s.fill(f64::NAN));
+    [&mut signals.velocity, &mut signals.joint_angle, &mut signals.rod_force]
+        .into_iter()
+        .for_each(|s| s.fill(f64::NAN));
     add_noise(random, &mut signals.displacement, 5e-5 * length);
     add_noise(random, &mut signals.cap_pressure, 2e3);
     add_noise(random, &mut signals.rod_pressure, 2e3);
@@ -79,8 +81,7 @@ fn judged(effect: Option<(&str, &[f64])>, scale: Scale) -> (Kind, Vec<String>, V
     let nominal = built_in("zx30u-arm").unwrap();
     let machine = effect.map_or(nominal.clone(), |(name, values)| with(&nominal, name, Site::Cylinder(0), values));
     let (machine, given) = (scaled(&machine, scale), scaled(&off_the_data_sheet("zx30u-arm", 0.1), scale));
-    let (identification, validation) =
-        (steered(&machine, scale, 2.9, 16.0, 1), steered(&machine, scale, 3.4, 10.0, 2));
+    let (identification, validation) = (steered(&machine, scale, 2.9, 16.0, 1), steered(&machine, scale, 3.4, 10.0, 2));
     let settings = DiagnosisSettings::default();
     let found = diagnose(&given, &[&identification], &[&validation], &settings, &|_, _| {}).unwrap();
     let selected = found.selected();

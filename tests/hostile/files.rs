@@ -201,7 +201,7 @@ fn names_of_others_do_nothing_to_a_terminal() {
         vec!["info", &format!("none{ESCAPES}")],
         vec!["compare", "--model", "zx30u-arm", "--bag", &bag],
         vec!["import", "t.csv", "-o", "out", "--map", &format!("map{ESCAPES}")],
-        vec!["import", "--guess", "t.csv", &format!("another{ESCAPES}")],
+        vec!["import", "--guess", &format!("another{ESCAPES}")],
     ] {
         let output = excavator(folder.path(), &words);
         is_safe(&output.stdout);

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::conversion::Conversion;
 use super::error::MapError;
-use super::leave_out::LeaveOut;
 use super::join::Join;
+use super::leave_out::LeaveOut;
 use super::named::NamedColumn;
 use super::quantity::Quantity;
 use super::signal::SignalName;

@@ -71,7 +71,8 @@ mod tests {
     use super::*;
 
     fn recording() -> Recording {
-        let mut recording = Recording::unmeasured("bag", (0..10).map(|sample| 5.0 + f64::from(sample)).collect(), &["arm"]);
+        let mut recording =
+            Recording::unmeasured("bag", (0..10).map(|sample| 5.0 + f64::from(sample)).collect(), &["arm"]);
         let arm = &mut recording.cylinders[0];
         arm.displacement.fill(0.1);
         arm.orifice_area.fill(1e-5);

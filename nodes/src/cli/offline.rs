@@ -6,8 +6,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand, ValueEnum};
 use excavator_identification::gate::OVERRULABLE;
 
-use super::{NewModelArguments, ValveTestArguments};
 use super::numbers::{positive, profile_duration, stroke_margin};
+use super::{NewModelArguments, ValveTestArguments};
 
 #[derive(Debug, Args)]
 pub struct Json {
@@ -38,7 +38,7 @@ pub struct Mapping {
     pub conditions: Vec<String>,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct ModelChoice {
     /// Model: built-in name or TOML file.
     #[arg(long)]

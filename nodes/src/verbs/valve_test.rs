@@ -94,7 +94,10 @@ fn readings(arguments: &ValveTestArguments, unit: CommandUnit) -> Result<Vec<Flo
     let (input, input_unit) = column(&arguments.input)?;
     let (flow, flow_unit) = column(&arguments.flow)?;
     let flow_unit = flow_unit.filter(|unit| unit.dimension == Dimension::Flow).ok_or_else(|| {
-        VerbError::ValveTest(format!("the heading of \"{}\" has no unit of a flow, as in \"Q [l/min]\"", arguments.flow))
+        VerbError::ValveTest(format!(
+            "the heading of \"{}\" has no unit of a flow, as in \"Q [l/min]\"",
+            arguments.flow
+        ))
     })?;
     let wanted = match unit {
         CommandUnit::SquareMetre => Dimension::Area,
@@ -113,11 +116,7 @@ fn readings(arguments: &ValveTestArguments, unit: CommandUnit) -> Result<Vec<Flo
     let to_model = |value: f64| input_unit.map_or(value, |unit| unit.to_si(value));
     let pairs = input.iter().zip(flow);
     Ok(pairs
-        .map(|(&input, &flow)| FlowReading {
-            input: to_model(input),
-            flow: flow_unit.to_si(flow),
-            pressure_drop: drop,
-        })
+        .map(|(&input, &flow)| FlowReading { input: to_model(input), flow: flow_unit.to_si(flow), pressure_drop: drop })
         .collect())
 }
 
@@ -137,7 +136,8 @@ fn put(
         let zones = edges.map(|edge| edge.dead_zone.value.max(0.0));
         set(model, "valve_dead_zone", site, &zones, source)?;
     }
-    let plays: Vec<f64> = edges.iter().filter_map(|edge| edge.play).filter(|play| matters(*play)).map(|p| p.value).collect();
+    let plays: Vec<f64> =
+        edges.iter().filter_map(|edge| edge.play).filter(|play| matters(*play)).map(|p| p.value).collect();
     if !plays.is_empty() {
         set(model, "valve_hysteresis", site, &[plays.iter().sum::<f64>() / plays.len() as f64], source)?;
     }
