@@ -14,24 +14,40 @@ const NO_PART: f64 = 1e-3;
 /// correlated in any way (cluster-robust "sandwich", Liang and Zeger 1986), with the factor n/(n - p) on the blocks. And the
 /// ratio of its diagonal to that of white errors.
 ///
+/// A recording with no more blocks than parameters cannot tell for each of them how far its errors are from white. They then share one
+/// ratio, the mean over all directions.
+///
 /// `scales` are the units of the parameters in `sums`. A parameter of which the recordings say nothing, alone or against
 /// another, has an infinite variance and an inflation of NaN; it takes nothing from what is known of the others.
 pub(super) fn clustered_covariance(sums: &[SegmentSums], scales: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
     let fitted = scales.len();
-    let mut information = DMatrix::<f64>::zeros(fitted, fitted);
+    let information = sums.iter().fold(DMatrix::zeros(fitted, fitted), |sum, segment| sum + &segment.information);
+    of_blocks(information, sums.iter().flat_map(|segment| &segment.block_gradients), scales)
+}
+
+/// The same from J' J and the gradient J' r of each block.
+fn of_blocks<'b>(
+    information: DMatrix<f64>,
+    gradients: impl Iterator<Item = &'b DVector<f64>>,
+    scales: &[f64],
+) -> (DMatrix<f64>, Vec<f64>) {
+    let fitted = scales.len();
     let mut meat = DMatrix::<f64>::zeros(fitted, fitted);
     let mut blocks = 0.0;
-    for segment in sums {
-        information += &segment.information;
-        for block in &segment.block_gradients {
-            meat += block * block.transpose();
-            blocks += 1.0;
-        }
+    for block in gradients {
+        meat += block * block.transpose();
+        blocks += 1.0;
     }
     let (inverse, undetermined) = inverse(information);
     let parameters = fitted as f64;
-    let correction = if blocks > parameters { blocks / (blocks - parameters) } else { f64::INFINITY };
-    let mut covariance = &inverse * meat * &inverse * correction;
+    let mut covariance = if blocks > parameters {
+        &inverse * meat * &inverse * (blocks / (blocks - parameters))
+    } else {
+        // In units of white errors: the trace of I^-1 M has one part for each direction, and blocks add up to zero at an optimum.
+        let mean = (&inverse * meat).trace() / parameters * (blocks / (blocks - 1.0).max(1.0));
+        // Two blocks cancel each other, whatever they say.
+        &inverse * if blocks > 2.0 { mean.max(1.0) } else { f64::INFINITY }
+    };
     // White-noise theory is a lower bound that few clusters can fall below by chance.
     for index in 0..fitted {
         covariance[(index, index)] = covariance[(index, index)].max(inverse[(index, index)]);
@@ -95,6 +111,26 @@ mod tests {
         assert_eq!(undetermined, [2, 3, 4]);
         let known = inverse.view((0, 0), (2, 2)) * information().view((0, 0), (2, 2));
         assert!((known - DMatrix::<f64>::identity(2, 2)).amax() < 1e-9);
+    }
+
+    /// Errors whose variance is four times what white noise would have, in fewer blocks than there are parameters.
+    #[test]
+    fn a_short_recording_has_one_inflation_for_all() {
+        let information = DMatrix::from_diagonal(&DVector::from_vec(vec![4.0, 9.0, 1.0, 16.0]));
+        // Blocks that add up to zero, each direction with four times its white share.
+        let block = |signs: [f64; 4]| {
+            DVector::from_iterator(4, (0..4).map(|row| signs[row] * information[(row, row)].sqrt() * 2.0 / 2.0))
+        };
+        let blocks = [[1.0, 1.0, 1.0, 1.0], [-1.0, 1.0, -1.0, 1.0], [1.0, -1.0, -1.0, 1.0], [-1.0, -1.0, 1.0, -3.0]];
+        let blocks: Vec<DVector<f64>> = blocks.into_iter().map(block).collect();
+        let (covariance, inflation) = of_blocks(information.clone(), blocks.iter(), &[1.0; 4]);
+        let wanted = (4.0 + 4.0 + 4.0 + 12.0) / 4.0 * 4.0 / 3.0;
+        for row in 0..4 {
+            assert!((inflation[row] - wanted).abs() < 1e-9, "{inflation:?}");
+            assert!((covariance[(row, row)] - wanted / information[(row, row)]).abs() < 1e-9);
+        }
+        let (two, _) = of_blocks(information, blocks[..2].iter(), &[1.0; 4]);
+        assert!(two[(0, 0)].is_infinite());
     }
 
     #[test]
