@@ -86,14 +86,15 @@ fn gain(
         .collect();
     points.sort_by(|a, b| a.opening.total_cmp(&b.opening));
     let openings = different(points.iter().map(|point| point.opening), SAME_OPENING * maximum);
+    let time_scale = tracks.first().map_or(1.0, |track| track.size.time());
     let refused = || Refusal::TooFewSteadyStretches {
         found: points.len(),
         openings,
         needed: NEEDED.0,
         needed_openings: NEEDED.1,
         longest: tracks.iter().map(|track| longest(track, sign)).fold(0.0, f64::max),
-        least: LEAST_STEADY,
-        settling: SETTLING,
+        least: LEAST_STEADY * time_scale,
+        settling: SETTLING * time_scale,
     };
     if points.len() < NEEDED.0 || openings < NEEDED.1 {
         return Err(refused());

@@ -178,7 +178,8 @@ pub fn friction(
             }
         }
     }
-    check(&samples, from_load_cell)?;
+    let time_scale = tracks.first().map_or(1.0, |track| track.size.time());
+    check(&samples, from_load_cell, time_scale)?;
     let alike = || Refusal::SpeedsTooAlike { found: samples.len() };
     // A level drive without weight has no load to speak of, and no share of it.
     let with_load = samples.iter().any(|sample| sample.load.abs() > LEAST_LOAD);
@@ -229,7 +230,8 @@ pub fn friction(
     Ok(curve(&samples, from_load_cell, with_load, best, reasons.join("; ")))
 }
 
-fn check(samples: &[Sample], from_load_cell: bool) -> Result<(), Refusal> {
+/// Whether there are enough speeds; `time_scale` is that of the cylinder beside the reference.
+fn check(samples: &[Sample], from_load_cell: bool, time_scale: f64) -> Result<(), Refusal> {
     // Each direction by itself: an offset of the load cell, or friction that differs, must not pass for a slope.
     let of = |sign: f64| -> Vec<f64> {
         samples.iter().map(|sample| sign * sample.speed).filter(|&speed| speed > 0.0).collect()
@@ -256,8 +258,8 @@ fn check(samples: &[Sample], from_load_cell: bool) -> Result<(), Refusal> {
         needed_speeds: NEEDED.1,
         needed_ratio: NEEDED_RATIO,
         both: if from_load_cell { "" } else { ", and both directions, as no load cell tells friction from load" },
-        least: LEAST_STEADY,
-        settling: SETTLING,
+        least: LEAST_STEADY * time_scale,
+        settling: SETTLING * time_scale,
     })
 }
 

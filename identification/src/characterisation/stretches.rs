@@ -7,7 +7,7 @@ use super::estimate::Estimate;
 use super::track::Track;
 
 /// How fast an opening may change and still counts as constant, in largest openings per second: a fifth of the slowest
-/// ramp of a paper's trapezoid (0.25 in 0.5 s).
+/// ramp of a paper's trapezoid (0.25 in 0.5 s). Times, lengths and speeds here are those of a cylinder of the reference size.
 const STILL: f64 = 0.1;
 /// Time after a change of the opening in which pressures and speed settle, s: three periods of a loaded cylinder's
 /// oscillation of 30 Hz, more than any trapezoid with a ramp of 0.5 s needs.
@@ -25,6 +25,9 @@ const LEAST_SPEED: f64 = 5e-3;
 const JERKY: f64 = 1.3;
 /// The same without sensor noise, as a share of the way travelled.
 const SHAKE: f64 = 1e-3;
+/// A path that is rougher than that is the sensor's or the rod's where the piston never slows down to this share of its mean speed: what
+/// sticks stands still.
+const NEVER_SLOWER: f64 = 0.5;
 /// Distance that is kept from the ends of the stroke, m.
 const END: f64 = 2e-3;
 /// Acceleration up to which a motion without valve counts as steady, m/s², and its speed's change over a stretch.
@@ -79,7 +82,7 @@ pub(super) fn still(track: &Track) -> Vec<Still> {
         let change = velocity_change(track);
         track.velocity.iter().zip(change).map(even).collect()
     } else {
-        let limit = STILL * track.maximum_opening();
+        let limit = STILL / track.size.time() * track.maximum_opening();
         let limit = limit.max(4.0 * rate_noise(track));
         track.opening_rate.iter().map(|rate| rate.abs() < limit).collect()
     };
@@ -100,7 +103,7 @@ fn velocity_change(track: &Track) -> Vec<f64> {
         .map(|index| {
             let (before, after) = (index.saturating_sub(reach), (index + reach).min(track.time.len() - 1));
             let change = track.velocity[after] - track.velocity[before];
-            if change.abs() < EVEN * track.half_width { change } else { f64::INFINITY }
+            if change.abs() < EVEN * track.size.speed / track.size.time() * track.half_width { change } else { f64::INFINITY }
         })
         .collect()
 }
@@ -129,7 +132,7 @@ pub(super) fn length(track: &Track, still: Still) -> f64 {
 
 /// What is left of a stretch after the time to settle.
 pub(super) fn settled(track: &Track, still: Still) -> Option<Still> {
-    let begin = track.time[still.first] + SETTLING;
+    let begin = track.time[still.first] + SETTLING * track.size.time();
     let first = still.first + track.time[still.first..=still.last].partition_point(|&t| t < begin);
     (first < still.last).then_some(Still { first, last: still.last })
 }
@@ -139,7 +142,7 @@ pub(super) fn steady(track: &Track) -> Vec<Steady> {
     let mut found = Vec::new();
     for run in still(track) {
         let Some(whole) = settled(track, run) else { continue };
-        let pieces = (length(track, whole) / LONGEST_STEADY).ceil().max(1.0);
+        let pieces = (length(track, whole) / (LONGEST_STEADY * track.size.time())).ceil().max(1.0);
         let (start, each) = (track.time[whole.first], length(track, whole) / pieces);
         for piece in 0..pieces as usize {
             let (from, to) = (start + each * piece as f64, start + each * (piece + 1) as f64);
@@ -151,9 +154,15 @@ pub(super) fn steady(track: &Track) -> Vec<Steady> {
     found
 }
 
+/// Whether a piston with these speeds and this mean never slows down as one that sticks does, m/s.
+fn never_sticks(velocity: &[f64], mean: f64) -> bool {
+    let slowest = velocity.iter().filter(|speed| speed.is_finite()).map(|speed| speed / mean);
+    slowest.fold(f64::INFINITY, f64::min) > NEVER_SLOWER
+}
+
 fn steady_piece(track: &Track, samples: Still) -> Option<Steady> {
     let Still { first, last } = samples;
-    if last <= first || length(track, samples) < LEAST_STEADY {
+    if last <= first || length(track, samples) < LEAST_STEADY * track.size.time() {
         return None;
     }
     let range = first..=last;
@@ -177,8 +186,10 @@ fn steady_piece(track: &Track, samples: Still) -> Option<Steady> {
     let acceleration = 2.0 * motion.coefficients[2];
     let travel = speed.value.abs() * length(track, samples);
     let even = (acceleration * length(track, samples)).abs() < CHANGE * speed.value.abs()
-        && noise < (JERKY * noise_level(&track.displacement[range.clone()])).max(SHAKE * travel);
-    let free = points.iter().all(|point| point.y.abs() < track.stroke / 2.0 - END);
+        && (noise < (JERKY * noise_level(&track.displacement[range.clone()])).max(SHAKE * travel)
+            || never_sticks(&track.velocity[range.clone()], speed.value));
+    let end = END * track.size.stroke;
+    let free = points.iter().all(|point| point.y.abs() < track.stroke / 2.0 - end);
     if !even || !free || speed.value.abs() < LEAST_SPEED || speed.relative_error() > 0.1 {
         return None;
     }

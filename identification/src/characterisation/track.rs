@@ -1,7 +1,8 @@
 //! Signals of one cylinder in the form that the procedures need.
 
 use excavator_model::Model;
-use excavator_model::machine::{Chambers, Supply};
+use excavator_model::effects::Site;
+use excavator_model::machine::{Chambers, Size, Supply};
 use excavator_model::recording::{Recording, is_measured};
 
 use super::closed_valve::ClosedValve;
@@ -28,6 +29,8 @@ pub struct Track {
     pub areas: (f64, f64),
     /// Stroke, m.
     pub stroke: f64,
+    /// How large the cylinder is.
+    pub size: Size,
     /// Bulk modulus of the model (Pa) and its standard error.
     pub bulk_modulus: Option<(f64, f64)>,
     /// Sample times, s.
@@ -130,14 +133,16 @@ impl Track {
             let known = own == format!("{name}.bulk_modulus");
             known.then(|| (parameter.value, parameter.standard_error.unwrap_or(0.0)))
         });
+        let size = model.machine.size_at(Site::Cylinder(cylinder));
         let mut track = Track {
             source: recording.source.clone(),
             cylinder: name.clone(),
             chambers: constants.chambers,
             areas,
             stroke: constants.stroke,
+            size,
             bulk_modulus,
-            half_width: HALF_WIDTH.max(FEWEST_SAMPLES * recording.sample_interval()),
+            half_width: (HALF_WIDTH * size.time()).max(FEWEST_SAMPLES * recording.sample_interval()),
             time: recording.time.clone(),
             smooth_opening: vec![f64::NAN; opening.len()],
             opening_rate: vec![f64::NAN; opening.len()],
