@@ -103,7 +103,11 @@ fn velocity_change(track: &Track) -> Vec<f64> {
         .map(|index| {
             let (before, after) = (index.saturating_sub(reach), (index + reach).min(track.time.len() - 1));
             let change = track.velocity[after] - track.velocity[before];
-            if change.abs() < EVEN * track.size.speed / track.size.time() * track.half_width { change } else { f64::INFINITY }
+            if change.abs() < EVEN * track.size.speed / track.size.time() * track.half_width {
+                change
+            } else {
+                f64::INFINITY
+            }
         })
         .collect()
 }

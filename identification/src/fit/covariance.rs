@@ -116,7 +116,7 @@ mod tests {
     /// Errors whose variance is four times what white noise would have, in fewer blocks than there are parameters.
     #[test]
     fn a_short_recording_has_one_inflation_for_all() {
-        let information = DMatrix::from_diagonal(&DVector::from_vec(vec![4.0, 9.0, 1.0, 16.0]));
+        let information = DMatrix::<f64>::from_diagonal(&DVector::from_vec(vec![4.0, 9.0, 1.0, 16.0]));
         // Blocks that add up to zero, each direction with four times its white share.
         let block = |signs: [f64; 4]| {
             DVector::from_iterator(4, (0..4).map(|row| signs[row] * information[(row, row)].sqrt() * 2.0 / 2.0))

@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 use super::model_text::ModelText;
 use super::{BUILT_IN, built_in};
 use crate::effects::{AnyEffect, Catalogue, ParameterCard};
+use crate::template::examples;
 
 /// Effects that models may have, with their parameters wherever they differ from machine to machine.
 pub(super) struct EffectForm {
@@ -54,18 +55,19 @@ fn when_named(form: &EffectForm) -> Value {
     })
 }
 
-/// Every effect of `catalogue` with its parameters at all places of the built-in machines.
+/// Every effect of `catalogue` with its parameters at all places of the built-in machines and of those that templates make.
 pub(super) fn effect_forms(catalogue: &Catalogue) -> Vec<EffectForm> {
-    let models: Vec<_> = BUILT_IN.iter().filter_map(|(name, _)| built_in(name).ok()).collect();
+    let models: Vec<_> = BUILT_IN.iter().filter_map(|(name, _)| built_in(name).ok()).chain(examples()).collect();
     let form = |effect: &AnyEffect| {
         let mut parameters: BTreeMap<String, Vec<ParameterCard>> = BTreeMap::new();
         for model in &models {
             let bare = crate::Model { effects: Vec::new(), ..model.clone() };
             for site in bare.free_sites(effect) {
                 for card in effect.parameters(&model.machine, site) {
+                    let card = card.for_place(&model.machine, site);
                     let known = parameters.entry(card.name.to_string()).or_default();
                     if known.iter().all(|other| other.unit != card.unit) {
-                        known.push(card.clone());
+                        known.push(card);
                     }
                 }
             }

@@ -38,7 +38,7 @@ mod tests {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (seed >> 33) as f64 / f64::from(u32::MAX >> 1) - 0.5
         };
-        let measured: Vec<f64> = sine.iter().map(|value| (200.0 * value + 1.5 * random()).round()).collect();
+        let measured: Vec<f64> = sine.iter().map(|value| (20.0 * value + 1.5 * random()).round()).collect();
         assert!(has_noise(&measured));
     }
 }

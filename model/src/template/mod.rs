@@ -2,11 +2,14 @@
 
 mod data_sheet;
 mod effects;
+mod examples;
 mod machine;
 
 pub use data_sheet::{
     Actuator, CylinderKind, DataSheet, DriveKind, Load, MissingFromDataSheet, RatedFlow, ValveCommand,
 };
+
+pub use examples::examples;
 
 use crate::document::{DocumentError, parse};
 use crate::effects::Catalogue;
