@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 mod common;
+#[path = "../../model/tests/common/scaled.rs"]
+mod scaled;
 
 use common::{add_noise, off_the_data_sheet, with};
 use excavator_identification::decision::Kind;
@@ -9,48 +11,11 @@ use excavator_identification::diagnosis::{DiagnosisSettings, diagnose};
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::Site;
-use excavator_model::machine::{Drive, Linkage, Size, Supply};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-
-/// Ratio of all lengths, and of the unit of openings: 1e6 for openings in mm2.
-type Scale = (f64, f64);
-
-/// Pressures and speeds are the same on both machines, so areas grow with the square of lengths, and times with lengths.
-fn size_of((length, unit): Scale) -> Size {
-    Size { stroke: length, area: length * length, opening: length * length * unit, lever: length, ..Size::REFERENCE }
-}
-
-fn scaled(model: &Model, scale: Scale) -> Model {
-    let mut scaled = model.clone();
-    let (length, size) = (scale.0, size_of(scale));
-    // Weights then grow as forces do.
-    scaled.machine.gravity /= length;
-    if let Supply::PumpLine(line) = &mut scaled.machine.supply {
-        line.flow *= length.powi(2);
-        line.volume *= length.powi(3);
-    }
-    for cylinder in &mut scaled.machine.cylinders {
-        cylinder.stroke *= length;
-        cylinder.ends.iter_mut().for_each(|end| *end *= length);
-        if let Linkage::Triangle { foot_arm, rod_arm, mid_stroke_length, .. } = &mut cylinder.linkage {
-            [foot_arm, rod_arm, mid_stroke_length].into_iter().for_each(|arm| *arm *= length);
-        }
-        let chambers = cylinder.chambers.as_mut().unwrap();
-        [&mut chambers.cap_area, &mut chambers.rod_area].into_iter().for_each(|area| *area *= length.powi(2));
-        [&mut chambers.cap_dead_volume, &mut chambers.rod_dead_volume]
-            .into_iter()
-            .for_each(|volume| *volume *= length.powi(3));
-        let Drive::Valve { full_command, .. } = &mut chambers.drive else { unreachable!() };
-        *full_command *= size.opening;
-    }
-    for parameter in scaled.parameters_mut() {
-        parameter.value *= size.factor(parameter.card.growth);
-    }
-    scaled
-}
+use scaled::{Scale, scaled, size_of};
 
 /// The machine steered by two sines, as good instruments of its size see it.
 fn steered(machine: &Model, scale: Scale, tempo: f64, duration: f64, seed: u64) -> Recording {

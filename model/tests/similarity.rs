@@ -2,51 +2,19 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 mod common;
+#[path = "common/scaled.rs"]
+mod scaled;
 
 use excavator_model::document::built_in;
 use excavator_model::effects::{AnyEffect, Catalogue, Family, Growth, Site};
-use excavator_model::machine::{Drive, Linkage, Size, Supply};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use excavator_model::{Model, ModelEffect};
+use scaled::{scaled, size_of};
 
 /// Ratios of lengths and of the unit of openings. Powers of two, as [`Size`] has them, so that the numbers of the cards are in exact
 /// proportion too.
 const SCALES: [(f64, f64); 3] = [(0.125, 1.0), (4.0, 1.0), (1.0, 1024.0)];
-
-fn size_of((length, unit): (f64, f64)) -> Size {
-    Size { stroke: length, area: length * length, opening: length * length * unit, lever: length, ..Size::REFERENCE }
-}
-
-/// The machine with every length times `length`, its openings in another unit, and its parameters in proportion.
-fn scaled(model: &Model, scale: (f64, f64)) -> Model {
-    let mut scaled = model.clone();
-    let (length, size) = (scale.0, size_of(scale));
-    // Weights then grow as forces do.
-    scaled.machine.gravity /= length;
-    if let Supply::PumpLine(line) = &mut scaled.machine.supply {
-        line.flow *= length.powi(2);
-        line.volume *= length.powi(3);
-    }
-    for cylinder in &mut scaled.machine.cylinders {
-        cylinder.stroke *= length;
-        cylinder.ends.iter_mut().for_each(|end| *end *= length);
-        if let Linkage::Triangle { foot_arm, rod_arm, mid_stroke_length, .. } = &mut cylinder.linkage {
-            [foot_arm, rod_arm, mid_stroke_length].into_iter().for_each(|arm| *arm *= length);
-        }
-        let chambers = cylinder.chambers.as_mut().unwrap();
-        [&mut chambers.cap_area, &mut chambers.rod_area].into_iter().for_each(|area| *area *= length.powi(2));
-        [&mut chambers.cap_dead_volume, &mut chambers.rod_dead_volume]
-            .into_iter()
-            .for_each(|volume| *volume *= length.powi(3));
-        let Drive::Valve { full_command, .. } = &mut chambers.drive else { unreachable!() };
-        *full_command *= size.opening;
-    }
-    for parameter in scaled.parameters_mut() {
-        parameter.value *= size.factor(parameter.card.growth);
-    }
-    scaled
-}
 
 /// The model with an effect of its usual size for this machine; where it acts in a window of time, from the third second on. Times of
 /// a recorder are no property of a machine: they are scaled by hand.
