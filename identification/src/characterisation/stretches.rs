@@ -25,9 +25,6 @@ const LEAST_SPEED: f64 = 5e-3;
 const JERKY: f64 = 1.3;
 /// The same without sensor noise, as a share of the way travelled.
 const SHAKE: f64 = 1e-3;
-/// A path that is rougher than that is the sensor's or the rod's where the piston never slows down to this share of its mean speed: what
-/// sticks stands still.
-const NEVER_SLOWER: f64 = 0.5;
 /// Distance that is kept from the ends of the stroke, m.
 const END: f64 = 2e-3;
 /// Acceleration up to which a motion without valve counts as steady, m/s², and its speed's change over a stretch.
@@ -158,12 +155,6 @@ pub(super) fn steady(track: &Track) -> Vec<Steady> {
     found
 }
 
-/// Whether a piston with these speeds and this mean never slows down as one that sticks does, m/s.
-fn never_sticks(velocity: &[f64], mean: f64) -> bool {
-    let slowest = velocity.iter().filter(|speed| speed.is_finite()).map(|speed| speed / mean);
-    slowest.fold(f64::INFINITY, f64::min) > NEVER_SLOWER
-}
-
 fn steady_piece(track: &Track, samples: Still) -> Option<Steady> {
     let Still { first, last } = samples;
     if last <= first || length(track, samples) < LEAST_STEADY * track.size.time() {
@@ -190,8 +181,7 @@ fn steady_piece(track: &Track, samples: Still) -> Option<Steady> {
     let acceleration = 2.0 * motion.coefficients[2];
     let travel = speed.value.abs() * length(track, samples);
     let even = (acceleration * length(track, samples)).abs() < CHANGE * speed.value.abs()
-        && (noise < (JERKY * noise_level(&track.displacement[range.clone()])).max(SHAKE * travel)
-            || never_sticks(&track.velocity[range.clone()], speed.value));
+        && noise < (JERKY * noise_level(&track.displacement[range.clone()])).max(SHAKE * travel);
     let end = END * track.size.stroke;
     let free = points.iter().all(|point| point.y.abs() < track.stroke / 2.0 - end);
     if !even || !free || speed.value.abs() < LEAST_SPEED || speed.relative_error() > 0.1 {
