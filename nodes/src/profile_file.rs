@@ -106,15 +106,16 @@ impl ProfileFile {
     pub fn remarks(&self, machine: &Machine) -> Vec<String> {
         let opens_too_far = |profile: &Profile| {
             let cylinder = machine.cylinders.iter().find(|cylinder| cylinder.name == profile.cylinder)?;
-            let maximum = cylinder.chambers.as_ref()?.full_command();
+            let drive = cylinder.chambers.as_ref()?.drive;
+            let (maximum, (factor, unit)) = (drive.full_command(), drive.command_unit().for_people());
             let asked = profile.segments.iter().map(Segment::largest_area).fold(0.0, f64::max);
             (asked > ROUNDING * maximum).then(|| {
                 format!(
-                    "{}: asked to open {:.4} mm2 and the maximum_orifice_area of {} is {:.4} mm2; simulated as asked",
+                    "{}: asked to open {:.4} {unit} and the full command of {} is {:.4} {unit}; simulated as asked",
                     profile.cylinder,
-                    1e6 * asked,
+                    factor * asked,
                     machine.name,
-                    1e6 * maximum
+                    factor * maximum
                 )
             })
         };

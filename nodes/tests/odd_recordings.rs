@@ -68,7 +68,7 @@ fn a_valve_that_opens_beyond_its_maximum_is_told() {
     let factor = 1.5 * 1.15e-4 / 5e-5;
     is_told(
         |recording| recording.cylinders[0].orifice_area.iter_mut().for_each(|area| *area *= factor),
-        &["arm.orifice_area reaches 172", "1.50 times the maximum_orifice_area of zx30u-arm"],
+        &["arm.orifice_area reaches 172", "1.50 times the full command of zx30u-arm"],
     );
 }
 

@@ -122,8 +122,9 @@ impl Gate<'_> {
     fn chambers(&mut self, signals: &CylinderSignals, chambers: &Chambers) -> Result<(), GateError> {
         let name = |signal: &str| format!("{}.{signal}", signals.name);
         let limit = 3.0 * chambers.full_command();
-        self.at_most(&name("orifice_area"), &signals.orifice_area, "m2", limit)?;
-        self.at_most(&name("orifice_command"), &signals.orifice_command, "m2", limit)?;
+        let unit = chambers.drive.command_unit().text();
+        self.at_most(&name("orifice_area"), &signals.orifice_area, unit, limit)?;
+        self.at_most(&name("orifice_command"), &signals.orifice_command, unit, limit)?;
         for (signal, values) in [("cap_pressure", &signals.cap_pressure), ("rod_pressure", &signals.rod_pressure)] {
             self.pressure(&name(signal), values, LEAST_PRESSURE)?;
         }

@@ -15,14 +15,16 @@ use super::runs::range;
 pub enum Remark {
     /// A valve opens further than the model says it can.
     #[error(
-        "{signal} reaches {reached:.2} mm2, {times:.2} times the maximum_orifice_area of {machine}: one of the two is wrong, and effects that \
+        "{signal} reaches {reached:.2} {unit}, {times:.2} times the full command of {machine}: one of the two is wrong, and effects that \
          depend on it come out wrong"
     )]
     OpensTooFar {
         /// Contract name of the signal.
         signal: String,
-        /// Its usual largest size, mm².
+        /// Its usual largest size, in the unit.
         reached: f64,
+        /// The unit of the valve's input, for people.
+        unit: &'static str,
         /// That over what the model says.
         times: f64,
         /// The machine.
@@ -128,7 +130,8 @@ pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
         let times = reached / chambers.full_command();
         if times > OPENS_TOO_FAR {
             let machine = machine.name.clone();
-            found.push(Remark::OpensTooFar { signal: name(signal), reached: 1e6 * reached, times, machine });
+            let (factor, unit) = chambers.drive.command_unit().for_people();
+            found.push(Remark::OpensTooFar { signal: name(signal), reached: factor * reached, unit, times, machine });
         }
         if is_measured(area) && is_measured(command) {
             let correlation = following(&recording.time, command, area);

@@ -24,7 +24,7 @@ pub(super) fn effect_card(candidate: &Candidate<'_>, recordings: &[&Recording]) 
                 dt { "Energy" } dd { (card.energy) }
                 dt { "Source" } dd { (card.source) }
             }
-            @if let Some(shown) = &shown { (effect_plot(shown)) }
+            @if let Some(shown) = &shown { (effect_plot(&candidate.trial.fit.model.machine, shown)) }
             (parameter_table::of_effect(&candidate.trial.fit.model, candidate.name(), candidate.addition.site))
         }
     }

@@ -1,5 +1,6 @@
 //! An effect as the data show it.
 
+use excavator_model::machine::Machine;
 use maud::{Markup, html};
 
 use super::residual_units::{unit_of_residual, unit_of_variable};
@@ -13,8 +14,8 @@ const DATA: &str = "#7b4a9a";
 const EFFECT: &str = "#c2571a";
 
 /// What the equation lacks without the effect, and what the fitted effect gives.
-pub(super) fn effect_plot(shown: &Contribution) -> Markup {
-    let (x_unit, y_unit) = (unit_of_variable(shown.variable), unit_of_residual(shown.unit));
+pub(super) fn effect_plot(machine: &Machine, shown: &Contribution) -> Markup {
+    let (x_unit, y_unit) = (unit_of_variable(machine, &shown.equation, shown.variable), unit_of_residual(shown.unit));
     let (x, y) = (x_unit.factor, y_unit.factor);
     let data: Vec<(f64, f64)> = shown.bins.iter().map(|bin| (bin.at * x, bin.lacking * y)).collect();
     let effect: Vec<(f64, f64)> = shown.bins.iter().map(|bin| (bin.at * x, bin.effect * y)).collect();

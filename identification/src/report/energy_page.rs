@@ -9,6 +9,7 @@ use super::numbers::{decimal, percent, significant};
 use super::page::{Section, page, tile};
 use super::power_plots::{PowerLine, PowerPlot};
 use super::time_plots::hint;
+use super::units;
 use super::words;
 use crate::energy::{CylinderTraces, EnergyAnalysis, missing_power};
 
@@ -76,7 +77,7 @@ pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
         Section {
             anchor: "rates",
             title: "Rate of the stored energy".into(),
-            body: html! { (hint()) (each(&|trace, number| rates(trace, number, budget))) @if let Some(reason) = &analysis.simulation_failed { p.note { "No numerical results: " (reason) } } },
+            body: html! { (hint()) (each(&|trace, number| rates(model, trace, number, budget))) @if let Some(reason) = &analysis.simulation_failed { p.note { "No numerical results: " (reason) } } },
         },
         Section {
             anchor: "supply",
@@ -106,11 +107,13 @@ fn line<'a>(label: &'a str, colour: &'a str, dashed: bool, values: &'a [f64]) ->
 }
 
 /// \[A\] Figure 10.
-fn rates(trace: &CylinderTraces, number: usize, budget: usize) -> Markup {
+fn rates(model: &Model, trace: &CylinderTraces, number: usize, budget: usize) -> Markup {
     let group = group(number);
     let plot = PowerPlot { group: &group, label: "dH/dt", unit: "W", height: 260, last: false, budget };
-    let opening: Vec<f64> = trace.opening.iter().map(|area| area * 1e6).collect();
-    let lower = PowerPlot { label: "opening", unit: "mm²", height: 120, last: true, ..plot };
+    let cylinder = trace.members.first().and_then(|&member| model.machine.cylinders.get(member));
+    let unit = units::of_opening(cylinder);
+    let opening: Vec<f64> = trace.opening.iter().map(|input| input * unit.factor).collect();
+    let lower = PowerPlot { label: "opening", unit: unit.symbol, height: 120, last: true, ..plot };
     html! {
         (plot.markup(&trace.time, &[
             PowerLine { errors: Some(&trace.experimental.error), ..line("experimental", EXPERIMENTAL, false, &trace.experimental.value) },

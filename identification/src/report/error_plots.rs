@@ -74,7 +74,7 @@ pub(super) fn error_plots(model: &Model, models: &[Errors<'_>]) -> Markup {
 }
 
 fn panels(model: &Model, name: &str, models: &[Errors<'_>]) -> Markup {
-    let unit = units::of_signal(name);
+    let unit = units::of_signal(&model.machine, name);
     let labels: Vec<String> = models
         .iter()
         .flat_map(|errors| errors.comparisons)
@@ -188,11 +188,11 @@ fn variables<'a>(model: &Model, name: &str, recording: &'a Recording) -> Vec<Var
         if cylinder.chambers.is_none() {
             push("rod force", units::KILONEWTON, &signals.rod_force);
         } else if is_measured(&signals.orifice_area) {
-            push("valve opening", units::SQUARE_MILLIMETRE, &signals.orifice_area);
+            push("valve opening", units::of_opening(Some(cylinder)), &signals.orifice_area);
         } else {
-            push("commanded opening", units::SQUARE_MILLIMETRE, &signals.orifice_command);
+            push("commanded opening", units::of_opening(Some(cylinder)), &signals.orifice_command);
         }
-        push("speed", units::MILLIMETRE_PER_SECOND, &signals.velocity);
+        push("speed", units::of_speed(Some(cylinder)), &signals.velocity);
         if cylinder.chambers.is_some() && own.is_some() {
             match name.ends_with("rod_pressure") {
                 true => push("rod pressure", units::MEGAPASCAL, &signals.rod_pressure),
@@ -200,7 +200,7 @@ fn variables<'a>(model: &Model, name: &str, recording: &'a Recording) -> Vec<Var
             }
         }
         if own.is_some() || !several {
-            push("position", units::MILLIMETRE, &signals.displacement);
+            push("position", units::of_position(Some(cylinder)), &signals.displacement);
         }
     }
     if own.is_none() {

@@ -34,7 +34,7 @@ pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
                 @for comparison in comparisons {
                     @if comparisons.len() > 1 { tr.group { td colspan="8" { (comparison.measured.source) } } }
                     @for signal in &comparison.signals {
-                        @let unit = units::of_signal(&signal.name);
+                        @let unit = units::of_signal(&comparison.machine, &signal.name);
                         @let sizes = error_sizes(comparison, &signal.name);
                         tr {
                             td { (words::signal(&signal.name)) " " code.code-name { (signal.name) } }

@@ -93,7 +93,7 @@ fn signal_plots(models: &[(Line, &Comparison)], name: &str, group: &str, budget:
     let mut guides: Vec<&[f64]> = vec![measured];
     guides.extend(errors.first().map(|(_, values)| values.as_slice()));
     let kept = thinning::indices(&guides, time.len(), budget);
-    let unit = units::of_signal(name);
+    let unit = units::of_signal(&first.machine, name);
     let mut lines = vec![(MEASURED, measured)];
     lines.extend(simulated.iter().copied());
     let errors: Vec<(Line, &[f64])> = errors.iter().map(|(line, values)| (*line, values.as_slice())).collect();

@@ -1,5 +1,6 @@
 //! The residual that no effect of the catalogue explains, as a curve.
 
+use excavator_model::machine::Machine;
 use maud::{Markup, html};
 
 use super::numbers::percent;
@@ -12,8 +13,8 @@ use crate::diagnosis::Unexplained;
 const BAND: f64 = 1.96;
 
 /// What is left, with its band.
-pub(super) fn unexplained_plot(left: &Unexplained) -> Markup {
-    let (x_unit, y_unit) = (unit_of_variable(left.variable), unit_of_residual(left.unit));
+pub(super) fn unexplained_plot(machine: &Machine, left: &Unexplained) -> Markup {
+    let (x_unit, y_unit) = (unit_of_variable(machine, &left.equation, left.variable), unit_of_residual(left.unit));
     let points: Vec<(f64, f64, f64)> = left
         .curve
         .iter()

@@ -1,5 +1,9 @@
 //! SI to the units that people read off gauges.
 
+use std::f64::consts::PI;
+
+use excavator_model::machine::{CommandUnit, Cylinder, Machine, Mechanism};
+
 /// A unit for display.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Unit<'a> {
@@ -28,13 +32,42 @@ pub(super) const LITRE_PER_MINUTE: Unit<'static> = unit(6e4, "l/min");
 /// Times.
 pub(super) const SECOND: Unit<'static> = unit(1.0, "s");
 
+/// Angles of joints.
+const DEGREE: Unit<'static> = unit(180.0 / PI, "°");
+
+/// Position of a piston; of a motor's shaft.
+pub(super) fn of_position(cylinder: Option<&Cylinder>) -> Unit<'static> {
+    if cylinder.is_some_and(Cylinder::is_motor) { unit(0.5 / PI, "rev") } else { MILLIMETRE }
+}
+
+/// Speed of a piston; of a motor's shaft.
+pub(super) fn of_speed(cylinder: Option<&Cylinder>) -> Unit<'static> {
+    if cylinder.is_some_and(Cylinder::is_motor) { unit(30.0 / PI, "rpm") } else { MILLIMETRE_PER_SECOND }
+}
+
+/// Input of a cylinder's drive.
+pub(super) fn of_opening(cylinder: Option<&Cylinder>) -> Unit<'static> {
+    match cylinder.and_then(|cylinder| cylinder.chambers).map(|chambers| chambers.drive.command_unit()) {
+        Some(CommandUnit::SquareMetre) | None => SQUARE_MILLIMETRE,
+        Some(other) => {
+            let (factor, symbol) = other.for_people();
+            unit(factor, symbol)
+        }
+    }
+}
+
 /// Unit in which a signal of this contract name is shown.
-pub(super) fn of_signal(name: &str) -> Unit<'static> {
-    match name.rsplit('.').next().unwrap_or(name) {
-        "joint_angle" => unit(180.0 / std::f64::consts::PI, "°"),
-        "displacement" => MILLIMETRE,
-        "velocity" => MILLIMETRE_PER_SECOND,
-        "orifice_area" | "orifice_command" => SQUARE_MILLIMETRE,
+pub(super) fn of_signal(machine: &Machine, name: &str) -> Unit<'static> {
+    let (place, signal) = name.rsplit_once('.').unwrap_or(("", name));
+    let cylinder = machine.cylinders.iter().find(|cylinder| cylinder.name == place);
+    match signal {
+        // The coordinate of a linear load is its position.
+        "joint_angle" if machine.mechanism == Mechanism::LinearLoad => MILLIMETRE,
+        "joint_angle" => DEGREE,
+        "displacement" => of_position(cylinder),
+        "velocity" => of_speed(cylinder),
+        "orifice_area" | "orifice_command" => of_opening(cylinder),
+        "rod_force" if cylinder.is_some_and(Cylinder::is_motor) => unit(1.0, "N m"),
         "rod_force" => KILONEWTON,
         "pump_flow" => LITRE_PER_MINUTE,
         "oil_temperature" => unit(1.0, "°C"),
@@ -58,6 +91,8 @@ pub(super) fn of_parameter(si: &str) -> Unit<'_> {
         "m/(s sqrt(Pa))" => unit(1.0, "m/(s √Pa)"),
         "m3" => unit(1.0, "m³"),
         "m3/s" => LITRE_PER_MINUTE,
+        "rad/s" => unit(30.0 / PI, "rpm"),
+        "A" => unit(1e3, "mA"),
         other => unit(1.0, other),
     }
 }

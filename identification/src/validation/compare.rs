@@ -1,6 +1,7 @@
 //! Simulate with a recording's input from its initial state, and compare every output.
 
 use excavator_model::Model;
+use excavator_model::machine::Machine;
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::simulation::{InputSignals, RunError, simulate};
 
@@ -21,6 +22,8 @@ pub struct Comparison {
     pub signals: Vec<SignalComparison>,
     /// Frequency of the excitation, Hz, where one stands out.
     pub excitation_frequency: Option<f64>,
+    /// The machine, which says in which units its signals are.
+    pub machine: Machine,
 }
 
 /// One signal.
@@ -134,7 +137,7 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
             })
         })
         .collect();
-    Ok(Comparison { measured, simulated, signals, excitation_frequency })
+    Ok(Comparison { measured, simulated, signals, excitation_frequency, machine: model.machine.clone() })
 }
 
 /// What drives a cylinder, or all of them.

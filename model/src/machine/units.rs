@@ -31,6 +31,17 @@ impl CommandUnit {
         }
     }
 
+    /// Factor and symbol of the unit that people read it in.
+    pub fn for_people(self) -> (f64, &'static str) {
+        match self {
+            CommandUnit::SquareMetre => (1e6, "mm2"),
+            CommandUnit::Volt => (1.0, "V"),
+            CommandUnit::Ampere => (1e3, "mA"),
+            CommandUnit::One => (1e2, "%"),
+            CommandUnit::CubicMetrePerSecond => (6e4, "l/min"),
+        }
+    }
+
     /// Unit of a flow per root of a pressure drop and input.
     fn flow_gain(self) -> &'static str {
         match self {
