@@ -84,7 +84,11 @@ pub(super) fn diagnosis_sections(diagnosis: &Diagnosis, comparisons: &[Compariso
         sections.push(Section { anchor: "effects", title: title.into(), body });
     }
     if let Some(left) = &diagnosis.unexplained {
-        sections.push(Section { anchor: "unexplained", title: "What is left".into(), body: unexplained_plot(&model.machine, left) });
+        sections.push(Section {
+            anchor: "unexplained",
+            title: "What is left".into(),
+            body: unexplained_plot(&diagnosis.given().fit.model.machine, left),
+        });
     }
     sections.push(Section { anchor: "evidence", title: "Evidence".into(), body: evidence(diagnosis, comparisons) });
     sections.push(Section { anchor: "where", title: "Where the model fails".into(), body: regimes(&diagnosis.map) });

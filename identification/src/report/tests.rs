@@ -52,7 +52,13 @@ fn comparison(error: f64) -> Comparison {
             phase_delay_degrees: (name != "arm.velocity").then_some(-1.25),
         })
         .to_vec();
-    Comparison { measured, simulated: recording("simulated", error), signals, excitation_frequency: Some(0.48), machine: model().machine }
+    Comparison {
+        measured,
+        simulated: recording("simulated", error),
+        signals,
+        excitation_frequency: Some(0.48),
+        machine: model().machine,
+    }
 }
 
 fn fit_of(model: &Model, error: f64) -> Fit {
