@@ -137,8 +137,9 @@ impl<T: Number> Account<'_, '_, T> {
 
     /// Energy of the gas behind oil of the pump line, which has this volume (m³).
     fn stored_in_accumulators(&mut self, pressure: T, volume: f64) -> T {
-        let effects = 0..self.system.model().effects.len();
-        let accumulators: Vec<usize> = effects
+        let effects = self.system.model().effects.iter().enumerate();
+        let at_the_line = effects.filter(|(_, effect)| effect.site == Site::PumpLine).map(|(number, _)| number);
+        let accumulators: Vec<usize> = at_the_line
             .filter(|&number| {
                 self.contribute_alone(number);
                 self.workspace.rows.accumulator_compliance.value() != 0.0

@@ -1,7 +1,7 @@
 //! How widely the corners of the physics are rounded.
 
 use super::smooth::{LAMINAR_PRESSURE, SLIP_SPEED, orifice_root, rounded_sign, sign_with_corner};
-use crate::machine::{Growth, Size};
+use crate::machine::Size;
 use crate::scalar::Scalar;
 
 /// Widths and shapes of the corners at one cylinder. Effects that round otherwise than the equations set them.
@@ -34,7 +34,7 @@ impl<T: Scalar> Rounding<T> {
     /// The convention of the equations for a piston of this size, where no effect rounds otherwise.
     pub fn of_the_equations(size: &Size) -> Self {
         Rounding {
-            reversal_speed: T::from(SLIP_SPEED * size.factor(Growth::SEAL_SPEED)),
+            reversal_speed: T::from(SLIP_SPEED * size.sliding),
             corner_sharpness: None,
             transition_pressure: T::from(LAMINAR_PRESSURE),
             end_stop: None,

@@ -5,7 +5,7 @@ use super::variable::{Variable, VariableCard};
 use crate::Model;
 use crate::effects::{Effect, Number, Site};
 use crate::equations::{Inputs, Rows, Situation, System};
-use crate::machine::Supply;
+use crate::machine::{Cylinder, Supply};
 use crate::scalar::{Dual, constant, derivative, variable};
 
 /// What was found of a law at one place of a machine.
@@ -118,7 +118,7 @@ impl Bench<'_, '_> {
             Site::Cylinder(cylinder) => machine.cylinders.get(cylinder),
             Site::PumpLine | Site::Machine => machine.cylinders.first(),
         };
-        let stroke = cylinder.map_or(1.0, |cylinder| cylinder.stroke);
+        let stroke = cylinder.map_or(1.0, Cylinder::usual_travel);
         let chambers = cylinder.and_then(|cylinder| cylinder.chambers);
         let pressure = match machine.supply {
             Supply::PressureSource(source) => source.pressure,

@@ -32,12 +32,10 @@ pub fn run(arguments: &NewModelArguments) -> Result<(), VerbError> {
         Some(path) if path != Path::new("-") => {
             outputs::write(path, &text, arguments.overwriting)?;
             print(&format!(
-                "{}: a model of {} with {} of cylinder \"{}\"; `excavator model check {}` tries it",
+                "{0}: a model of {1} with starts for the parameters of cylinder \"{2}\"; `excavator model check {0}` tries it",
                 path.display(),
                 arguments.name,
-                "starts for the parameters",
-                arguments.part,
-                path.display()
+                arguments.part
             ));
             Ok(())
         }
