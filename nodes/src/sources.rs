@@ -72,6 +72,7 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
     if let Some(part) = part {
         recording = part.of(&recording, path)?;
     }
+    leave_pump_pressure_out(model, &mut recording, &report.left_out);
     for problem in report.problems() {
         complain(&format!("{}: {problem}", path.display()));
     }
@@ -137,6 +138,20 @@ fn leave_out(model: &Model, recording: &mut Recording, condition: &Condition, ke
         }
     }
     left_out as f64 / (samples * holds.len()).max(1) as f64
+}
+
+/// Takes away the pump pressure between these moments, ns, where it is compared with a model, and no input.
+fn leave_pump_pressure_out(model: &Model, recording: &mut Recording, stretches: &[[i64; 2]]) {
+    if !matches!(model.machine.supply, Supply::PumpLine(_)) {
+        return;
+    }
+    let start = recording.start_nanoseconds;
+    for (time, pressure) in recording.time.iter().zip(&mut recording.pump_pressure) {
+        let moment = start.saturating_add((time * 1e9).round() as i64);
+        if stretches.iter().any(|[first, last]| (*first..=*last).contains(&moment)) {
+            *pressure = f64::NAN;
+        }
+    }
 }
 
 /// Several recordings.

@@ -35,6 +35,12 @@ pub enum MapError {
         /// Signals of the machine.
         shared: Vec<&'static str>,
     },
+    /// A signal to be left out that is not there.
+    #[error("[[leave_out]] names {signal}, which the map does not have")]
+    LeavesNothingOut {
+        /// The signal.
+        signal: String,
+    },
     /// The same signal twice.
     #[error("{signal} is mapped twice")]
     SignalTwice {

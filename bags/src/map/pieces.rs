@@ -112,7 +112,10 @@ fn place(pieces: &mut [Piece], notes: &mut Vec<String>) -> Result<(), MapError> 
             let overlap = end.saturating_sub(piece.first()) as f64 / 1e9;
             return Err(MapError::PiecesOverlap { first: before, second: piece.path.clone(), overlap });
         }
-        piece.recording.start_nanoseconds = end.saturating_add((pause * 1e9).ceil() as i64);
+        let begin = end.saturating_add((pause * 1e9).ceil() as i64);
+        let moved = begin.saturating_sub(piece.recording.start_nanoseconds);
+        piece.recording.start_nanoseconds = begin;
+        piece.report.left_out.iter_mut().flatten().for_each(|moment| *moment = moment.saturating_add(moved));
         notes.push(format!(
             "{} counts time from its own start: it begins {pause:.3} s after the end of {}, which makes it a piece of its own",
             piece.path.display(),

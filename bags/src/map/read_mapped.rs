@@ -34,8 +34,7 @@ pub(super) fn read_dated(path: &Path, map: &TopicMap) -> Result<(Recording, Read
         read_bag(path, map)?
     };
     for stretch in &map.leave_out {
-        stretch.apply(&mut recording)?;
-        report.left_out_where.extend(stretch.condition.clone());
+        stretch.apply(&mut recording, &mut report)?;
     }
     Ok((recording, report, dating))
 }

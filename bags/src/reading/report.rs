@@ -52,6 +52,9 @@ pub struct ReadReport {
     pub notes: Vec<String>,
     /// Conditions under which a map leaves measurements out. Who knows the machine evaluates them.
     pub left_out_where: Vec<String>,
+    /// First and last moment of each stretch in which a map leaves out all that a model is compared with, ns on the clock of the
+    /// recording's start. The signals of cylinders are left out already; who knows the machine decides on the pump pressure.
+    pub left_out: Vec<[i64; 2]>,
 }
 
 /// Gaps that a report keeps at most.
@@ -88,6 +91,12 @@ impl ReadReport {
         self.truncated_after = self.truncated_after.or(piece.truncated_after);
         let notes = piece.notes.iter().map(|note| format!("{}: {note}", path.display()));
         self.notes.extend(notes);
+        for condition in &piece.left_out_where {
+            if !self.left_out_where.contains(condition) {
+                self.left_out_where.push(condition.clone());
+            }
+        }
+        self.left_out.extend(&piece.left_out);
         self.add_block(ReadReport { gaps: Vec::new(), ..piece });
     }
 
