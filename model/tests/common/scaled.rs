@@ -1,8 +1,8 @@
 //! The same machine, larger or smaller, that works with the same pressures and speeds.
 #![allow(dead_code, clippy::unwrap_used)]
 
-use excavator_model::Model;
 use excavator_model::machine::{Drive, Linkage, Size, Supply};
+use excavator_model::{Model, ModelEffect};
 
 /// Ratio of all lengths, and of the unit of openings: 1e6 for openings in mm2.
 pub type Scale = (f64, f64);
@@ -36,8 +36,14 @@ pub fn scaled(model: &Model, scale: Scale) -> Model {
         let Drive::Valve { full_command, .. } = &mut chambers.drive else { unreachable!() };
         *full_command *= size.opening;
     }
-    for parameter in scaled.parameters_mut() {
-        parameter.value *= size.factor(parameter.card.growth);
+    for effect in &mut scaled.effects {
+        // Its limits are those of the new size, too.
+        let fresh = ModelEffect::new(&effect.physics, &scaled.machine, effect.site).unwrap();
+        effect.size = fresh.size;
+        for (parameter, fresh) in effect.parameters.iter_mut().zip(fresh.parameters) {
+            parameter.value *= size.factor(parameter.card.growth);
+            parameter.card = fresh.card;
+        }
     }
     scaled
 }
