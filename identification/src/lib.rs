@@ -12,6 +12,7 @@ pub mod energy;
 pub mod fit;
 pub mod gate;
 pub mod plausibility;
+pub mod proposal;
 pub mod refinement;
 pub mod regression;
 pub mod report;

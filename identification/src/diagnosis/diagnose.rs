@@ -7,7 +7,7 @@ use super::{Share, Unexplained, residual_map, unexplained};
 use crate::decision::{Kind, Policy, Scores, Verdict, decide};
 use crate::fit::FitError;
 use crate::regression::RegressionError;
-use crate::search::{AdditionError, Effort, Trial, Unpromising, search};
+use crate::search::{AdditionError, Effort, Pool, Trial, Unpromising, search};
 
 /// Result of a diagnosis.
 #[derive(Debug, Clone)]
@@ -70,6 +70,18 @@ pub fn diagnose(
     let pool = search(model, identification, validation, effort, policy, progress)?;
     let verdict = decide(&pool.scores, policy);
     progress("where the model fails", 1.0);
+    diagnosis_of(pool, verdict, validation)
+}
+
+/// What a search and the verdict on it say about a model.
+///
+/// # Errors
+/// [`DiagnosisError::Regression`] when the recordings lack inputs.
+pub(crate) fn diagnosis_of(
+    pool: Pool<'_>,
+    verdict: Verdict,
+    validation: &[&Recording],
+) -> Result<Diagnosis, DiagnosisError> {
     let map = residual_map(&pool.given().fit.model, validation)?;
     let unexplained = match verdict.kind {
         Kind::Unexplained => unexplained(&pool.trials[verdict.supported()].fit.model, validation)?,

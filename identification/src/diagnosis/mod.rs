@@ -9,6 +9,7 @@ mod residual_points;
 
 pub use candidates::{Candidate, Part};
 pub use contribution::{Contribution, ContributionBin, contribution};
+pub(crate) use diagnose::diagnosis_of;
 pub use diagnose::{Diagnosis, DiagnosisError, DiagnosisSettings, diagnose};
 pub use named::NamedVerdict;
 pub(crate) use named::judge_named;

@@ -7,6 +7,7 @@ use excavator_model::{HistoryEntry, Model, ModelError, addition_name, site_name}
 use crate::decision::Kind;
 use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisSettings, NamedVerdict, diagnose, judge_named};
 use crate::fit::{Fit, FitError, nuisances_shown, simplified};
+use crate::proposal::propose;
 use crate::search::{Addition, AdditionError, fit_addition, fit_given};
 use crate::validation::{Comparison, compare};
 
@@ -15,6 +16,8 @@ use crate::validation::{Comparison, compare};
 pub enum Additions {
     /// Whatever the diagnosis finds, one after the other.
     Auto,
+    /// The same; where nothing of the catalogue explains the recordings, a proposed law.
+    AutoWithLaws,
     /// These effects, one after the other.
     Named(Vec<Addition>),
 }
@@ -136,7 +139,10 @@ pub fn refine(
     let given =
         validation.iter().map(|recording| compare(model, recording)).collect::<Result<_, _>>().unwrap_or_default();
     let (fits, reason) = match additions {
-        Additions::Auto => found(model, identification, validation, settings, progress)?,
+        Additions::Auto => found(model, diagnose(model, identification, validation, settings, progress)?),
+        Additions::AutoWithLaws => {
+            found(model, propose(model, identification, validation, settings, progress)?.diagnosis)
+        }
         Additions::Named(named) => as_named(model, named, identification, validation, settings, progress)?,
     };
     let mut steps: Vec<Step> = Vec::new();
@@ -169,14 +175,7 @@ pub fn refine(
 type Fits = Vec<(Option<String>, Fit)>;
 
 /// The way of a diagnosis from the given model to the hypothesis that it supports.
-fn found(
-    model: &Model,
-    identification: &[&Recording],
-    validation: &[&Recording],
-    settings: &DiagnosisSettings,
-    progress: &(dyn Fn(&str, f64) + Sync),
-) -> Result<(Fits, Reason), RefineError> {
-    let diagnosis = diagnose(model, identification, validation, settings, progress)?;
+fn found(model: &Model, diagnosis: Diagnosis) -> (Fits, Reason) {
     let mut fits = vec![(None, diagnosis.given().fit.clone())];
     let selected = diagnosis.selected();
     for (number, candidate) in selected.iter().enumerate() {
@@ -186,7 +185,7 @@ fn found(
             fits.push((Some(candidate.addition.name(model)), candidate.trial.fit.clone()));
         }
     }
-    Ok((fits, Reason::Found(Box::new(diagnosis))))
+    (fits, Reason::Found(Box::new(diagnosis)))
 }
 
 /// Named effects, one after the other.

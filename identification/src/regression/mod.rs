@@ -16,6 +16,7 @@ mod weak_residuals;
 mod weak_row;
 mod weak_rows;
 mod weak_solution;
+mod weak_terms;
 mod window;
 
 pub use equation::{Equation, EquationKind, Sensor, Term, equations};
@@ -25,3 +26,4 @@ pub use observation::{Observation, observe, observe_guided};
 pub use solution::{ConditionNumber, EquationGauge, Regression};
 pub use weak_form::{WeakFormSettings, weak_form, weak_form_watched};
 pub use weak_residuals::{WeakResidual, weak_residuals};
+pub(crate) use weak_terms::{WeakTerms, situations_along, weak_terms};

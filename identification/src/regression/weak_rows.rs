@@ -103,7 +103,7 @@ pub(super) fn rows(
 /// Share of the stroke at each end within which the force of a stop is a guess: it is stiff, and nobody measured where it begins.
 const AT_THE_END: f64 = 0.005;
 
-fn sensor_noise(recording: &Recording, model: &Model) -> Result<SensorNoise, RegressionError> {
+pub(super) fn sensor_noise(recording: &Recording, model: &Model) -> Result<SensorNoise, RegressionError> {
     // A noiseless (simulated) signal would weigh its rows infinitely; rounding alone is of this size.
     let level = |signal: &[f64]| noise_level(signal).max(1e-6 * standard_deviation(signal)).max(1e-15);
     let mut noise = SensorNoise {

@@ -18,6 +18,7 @@ mod stepwise;
 mod track;
 mod transient;
 mod trial;
+mod try_laws;
 mod worst_stretch;
 
 pub(crate) use addition::fit_addition;
@@ -31,3 +32,4 @@ pub(crate) use scoring::{begin as scores_of_given, score};
 pub(crate) use scoring::{misfit, side};
 pub use search::search;
 pub use trial::Trial;
+pub(crate) use try_laws::try_laws;

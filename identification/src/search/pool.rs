@@ -135,7 +135,7 @@ impl<'a> Pool<'a> {
     }
 
     /// The verdict on what was tried so far.
-    pub(super) fn verdict(&self, policy: &Policy) -> Verdict {
+    pub(crate) fn verdict(&self, policy: &Policy) -> Verdict {
         decide(&self.scores, policy)
     }
 }

@@ -27,6 +27,15 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
         let with_strength = |start: &Model| Some(with_shape_of(start, regressed(&with_shape_held(start))?));
         return plain.into_iter().map(|start| with_strength(&start).unwrap_or(start)).collect();
     }
+    if last.is_some_and(|last| last.physics.formula().is_some()) {
+        // One step in the coefficient of an opening and in the gains behind it leads astray; each gain for a given coefficient is right.
+        let with_others = |start: &Model| Some(with_shape_of(start, regressed(&with_shape_held(start))?));
+        let has_shape = |start: &&Model| {
+            start.effects.last().is_some_and(|law| law.parameters.iter().any(|one| one.card.kind == Kind::Shape))
+        };
+        let held: Vec<Model> = plain.iter().filter(has_shape).filter_map(with_others).collect();
+        return plain.iter().filter_map(regressed).chain(held).chain(plain.iter().cloned()).collect();
+    }
     plain.iter().filter_map(regressed).chain(plain.iter().cloned()).collect()
 }
 

@@ -83,7 +83,7 @@ impl Stepwise<'_> {
     }
 
     /// Screens additions to a trial and fits the best to the end.
-    fn screen(&self, number: usize, wanted: Vec<Addition>, pool: &mut Pool<'_>) {
+    pub(super) fn screen(&self, number: usize, wanted: Vec<Addition>, pool: &mut Pool<'_>) {
         let base = pool.trials[number].clone();
         let screening = Screening {
             base: &base,

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::{DocumentError, syntax};
 use crate::effects::{AnyEffect, Catalogue};
 use crate::formula::{FormulaText, Law};
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CatalogueText {
     #[serde(default)]
@@ -27,6 +27,16 @@ pub fn parse_catalogue(name: &str, text: &str, catalogue: &Catalogue) -> Result<
         return Err(DocumentError::Catalogue { name: name.to_string(), reason });
     }
     with_formulas(name, catalogue, &parsed.formula)
+}
+
+/// Formula effects as a catalogue file.
+///
+/// # Errors
+/// [`DocumentError::Catalogue`] for a number that TOML does not have.
+pub fn catalogue_text(formulas: Vec<FormulaText>) -> Result<String, DocumentError> {
+    let unwritable =
+        |error: toml::ser::Error| DocumentError::Catalogue { name: "catalogue".to_string(), reason: error.to_string() };
+    toml::to_string(&CatalogueText { formula: formulas }).map_err(unwritable)
 }
 
 /// `catalogue` with these formulas. One that it has already, word for word, is the same effect.

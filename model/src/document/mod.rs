@@ -12,7 +12,7 @@ mod reference;
 mod schema;
 
 pub use built_in::{BUILT_IN, built_in};
-pub use catalogue_text::parse_catalogue;
+pub use catalogue_text::{catalogue_text, parse_catalogue};
 pub use model_text::{parse, to_text};
 pub use reference::reference;
 pub use schema::schema;

@@ -42,6 +42,11 @@ impl Catalogue {
         BUILT_IN.clone()
     }
 
+    /// Of these effects alone.
+    pub fn of(effects: Vec<AnyEffect>) -> Catalogue {
+        Catalogue { effects: effects.into() }
+    }
+
     /// The same catalogue with more effects, behind those that it has.
     ///
     /// # Errors

@@ -46,8 +46,9 @@ impl Law {
         })
     }
 
-    /// Its value in the unit of its row.
-    pub(super) fn value<T: Scalar>(&self, site: Site, parameters: &[T], states: &[T], now: &Situation<'_, T>) -> T {
+    /// What its formula gives in a situation, in the unit of its row: for given parameters in the order of their cards, and states in
+    /// theirs. A law of the opening gets the opening of the situation.
+    pub fn value<T: Scalar>(&self, site: Site, parameters: &[T], states: &[T], now: &Situation<'_, T>) -> T {
         self.program.evaluate(&Law::moment(site, parameters, states, now))
     }
 

@@ -210,6 +210,24 @@ pub struct DiagnoseArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct ProposeArguments {
+    #[command(flatten)]
+    pub model: ModelChoice,
+    #[command(flatten)]
+    pub recordings: Recordings,
+    /// Catalogue file to write: the proposed laws, best first, with fitted values.
+    #[arg(short, long, value_name = "FILE.toml")]
+    pub output: Option<PathBuf>,
+    /// Write a page with the evidence.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+}
+
+#[derive(Debug, Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["add", "auto"])))]
 pub struct RefineArguments {
     #[command(flatten)]
@@ -222,6 +240,9 @@ pub struct RefineArguments {
     /// Add what the diagnosis finds, until nothing more is gained.
     #[arg(long)]
     pub auto: bool,
+    /// With --auto: where nothing of the catalogue explains the recordings, add the best proposed law.
+    #[arg(long, requires = "auto")]
+    pub propose: bool,
     /// Model file to write.
     #[arg(short, long, value_name = "MODEL")]
     pub output: PathBuf,

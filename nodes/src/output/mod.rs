@@ -6,6 +6,7 @@ mod design;
 mod energy;
 mod json;
 mod progress;
+mod proposals;
 mod tables;
 
 pub use characterisation::{characterisation_json, characterisation_table, refusals};
@@ -14,6 +15,7 @@ pub use design::{determination_json, pair_table, separation_json};
 pub use energy::{energy_json, energy_table, ledger_table, missing_power_json};
 pub use json::{comparison_json, diagnosis_json, finite, identification_json, refinement_json, write_json};
 pub use progress::Progress;
+pub use proposals::{guess_json, proposal_json, proposal_table};
 pub use tables::{
     candidate_table, comparison_table, effect_table, number, parameter_table, phase_table, remedy_lines, step_table,
 };

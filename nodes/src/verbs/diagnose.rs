@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use excavator_identification::decision::Kind;
 use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
 use excavator_identification::energy::{EnergySettings, MissingPower, analyse, missing_power};
-use excavator_identification::report::{NONE_TRIED, diagnosis_page, verdict_sentence};
+use excavator_identification::proposal::{Guess, first_guess};
+use excavator_identification::report::{NONE_TRIED, diagnosis_page, guess_sentence, verdict_sentence};
 use excavator_identification::search::Unpromising;
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
@@ -13,7 +15,7 @@ use excavator_model::recording::Recording;
 use super::print;
 use crate::cli::DiagnoseArguments;
 use crate::error::VerbError;
-use crate::output::{Progress, candidate_table, diagnosis_json, missing_power_json, write_json};
+use crate::output::{Progress, candidate_table, diagnosis_json, guess_json, missing_power_json, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -37,6 +39,14 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&model, &diagnosis, &validation);
     }
+    let guess = guess(&diagnosis, &identification, &validation);
+    if arguments.json.json.as_deref() != Some(Path::new("-"))
+        && let Some(guess) = &guess
+    {
+        print(&guess_sentence(guess));
+        let command = propose_command(arguments);
+        print(&format!("Fit and judge laws: {command}"));
+    }
     let missing = ledgers(&diagnosis.given().fit.model, &validation);
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         for (source, found) in &missing {
@@ -56,6 +66,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     }
     if let Some(path) = &arguments.json.json {
         let mut value = diagnosis_json(&model, &diagnosis, &validation);
+        value["first_guess"] = guess.as_ref().map_or(serde_json::Value::Null, guess_json);
         let sentences = |found: &[MissingPower]| found.iter().map(missing_power_json).collect::<Vec<_>>();
         value["missing_power"] = missing
             .iter()
@@ -64,6 +75,29 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         write_json(path, &value, arguments.overwriting)?;
     }
     Ok(())
+}
+
+/// Where nothing of the catalogue explains the recordings: what the equations alone say.
+fn guess(diagnosis: &Diagnosis, identification: &[&Recording], validation: &[&Recording]) -> Option<Guess> {
+    if diagnosis.verdict.kind != Kind::Unexplained {
+        return None;
+    }
+    // Without the signals of an equation there is nothing to guess from; the verdict stands without.
+    first_guess(&diagnosis.supported().fit.model, identification, validation).ok().flatten()
+}
+
+fn propose_command(arguments: &DiagnoseArguments) -> String {
+    let bags = |paths: &[std::path::PathBuf]| {
+        paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(" ")
+    };
+    let map =
+        arguments.recordings.mapping.map.as_ref().map_or(String::new(), |map| format!(" --map {}", map.display()));
+    format!(
+        "excavator propose --model {} --identification {} --validation {}{map} -o laws.toml",
+        arguments.model.model,
+        bags(&arguments.recordings.identification),
+        bags(&arguments.recordings.validation)
+    )
 }
 
 /// What the energy ledger of the refitted model says of each recording in which energy is known.

@@ -13,6 +13,7 @@ mod info;
 mod model;
 mod new_model;
 mod node;
+mod propose;
 mod refine;
 mod reindex;
 mod simulate;
@@ -36,6 +37,7 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Characterise(arguments) => characterise::run(&arguments),
         Verb::Energy(arguments) => energy::run(&arguments),
         Verb::Diagnose(arguments) => diagnose::run(&arguments),
+        Verb::Propose(arguments) => propose::run(&arguments),
         Verb::Design(arguments) => design::run(&arguments),
         Verb::Refine(arguments) => refine::run(&arguments),
         Verb::Effects(arguments) => effects::run(&arguments),

@@ -25,7 +25,11 @@ pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     outputs::check(&others, &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
-    let additions = if arguments.auto { Additions::Auto } else { named(&model, &arguments.add)? };
+    let additions = match (arguments.auto, arguments.propose) {
+        (true, true) => Additions::AutoWithLaws,
+        (true, false) => Additions::Auto,
+        _ => named(&model, &arguments.add)?,
+    };
     let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
     let identification: Vec<&Recording> = identification.iter().collect();
     let validation: Vec<&Recording> = validation.iter().collect();

@@ -11,6 +11,7 @@
 pub mod answer;
 pub mod cases;
 pub mod instruments;
+pub mod laws;
 pub mod manoeuvres;
 pub mod plant;
 pub mod replay;

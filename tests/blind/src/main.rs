@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 use excavator_blind::cases::{Case, Sort, Wish};
+use excavator_blind::laws::propose_for;
 use excavator_blind::plant::{CATALOGUE, FOREIGN, Kind, kind};
 use excavator_blind::replay::{Stored, replayed};
 use excavator_blind::scoring::{Score, Secret, make, score};
@@ -60,6 +61,12 @@ struct Words {
     /// Verdicts of an earlier replay to compare with; written there where there are none
     #[arg(long, requires = "replay")]
     against: Option<PathBuf>,
+    /// Ask for laws, and try the first on a third recording
+    #[arg(long)]
+    propose: bool,
+    /// Take this effect out of model and catalogue before asking for laws; "own" is what the case hides
+    #[arg(long, requires = "propose")]
+    without: Vec<String>,
     /// Draw and store the cases without asking the diagnosis
     #[arg(long)]
     only_draw: bool,
@@ -178,7 +185,7 @@ fn judge_all(words: &Words, wish: &Wish, profile: Option<&Profile>) -> ExitCode 
             return ExitCode::SUCCESS;
         }
     }
-    if !words.only_draw {
+    if !words.only_draw && !words.propose {
         say(&format!("\n{}", summary(&judged)));
     }
     ExitCode::SUCCESS
@@ -204,6 +211,20 @@ fn judge(words: &Words, case: &mut Case) -> Result<(String, Option<Result<Score,
         let truth = case.truth();
         let line =
             format!("{number:>4}  {secret} {strength}: changes {identification:.2}/{validation:.2} %, {truth:?}");
+        return Ok((line, None));
+    }
+    if words.propose {
+        let own = case.hidden.iter().map(|kind| kind.answer.to_string());
+        let names: Vec<String> = words.without.iter().filter(|name| *name != "own").cloned().collect();
+        let names: Vec<String> =
+            if names.len() < words.without.len() { names.into_iter().chain(own).collect() } else { names };
+        let line = match propose_for(case, &evidence, words.noise, &names) {
+            Ok(found) => {
+                let alarm = if found.is_false_alarm(case) { " FALSE ALARM" } else { "" };
+                format!("{number:>4}  {secret} {strength}: {}{alarm}; {:?}", found.words(), case.truth())
+            }
+            Err(error) => format!("{number:>4}  {secret} {strength}: no law: {error}"),
+        };
         return Ok((line, None));
     }
     Ok(match score(case, &evidence) {

@@ -77,6 +77,17 @@ impl Manoeuvre {
         Manoeuvre { motions, centre, firmness: 1.0 }
     }
 
+    /// 16 s to try a law on: slower and larger than both others at first, then steps of many sizes.
+    pub fn third(centre: f64) -> Self {
+        let multisine = vec![[5e-5, 0.23, 1.4], [3.5e-5, 0.61, 3.3], [1.5e-5, 2.1, 0.2]];
+        let mut motions = vec![(0.5, Motion::Pause), (9.0, Motion::Multisine(multisine)), (0.5, Motion::Pause)];
+        for amplitude in [3e-5, -8e-5, 7e-5, -3e-5, 1.5e-5, -1.5e-5] {
+            motions.push((0.8, Motion::Trapezoid(amplitude, 0.1)));
+            motions.push((0.2, Motion::Pause));
+        }
+        Manoeuvre { motions, centre, firmness: 1.0 }
+    }
+
     /// A command profile without anybody who steers back.
     pub fn of_profile(profile: Profile) -> Self {
         Manoeuvre { motions: vec![(profile.duration(), Motion::Profile(profile))], centre: 0.0, firmness: 0.0 }

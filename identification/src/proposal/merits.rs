@@ -1,0 +1,114 @@
+//! What speaks for a law and against it, beside its error.
+
+use excavator_model::ModelEffect;
+use excavator_model::effects::{Kind, Site};
+use excavator_model::equations::Situation;
+use excavator_model::formula::{Law, Row};
+
+/// What is to be known of a law before it is used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Merits {
+    /// Whether it takes energy out of the machine, or none, but never puts any in.
+    pub dissipates: bool,
+    /// The power of the speed, pressure, ... with which it grows beyond what was recorded, where that is more than a square.
+    pub steep: Option<f64>,
+    /// Coefficients whose 95 % interval holds zero, and so both signs.
+    pub unsure_signs: Vec<String>,
+}
+
+/// Share of the energy that a law takes out which it may put in, by noise in what is measured.
+const LEAST_SHARE: f64 = 0.01;
+
+/// Power beyond which a law is steep: laws of friction and flow are at most squares.
+const STEEP: f64 = 2.2;
+
+/// Merits of a fitted law along the recordings on which `situations` were seen.
+pub(super) fn merits(law: &Law, effect: &ModelEffect, situations: &[Situation<'_, f64>]) -> Merits {
+    let parameters: Vec<f64> = effect.parameters.iter().map(|parameter| parameter.value).collect();
+    let (mut given, mut taken) = (0.0, 0.0);
+    let mut extreme: Option<(f64, &Situation<'_, f64>)> = None;
+    for now in situations {
+        let value = change(law, effect.site, &parameters, now);
+        let power = power(law.row(), effect.site, value, now);
+        if power > 0.0 {
+            given += power
+        } else {
+            taken -= power
+        }
+        if value.is_finite() && extreme.is_none_or(|(largest, _)| value.abs() > largest) {
+            extreme = Some((value.abs(), now));
+        }
+    }
+    let steep = extreme.filter(|(value, _)| *value > 0.0).and_then(|(value, now)| {
+        let power = (change(law, effect.site, &parameters, &twice(now)).abs() / value).log2();
+        (power.is_finite() && power > STEEP).then_some(power)
+    });
+    let unsure = effect.parameters.iter().filter(|parameter| {
+        !parameter.known
+            && parameter.card.kind == Kind::Linear
+            && parameter.margin_95.is_some_and(|margin| margin.is_nan() || margin >= parameter.value.abs())
+    });
+    Merits {
+        dissipates: given <= LEAST_SHARE * taken,
+        steep,
+        unsure_signs: unsure.map(|parameter| parameter.card.name.to_string()).collect(),
+    }
+}
+
+/// What a law adds to its row: for an opening, by how much it changes it.
+pub(super) fn change(law: &Law, site: Site, parameters: &[f64], now: &Situation<'_, f64>) -> f64 {
+    let value = law.value(site, parameters, &[], now);
+    match (law.row(), site) {
+        (Row::Opening, Site::Cylinder(cylinder)) => value - now.pistons[cylinder].opening,
+        _ => value,
+    }
+}
+
+/// Power that a law of this value gives to the machine, W. None where it acts on an opening or an instrument.
+fn power(row: Row, site: Site, value: f64, now: &Situation<'_, f64>) -> f64 {
+    let (pump, tank) = (now.pump_pressure, now.tank_pressure);
+    if row == Row::PumpLeak {
+        return -value * (pump - tank);
+    }
+    let Site::Cylinder(cylinder) = site else { return 0.0 };
+    let piston = &now.pistons[cylinder];
+    let (cap, rod) = (piston.cap_pressure, piston.rod_pressure);
+    let power = match row {
+        Row::PistonForce => value * piston.velocity,
+        Row::JointTorque => value * piston.rate,
+        Row::CapFlow => value * (cap - tank),
+        Row::RodFlow => value * (rod - tank),
+        Row::PistonLeak => -value * (cap - rod),
+        Row::PumpToCap => -value * (pump - cap),
+        Row::PumpToRod => -value * (pump - rod),
+        Row::CapToTank => -value * (cap - tank),
+        Row::RodToTank => -value * (rod - tank),
+        _ => 0.0,
+    };
+    if power.is_finite() { power } else { 0.0 }
+}
+
+/// Everything twice as far, as fast and as strong.
+fn twice<'m>(now: &Situation<'m, f64>) -> Situation<'m, f64> {
+    let mut twice = now.clone();
+    for piston in &mut twice.pistons {
+        for value in [
+            &mut piston.displacement,
+            &mut piston.velocity,
+            &mut piston.rate,
+            &mut piston.cap_pressure,
+            &mut piston.rod_pressure,
+            &mut piston.opening,
+        ] {
+            *value *= 2.0;
+        }
+    }
+    twice.pump_pressure *= 2.0;
+    twice.tank_pressure *= 2.0;
+    twice
+}
+
+/// The law of an effect that was read from a formula.
+pub(super) fn law_of(effect: &ModelEffect) -> Option<Law> {
+    Law::read(effect.physics.formula()?).ok()
+}

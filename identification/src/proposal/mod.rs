@@ -1,0 +1,25 @@
+//! From a curve to a law: formulas for physics that no catalogue has.
+//!
+//! Where nothing in the catalogue explains what a model leaves, terms of a grammar are tried on the equations (`screening`), put together
+//! (`shortlist`), fitted like effects of the catalogue, and judged by the same decision. Where no law holds, the curve itself is one
+//! (`curve`), and says so.
+
+mod curve;
+mod factor;
+mod grammar;
+mod guess;
+mod merits;
+mod projection;
+mod proposals;
+mod propose;
+mod quantity;
+mod screening;
+mod shortlist;
+mod simplest;
+mod term;
+mod unit;
+
+pub use guess::{Guess, first_guess};
+pub use merits::Merits;
+pub use proposals::{Proposal, ProposalVerdict, Proposals};
+pub use propose::propose;

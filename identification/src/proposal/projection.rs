@@ -1,0 +1,186 @@
+//! What the parameters of a model leave of its residual, and of further terms.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use crate::regression::{EquationKind, WeakTerms};
+
+/// Rows of the weak form with the model's own parameters taken out: on recordings that are fitted, and on others that are predicted.
+pub(super) struct Projection {
+    fitted: Rows,
+    predicted: Rows,
+    /// Normal equations of the model's own parameters.
+    normal: Option<Cholesky<f64, Dyn>>,
+}
+
+/// One kind of recordings.
+struct Rows {
+    kinds: Vec<usize>,
+    weights: Vec<f64>,
+    regressors: DMatrix<f64>,
+    /// The residual after the model's own parameters.
+    left: Vec<f64>,
+    /// Independent rows of each equation.
+    counts: Vec<f64>,
+}
+
+/// A term with the model's own parameters taken out.
+#[derive(Debug, Clone)]
+pub(super) struct Column {
+    pub fitted: Vec<f64>,
+    pub predicted: Vec<f64>,
+}
+
+/// The least part of a term that the model's own parameters may leave: what leaves less is one of them.
+const LEAST_REST: f64 = 1e-5;
+
+/// How much the diagonal of the normal equations is raised, beside columns of length one: two parameters that show together share.
+const RIDGE: f64 = 1e-9;
+
+impl Projection {
+    /// Takes the parameters out of the residuals. Equations that are met worse than noise explains weigh less.
+    pub fn new(fitted: &WeakTerms<'_>, predicted: &WeakTerms<'_>) -> Projection {
+        let mut equations: Vec<EquationKind> = fitted.kinds.iter().chain(&predicted.kinds).copied().collect();
+        equations.sort();
+        equations.dedup();
+        let mut projection = Projection {
+            fitted: Rows::new(fitted, &equations),
+            predicted: Rows::new(predicted, &equations),
+            normal: None,
+        };
+        let residuals = [residuals(fitted), residuals(predicted)];
+        for _ in 0..2 {
+            projection.normal = normal(&projection.fitted);
+            let own = projection.own_parameters(&weighed(&residuals[0], &projection.fitted.weights));
+            let Projection { fitted, predicted, .. } = &mut projection;
+            fitted.left = fitted.rest(&residuals[0], &own);
+            predicted.left = predicted.rest(&residuals[1], &own);
+            let spreads = fitted.spreads(&fitted.left);
+            fitted.weights = fitted.kinds.iter().map(|&kind| 1.0 / spreads[kind].sqrt()).collect();
+        }
+        projection
+    }
+
+    /// The model's own parameters that come nearest to a weighed column.
+    fn own_parameters(&self, weighed: &[f64]) -> DVector<f64> {
+        let columns = self.fitted.regressors.column_iter().map(|column| {
+            let products = column.iter().zip(&self.fitted.weights).zip(weighed);
+            products.map(|((slope, weight), value)| slope * weight * value).sum::<f64>()
+        });
+        let right = DVector::from_iterator(self.fitted.regressors.ncols(), columns);
+        self.normal.as_ref().map_or_else(|| DVector::zeros(right.len()), |normal| normal.solve(&right))
+    }
+
+    /// A term with the model's own parameters taken out; `None` for one that is a mixture of these.
+    pub fn column(&self, fitted: &[f64], predicted: &[f64]) -> Option<Column> {
+        let own = self.own_parameters(&weighed(fitted, &self.fitted.weights));
+        let column = Column { fitted: self.fitted.rest(fitted, &own), predicted: self.predicted.rest(predicted, &own) };
+        let size = |values: &[f64]| values.iter().zip(&self.fitted.weights).map(|(a, w)| (a * w).powi(2)).sum::<f64>();
+        (size(&column.fitted) > LEAST_REST * size(fitted)).then_some(column)
+    }
+
+    /// Coefficients of some terms together, and by how much the logarithm of the likelihood grows with them: on fitted and on predicted
+    /// recordings, each equation with a variance of its own. `None` where they cannot be told from each other.
+    pub fn gain(&self, columns: &[&Column]) -> Option<(Vec<f64>, f64)> {
+        let count = columns.len();
+        let weights = &self.fitted.weights;
+        let product = |one: &[f64], other: &[f64]| -> f64 {
+            one.iter().zip(other).zip(weights).map(|((a, b), weight)| a * b * weight * weight).sum()
+        };
+        let matrix =
+            DMatrix::from_fn(count, count, |row, column| product(&columns[row].fitted, &columns[column].fitted));
+        let right =
+            DVector::from_iterator(count, columns.iter().map(|column| product(&column.fitted, &self.fitted.left)));
+        let lengths: Vec<f64> = (0..count).map(|index| matrix[(index, index)].sqrt()).collect();
+        let alike = |row: usize, column: usize| matrix[(row, column)].abs() / (lengths[row] * lengths[column]);
+        if (0..count).any(|row| (0..row).any(|column| alike(row, column) > MOST_ALIKE)) {
+            return None;
+        }
+        let coefficients = matrix.cholesky()?.solve(&right);
+        let gain = |rows: &Rows, of: fn(&Column) -> &[f64]| {
+            let mut left = rows.left.clone();
+            for (column, coefficient) in columns.iter().zip(coefficients.iter()) {
+                left.iter_mut().zip(of(column)).for_each(|(left, value)| *left -= coefficient * value);
+            }
+            let (before, after) = (rows.spreads(&rows.left), rows.spreads(&left));
+            let each = before.iter().zip(&after).zip(&rows.counts);
+            each.map(|((before, after), count)| 0.5 * count * (before / after).ln()).sum::<f64>()
+        };
+        let both = gain(&self.fitted, |column| &column.fitted) + gain(&self.predicted, |column| &column.predicted);
+        both.is_finite().then(|| (coefficients.iter().copied().collect(), both))
+    }
+
+    /// Cosine of the angle between two terms, without sign.
+    pub fn likeness(&self, one: &Column, other: &Column) -> f64 {
+        let product = |a: &[f64], b: &[f64]| -> f64 {
+            a.iter().zip(b).zip(&self.fitted.weights).map(|((a, b), weight)| a * b * weight * weight).sum()
+        };
+        let lengths = product(&one.fitted, &one.fitted) * product(&other.fitted, &other.fitted);
+        product(&one.fitted, &other.fitted).abs() / lengths.sqrt()
+    }
+
+    /// Independent rows of all recordings.
+    pub fn independent(&self) -> f64 {
+        self.fitted.counts.iter().chain(&self.predicted.counts).sum()
+    }
+}
+
+/// Least mean square of an equation, in units of what sensor noise explains.
+const LEAST_SPREAD: f64 = 1e-3;
+
+/// Terms more alike than this are one: no recording tells how much is of which.
+const MOST_ALIKE: f64 = 0.9995;
+
+impl Rows {
+    fn new(terms: &WeakTerms<'_>, equations: &[EquationKind]) -> Rows {
+        let kinds: Vec<usize> = terms.kinds.iter().map(|kind| equations.binary_search(kind).unwrap_or(0)).collect();
+        let mut counts = vec![0.0; equations.len()];
+        kinds.iter().for_each(|&kind| counts[kind] += terms.independent);
+        let mut regressors = terms.regressors.clone();
+        // A parameter without a finite slope somewhere is left as it is.
+        for mut column in regressors.column_iter_mut() {
+            if column.iter().any(|slope| !slope.is_finite()) {
+                column.fill(0.0);
+            }
+        }
+        Rows { weights: vec![1.0; kinds.len()], left: Vec::new(), regressors, kinds, counts }
+    }
+
+    /// A column without the model's own parameters.
+    fn rest(&self, column: &[f64], own: &DVector<f64>) -> Vec<f64> {
+        let explained = &self.regressors * own;
+        column.iter().zip(explained.iter()).map(|(value, explained)| value - explained).collect()
+    }
+
+    /// Mean square in each equation, in units of what sensor noise explains. What is far below that is rounding.
+    fn spreads(&self, left: &[f64]) -> Vec<f64> {
+        let mut sums = vec![(0.0, 0.0); self.counts.len()];
+        for (&kind, value) in self.kinds.iter().zip(left) {
+            sums[kind].0 += value * value;
+            sums[kind].1 += 1.0;
+        }
+        sums.into_iter().map(|(squares, count): (f64, f64)| (squares / count.max(1.0)).max(LEAST_SPREAD)).collect()
+    }
+}
+
+/// What terms have to explain.
+fn residuals(terms: &WeakTerms<'_>) -> Vec<f64> {
+    terms.residuals.iter().map(|residual| -residual).collect()
+}
+
+fn weighed(column: &[f64], weights: &[f64]) -> Vec<f64> {
+    column.iter().zip(weights).map(|(value, weight)| value * weight).collect()
+}
+
+fn normal(rows: &Rows) -> Option<Cholesky<f64, Dyn>> {
+    let mut weighed = rows.regressors.clone();
+    for (mut row, weight) in weighed.row_iter_mut().zip(&rows.weights) {
+        row *= *weight;
+    }
+    let mut matrix = weighed.transpose() * &weighed;
+    for index in 0..matrix.nrows() {
+        // Beside its own size, so that every unit is treated alike; a column of zeros gets a parameter of zero.
+        let own = matrix[(index, index)];
+        matrix[(index, index)] = if own > 0.0 { own * (1.0 + RIDGE) } else { 1.0 };
+    }
+    matrix.cholesky()
+}

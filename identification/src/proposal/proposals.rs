@@ -1,0 +1,216 @@
+//! What comes of a search for laws.
+
+use excavator_model::formula::{FormulaText, Row};
+use excavator_model::recording::Recording;
+use excavator_model::{ModelEffect, site_name};
+
+use super::merits::{Merits, law_of, merits};
+use super::simplest::parameters_of_laws;
+use super::term::rounded;
+use crate::decision::Verdict;
+use crate::diagnosis::{Diagnosis, DiagnosisError, Unexplained, diagnosis_of, unexplained};
+use crate::regression::situations_along;
+use crate::search::{Pool, Trial};
+use crate::validation::{Comparison, compare};
+
+/// What comes of a search for laws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ProposalVerdict {
+    /// A law explains what the model is missing.
+    Law,
+    /// Something is missing, and no law of the grammar explains it.
+    NoLaw,
+    /// Nothing is missing.
+    Adequate,
+    /// An effect of the catalogue explains it.
+    MissingEffect,
+}
+
+impl ProposalVerdict {
+    /// Name in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            ProposalVerdict::Law => "law",
+            ProposalVerdict::NoLaw => "no_law",
+            ProposalVerdict::Adequate => "adequate",
+            ProposalVerdict::MissingEffect => "missing_effect",
+        }
+    }
+}
+
+/// A law with what it is worth.
+#[derive(Debug, Clone)]
+pub struct Proposal {
+    /// The law as a catalogue holds it, its parameters starting at the fitted values.
+    pub text: FormulaText,
+    /// Name of its place.
+    pub place: String,
+    /// The effect with its fitted parameters.
+    pub effect: ModelEffect,
+    /// Number of the trial in [`Diagnosis::trials`].
+    pub trial: usize,
+    /// Other effects of that trial, `effect@place`.
+    pub beside: Vec<String>,
+    /// Mean normalised squared error on the validation recordings.
+    pub validation_error: f64,
+    /// Fall of the log error ratio on the validation recordings.
+    pub evidence: f64,
+    /// Whether it explains the recordings: the first proposal of a law, and those that cannot be told from it.
+    pub is_in_set: bool,
+    /// Whether it is a table of the curve, and no law.
+    pub is_a_curve: bool,
+    /// What speaks for it and against it.
+    pub merits: Merits,
+}
+
+impl Proposal {
+    /// The row that it enters.
+    pub fn row(&self) -> Option<Row> {
+        Some(law_of(&self.effect)?.row())
+    }
+}
+
+/// Proposed laws and all that was tried.
+#[derive(Debug, Clone)]
+pub struct Proposals {
+    /// What comes of it.
+    pub kind: ProposalVerdict,
+    /// Proposals, the best first; none where there is nothing to propose for.
+    pub proposals: Vec<Proposal>,
+    /// Mean normalised squared error of the refitted model on the validation recordings.
+    pub error_before: f64,
+    /// The refitted model on each validation recording.
+    pub before: Vec<Comparison>,
+    /// Everything that was tried, the laws among the hypotheses.
+    pub diagnosis: Diagnosis,
+    /// What the given model lacks, as a curve; none where its catalogue explains it.
+    pub lacking: Option<Unexplained>,
+}
+
+/// Most proposals.
+const MOST: usize = 10;
+
+/// Puts together what was found.
+///
+/// # Errors
+/// [`DiagnosisError::Regression`] when the recordings lack inputs.
+pub(super) fn proposals(
+    kind: ProposalVerdict,
+    pool: Pool<'_>,
+    verdict: Verdict,
+    identification: &[&Recording],
+    validation: &[&Recording],
+) -> Result<Proposals, DiagnosisError> {
+    let diagnosis = diagnosis_of(pool, verdict, validation)?;
+    let before = comparisons(diagnosis.given(), validation);
+    let error_before = mean_error(&before);
+    let is_needed = matches!(kind, ProposalVerdict::Law | ProposalVerdict::NoLaw);
+    let lacking = if is_needed { unexplained(&diagnosis.given().fit.model, validation)? } else { None };
+    let mut proposals = Vec::new();
+    let numbers = if is_needed { ranked(&diagnosis) } else { Vec::new() };
+    for number in numbers {
+        proposals.extend(of_trial(&diagnosis, number, identification, validation)?);
+    }
+    Ok(Proposals { kind, proposals, error_before, before, diagnosis, lacking })
+}
+
+/// Trials with laws that improve on the given model: those of the verdict first, then by what they leave; curves last.
+fn ranked(diagnosis: &Diagnosis) -> Vec<usize> {
+    let standings = &diagnosis.verdict.standings;
+    let has_law = |trial: &Trial| trial.additions.iter().any(|addition| addition.physics.formula().is_some_and(is_new));
+    let mut numbers: Vec<usize> = (1..diagnosis.trials.len())
+        .filter(|&number| has_law(&diagnosis.trials[number]) && standings[number].improvement > 0.0)
+        .filter(|&number| standings[number].is_admissible || is_curve(&diagnosis.trials[number]))
+        .collect();
+    let set = &diagnosis.verdict.set;
+    numbers.sort_by_key(|number| set.iter().position(|one| one == number).unwrap_or(set.len()));
+    let settled = numbers.iter().filter(|number| set.contains(number)).count();
+    numbers[settled..].sort_by(|&a, &b| {
+        let trial = |number: usize| &diagnosis.trials[number];
+        let order = |number: usize| (is_curve(trial(number)), standings[number].log_error_ratio);
+        let ((curve_a, ratio_a), (curve_b, ratio_b)) = (order(a), order(b));
+        curve_a
+            .cmp(&curve_b)
+            .then(ratio_a.total_cmp(&ratio_b))
+            .then(parameters_of_laws(trial(a)).cmp(&parameters_of_laws(trial(b))))
+    });
+    let curves = numbers.iter().copied().filter(|&number| is_curve(&diagnosis.trials[number])).collect::<Vec<_>>();
+    numbers.retain(|number| !curves.contains(number));
+    numbers.truncate(MOST);
+    numbers.extend(curves);
+    numbers
+}
+
+/// Whether a formula was proposed, and is not one that the user has given.
+fn is_new(text: &FormulaText) -> bool {
+    text.source == PROPOSED || text.source == CURVE
+}
+
+/// What a proposed law says of its source.
+pub(super) const PROPOSED: &str = "proposed from recordings";
+
+/// What a table of a curve says of its source.
+pub(super) const CURVE: &str = "curve of a residual";
+
+fn is_curve(trial: &Trial) -> bool {
+    let is_curve = |text: &FormulaText| text.source == CURVE;
+    trial.additions.iter().any(|addition| addition.physics.formula().is_some_and(is_curve))
+}
+
+/// The laws of a trial, with its fitted values.
+fn of_trial(
+    diagnosis: &Diagnosis,
+    number: usize,
+    identification: &[&Recording],
+    validation: &[&Recording],
+) -> Result<Vec<Proposal>, DiagnosisError> {
+    let trial = &diagnosis.trials[number];
+    let validation_error = mean_error(&comparisons(trial, validation));
+    let mut situations = Vec::new();
+    for recording in identification.iter().chain(validation) {
+        situations.extend(situations_along(&trial.fit.model, recording)?);
+    }
+    let mut found = Vec::new();
+    for addition in &trial.additions {
+        let Some(effect) = trial.effect(addition) else { continue };
+        let Some(text) = effect.physics.formula().filter(|text| is_new(text)) else { continue };
+        let Some(law) = law_of(effect) else { continue };
+        let others = trial.additions.iter().filter(|other| *other != addition);
+        found.push(Proposal {
+            text: fitted_text(text, effect),
+            place: site_name(&trial.fit.model.machine, effect.site).to_string(),
+            effect: effect.clone(),
+            trial: number,
+            beside: others.map(|other| other.name(&trial.fit.model)).collect(),
+            validation_error,
+            evidence: diagnosis.verdict.standings[number].improvement,
+            is_in_set: diagnosis.verdict.set.contains(&number),
+            is_a_curve: text.source == CURVE,
+            merits: merits(&law, effect, &situations),
+        });
+    }
+    Ok(found)
+}
+
+/// A formula that starts where the fit has ended.
+fn fitted_text(text: &FormulaText, effect: &ModelEffect) -> FormulaText {
+    let mut text = text.clone();
+    for parameter in &effect.parameters {
+        if let Some(own) = text.parameters.get_mut(&*parameter.card.name)
+            && !own.known
+        {
+            own.start = vec![rounded(parameter.value)];
+        }
+    }
+    text
+}
+
+/// A trial on each validation recording; nothing of one that it cannot be simulated on.
+fn comparisons(trial: &Trial, validation: &[&Recording]) -> Vec<Comparison> {
+    let model = trial.model_on_validation();
+    validation.iter().filter_map(|recording| compare(&model, recording).ok()).collect()
+}
+
+fn mean_error(comparisons: &[Comparison]) -> f64 {
+    comparisons.iter().map(Comparison::mean_error).sum::<f64>() / comparisons.len() as f64
+}

@@ -1,0 +1,140 @@
+//! Proposes laws for what a model is missing.
+
+use excavator_model::Model;
+use excavator_model::effects::AnyEffect;
+use excavator_model::formula::{FormulaText, Law};
+use excavator_model::recording::Recording;
+use std::sync::Arc;
+
+use super::curve::table_law;
+use super::proposals::{ProposalVerdict, Proposals, proposals};
+use super::screening::screen;
+use super::shortlist::{Candidate, shortlist};
+use super::simplest::simplest_first;
+use super::term::law_text;
+use crate::decision::{Kind, Policy};
+use crate::diagnosis::{DiagnosisError, DiagnosisSettings, unexplained};
+use crate::search::{Addition, Effort, Pool, search, try_laws};
+
+/// Times that laws are added to the best hypothesis so far. Two laws that nobody knows are more than recordings of one machine tell apart.
+const ROUNDS: usize = 2;
+
+/// Proposes laws for what `model` is missing, if it is nothing in its catalogue. Parameters are fitted to `identification`, evidence comes from
+/// `validation`. `progress` is told what is being done, in words, with the fraction done.
+///
+/// # Errors
+/// [`DiagnosisError`].
+pub fn propose(
+    model: &Model,
+    identification: &[&Recording],
+    validation: &[&Recording],
+    settings: &DiagnosisSettings,
+    progress: &(dyn Fn(&str, f64) + Sync),
+) -> Result<Proposals, DiagnosisError> {
+    if validation.is_empty() {
+        return Err(DiagnosisError::NoValidation);
+    }
+    let DiagnosisSettings { effort, policy } = settings;
+    let half = |what: &str, done: f64| progress(what, 0.5 * done);
+    let mut pool = search(model, identification, validation, effort, policy, &half)?;
+    let verdict = pool.verdict(policy);
+    let kind = match verdict.kind {
+        Kind::Adequate => ProposalVerdict::Adequate,
+        Kind::MissingEffect => ProposalVerdict::MissingEffect,
+        Kind::Unexplained => {
+            let trials = Trials { identification, validation, effort, policy, progress };
+            trials.of_laws(&mut pool)?;
+            let explained = pool.verdict(policy).kind == Kind::MissingEffect;
+            if !explained {
+                trials.of_the_curve(&mut pool)?;
+            }
+            if explained { ProposalVerdict::Law } else { ProposalVerdict::NoLaw }
+        }
+    };
+    let verdict = simplest_first(pool.verdict(policy), &pool.trials);
+    proposals(kind, pool, verdict, identification, validation)
+}
+
+struct Trials<'a> {
+    identification: &'a [&'a Recording],
+    validation: &'a [&'a Recording],
+    effort: &'a Effort,
+    policy: &'a Policy,
+    progress: &'a (dyn Fn(&str, f64) + Sync),
+}
+
+impl Trials<'_> {
+    /// Laws from the equations, added to the given model, then to the best hypothesis so far, until one explains the recordings.
+    fn of_laws(&self, pool: &mut Pool<'_>) -> Result<(), DiagnosisError> {
+        let mut base = 0;
+        for round in 0..ROUNDS {
+            let share = |done: f64| 0.5 + 0.5 * (round as f64 + done) / (ROUNDS + 1) as f64;
+            (self.progress)("terms on the equations", share(0.0));
+            let model = &pool.trials[base].fit.model;
+            let listed = shortlist(&screen(model, self.identification, self.validation)?);
+            let laws = additions(&listed, pool);
+            let progress = |what: &str, done: f64| (self.progress)(what, share(done));
+            try_laws(pool, base, laws, self.effort, self.policy, &progress);
+            let verdict = pool.verdict(self.policy);
+            if verdict.kind != Kind::Unexplained || verdict.best == 0 {
+                return Ok(());
+            }
+            base = verdict.best;
+        }
+        Ok(())
+    }
+
+    /// The curve of what is left, so that the error falls where nobody understands it yet.
+    fn of_the_curve(&self, pool: &mut Pool<'_>) -> Result<(), DiagnosisError> {
+        let left = unexplained(&pool.given().fit.model, self.identification)?;
+        let Some(text) = left.as_ref().and_then(table_law) else { return Ok(()) };
+        let Ok(law) = Law::read(&text) else { return Ok(()) };
+        let physics: AnyEffect = Arc::new(law);
+        let sites = pool.given().fit.model.free_sites(&physics);
+        let place = left.map(|left| left.equation).unwrap_or_default();
+        let machine = &pool.given().fit.model.machine;
+        let own = |site: &excavator_model::effects::Site| {
+            let name = excavator_model::site_name(machine, *site);
+            place.split_once('.').is_some_and(|(place, _)| place == name)
+        };
+        let curve: Vec<Addition> = sites
+            .iter()
+            .filter(|site| sites.len() == 1 || own(site))
+            .map(|&site| Addition { physics: physics.clone(), site })
+            .collect();
+        let progress = |what: &str, _: f64| (self.progress)(what, 0.9);
+        try_laws(pool, 0, curve, self.effort, self.policy, &progress);
+        Ok(())
+    }
+}
+
+/// The laws of a shortlist as effects with names of their own.
+fn additions(listed: &[Candidate], pool: &Pool<'_>) -> Vec<Addition> {
+    let mut names: Vec<String> =
+        pool.given().fit.model.catalogue.iter().map(|effect| effect.card().name.to_string()).collect();
+    let of_trials = pool.trials.iter().flat_map(|trial| &trial.additions);
+    names.extend(of_trials.map(|addition| addition.physics.card().name.to_string()));
+    let mut laws = Vec::new();
+    for candidate in listed {
+        let Some(text) = law_text(&candidate.terms, SUMMARY) else { continue };
+        let text = FormulaText { name: free_name(&text.name, &names), ..text };
+        names.push(text.name.clone());
+        if let Ok(law) = Law::read(&text) {
+            laws.push(Addition { physics: Arc::new(law), site: candidate.site });
+        }
+    }
+    laws
+}
+
+/// The name, with a number where it is taken.
+fn free_name(name: &str, taken: &[String]) -> String {
+    let stem: String = name.chars().take(LONGEST_STEM).collect();
+    let numbered = (2..).map(|number| format!("{stem}_{number}"));
+    std::iter::once(name.to_string()).chain(numbered).find(|name| !taken.contains(name)).unwrap_or_default()
+}
+
+/// What a proposed law says of itself.
+const SUMMARY: &str = "A law that was proposed for what a model left unexplained.";
+
+/// Most letters of a name that gets a number.
+const LONGEST_STEM: usize = 55;

@@ -1,0 +1,67 @@
+//! What the shapes of terms are measured by: how far, how fast, how strong things were in the recordings.
+
+use excavator_model::equations::Situation;
+
+/// A quantity of a machine whose course gives starts for a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Quantity {
+    Position,
+    Speed,
+    CapPressure,
+    RodPressure,
+    Load,
+    PumpPressure,
+    Opening,
+}
+
+/// The values from which a search for a shape parameter begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Levels {
+    /// Quantiles of the quantity.
+    Quantiles(&'static [f64]),
+    /// Shares of its size: of the 95 % quantile without sign.
+    OfSize(&'static [f64]),
+    /// Shares of its range from the 5 % to the 95 % quantile.
+    OfRange(&'static [f64]),
+    /// Pure numbers.
+    Values(&'static [f64]),
+}
+
+impl Quantity {
+    fn of(self, now: &Situation<'_, f64>, cylinder: usize) -> f64 {
+        let piston = &now.pistons[cylinder];
+        match self {
+            Quantity::Position => piston.displacement,
+            Quantity::Speed => piston.velocity,
+            Quantity::CapPressure => piston.cap_pressure - now.tank_pressure,
+            Quantity::RodPressure => piston.rod_pressure - now.tank_pressure,
+            Quantity::Load => piston.cap_pressure - piston.rod_pressure,
+            Quantity::PumpPressure => now.pump_pressure - now.tank_pressure,
+            Quantity::Opening => piston.opening,
+        }
+    }
+
+    /// Starts for a parameter that is measured by this quantity at `cylinder`; none where it was not measured or stood still.
+    pub fn starts(self, levels: Levels, situations: &[Vec<Situation<'_, f64>>], cylinder: usize) -> Vec<f64> {
+        if let Levels::Values(values) = levels {
+            return values.to_vec();
+        }
+        let all = situations.iter().flatten().filter(|now| cylinder < now.pistons.len());
+        let mut values: Vec<f64> = all.map(|now| self.of(now, cylinder)).filter(|value| value.is_finite()).collect();
+        if values.is_empty() {
+            return Vec::new();
+        }
+        if matches!(levels, Levels::OfSize(_)) {
+            values.iter_mut().for_each(|value| *value = value.abs());
+        }
+        values.sort_by(f64::total_cmp);
+        let quantile = |level: f64| values[((values.len() - 1) as f64 * level).round() as usize];
+        let (scale, shares) = match levels {
+            Levels::Quantiles(levels) => return levels.iter().map(|&level| quantile(level)).collect(),
+            Levels::OfSize(shares) => (quantile(0.95), shares),
+            Levels::OfRange(shares) => (quantile(0.95) - quantile(0.05), shares),
+            Levels::Values(values) => (1.0, values),
+        };
+        if scale > 0.0 { shares.iter().map(|share| share * scale).collect() } else { Vec::new() }
+    }
+}

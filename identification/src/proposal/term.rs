@@ -1,0 +1,160 @@
+//! Terms: products of factors that enter one row of the equations.
+
+use std::collections::BTreeMap;
+
+use excavator_model::formula::{FormulaText, ParameterText, Row};
+
+use super::factor::{Factor, ONE};
+use super::unit;
+
+/// A product of two factors in a row, times a coefficient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Term {
+    /// The row that it enters.
+    pub row: Row,
+    /// What it is a product of; the second may be one.
+    pub factors: [&'static Factor; 2],
+}
+
+/// A term with numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sized {
+    /// The term.
+    pub term: Term,
+    /// Values of the shape parameters of its factors, in their order.
+    pub shapes: Vec<f64>,
+    /// The coefficient, SI.
+    pub coefficient: f64,
+}
+
+impl Term {
+    /// Of one factor.
+    pub fn of(row: Row, factor: &'static Factor) -> Term {
+        Term { row, factors: [factor, &ONE] }
+    }
+
+    /// Of two factors.
+    pub fn product(row: Row, one: &'static Factor, other: &'static Factor) -> Term {
+        Term { row, factors: [one, other] }
+    }
+
+    /// Number of parameters, the coefficient among them.
+    pub fn parameters(&self) -> usize {
+        1 + self.factors.iter().map(|factor| factor.shapes.len()).sum::<usize>()
+    }
+
+    /// Length of its formula, for choosing the simpler one of two.
+    pub fn length(&self) -> usize {
+        self.factors.iter().map(|factor| factor.text.len()).sum()
+    }
+
+    /// Whether it is a force of a pressure. Beside others it can take the place of the areas that the model knows, and make all that the
+    /// equation of motion says nothing.
+    pub fn is_a_force_of_pressure(&self) -> bool {
+        self.row == Row::PistonForce && self.factors[0].text.contains("p_")
+    }
+
+    fn words(&self) -> String {
+        let words = self.factors.iter().map(|factor| factor.word).filter(|word| !word.is_empty());
+        words.collect::<Vec<_>>().join("_by_")
+    }
+}
+
+/// A law of these terms, which enter one row, as a text.
+pub(super) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
+    let row = terms.first()?.term.row;
+    let mut parameters = BTreeMap::new();
+    let mut formula = if row == Row::Opening { "u".to_string() } else { String::new() };
+    let mut words = vec![row.card().name.to_string()];
+    for (number, sized) in terms.iter().enumerate() {
+        let suffix = if number == 0 { String::new() } else { format!("_{}", number + 1) };
+        let mut factors = vec![format!("k{suffix}")];
+        let mut shapes = sized.shapes.iter();
+        for factor in sized.term.factors.iter().filter(|factor| !factor.text.is_empty()) {
+            let mut text = factor.text.to_string();
+            for shape in factor.shapes {
+                let name = format!("{}{suffix}", shape.name);
+                text = text.replace(&format!("{{{}}}", shape.name), &name);
+                parameters.insert(name, shape_text(shape, *shapes.next()?));
+            }
+            factors.push(text);
+        }
+        let units: Vec<unit::Unit> = sized.term.factors.iter().map(|factor| factor.unit).collect();
+        let coefficient = ParameterText {
+            unit: unit::of_coefficient(row, &units),
+            minimum: Some(0.0),
+            start: starts(row, sized.coefficient.abs()),
+            meaning: "coefficient".to_string(),
+            ..blank()
+        };
+        parameters.insert(format!("k{suffix}"), coefficient);
+        let is_negative = sized.coefficient < 0.0;
+        formula += match (formula.is_empty(), is_negative) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        formula += &factors.join("*");
+        words.push(sized.term.words());
+    }
+    let name: String = words.join("_").chars().take(LONGEST_NAME).collect();
+    Some(FormulaText {
+        name,
+        acts_on: row.card().name.to_string(),
+        formula,
+        summary: summary.to_string(),
+        source: super::proposals::PROPOSED.to_string(),
+        shows: String::new(),
+        experiment: String::new(),
+        parameters,
+        states: BTreeMap::new(),
+    })
+}
+
+/// Where the search for a coefficient begins. A flow is not linear in a change of the opening: what a regression says of that is too large
+/// where the change is.
+fn starts(row: Row, coefficient: f64) -> Vec<f64> {
+    let shares: &[f64] = if row == Row::Opening { &[1.0, 0.5, 0.25] } else { &[1.0] };
+    shares.iter().map(|share| rounded(share * coefficient)).collect()
+}
+
+/// Longest name of a formula effect.
+const LONGEST_NAME: usize = 60;
+
+fn shape_text(shape: &super::factor::Shape, value: f64) -> ParameterText {
+    let value = rounded(value);
+    let size = value.abs().max(f64::MIN_POSITIVE);
+    ParameterText {
+        unit: shape.unit.to_string(),
+        // Far enough for every fit, and no further than a fit that has lost its way should go.
+        minimum: Some(if shape.is_signed { -FAR * size.max(LEAST) } else { size / FAR }),
+        maximum: Some(FAR * size.max(LEAST)),
+        start: vec![value],
+        meaning: shape.meaning.to_string(),
+        ..blank()
+    }
+}
+
+/// How many times its start a shape parameter may become.
+const FAR: f64 = 100.0;
+
+/// Least size of a signed shape parameter whose start may be zero, SI: a centimetre, a hundredth of a radian.
+const LEAST: f64 = 0.01;
+
+fn blank() -> ParameterText {
+    ParameterText {
+        unit: String::new(),
+        minimum: None,
+        maximum: None,
+        start: Vec::new(),
+        value: None,
+        known: false,
+        meaning: String::new(),
+    }
+}
+
+/// To four digits: a start says no more.
+pub(super) fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,24 @@
+//! Laws that somebody proposes, tried like the effects of a catalogue.
+
+use super::pool::Pool;
+use super::progress::Milestones;
+use super::stepwise::Stepwise;
+use super::{Addition, Effort};
+use crate::decision::Policy;
+
+/// Tries `laws` as additions to trial `number` of the pool: a few steps of each, then the best to the end. What they lead to joins the
+/// pool, under the rules by which effects of a catalogue do.
+pub(crate) fn try_laws(
+    pool: &mut Pool<'_>,
+    number: usize,
+    laws: Vec<Addition>,
+    effort: &Effort,
+    policy: &Policy,
+    progress: &(dyn Fn(&str, f64) + Sync),
+) {
+    let milestones = Milestones::new(progress);
+    // What is said about the catalogue stays.
+    let (unpromising, failed) = (std::mem::take(&mut pool.unpromising), std::mem::take(&mut pool.failed));
+    Stepwise { effort, policy, milestones: &milestones }.screen(number, laws, pool);
+    (pool.unpromising, pool.failed) = (unpromising, failed);
+}

@@ -1,0 +1,67 @@
+//! `excavator propose`
+
+use std::path::Path;
+
+use excavator_identification::diagnosis::DiagnosisSettings;
+use excavator_identification::proposal::{Proposals, propose};
+use excavator_identification::report::{proposal_page, proposal_sentence};
+use excavator_model::Model;
+use excavator_model::document::catalogue_text;
+use excavator_model::recording::Recording;
+
+use super::print;
+use crate::cli::ProposeArguments;
+use crate::error::VerbError;
+use crate::output::{Progress, proposal_json, proposal_table, write_json};
+use crate::outputs::{self, Inputs};
+use crate::sources;
+
+pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
+    let outputs = [
+        ("-o", arguments.output.as_deref()),
+        ("--report", arguments.report.as_deref()),
+        ("--json", arguments.json.json.as_deref()),
+    ];
+    let inputs = Inputs::recordings(arguments.recordings.bags(), arguments.recordings.mapping.map.as_deref())
+        .and_all(arguments.model.files());
+    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    let model = sources::model(&arguments.model)?;
+    let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
+    let identification: Vec<&Recording> = identification.iter().collect();
+    let validation: Vec<&Recording> = validation.iter().collect();
+    let progress = Progress::new();
+    let settings = DiagnosisSettings::default();
+    let found = propose(&model, &identification, &validation, &settings, &|what, done| progress.tell(what, done))?;
+    drop(progress);
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        show(arguments, &model, &found);
+    }
+    if let Some(path) = &arguments.output {
+        let laws = found.proposals.iter().map(|proposal| proposal.text.clone()).collect();
+        outputs::write(path, &catalogue_text(laws)?, arguments.overwriting)?;
+    }
+    if let Some(path) = &arguments.report {
+        outputs::write(path, &proposal_page(&model, &found), arguments.overwriting)?;
+    }
+    if let Some(path) = &arguments.json.json {
+        write_json(path, &proposal_json(&model, &found, &validation), arguments.overwriting)?;
+    }
+    Ok(())
+}
+
+/// Prints proposals for people, with the command that goes on.
+fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
+    print(&proposal_sentence(model, found));
+    if !found.proposals.is_empty() {
+        print(&proposal_table(found).to_string());
+    }
+    if let Some(first) = found.proposals.first() {
+        let file = arguments.output.as_ref().map_or("laws.toml".to_string(), |path| path.display().to_string());
+        let name = format!("{}@{}", first.text.name, first.place);
+        let written = if arguments.output.is_none() { "Write the laws with -o laws.toml, then add" } else { "Add" };
+        print(&format!(
+            "{written} the first: excavator refine --model {} --catalogue {file} --add {name} --identification ... --validation ... -o refined.toml",
+            arguments.model.model
+        ));
+    }
+}
