@@ -3,6 +3,7 @@
 mod covariance;
 mod instruments;
 mod linear_refit;
+mod linearised;
 #[cfg(test)]
 pub(crate) mod made_up;
 mod normal_equations;
@@ -23,6 +24,7 @@ pub use instruments::{Instrument, instruments};
 #[cfg(test)]
 pub(crate) use linear_refit::Remainder;
 pub(crate) use linear_refit::{LinearRefit, scales};
+pub(crate) use linearised::Linearised;
 pub use normalised_error::normalised_error;
 pub use nuisances::{Simplified, is_nuisance, nuisances_shown, simplified, with_nuisances, with_nuisances_of};
 pub use output_error::{Fit, FitError, evaluate, fit, fit_watched};

@@ -17,6 +17,19 @@ pub(super) struct Factor {
     pub unit: Unit,
     /// Its shape parameters.
     pub shapes: &'static [Shape],
+    /// Its memory, `{z}` in the text.
+    pub memory: Option<Memory>,
+}
+
+/// A state of a factor.
+#[derive(Debug, PartialEq)]
+pub(super) struct Memory {
+    /// Where it begins, as a formula.
+    pub start: &'static str,
+    /// How fast it changes, as a formula.
+    pub rate: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
 }
 
 /// A parameter in which a factor is not linear.
@@ -37,11 +50,21 @@ pub(super) struct Shape {
 }
 
 const fn plain(word: &'static str, text: &'static str, unit: Unit) -> Factor {
-    Factor { word, text, unit, shapes: &[] }
+    Factor { word, text, unit, shapes: &[], memory: None }
 }
 
 const fn shaped(word: &'static str, text: &'static str, unit: Unit, shapes: &'static [Shape]) -> Factor {
-    Factor { word, text, unit, shapes }
+    Factor { word, text, unit, shapes, memory: None }
+}
+
+const fn remembering(
+    word: &'static str,
+    text: &'static str,
+    unit: Unit,
+    shapes: &'static [Shape],
+    memory: Memory,
+) -> Factor {
+    Factor { word, text, unit, shapes, memory: Some(memory) }
 }
 
 const FALL: Shape = Shape {
@@ -84,7 +107,7 @@ const WIDTH: Shape = Shape {
     name: "w",
     unit: "m",
     quantity: Quantity::Position,
-    levels: Levels::OfRange(&[0.05, 0.15]),
+    levels: Levels::OfRange(&[0.1, 0.3, 0.6]),
     is_signed: false,
     meaning: "width",
 };
@@ -128,6 +151,29 @@ const LOAD_THRESHOLD: Shape = Shape {
     is_signed: false,
     meaning: "pressure difference where it begins",
 };
+
+const LAG: Shape = Shape {
+    name: "tau",
+    unit: "s",
+    quantity: Quantity::Speed,
+    levels: Levels::Times(&[0.02, 0.1, 0.5]),
+    is_signed: false,
+    meaning: "time in which it follows",
+};
+
+const BRISTLE: Shape = Shape {
+    name: "g",
+    unit: "m",
+    quantity: Quantity::Position,
+    levels: Levels::OfRange(&[0.002, 0.01, 0.05]),
+    is_signed: false,
+    meaning: "way over which it bends",
+};
+
+/// What a quantity has that its course of some time ago has not: the lag of a first order behind it.
+const fn behind(start: &'static str, rate: &'static str, unit: &'static str) -> Memory {
+    Memory { start, rate, unit }
+}
 
 const HIGH: &[f64] = &[0.5, 0.7, 0.85, 0.95];
 const LOW: &[f64] = &[0.02, 0.05, 0.1, 0.2];
@@ -200,6 +246,38 @@ pub(super) static GROWING: [Factor; 16] = [
 
 /// A wave along the stroke.
 pub(super) static WAVE: Factor = shaped("wave", "sin(s/{l} + {f})", PURE, &[WAVE_LENGTH, PHASE]);
+
+/// Forces with a memory.
+pub(super) static REMEMBERING: [Factor; 3] = [
+    remembering("bristle", "{z}", LENGTH, &[BRISTLE], behind("0", "v - abs(v)/{g}*{z}", "m")),
+    remembering("lag_of_speed", "(v - {z})", SPEED, &[LAG], behind("v", "(v - {z})/{tau}", "m/s")),
+    remembering(
+        "lag_of_load",
+        "(p_cap - p_rod - {z})",
+        PRESSURE,
+        &[LAG],
+        behind("p_cap - p_rod", "(p_cap - p_rod - {z})/{tau}", "Pa"),
+    ),
+];
+
+/// Oil that walls take up when the pressure has risen for a while, and give back.
+pub(super) static CAP_WALL: [Factor; 1] =
+    [remembering("lag", "(p_cap - {z})", PRESSURE, &[LAG], behind("p_cap", "(p_cap - {z})/{tau}", "Pa"))];
+pub(super) static ROD_WALL: [Factor; 1] =
+    [remembering("lag", "(p_rod - {z})", PRESSURE, &[LAG], behind("p_rod", "(p_rod - {z})/{tau}", "Pa"))];
+pub(super) static PUMP_WALL: [Factor; 3] = [
+    remembering("lag", "(p_pump - {z})", PRESSURE, &[LAG], behind("p_pump", "(p_pump - {z})/{tau}", "Pa")),
+    remembering("lag_of_speed", "({c}.v - {z})", SPEED, &[LAG], behind("{c}.v", "({c}.v - {z})/{tau}", "m/s")),
+    remembering("lag_of_opening", "({c}.u - {z})", AREA, &[LAG], behind("{c}.u", "({c}.u - {z})/{tau}", "m2")),
+];
+
+/// What a flow out of the pump line may depend on at a cylinder.
+pub(super) static AT_CYLINDER: [Factor; 4] = [
+    plain("abs_speed", "abs({c}.v)", SPEED),
+    plain("speed", "{c}.v", SPEED),
+    plain("abs_opening", "abs({c}.u)", AREA),
+    plain("load", "({c}.p_cap - {c}.p_rod)", PRESSURE),
+];
 
 /// Speed without its sign, which drags oil along.
 pub(super) static ABS_SPEED: Factor = plain("abs_speed", "abs(v)", SPEED);

@@ -3,8 +3,9 @@
 use excavator_model::formula::Row;
 
 use super::factor::{
-    ABS_SPEED, CAP_TO_TANK, EDGE, FROM_CAP, FROM_PUMP, FROM_ROD, Factor, GROWING, OPENING, PAST_THE_PISTON,
-    PUMP_TO_CAP, PUMP_TO_ROD, PUSHING, RESISTING, ROD_TO_TANK, SHIFTING, TURNING, WAVE,
+    ABS_SPEED, AT_CYLINDER, CAP_TO_TANK, CAP_WALL, EDGE, FROM_CAP, FROM_PUMP, FROM_ROD, Factor, GROWING, OPENING,
+    PAST_THE_PISTON, PUMP_TO_CAP, PUMP_TO_ROD, PUMP_WALL, PUSHING, REMEMBERING, RESISTING, ROD_TO_TANK, ROD_WALL,
+    SHIFTING, TURNING, WAVE,
 };
 use super::term::Term;
 
@@ -40,6 +41,7 @@ fn forces(terms: &mut Vec<Term>) {
         }
     }
     terms.push(Term::product(row, &RESISTING[0], &WAVE));
+    terms.extend(REMEMBERING.iter().map(|one| Term::of(row, one)));
     terms.extend(TURNING.iter().map(|turning| Term::of(Row::JointTorque, turning)));
 }
 
@@ -58,7 +60,12 @@ fn leaks(terms: &mut Vec<Term>) {
             terms.extend(others.map(|other| Term::product(row, one, other)));
         }
     }
+    for (row, walls) in [(Row::CapFlow, &CAP_WALL), (Row::RodFlow, &ROD_WALL)] {
+        terms.extend(walls.iter().map(|wall| Term::of(row, wall)));
+    }
+    terms.extend(PUMP_WALL.iter().chain(&AT_CYLINDER).map(|one| Term::of(Row::PumpLeak, one)));
     for one in &FROM_PUMP {
+        terms.extend(AT_CYLINDER.iter().map(|other| Term::product(Row::PumpLeak, one, other)));
         terms.push(Term::of(Row::PumpLeak, one));
         let time = GROWING.iter().filter(|other| other.word == "time");
         terms.extend(time.map(|other| Term::product(Row::PumpLeak, one, other)));
@@ -94,7 +101,8 @@ mod tests {
         let terms = terms();
         for term in &terms {
             let shapes = vec![0.01; term.parameters() - 1];
-            let text = law_text(&[Sized { term: *term, shapes, coefficient: -1.5 }], "").unwrap();
+            let text =
+                law_text(&[Sized { term: *term, shapes, coefficient: -1.5, cylinder: "arm".into() }], "").unwrap();
             Law::read(&text).unwrap_or_else(|error| panic!("{}: {error}", text.formula));
             assert!(names.insert(text.name.clone()), "{} twice", text.name);
         }

@@ -5,7 +5,7 @@ use excavator_model::recording::Recording;
 use excavator_model::{Model, site_name};
 
 use super::screening::screen;
-use super::shortlist::shortlist;
+use super::shortlist::first_of;
 use super::term::law_text;
 use crate::regression::RegressionError;
 
@@ -29,8 +29,7 @@ pub fn first_guess(
     identification: &[&Recording],
     validation: &[&Recording],
 ) -> Result<Option<Guess>, RegressionError> {
-    let listed = shortlist(&screen(model, identification, validation)?);
-    let first = listed.into_iter().find(|one| one.terms.len() == 1 && one.evidence > 0.0);
+    let first = first_of(&screen(model, identification, validation)?);
     Ok(first.and_then(|first| {
         let text = law_text(&first.terms, "")?;
         let place = site_name(&model.machine, first.site).to_string();

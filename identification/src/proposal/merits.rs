@@ -1,7 +1,10 @@
 //! What speaks for a law and against it, beside its error.
 
 use excavator_model::ModelEffect;
-use excavator_model::effects::{Kind, Site};
+
+use super::memory::memory_along;
+use super::term::COEFFICIENT;
+use excavator_model::effects::Site;
 use excavator_model::equations::Situation;
 use excavator_model::formula::{Law, Row};
 
@@ -26,26 +29,28 @@ const STEEP: f64 = 2.2;
 pub(super) fn merits(law: &Law, effect: &ModelEffect, situations: &[Situation<'_, f64>]) -> Merits {
     let parameters: Vec<f64> = effect.parameters.iter().map(|parameter| parameter.value).collect();
     let (mut given, mut taken) = (0.0, 0.0);
-    let mut extreme: Option<(f64, &Situation<'_, f64>)> = None;
-    for now in situations {
-        let value = change(law, effect.site, &parameters, now);
+    let mut extreme: Option<(f64, &Situation<'_, f64>, &[f64])> = None;
+    let memory = memory_along(law, effect.site, &parameters, situations);
+    for (sample, now) in situations.iter().enumerate() {
+        let states = memory.get(sample).map_or(&[][..], Vec::as_slice);
+        let value = change(law, effect.site, &parameters, states, now);
         let power = power(law.row(), effect.site, value, now);
         if power > 0.0 {
             given += power
         } else {
             taken -= power
         }
-        if value.is_finite() && extreme.is_none_or(|(largest, _)| value.abs() > largest) {
-            extreme = Some((value.abs(), now));
+        if value.is_finite() && extreme.is_none_or(|(largest, ..)| value.abs() > largest) {
+            extreme = Some((value.abs(), now, states));
         }
     }
-    let steep = extreme.filter(|(value, _)| *value > 0.0).and_then(|(value, now)| {
-        let power = (change(law, effect.site, &parameters, &twice(now)).abs() / value).log2();
+    let steep = extreme.filter(|(value, ..)| *value > 0.0).and_then(|(value, now, states)| {
+        let power = (change(law, effect.site, &parameters, states, &twice(now)).abs() / value).log2();
         (power.is_finite() && power > STEEP).then_some(power)
     });
     let unsure = effect.parameters.iter().filter(|parameter| {
         !parameter.known
-            && parameter.card.kind == Kind::Linear
+            && parameter.card.meaning == COEFFICIENT
             && parameter.margin_95.is_some_and(|margin| margin.is_nan() || margin >= parameter.value.abs())
     });
     Merits {
@@ -56,8 +61,8 @@ pub(super) fn merits(law: &Law, effect: &ModelEffect, situations: &[Situation<'_
 }
 
 /// What a law adds to its row: for an opening, by how much it changes it.
-pub(super) fn change(law: &Law, site: Site, parameters: &[f64], now: &Situation<'_, f64>) -> f64 {
-    let value = law.value(site, parameters, &[], now);
+pub(super) fn change(law: &Law, site: Site, parameters: &[f64], states: &[f64], now: &Situation<'_, f64>) -> f64 {
+    let value = law.value(site, parameters, states, now);
     match (law.row(), site) {
         (Row::Opening, Site::Cylinder(cylinder)) => value - now.pistons[cylinder].opening,
         _ => value,

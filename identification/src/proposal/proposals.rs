@@ -111,6 +111,10 @@ pub(super) fn proposals(
     for number in numbers {
         proposals.extend(of_trial(&diagnosis, number, identification, validation)?);
     }
+    // A coefficient that may be zero says that its law is another one of the list with something more.
+    let is_sure =
+        |proposal: &Proposal| proposal.is_in_set || proposal.is_a_curve || proposal.merits.unsure_signs.is_empty();
+    proposals.retain(is_sure);
     Ok(Proposals { kind, proposals, error_before, before, diagnosis, lacking })
 }
 

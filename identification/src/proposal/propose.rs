@@ -9,10 +9,10 @@ use std::sync::Arc;
 use super::curve::table_law;
 use super::proposals::{ProposalVerdict, Proposals, proposals};
 use super::screening::screen;
-use super::shortlist::{Candidate, shortlist};
+use super::shortlist::{Candidate, Shortlist};
 use super::simplest::simplest_first;
 use super::term::law_text;
-use crate::decision::{Kind, Policy};
+use crate::decision::{Kind, Policy, Reason, Verdict};
 use crate::diagnosis::{DiagnosisError, DiagnosisSettings, unexplained};
 use crate::search::{Addition, Effort, Pool, search, try_laws};
 
@@ -44,7 +44,7 @@ pub fn propose(
         Kind::Unexplained => {
             let trials = Trials { identification, validation, effort, policy, progress };
             trials.of_laws(&mut pool)?;
-            let explained = pool.verdict(policy).kind == Kind::MissingEffect;
+            let explained = is_explained(&pool.verdict(policy));
             if !explained {
                 trials.of_the_curve(&mut pool)?;
             }
@@ -53,6 +53,15 @@ pub fn propose(
     };
     let verdict = simplest_first(pool.verdict(policy), &pool.trials);
     proposals(kind, pool, verdict, identification, validation)
+}
+
+/// Share of the misfit that a first law may leave for a second one to be looked for beside it.
+const LARGEST_REST: f64 = 0.5;
+
+/// Whether the favoured hypothesis leaves little. A machine that is built otherwise may explain the recordings as well; a law says so in its
+/// own way.
+fn is_explained(verdict: &Verdict) -> bool {
+    verdict.reasons.iter().any(|reason| matches!(reason, Reason::Explained { .. }))
 }
 
 struct Trials<'a> {
@@ -70,13 +79,21 @@ impl Trials<'_> {
         for round in 0..ROUNDS {
             let share = |done: f64| 0.5 + 0.5 * (round as f64 + done) / (ROUNDS + 1) as f64;
             (self.progress)("terms on the equations", share(0.0));
-            let model = &pool.trials[base].fit.model;
-            let listed = shortlist(&screen(model, self.identification, self.validation)?);
-            let laws = additions(&listed, pool);
+            let given = pool.trials[base].fit.clone();
+            let screening = screen(&given.model, self.identification, self.validation)?;
+            let fitting = &self.effort.fit;
+            let listed = Shortlist::new(&given.model, given.loss(), &screening, self.identification, fitting);
             let progress = |what: &str, done: f64| (self.progress)(what, share(done));
+            let laws = additions(&listed.singles, pool);
             try_laws(pool, base, laws, self.effort, self.policy, &progress);
+            if !is_explained(&pool.verdict(self.policy)) {
+                let laws = additions(&listed.several(&given.model, self.identification, fitting), pool);
+                try_laws(pool, base, laws, self.effort, self.policy, &progress);
+            }
             let verdict = pool.verdict(self.policy);
-            if verdict.kind != Kind::Unexplained || verdict.best == 0 {
+            let ratio = |number: usize| verdict.standings[number].log_error_ratio;
+            let is_promising = verdict.best != 0 && ratio(verdict.best) < LARGEST_REST * ratio(0);
+            if is_explained(&verdict) || !is_promising {
                 return Ok(());
             }
             base = verdict.best;

@@ -23,6 +23,8 @@ pub(super) enum Levels {
     OfSize(&'static [f64]),
     /// Shares of its range from the 5 % to the 95 % quantile.
     OfRange(&'static [f64]),
+    /// Times on a machine of the reference size, s.
+    Times(&'static [f64]),
     /// Pure numbers.
     Values(&'static [f64]),
 }
@@ -46,6 +48,10 @@ impl Quantity {
         if let Levels::Values(values) = levels {
             return values.to_vec();
         }
+        if let Levels::Times(times) = levels {
+            let scale = situations.iter().flatten().next().map_or(1.0, |now| now.time_scale);
+            return times.iter().map(|time| time * scale).collect();
+        }
         let all = situations.iter().flatten().filter(|now| cylinder < now.pistons.len());
         let mut values: Vec<f64> = all.map(|now| self.of(now, cylinder)).filter(|value| value.is_finite()).collect();
         if values.is_empty() {
@@ -60,7 +66,7 @@ impl Quantity {
             Levels::Quantiles(levels) => return levels.iter().map(|&level| quantile(level)).collect(),
             Levels::OfSize(shares) => (quantile(0.95), shares),
             Levels::OfRange(shares) => (quantile(0.95) - quantile(0.05), shares),
-            Levels::Values(values) => (1.0, values),
+            Levels::Times(values) | Levels::Values(values) => (1.0, values),
         };
         if scale > 0.0 { shares.iter().map(|share| share * scale).collect() } else { Vec::new() }
     }

@@ -10,6 +10,8 @@ use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
 use super::grammar::terms;
+use super::memory::memory_along;
+use super::merits::change;
 use super::projection::{Column, Projection};
 use super::term::{Sized, Term, law_text};
 use crate::regression::{RegressionError, WeakFormSettings, WeakTerms, weak_terms};
@@ -20,6 +22,8 @@ struct Entry {
     row: Row,
     site: Site,
     probe: usize,
+    /// The cylinder that a term there may name.
+    cylinder: usize,
 }
 
 /// A term that was tried.
@@ -35,18 +39,26 @@ pub(super) struct Screened {
     pub column: Column,
 }
 
+impl Screened {
+    /// Whether it is this term with these shapes, whatever the coefficient.
+    pub fn is(&self, sized: &Sized) -> bool {
+        self.sized.term == sized.term && self.sized.shapes == sized.shapes && self.sized.cylinder == sized.cylinder
+    }
+}
+
 /// All terms at all places of a machine, tried; the best first.
 pub(super) struct Screening {
     /// The rows of the regression.
     pub projection: Projection,
     /// The best terms.
     pub best: Vec<Screened>,
-    /// What each parameter of a law costs.
-    pub cost_of_parameter: f64,
 }
 
-/// Terms that are kept for combinations.
-const KEPT: usize = 150;
+/// Terms that are kept.
+const KEPT: usize = 480;
+
+/// Choices of each shape of a term that are kept: noise in the equations may favour a wrong one.
+const KEPT_SHAPES: usize = 3;
 
 /// Tries all terms on what `model` leaves.
 ///
@@ -57,10 +69,10 @@ pub(super) fn screen(
     identification: &[&Recording],
     validation: &[&Recording],
 ) -> Result<Screening, RegressionError> {
-    let (probed, entries) = probed(model);
+    let (probed, probes, entries) = probed(model);
     let settings = WeakFormSettings::default();
-    let fitted = weak_terms(&probed, entries.len(), identification, &settings)?;
-    let predicted = weak_terms(&probed, entries.len(), validation, &settings)?;
+    let fitted = weak_terms(&probed, probes, identification, &settings)?;
+    let predicted = weak_terms(&probed, probes, validation, &settings)?;
     let projection = Projection::new(&fitted, &predicted);
     let tries = tries(&entries, &fitted);
     let cost_of_parameter = 0.5 * projection.independent().max(1.0).ln();
@@ -75,34 +87,49 @@ pub(super) fn screen(
             )?;
             let (coefficients, gain) = projection.gain(&[&column])?;
             let evidence = gain - cost_of_parameter * term.parameters() as f64 - cost_of_search;
-            let sized = Sized { term: *term, shapes: shapes.clone(), coefficient: coefficients[0] };
+            let sized = Sized { coefficient: coefficients[0], ..law.sized };
             Some(Screened { site: entry.site, sized, evidence, column })
         })
         .collect();
     best.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    best.truncate(KEPT);
-    Ok(Screening { projection, best, cost_of_parameter })
+    let mut kept: Vec<Screened> = Vec::new();
+    for one in best {
+        let is_same = |other: &&Screened| {
+            other.site == one.site && other.sized.term == one.sized.term && other.sized.cylinder == one.sized.cylinder
+        };
+        let shapes = KEPT_SHAPES * one.sized.shapes.len().clamp(1, 2);
+        if kept.len() < KEPT && kept.iter().filter(is_same).count() < shapes {
+            kept.push(one);
+        }
+    }
+    Ok(Screening { projection, best: kept })
 }
 
 /// The model with a probe in every row at every site.
-fn probed(model: &Model) -> (Model, Vec<Entry>) {
-    let (mut probed, mut entries) = (model.clone(), Vec::new());
+fn probed(model: &Model) -> (Model, usize, Vec<Entry>) {
+    let (mut probed, mut probes, mut entries) = (model.clone(), 0, Vec::new());
     for card in ROWS.iter().filter(|card| !card.row.is_a_reading()) {
         let Some(probe) = probe(card.row) else { continue };
         for site in model.free_sites(&probe) {
             if let Ok(more) = probed.with_effect(&probe, site) {
                 probed = more;
-                entries.push(Entry { row: card.row, site, probe: entries.len() });
+                let probe = probes;
+                probes += 1;
+                let cylinders = match site {
+                    Site::Cylinder(cylinder) => cylinder..cylinder + 1,
+                    Site::PumpLine | Site::Machine => 0..model.machine.cylinders.len(),
+                };
+                entries.extend(cylinders.map(|cylinder| Entry { row: card.row, site, probe, cylinder }));
             }
         }
     }
-    (probed, entries)
+    (probed, probes, entries)
 }
 
 /// An effect that adds its parameter to a row.
 fn probe(row: Row) -> Option<AnyEffect> {
     let term = Term::of(row, &super::factor::ONE);
-    let mut text = law_text(&[Sized { term, shapes: Vec::new(), coefficient: 1.0 }], "")?;
+    let mut text = law_text(&[Sized { term, shapes: Vec::new(), coefficient: 1.0, cylinder: String::new() }], "")?;
     text.name = format!("probe_{}", row.card().name);
     let parameter = text.parameters.get_mut("k")?;
     (parameter.minimum, parameter.maximum, parameter.start) = (Some(-1.0), Some(1.0), vec![0.0]);
@@ -114,15 +141,14 @@ fn tries(entries: &[Entry], terms_of: &WeakTerms<'_>) -> Vec<(Entry, Term, Vec<f
     let terms = terms();
     let mut tries = Vec::new();
     for entry in entries {
-        let cylinder = match entry.site {
-            Site::Cylinder(cylinder) => cylinder,
-            Site::PumpLine | Site::Machine => 0,
-        };
-        for term in terms.iter().filter(|term| term.row == entry.row) {
+        // A term that names no cylinder is tried once.
+        let is_first =
+            |term: &&Term| term.names_a_cylinder() || matches!(entry.site, Site::Cylinder(_)) || entry.cylinder == 0;
+        for term in terms.iter().filter(|term| term.row == entry.row).filter(is_first) {
             let shapes = term.factors.iter().flat_map(|factor| factor.shapes);
             let mut grid: Vec<Vec<f64>> = vec![Vec::new()];
             for shape in shapes {
-                let starts = shape.quantity.starts(shape.levels, &terms_of.situations, cylinder);
+                let starts = shape.quantity.starts(shape.levels, &terms_of.situations, entry.cylinder);
                 grid = grid
                     .iter()
                     .flat_map(|before| {
@@ -140,12 +166,15 @@ fn tries(entries: &[Entry], terms_of: &WeakTerms<'_>) -> Vec<(Entry, Term, Vec<f
 struct Evaluated {
     law: Law,
     entry: Entry,
+    sized: Sized,
     parameters: Vec<f64>,
 }
 
 impl Evaluated {
     fn new(model: &Model, entry: Entry, term: Term, shapes: &[f64]) -> Option<Evaluated> {
-        let text = law_text(&[Sized { term, shapes: shapes.to_vec(), coefficient: 1.0 }], "")?;
+        let cylinder = model.machine.cylinders.get(entry.cylinder).map_or(String::new(), |one| one.name.clone());
+        let sized = Sized { term, shapes: shapes.to_vec(), coefficient: 1.0, cylinder };
+        let text = law_text(std::slice::from_ref(&sized), "")?;
         let law = Law::read(&text).ok()?;
         let cards = law.parameters(&model.machine, entry.site);
         let mut left = shapes.iter();
@@ -153,20 +182,24 @@ impl Evaluated {
         let values: Vec<(&str, f64)> = names.into_iter().map(|name| (name, *left.next().unwrap_or(&0.0))).collect();
         let value = |name: &str| values.iter().find(|(known, _)| *known == name).map_or(1.0, |(_, value)| *value);
         let parameters = cards.iter().map(|card| value(&card.name)).collect();
-        Some(Evaluated { law, entry, parameters })
+        Some(Evaluated { law, entry, sized, parameters })
     }
 
     /// Its value for each recording, for each sample.
     fn values(&self, terms: &WeakTerms<'_>) -> Vec<Vec<f64>> {
-        let value = |now: &Situation<'_, f64>| {
-            let value = self.law.value(self.entry.site, &self.parameters, &[], now);
-            match self.entry {
-                Entry { row: Row::Opening, site: Site::Cylinder(cylinder), .. } => {
-                    value - now.pistons[cylinder].opening
-                }
-                _ => value,
-            }
+        let of_recording = |situations: &Vec<Situation<'_, f64>>| {
+            let states = self.states(situations);
+            let value = |(sample, now): (usize, &Situation<'_, f64>)| {
+                let own = states.get(sample).map_or(&[][..], Vec::as_slice);
+                change(&self.law, self.entry.site, &self.parameters, own, now)
+            };
+            situations.iter().enumerate().map(value).collect()
         };
-        terms.situations.iter().map(|situations| situations.iter().map(value).collect()).collect()
+        terms.situations.iter().map(of_recording).collect()
+    }
+
+    /// States of a law with memory along a recording; nothing of a law without.
+    fn states(&self, situations: &[Situation<'_, f64>]) -> Vec<Vec<f64>> {
+        memory_along(&self.law, self.entry.site, &self.parameters, situations)
     }
 }

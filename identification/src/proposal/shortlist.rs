@@ -1,9 +1,13 @@
 //! From terms to the laws that are worth a fit.
 
+use excavator_model::Model;
 use excavator_model::effects::Site;
+use excavator_model::recording::Recording;
 
+use super::promise::{Promised, combined, promised};
 use super::screening::{Screened, Screening};
 use super::term::Sized;
+use crate::fit::FitSettings;
 
 /// A law that is worth a fit.
 #[derive(Debug, Clone)]
@@ -12,12 +16,19 @@ pub(super) struct Candidate {
     pub site: Site,
     /// Its terms, in one row.
     pub terms: Vec<Sized>,
-    /// Evidence of the regression.
+    /// Evidence of the regression on the equations.
     pub evidence: f64,
 }
 
-/// Most laws of one, two and three terms in a shortlist.
-const MOST: [usize; 3] = [20, 4, 2];
+/// Most laws of one term by what they promise, by evidence of the equations, and of several terms. The equations are right where an effect is
+/// large and its outputs far from linear; the outputs where it is small.
+const MOST: [usize; 3] = [12, 4, 4];
+
+/// Share of the loss that the best term promises from which on the promises are believed.
+const LARGE_SHARE: f64 = 0.5;
+
+/// Terms from which laws of several are made.
+const COMBINED: usize = 24;
 
 /// Terms more alike than this differ by what one recording hardly shows.
 const ALIKE: f64 = 0.98;
@@ -28,107 +39,109 @@ const MOST_ALIKE: usize = 3;
 /// Terms more alike than this are the same, written in two ways.
 const SAME: f64 = 0.999_999;
 
-/// Terms from which pairs, and pairs from which triples begin.
-const BEGINNINGS: [usize; 2] = [20, 4];
+/// What is worth a fit.
+pub(super) struct Shortlist<'a> {
+    screening: &'a Screening,
+    foretold: Vec<Promised>,
+    /// Laws of one term.
+    pub singles: Vec<Candidate>,
+}
 
-/// Evidence by which a further term must improve a law: a factor of 20 000 in likelihood, for a regression on rows that are not quite
-/// independent.
-const LEAST_STEP: f64 = 10.0;
+impl<'a> Shortlist<'a> {
+    /// Of the terms of a screening, where the fitted `model` has this loss.
+    pub fn new(
+        model: &Model,
+        loss: f64,
+        screening: &'a Screening,
+        identification: &[&Recording],
+        settings: &FitSettings,
+    ) -> Self {
+        let all: Vec<Candidate> = screening.best.iter().map(single).collect();
+        let foretold = promised(model, &all, identification, settings);
+        let mut singles: Vec<Candidate> = Vec::new();
+        let by_promise = foretold.iter().filter(|one| one.improvement > 0.0).map(|one| &one.candidate);
+        extend(&mut singles, distinct(screening, by_promise, MOST[0]));
+        if foretold.first().map_or(0.0, |one| one.improvement) < LARGE_SHARE * loss {
+            let by_evidence = all.iter().filter(|one| one.evidence > 0.0);
+            extend(&mut singles, distinct(screening, by_evidence, MOST[1]));
+        }
+        Shortlist { screening, foretold, singles }
+    }
 
-/// The laws that are worth a fit, the best of each number of terms.
-pub(super) fn shortlist(screening: &Screening) -> Vec<Candidate> {
-    let singles = distinct(screening, screening.best.iter().filter(|one| one.evidence > 0.0));
-    let mut listed: Vec<Candidate> = singles.iter().take(MOST[0]).map(|one| single(one)).collect();
-    let firsts: Vec<Vec<usize>> = (0..screening.best.len().min(BEGINNINGS[0])).map(|index| vec![index]).collect();
-    let pairs = extended(screening, &firsts);
-    let triples =
-        extended(screening, &pairs.iter().take(BEGINNINGS[1]).map(|(_, all)| all.clone()).collect::<Vec<_>>());
-    for (laws, most) in [(pairs, MOST[1]), (triples, MOST[2])] {
-        let mut seen: Vec<String> = Vec::new();
-        for (candidate, _) in laws {
-            let name = name(&candidate);
-            if !seen.contains(&name) && seen.len() < most {
-                seen.push(name);
-                listed.push(candidate);
-            }
+    /// Laws of several terms in one row that promise more than any term alone.
+    pub fn several(&self, model: &Model, identification: &[&Recording], settings: &FitSettings) -> Vec<Candidate> {
+        let best = distinct(self.screening, self.foretold.iter().map(|one| &one.candidate), COMBINED);
+        let best: Vec<Candidate> = best.into_iter().cloned().collect();
+        let most = self.foretold.first().map_or(0.0, |one| one.improvement);
+        let laws = combined(model, &best, identification, settings).into_iter();
+        let better = laws.filter(|law| law.improvement > most + LEAST_GAIN).take(MOST[2]);
+        better.map(|law| law.candidate).collect()
+    }
+}
+
+/// Fall of the loss that several terms must promise beyond the best single one.
+const LEAST_GAIN: f64 = 0.05;
+
+/// The simplest law that explains most by the equations alone.
+pub(super) fn first_of(screening: &Screening) -> Option<Candidate> {
+    let singles: Vec<Candidate> = screening.best.iter().map(single).collect();
+    let positive = singles.iter().filter(|one| one.evidence > 0.0);
+    distinct(screening, positive, 1).first().map(|&one| one.clone())
+}
+
+fn extend(listed: &mut Vec<Candidate>, more: Vec<&Candidate>) {
+    for one in more {
+        let is_there = |other: &Candidate| other.site == one.site && is_same_kind(other, one);
+        if !listed.iter().any(is_there) {
+            listed.push(one.clone());
         }
     }
-    listed
 }
 
 fn single(one: &Screened) -> Candidate {
     Candidate { site: one.site, terms: vec![one.sized.clone()], evidence: one.evidence }
 }
 
-/// Kinds of terms without their numbers.
-fn name(candidate: &Candidate) -> String {
-    let mut words: Vec<&str> =
-        candidate.terms.iter().flat_map(|sized| sized.term.factors.iter().map(|factor| factor.text)).collect();
-    words.sort_unstable();
-    format!("{:?} {}", candidate.site, words.join(" "))
+/// Whether two laws have the same terms, whatever their numbers.
+fn is_same_kind(one: &Candidate, other: &Candidate) -> bool {
+    one.terms.len() == other.terms.len()
+        && one
+            .terms
+            .iter()
+            .zip(&other.terms)
+            .all(|(one, other)| one.term == other.term && one.cylinder == other.cylinder)
 }
 
-/// Terms that differ, each with its best numbers: of those that are alike only the first few.
-fn distinct<'a>(screening: &Screening, terms: impl Iterator<Item = &'a Screened>) -> Vec<&'a Screened> {
-    let mut kept: Vec<&Screened> = Vec::new();
+/// Terms that differ, each with the numbers with which it comes first: of those that are alike only the first few.
+fn distinct<'a>(screening: &Screening, terms: impl Iterator<Item = &'a Candidate>, most: usize) -> Vec<&'a Candidate> {
+    let column = |one: &Candidate| {
+        let is_it =
+            |screened: &&Screened| screened.site == one.site && one.terms.first().is_some_and(|term| screened.is(term));
+        screening.best.iter().find(is_it).map(|screened| &screened.column)
+    };
+    let likeness = |one: &Candidate, other: &Candidate| match (column(one), column(other)) {
+        (Some(one), Some(other)) => screening.projection.likeness(one, other),
+        _ => 0.0,
+    };
+    let complexity = |one: &Candidate| one.terms.first().map(|sized| (sized.term.parameters(), sized.term.length()));
+    let mut kept: Vec<&Candidate> = Vec::new();
     for term in terms {
-        let is_same = |other: &&&Screened| other.site == term.site && other.sized.term == term.sized.term;
-        if kept.iter().any(|other| is_same(&other)) {
+        if kept.iter().any(|other| other.site == term.site && is_same_kind(other, term)) {
             continue;
         }
-        let likeness = |other: &Screened| screening.projection.likeness(&other.column, &term.column);
-        let complexity = |one: &Screened| (one.sized.term.parameters(), one.sized.term.length());
-        if let Some(same) = kept.iter_mut().find(|other| likeness(other) > SAME) {
+        if let Some(same) = kept.iter_mut().find(|other| likeness(other, term) > SAME) {
             if complexity(term) < complexity(same) {
                 *same = term;
             }
             continue;
         }
-        let alike = kept.iter().filter(|other| likeness(other) > ALIKE);
-        if alike.clone().count() < MOST_ALIKE || alike.clone().all(|other| complexity(term) < complexity(other)) {
+        let alike: Vec<&&Candidate> = kept.iter().filter(|other| likeness(other, term) > ALIKE).collect();
+        if alike.len() < MOST_ALIKE || alike.iter().all(|other| complexity(term) < complexity(other)) {
             kept.push(term);
         }
-        if kept.len() >= MOST[0] {
+        if kept.len() >= most {
             break;
         }
     }
     kept
-}
-
-/// Laws with one more term in the same row, with the numbers of their terms, the best first. Each has to be better than the law that it
-/// extends, and than each of its terms.
-fn extended(screening: &Screening, laws: &[Vec<usize>]) -> Vec<(Candidate, Vec<usize>)> {
-    let Screening { projection, best, cost_of_parameter } = screening;
-    let cost_of_search = (best.len().max(1) as f64).ln();
-    let evidence = |numbers: &[usize]| {
-        let columns: Vec<_> = numbers.iter().map(|&number| &best[number].column).collect();
-        let (coefficients, gain) = projection.gain(&columns)?;
-        let parameters: usize = numbers.iter().map(|&number| best[number].sized.term.parameters()).sum();
-        Some((coefficients, gain - cost_of_parameter * parameters as f64 - cost_of_search * numbers.len() as f64))
-    };
-    let mut found: Vec<(Candidate, Vec<usize>)> = Vec::new();
-    for law in laws {
-        let Some((_, own)) = evidence(law) else { continue };
-        let first = &best[law[0]];
-        for number in 0..best.len() {
-            let fits = best[number].site == first.site && best[number].sized.term.row == first.sized.term.row;
-            // One kind of term twice, with two positions or two widths, is a curve and no law.
-            let is_new = law.iter().all(|&other| best[other].sized.term != best[number].sized.term);
-            let is_force = |number: usize| best[number].sized.term.is_a_force_of_pressure();
-            let has_force = law.iter().chain([&number]).any(|&number| is_force(number));
-            if !fits || !is_new || has_force {
-                continue;
-            }
-            let numbers: Vec<usize> = law.iter().copied().chain([number]).collect();
-            let Some((coefficients, evidence)) = evidence(&numbers) else { continue };
-            let least = numbers.iter().map(|&number| best[number].evidence).fold(own, f64::max) + LEAST_STEP;
-            if evidence > least {
-                let terms = numbers.iter().zip(coefficients);
-                let terms = terms.map(|(&number, coefficient)| Sized { coefficient, ..best[number].sized.clone() });
-                found.push((Candidate { site: first.site, terms: terms.collect(), evidence }, numbers));
-            }
-        }
-    }
-    found.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
-    found
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use excavator_model::formula::{FormulaText, ParameterText, Row};
+use excavator_model::formula::{FormulaText, ParameterText, Row, StateText};
 
 use super::factor::{Factor, ONE};
 use super::unit;
@@ -25,6 +25,8 @@ pub(super) struct Sized {
     pub shapes: Vec<f64>,
     /// The coefficient, SI.
     pub coefficient: f64,
+    /// Name of the cylinder that it names, where its row is not a cylinder's own.
+    pub cylinder: String,
 }
 
 impl Term {
@@ -41,6 +43,11 @@ impl Term {
     /// Number of parameters, the coefficient among them.
     pub fn parameters(&self) -> usize {
         1 + self.factors.iter().map(|factor| factor.shapes.len()).sum::<usize>()
+    }
+
+    /// Whether it names a cylinder.
+    pub fn names_a_cylinder(&self) -> bool {
+        self.factors.iter().any(|factor| factor.text.contains("{c}"))
     }
 
     /// Length of its formula, for choosing the simpler one of two.
@@ -63,7 +70,7 @@ impl Term {
 /// A law of these terms, which enter one row, as a text.
 pub(super) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
     let row = terms.first()?.term.row;
-    let mut parameters = BTreeMap::new();
+    let (mut parameters, mut states) = (BTreeMap::new(), BTreeMap::new());
     let mut formula = if row == Row::Opening { "u".to_string() } else { String::new() };
     let mut words = vec![row.card().name.to_string()];
     for (number, sized) in terms.iter().enumerate() {
@@ -71,20 +78,27 @@ pub(super) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
         let mut factors = vec![format!("k{suffix}")];
         let mut shapes = sized.shapes.iter();
         for factor in sized.term.factors.iter().filter(|factor| !factor.text.is_empty()) {
-            let mut text = factor.text.to_string();
+            let mut names = vec![("c", sized.cylinder.clone()), ("z", format!("z{suffix}"))];
             for shape in factor.shapes {
                 let name = format!("{}{suffix}", shape.name);
-                text = text.replace(&format!("{{{}}}", shape.name), &name);
-                parameters.insert(name, shape_text(shape, *shapes.next()?));
+                parameters.insert(name.clone(), shape_text(shape, *shapes.next()?));
+                names.push((shape.name, name));
             }
-            factors.push(text);
+            let filled = |text: &str| {
+                names.iter().fold(text.to_string(), |text, (place, name)| text.replace(&format!("{{{place}}}"), name))
+            };
+            factors.push(filled(factor.text));
+            if let Some(memory) = &factor.memory {
+                let (start, rate) = (filled(memory.start), filled(memory.rate));
+                states.insert(filled("{z}"), StateText { start, rate, unit: memory.unit.to_string(), typical: None });
+            }
         }
         let units: Vec<unit::Unit> = sized.term.factors.iter().map(|factor| factor.unit).collect();
         let coefficient = ParameterText {
             unit: unit::of_coefficient(row, &units),
             minimum: Some(0.0),
             start: starts(row, sized.coefficient.abs()),
-            meaning: "coefficient".to_string(),
+            meaning: COEFFICIENT.to_string(),
             ..blank()
         };
         parameters.insert(format!("k{suffix}"), coefficient);
@@ -108,9 +122,12 @@ pub(super) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
         shows: String::new(),
         experiment: String::new(),
         parameters,
-        states: BTreeMap::new(),
+        states,
     })
 }
+
+/// What a coefficient is, in the words of its card.
+pub(super) const COEFFICIENT: &str = "coefficient";
 
 /// Where the search for a coefficient begins. A flow is not linear in a change of the opening: what a regression says of that is too large
 /// where the change is.

@@ -1,0 +1,85 @@
+//! A model's outputs, linear in its parameters and in some more that it could have.
+
+use excavator_model::Model;
+use excavator_model::equations::System;
+use excavator_model::recording::Recording;
+use nalgebra::DVector;
+
+use super::normal_equations::{RawSums, SegmentSums};
+use super::output_error::{error_sizes, loss_per_reading, parameter_step};
+use super::problem::Problem;
+use super::{FitError, FitSettings};
+
+/// One simulation with sensitivities, from which steps in any choice of further parameters can be foretold.
+pub(crate) struct Linearised {
+    raw: Vec<RawSums>,
+    sums: Vec<SegmentSums>,
+    noise: Vec<f64>,
+    scales: Vec<f64>,
+    own: usize,
+    /// Loss of the model as it is, after a step of its own parameters; see [`super::Fit::loss`].
+    pub loss_before: f64,
+}
+
+/// What a step in some further parameters promises.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Promise {
+    /// The chosen parameters after the step, in their units.
+    pub values: Vec<f64>,
+    /// Loss after the step, if the outputs were linear.
+    pub loss: f64,
+}
+
+/// Levenberg-Marquardt damping of the foretold step: only against parameters that the recordings do not show.
+const DAMPING: f64 = 1e-6;
+
+impl Linearised {
+    /// `model` has the parameters `own` of its own, and may have `further` ones, which are zero.
+    ///
+    /// # Errors
+    /// [`FitError`].
+    pub fn new(
+        model: &Model,
+        own: &[usize],
+        further: &[usize],
+        recordings: &[&Recording],
+        settings: &FitSettings,
+    ) -> Result<Linearised, FitError> {
+        let system = System::new(model);
+        let fitted: Vec<usize> = own.iter().chain(further).copied().collect();
+        let problem = Problem::new(model, &system, recordings, settings, fitted)?;
+        let values = model.parameter_values();
+        let raw = problem.sums_at(&values, &problem.segments)?;
+        let weights = error_sizes(&raw, &problem.noise);
+        let sums = problem.weighed_with_priors(&raw, &weights, &values);
+        let Problem { noise, scales, .. } = problem;
+        let mut linearised = Linearised { raw, sums, noise, scales, own: own.len(), loss_before: f64::NAN };
+        linearised.loss_before = linearised.promise(&[]).map_or(f64::INFINITY, |promise| promise.loss);
+        Ok(linearised)
+    }
+
+    /// What a step of the model's own parameters and of some of the further ones promises, these given by their numbers. `None` where
+    /// the recordings do not tell them apart.
+    pub fn promise(&self, chosen: &[usize]) -> Option<Promise> {
+        let held: Vec<bool> =
+            (0..self.scales.len()).map(|number| number >= self.own && !chosen.contains(&(number - self.own))).collect();
+        let step: DVector<f64> = parameter_step(&self.sums, &held, DAMPING)?;
+        let (mut squares, mut counts) = (vec![0.0; self.noise.len()], vec![0usize; self.noise.len()]);
+        for (raw, sums) in self.raw.iter().zip(&self.sums) {
+            raw.add_predicted(&step, &sums.state_step(&step, DAMPING), &self.noise, &mut squares);
+            counts.iter_mut().zip(raw.counts()).for_each(|(total, count)| *total += count);
+        }
+        let errors: Vec<f64> = squares
+            .iter()
+            .zip(&counts)
+            .map(|(squares, &count)| (squares / count.max(1) as f64).max(0.0).sqrt())
+            .zip(&self.noise)
+            .map(|(error, noise)| error.max(LEAST_ERROR * noise))
+            .collect();
+        let values = chosen.iter().map(|&number| step[self.own + number] * self.scales[self.own + number]).collect();
+        Some(Promise { values, loss: loss_per_reading(&errors, &self.noise) })
+    }
+}
+
+/// Least error of an instrument in units of its noise, which is an estimate: what is foretold to be less is linear fancy.
+const LEAST_ERROR: f64 = 0.7;

@@ -1,0 +1,148 @@
+//! Which laws would lower the error of simulated outputs, before any is fitted.
+//!
+//! The equations take derivatives of what was measured, and where an effect is small what noise does to them looks like another one. Outputs
+//! that were simulated have no noise: one simulation with sensitivities tells what a small coefficient would do, for many laws at once.
+
+use std::sync::Arc;
+
+use excavator_model::Model;
+use excavator_model::effects::AnyEffect;
+use excavator_model::formula::Law;
+use excavator_model::recording::Recording;
+use rayon::prelude::*;
+
+use super::shortlist::Candidate;
+use super::term::{Sized, law_text};
+use crate::fit::{FitSettings, Linearised};
+
+/// Laws that are simulated together. Each costs its evaluation in every direction, all together the directions of the model's own.
+const TOGETHER: usize = 20;
+
+/// A law with what a step in its coefficients promises.
+#[derive(Debug, Clone)]
+pub(super) struct Promised {
+    /// The law, its coefficients after the step.
+    pub candidate: Candidate,
+    /// By how much the loss falls.
+    pub improvement: f64,
+}
+
+/// Foretells what laws of one term bring, the best first. Those that cannot be simulated are left out.
+pub(super) fn promised(
+    model: &Model,
+    singles: &[Candidate],
+    recordings: &[&Recording],
+    settings: &FitSettings,
+) -> Vec<Promised> {
+    let mut promised: Vec<Promised> = singles
+        .par_chunks(TOGETHER)
+        .flat_map_iter(|some| {
+            let linearised = linearised(model, some, recordings, settings);
+            let each = some.iter().enumerate().filter_map(|(number, candidate)| {
+                let linearised = linearised.as_ref()?;
+                let promise = linearised.promise(&[number])?;
+                let terms =
+                    candidate.terms.iter().zip(&promise.values).map(|(term, value)| stepped(term, *value)).collect();
+                let candidate = Candidate { terms, ..candidate.clone() };
+                Some(Promised { candidate, improvement: linearised.loss_before - promise.loss })
+            });
+            each.collect::<Vec<Promised>>()
+        })
+        .collect();
+    promised.sort_by(|a, b| b.improvement.total_cmp(&a.improvement));
+    promised
+}
+
+/// Laws of one, two and three of these terms in one row, with what each promises.
+pub(super) fn combined(
+    model: &Model,
+    singles: &[Candidate],
+    recordings: &[&Recording],
+    settings: &FitSettings,
+) -> Vec<Promised> {
+    let Some(linearised) = linearised(model, singles, recordings, settings) else { return Vec::new() };
+    let alone: Vec<f64> = (0..singles.len())
+        .map(|number| linearised.promise(&[number]).map_or(0.0, |promise| linearised.loss_before - promise.loss))
+        .collect();
+    let law = |numbers: &[usize]| {
+        let promise = linearised.promise(numbers)?;
+        let terms = numbers.iter().zip(&promise.values);
+        let terms = terms.filter_map(|(&number, value)| Some(stepped(singles[number].terms.first()?, *value)));
+        let candidate = Candidate { site: singles[numbers[0]].site, terms: terms.collect(), evidence: 0.0 };
+        Some(Promised { candidate, improvement: linearised.loss_before - promise.loss })
+    };
+    let mut found: Vec<(Vec<usize>, Promised)> = Vec::new();
+    let mut beginnings: Vec<(Vec<usize>, f64)> =
+        alone.iter().enumerate().map(|(number, &own)| (vec![number], own)).collect();
+    for _ in 0..MOST_TERMS - 1 {
+        let mut longer: Vec<(Vec<usize>, Promised)> = Vec::new();
+        for (numbers, own) in &beginnings {
+            for other in numbers.last().map_or(0, |last| last + 1)..singles.len() {
+                let all: Vec<usize> = numbers.iter().copied().chain([other]).collect();
+                if !fits(singles, &all) {
+                    continue;
+                }
+                let best = all.iter().map(|&number| alone[number]).fold(*own, f64::max);
+                longer.extend(law(&all).filter(|law| law.improvement > best + LEAST_STEP).map(|law| (all, law)));
+            }
+        }
+        longer.sort_by(|a, b| b.1.improvement.total_cmp(&a.1.improvement));
+        longer.truncate(KEPT);
+        beginnings = longer.iter().map(|(numbers, law)| (numbers.clone(), law.improvement)).collect();
+        found.extend(longer);
+    }
+    let mut laws: Vec<Promised> = found.into_iter().map(|(_, law)| law).collect();
+    laws.sort_by(|a, b| b.improvement.total_cmp(&a.improvement));
+    laws
+}
+
+/// A term after a step of its coefficient to `value`, which has the sign that its text gives it.
+fn stepped(term: &Sized, value: f64) -> Sized {
+    Sized { coefficient: value.copysign(value * term.coefficient), ..term.clone() }
+}
+
+/// Most terms of a law: more are a curve.
+const MOST_TERMS: usize = 3;
+
+/// Laws of one number of terms that are kept, and extended.
+const KEPT: usize = 6;
+
+/// Fall of the loss that a further term must promise.
+const LEAST_STEP: f64 = 0.03;
+
+/// Whether terms can be one law: in one row, of different kinds, and no two of them forces of pressures.
+fn fits(singles: &[Candidate], numbers: &[usize]) -> bool {
+    let terms: Vec<&Sized> = numbers.iter().filter_map(|&number| singles[number].terms.first()).collect();
+    let first = &singles[numbers[0]];
+    numbers.iter().all(|&number| singles[number].site == first.site)
+        && terms.iter().all(|term| term.term.row == terms[0].term.row)
+        && terms.iter().enumerate().all(|(number, term)| terms[..number].iter().all(|other| other.term != term.term))
+        && terms.iter().filter(|term| term.term.is_a_force_of_pressure()).count() < 2
+}
+
+/// The model with all of these laws, their coefficients zero and everything else about them held.
+fn linearised(
+    model: &Model,
+    singles: &[Candidate],
+    recordings: &[&Recording],
+    settings: &FitSettings,
+) -> Option<Linearised> {
+    let own = model.unknown_parameters();
+    let (mut extended, mut further) = (model.clone(), Vec::new());
+    for (number, candidate) in singles.iter().enumerate() {
+        let mut text = law_text(&candidate.terms, "")?;
+        text.name = format!("term_{number}");
+        let physics: AnyEffect = Arc::new(Law::read(&text).ok()?);
+        extended = extended.with_effect(&physics, candidate.site).ok()?;
+        let before = extended.parameter_values().len();
+        let law = extended.effects.last_mut()?;
+        let count = law.parameters.len();
+        for (index, parameter) in law.parameters.iter_mut().enumerate() {
+            if parameter.card.name == "k" {
+                parameter.value = 0.0;
+                further.push(before - count + index);
+            }
+        }
+    }
+    Linearised::new(&extended, &own, &further, recordings, settings).ok()
+}
