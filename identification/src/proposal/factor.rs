@@ -332,11 +332,14 @@ pub(super) static ROD_TO_TANK: [Factor; 2] =
     [plain("laminar", "(p_rod - p_tank)", PRESSURE), plain("turbulent", "root(p_rod - p_tank)", ROOT_OF_PRESSURE)];
 
 /// How an edge of the valve may depend on the opening.
-pub(super) static EDGE: [Factor; 4] = [
+pub(super) static EDGE: [Factor; 6] = [
     plain("towards_cap", "max(u, 0)", AREA),
     plain("towards_rod", "max(-u, 0)", AREA),
     plain("square_opening", "u^2", AREA_2),
     plain("abs_opening", "abs(u)", AREA),
+    // What a resistance in series takes: the first power of a series in it.
+    plain("cube_towards_cap", "max(u, 0)^3", AREA_3),
+    plain("cube_towards_rod", "max(-u, 0)^3", AREA_3),
 ];
 
 /// How a change of the opening depends on the opening.

@@ -19,6 +19,8 @@ mod screening;
 mod shortlist;
 mod simplest;
 mod term;
+#[cfg(test)]
+mod tests;
 mod unit;
 
 pub use guess::{Guess, first_guess};

@@ -18,12 +18,20 @@ use crate::regression::{RegressionError, WeakFormSettings, WeakTerms, weak_terms
 
 /// A place where terms enter: a row at a site, with the number of its probe.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Entry {
+pub(super) struct Entry {
     row: Row,
     site: Site,
-    probe: usize,
+    pub(super) probe: usize,
     /// The cylinder that a term there may name.
     cylinder: usize,
+}
+
+impl Entry {
+    /// Whether it is this row at this site.
+    #[cfg(test)]
+    pub(super) fn is(&self, row: Row, site: Site) -> bool {
+        self.row == row && self.site == site
+    }
 }
 
 /// A term that was tried.
@@ -106,7 +114,7 @@ pub(super) fn screen(
 }
 
 /// The model with a probe in every row at every site.
-fn probed(model: &Model) -> (Model, usize, Vec<Entry>) {
+pub(super) fn probed(model: &Model) -> (Model, usize, Vec<Entry>) {
     let (mut probed, mut probes, mut entries) = (model.clone(), 0, Vec::new());
     for card in ROWS.iter().filter(|card| !card.row.is_a_reading()) {
         let Some(probe) = probe(card.row) else { continue };
@@ -163,7 +171,7 @@ fn tries(entries: &[Entry], terms_of: &WeakTerms<'_>) -> Vec<(Entry, Term, Vec<f
 }
 
 /// A term with given shapes, to be evaluated.
-struct Evaluated {
+pub(super) struct Evaluated {
     law: Law,
     entry: Entry,
     sized: Sized,
@@ -171,7 +179,7 @@ struct Evaluated {
 }
 
 impl Evaluated {
-    fn new(model: &Model, entry: Entry, term: Term, shapes: &[f64]) -> Option<Evaluated> {
+    pub(super) fn new(model: &Model, entry: Entry, term: Term, shapes: &[f64]) -> Option<Evaluated> {
         let cylinder = model.machine.cylinders.get(entry.cylinder).map_or(String::new(), |one| one.name.clone());
         let sized = Sized { term, shapes: shapes.to_vec(), coefficient: 1.0, cylinder };
         let text = law_text(std::slice::from_ref(&sized), "")?;
@@ -186,7 +194,7 @@ impl Evaluated {
     }
 
     /// Its value for each recording, for each sample.
-    fn values(&self, terms: &WeakTerms<'_>) -> Vec<Vec<f64>> {
+    pub(super) fn values(&self, terms: &WeakTerms<'_>) -> Vec<Vec<f64>> {
         let of_recording = |situations: &Vec<Situation<'_, f64>>| {
             let states = self.states(situations);
             let value = |(sample, now): (usize, &Situation<'_, f64>)| {

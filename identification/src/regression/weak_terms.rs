@@ -156,9 +156,12 @@ fn situations<'m>(
     all
 }
 
+/// Share of the rows in which a term may be unknown, as a velocity is at both ends of a recording.
+const MOST_UNKNOWN: f64 = 0.02;
+
 impl WeakTerms<'_> {
     /// The regressor of a term that enters where probe number `probe` does: `values` are the term's, for each recording, for each sample.
-    /// `None` where the term cannot be evaluated in a row that feels it.
+    /// `None` where the term cannot be evaluated in many rows that feel it.
     pub fn regressor(&self, probe: usize, values: &[Vec<f64>]) -> Option<Vec<f64>> {
         let row = |place: &Place| {
             let gains = &self.gains[place.recording][place.equation][probe];
@@ -172,7 +175,9 @@ impl WeakTerms<'_> {
                 window.weights.iter().zip(products).map(|([weight, ..], (gain, value))| weight * gain * value).sum();
             -place.scale * sum
         };
-        let column: Vec<f64> = self.places.iter().map(row).collect();
-        column.iter().all(|value| value.is_finite()).then_some(column)
+        let mut column: Vec<f64> = self.places.iter().map(row).collect();
+        let unknown = column.iter().filter(|value| !value.is_finite()).count();
+        column.iter_mut().filter(|value| !value.is_finite()).for_each(|value| *value = 0.0);
+        (unknown as f64 <= MOST_UNKNOWN * column.len() as f64).then_some(column)
     }
 }
