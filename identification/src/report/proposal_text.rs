@@ -103,8 +103,9 @@ fn smaller(found: &Proposals, proposal: &Proposal) -> String {
 /// In which equation and along which variable the model fails.
 fn lacking(found: &Proposals) -> Option<String> {
     let left = found.lacking.as_ref()?;
+    let without = if found.proposals.is_empty() { "The" } else { "Without it the" };
     Some(format!(
-        "Without it the {} is off, and {} of its squared residual follows the {}.",
+        "{without} {} is off, and {} of its squared residual follows the {}.",
         words::equation(&left.equation),
         percent(left.share_of_residual),
         words::variable(left.variable)
