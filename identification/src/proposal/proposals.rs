@@ -196,6 +196,15 @@ fn of_trial(
     Ok(found)
 }
 
+/// Whether no new law of a trial puts energy into the machine along the recordings.
+pub(super) fn laws_dissipate(trial: &Trial, recordings: &[&Recording]) -> bool {
+    let along = recordings.iter().map(|recording| situations_along(&trial.fit.model, recording));
+    let situations: Vec<_> = along.flatten().flatten().collect();
+    let laws = trial.additions.iter().filter_map(|addition| trial.effect(addition));
+    let mut laws = laws.filter_map(|effect| Some((law_of(effect)?, effect)));
+    laws.all(|(law, effect)| merits(&law, effect, &situations).dissipates)
+}
+
 /// A formula that starts where the fit has ended.
 fn fitted_text(text: &FormulaText, effect: &ModelEffect) -> FormulaText {
     let mut text = text.clone();

@@ -7,14 +7,14 @@ use excavator_model::recording::Recording;
 use std::sync::Arc;
 
 use super::curve::table_law;
-use super::proposals::{ProposalVerdict, Proposals, proposals};
+use super::proposals::{ProposalVerdict, Proposals, laws_dissipate, proposals};
 use super::screening::screen;
 use super::shortlist::{Candidate, Shortlist};
 use super::simplest::simplest_first;
 use super::term::law_text;
 use crate::decision::{Kind, Policy, Reason, Verdict};
 use crate::diagnosis::{DiagnosisError, DiagnosisSettings, unexplained};
-use crate::search::{Addition, Effort, Pool, search, try_laws};
+use crate::search::{Addition, Effort, Pool, Trial, search, try_laws};
 
 /// Times that laws are added to the best hypothesis so far. Two laws that nobody knows are more than recordings of one machine tell apart.
 const ROUNDS: usize = 2;
@@ -51,7 +51,8 @@ pub fn propose(
             if explained { ProposalVerdict::Law } else { ProposalVerdict::NoLaw }
         }
     };
-    let verdict = simplest_first(pool.verdict(policy), &pool.trials);
+    let dissipates = |trial: &Trial| laws_dissipate(trial, identification);
+    let verdict = simplest_first(pool.verdict(policy), &pool.trials, &dissipates);
     proposals(kind, pool, verdict, identification, validation)
 }
 

@@ -4,15 +4,18 @@ use crate::decision::{Reason, Verdict};
 use crate::search::Trial;
 
 /// The verdict with the simplest hypothesis of its set first, and those away that predict no better with more parameters: a coefficient
-/// that may be zero, a threshold where nothing is.
-pub(super) fn simplest_first(mut verdict: Verdict, trials: &[Trial]) -> Verdict {
+/// that may be zero, a threshold where nothing is. Of equally simple ones those come first that never put energy into the machine.
+pub(super) fn simplest_first(mut verdict: Verdict, trials: &[Trial], dissipates: &dyn Fn(&Trial) -> bool) -> Verdict {
     let complexity = |number: &usize| trials.get(*number).map_or(usize::MAX, parameters_of_laws);
     let Some(fewest) = verdict.set.iter().map(complexity).min() else { return verdict };
     verdict.set.retain(|number| complexity(number) == fewest);
-    verdict.set.sort_by(|a, b| {
-        let ratio = |number: usize| verdict.standings[number].log_error_ratio;
-        ratio(*a).total_cmp(&ratio(*b))
-    });
+    let order = |number: &usize| {
+        let puts_energy_in = trials.get(*number).is_some_and(|trial| !dissipates(trial));
+        (puts_energy_in, verdict.standings[*number].log_error_ratio)
+    };
+    let mut ordered: Vec<(usize, (bool, f64))> = verdict.set.iter().map(|number| (*number, order(number))).collect();
+    ordered.sort_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    verdict.set = ordered.into_iter().map(|(number, _)| number).collect();
     verdict.best = verdict.set[0];
     verdict.reasons.retain(|reason| !matches!(reason, Reason::Indistinguishable { .. }));
     if verdict.set.len() > 1 {

@@ -24,6 +24,8 @@ pub struct LawScore {
     pub kind: ProposalVerdict,
     /// The first proposal that is a law, with its numbers.
     pub first: Option<String>,
+    /// Other laws that cannot be told from it.
+    pub tied: Vec<String>,
     /// Log error ratio on the validation recording, before and with the first proposal.
     pub validation: [f64; 2],
     /// Loss on the third recording, before and with the first proposal.
@@ -69,7 +71,10 @@ impl LawScore {
         let [before, after] = self.validation;
         let [third_before, third_after] = self.third;
         let wrong = if self.is_wrong() { " FAILS ON THE THIRD" } else { "" };
-        let first = self.first.clone().unwrap_or_default();
+        let mut first = self.first.clone().unwrap_or_default();
+        if !self.tied.is_empty() {
+            first += &format!("; tied: {}", self.tied.join(" | "));
+        }
         format!(
             "{}{wrong}, log error ratio {before:.2} -> {after:.2}, third {third_before:.2} -> {third_after:.2}, {:.1} s: {first}",
             self.kind.name(),
@@ -99,6 +104,12 @@ pub fn propose_for(case: &mut Case, evidence: &Evidence, noise: f64, without: &[
     Ok(LawScore {
         kind: found.kind,
         first: words(&found, trial),
+        tied: found
+            .proposals
+            .iter()
+            .filter(|proposal| proposal.is_in_set && proposal.trial != trial)
+            .map(|proposal| proposal.text.formula.clone())
+            .collect(),
         validation: [ratio(0), ratio(trial)],
         third: [loss(0)?, loss(trial)?],
         seconds,
