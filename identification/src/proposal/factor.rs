@@ -191,11 +191,12 @@ const SMALL_OPENING: Shape = Shape {
 pub(super) static ONE: Factor = plain("", "", PURE);
 
 /// How a resisting force depends on speed.
-pub(super) static RESISTING: [Factor; 5] = [
+pub(super) static RESISTING: [Factor; 6] = [
     plain("coulomb", "sign(v)", PURE),
     plain("viscous", "v", SPEED),
     plain("quadratic", "v*abs(v)", SPEED_2),
     shaped("falling", "sign(v)*exp(-abs(v)/{v0})", PURE, &[FALL]),
+    shaped("stribeck", "sign(v)*exp(-(v/{v0})^2)", PURE, &[FALL]),
     shaped("saturating", "tanh(v/{v0})", PURE, &[KNEE]),
 ];
 

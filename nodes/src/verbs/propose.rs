@@ -1,9 +1,9 @@
 //! `excavator propose`
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use excavator_identification::diagnosis::DiagnosisSettings;
-use excavator_identification::proposal::{Proposals, propose};
+use excavator_identification::proposal::{Proposal, ProposalVerdict, Proposals, propose};
 use excavator_identification::report::{proposal_page, proposal_sentence};
 use excavator_model::Model;
 use excavator_model::document::catalogue_text;
@@ -55,13 +55,28 @@ fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
     if !found.proposals.is_empty() {
         print(&proposal_table(found).to_string());
     }
-    if let Some(first) = found.proposals.first() {
-        let file = arguments.output.as_ref().map_or("laws.toml".to_string(), |path| path.display().to_string());
-        let name = format!("{}@{}", first.text.name, first.place);
-        let written = if arguments.output.is_none() { "Write the laws with -o laws.toml, then add" } else { "Add" };
+    let Some(first) = found.proposals.first() else { return };
+    let file = arguments.output.as_ref().map_or("laws.toml".to_string(), |path| path.display().to_string());
+    let model = &arguments.model.model;
+    let name = |proposal: &Proposal| format!("{}@{}", proposal.text.name, proposal.place);
+    let written = if arguments.output.is_none() { "Write the laws with -o laws.toml. To add" } else { "To add" };
+    let recordings = &arguments.recordings;
+    let paths = |bags: &[PathBuf]| bags.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(" ");
+    let map = recordings.mapping.map.as_ref().map_or(String::new(), |map| format!(" --map {}", map.display()));
+    print(&format!(
+        "{written} the first: excavator refine --model {model} --catalogue {file} --add {} --identification {} --validation {}{map} -o refined.toml",
+        name(first),
+        paths(&recordings.identification),
+        paths(&recordings.validation)
+    ));
+    let tied: Vec<String> = found.proposals.iter().filter(|one| one.is_in_set).map(name).take(MOST_TIED).collect();
+    if found.kind == ProposalVerdict::Law && found.diagnosis.verdict.set.len() > 1 {
         print(&format!(
-            "{written} the first: excavator refine --model {} --catalogue {file} --add {name} --identification ... --validation ... -o refined.toml",
-            arguments.model.model
+            "A manoeuvre that tells them apart: excavator design --model {model} --catalogue {file} --between {} -o profile.toml",
+            tied.join(",")
         ));
     }
 }
+
+/// Most laws that a manoeuvre is designed for.
+const MOST_TIED: usize = 3;
