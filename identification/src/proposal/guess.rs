@@ -1,38 +1,43 @@
-//! The quick part of a search for laws: what the equations say, before any simulation.
+//! The quick part of a search for laws: what single terms promise, before any is fitted.
 
 use excavator_model::formula::FormulaText;
 use excavator_model::recording::Recording;
-use excavator_model::{Model, site_name};
+use excavator_model::site_name;
 
 use super::screening::screen;
-use super::shortlist::first_of;
+use super::shortlist::Shortlist;
 use super::term::law_text;
+use crate::fit::{Fit, FitSettings};
 use crate::regression::RegressionError;
 
-/// The law that explains most of what the equations lack. Nothing was simulated with it.
+/// The law of one term that promises most. It was not fitted, and not judged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guess {
-    /// The law, with what a regression says of its numbers.
+    /// The law, its coefficient after a first step.
     pub text: FormulaText,
     /// Name of its place.
     pub place: String,
-    /// By how much the logarithm of the likelihood of the equations grows with it, less what the size of the search costs.
-    pub evidence: f64,
+    /// Fall of the loss of the identification recordings that it promises; see [`Fit::loss`].
+    pub improvement: f64,
 }
 
-/// What the equations of a fitted model lack, as the law of one term that explains most of it. `None` where no term explains anything.
+/// What a fitted model lacks, as the law of one term that promises most. `None` where no term promises anything.
 ///
 /// # Errors
 /// [`RegressionError`] when a recording lacks inputs.
 pub fn first_guess(
-    model: &Model,
+    given: &Fit,
     identification: &[&Recording],
     validation: &[&Recording],
+    settings: &FitSettings,
 ) -> Result<Option<Guess>, RegressionError> {
-    let first = first_of(&screen(model, identification, validation)?);
-    Ok(first.and_then(|first| {
-        let text = law_text(&first.terms, "")?;
-        let place = site_name(&model.machine, first.site).to_string();
-        Some(Guess { text, place, evidence: first.evidence })
+    let model = &given.model;
+    let screening = screen(model, identification, validation)?;
+    let listed = Shortlist::new(model, given.loss(), &screening, identification, settings);
+    let first = listed.foretold.first().filter(|first| first.improvement > 0.0).zip(listed.singles.first());
+    Ok(first.and_then(|(promised, law)| {
+        let text = law_text(&law.terms, "")?;
+        let place = site_name(&model.machine, law.site).to_string();
+        Some(Guess { text, place, improvement: promised.improvement })
     }))
 }

@@ -18,6 +18,7 @@ mod quantity;
 mod screening;
 mod shortlist;
 mod simplest;
+mod survey;
 mod term;
 #[cfg(test)]
 mod tests;
@@ -27,3 +28,4 @@ pub use guess::{Guess, first_guess};
 pub use merits::Merits;
 pub use proposals::{Proposal, ProposalVerdict, Proposals};
 pub use propose::propose;
+pub use survey::{Finding, Survey};

@@ -6,6 +6,7 @@ use excavator_model::{ModelEffect, site_name};
 
 use super::merits::{Merits, law_of, merits};
 use super::simplest::parameters_of_laws;
+use super::survey::Survey;
 use super::term::rounded;
 use crate::decision::Verdict;
 use crate::diagnosis::{Diagnosis, DiagnosisError, Unexplained, diagnosis_of, unexplained};
@@ -83,6 +84,8 @@ pub struct Proposals {
     pub before: Vec<Comparison>,
     /// Everything that was tried, the laws among the hypotheses.
     pub diagnosis: Diagnosis,
+    /// Where something is missing and what it depends on, by what single terms promise.
+    pub survey: Survey,
     /// What the given model lacks, as a curve; none where its catalogue explains it.
     pub lacking: Option<Unexplained>,
 }
@@ -115,7 +118,7 @@ pub(super) fn proposals(
     let is_sure =
         |proposal: &Proposal| proposal.is_in_set || proposal.is_a_curve || proposal.merits.unsure_signs.is_empty();
     proposals.retain(is_sure);
-    Ok(Proposals { kind, proposals, error_before, before, diagnosis, lacking })
+    Ok(Proposals { survey: Survey::default(), kind, proposals, error_before, before, diagnosis, lacking })
 }
 
 /// Trials with laws that improve on the given model: those of the verdict first, then by what they leave; curves last.

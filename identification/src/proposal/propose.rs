@@ -11,6 +11,7 @@ use super::proposals::{ProposalVerdict, Proposals, laws_dissipate, proposals};
 use super::screening::screen;
 use super::shortlist::{Candidate, Shortlist};
 use super::simplest::simplest_first;
+use super::survey::Survey;
 use super::term::law_text;
 use crate::decision::{Kind, Policy, Reason, Verdict};
 use crate::diagnosis::{DiagnosisError, DiagnosisSettings, unexplained};
@@ -38,12 +39,13 @@ pub fn propose(
     let half = |what: &str, done: f64| progress(what, 0.5 * done);
     let mut pool = search(model, identification, validation, effort, policy, &half)?;
     let verdict = pool.verdict(policy);
+    let mut survey = Survey::default();
     let kind = match verdict.kind {
         Kind::Adequate => ProposalVerdict::Adequate,
         Kind::MissingEffect => ProposalVerdict::MissingEffect,
         Kind::Unexplained => {
             let trials = Trials { identification, validation, effort, policy, progress };
-            trials.of_laws(&mut pool)?;
+            survey = trials.of_laws(&mut pool)?;
             let explained = is_explained(&pool.verdict(policy));
             if !explained {
                 trials.of_the_curve(&mut pool)?;
@@ -53,7 +55,7 @@ pub fn propose(
     };
     let dissipates = |trial: &Trial| laws_dissipate(trial, identification);
     let verdict = simplest_first(pool.verdict(policy), &pool.trials, &dissipates);
-    proposals(kind, pool, verdict, identification, validation)
+    Ok(Proposals { survey, ..proposals(kind, pool, verdict, identification, validation)? })
 }
 
 /// Share of the misfit that a first law may leave for a second one to be looked for beside it.
@@ -75,8 +77,9 @@ struct Trials<'a> {
 
 impl Trials<'_> {
     /// Laws from the equations, added to the given model, then to the best hypothesis so far, until one explains the recordings.
-    fn of_laws(&self, pool: &mut Pool<'_>) -> Result<(), DiagnosisError> {
-        let mut base = 0;
+    /// Gives what single terms promise beside the given model.
+    fn of_laws(&self, pool: &mut Pool<'_>) -> Result<Survey, DiagnosisError> {
+        let (mut base, mut survey) = (0, Survey::default());
         for round in 0..ROUNDS {
             let share = |done: f64| 0.5 + 0.5 * (round as f64 + done) / (ROUNDS + 1) as f64;
             (self.progress)("terms on the equations", share(0.0));
@@ -84,6 +87,9 @@ impl Trials<'_> {
             let screening = screen(&given.model, self.identification, self.validation)?;
             let fitting = &self.effort.fit;
             let listed = Shortlist::new(&given.model, given.loss(), &screening, self.identification, fitting);
+            if round == 0 {
+                survey = Survey::of(&given.model, &listed.foretold);
+            }
             let progress = |what: &str, done: f64| (self.progress)(what, share(done));
             let laws = additions(&listed.singles, pool);
             try_laws(pool, base, laws, self.effort, self.policy, &progress);
@@ -95,11 +101,11 @@ impl Trials<'_> {
             let ratio = |number: usize| verdict.standings[number].log_error_ratio;
             let is_promising = verdict.best != 0 && ratio(verdict.best) < LARGEST_REST * ratio(0);
             if is_explained(&verdict) || !is_promising {
-                return Ok(());
+                return Ok(survey);
             }
             base = verdict.best;
         }
-        Ok(())
+        Ok(survey)
     }
 
     /// The curve of what is left, so that the error falls where nobody understands it yet.

@@ -42,7 +42,8 @@ const SAME: f64 = 0.999_999;
 /// What is worth a fit.
 pub(super) struct Shortlist<'a> {
     screening: &'a Screening,
-    foretold: Vec<Promised>,
+    /// What every term promises, the best first.
+    pub foretold: Vec<Promised>,
     /// Laws of one term.
     pub singles: Vec<Candidate>,
 }
@@ -81,13 +82,6 @@ impl<'a> Shortlist<'a> {
 
 /// Fall of the loss that several terms must promise beyond the best single one.
 const LEAST_GAIN: f64 = 0.05;
-
-/// The simplest law that explains most by the equations alone.
-pub(super) fn first_of(screening: &Screening) -> Option<Candidate> {
-    let singles: Vec<Candidate> = screening.best.iter().map(single).collect();
-    let positive = singles.iter().filter(|one| one.evidence > 0.0);
-    distinct(screening, positive, 1).first().map(|&one| one.clone())
-}
 
 fn extend(listed: &mut Vec<Candidate>, more: Vec<&Candidate>) {
     for one in more {

@@ -45,6 +45,15 @@ impl Term {
         1 + self.factors.iter().map(|factor| factor.shapes.len()).sum::<usize>()
     }
 
+    /// Whether a variable is in its formula; `z` is its memory.
+    pub fn uses(&self, variable: &str) -> bool {
+        let is_word = |part: &str| part == variable || variable == "q" && part == "qd";
+        self.factors.iter().any(|factor| {
+            let words = factor.text.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_');
+            factor.memory.is_some() && variable == "z" || words.into_iter().any(is_word)
+        })
+    }
+
     /// Whether it names a cylinder.
     pub fn names_a_cylinder(&self) -> bool {
         self.factors.iter().any(|factor| factor.text.contains("{c}"))

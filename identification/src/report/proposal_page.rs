@@ -8,14 +8,14 @@ use maud::{Markup, html};
 use super::diagnosis_page::diagnosis_sections;
 use super::effect_plot::effect_plot;
 use super::frontier_plot::frontier_plot;
-use super::numbers::{ratio, significant};
+use super::numbers::{percent, ratio, significant};
 use super::page::{Section, page, tile};
 use super::parameter_table;
 use super::proposal_text::{numbers, proposal_sentence, remarks};
 use super::time_plots::{AFTER, BEFORE, Line, hint, time_plots};
 use super::unexplained_plot::unexplained_plot;
 use crate::diagnosis::contribution;
-use crate::proposal::{Proposal, ProposalVerdict, Proposals};
+use crate::proposal::{Finding, Proposal, ProposalVerdict, Proposals, Survey};
 use crate::validation::{Comparison, compare};
 
 /// A page with proposed laws: what is missing as a curve, the laws on it, error against complexity, and the measurement before and after.
@@ -42,6 +42,10 @@ pub fn proposal_page(model: &Model, found: &Proposals) -> String {
             body: unexplained_plot(machine, left),
         });
     }
+    if !found.survey.rows.is_empty() {
+        let body = survey(&found.survey);
+        sections.push(Section { anchor: "needs", title: "Where, and of what".into(), body });
+    }
     if !found.proposals.is_empty() {
         let body = html! {
             (table(found))
@@ -67,6 +71,30 @@ pub fn proposal_page(model: &Model, found: &Proposals) -> String {
 
 /// Most laws with a picture of their own.
 const MOST_SHOWN: usize = 3;
+
+/// Which rows and variables single terms speak for.
+fn survey(survey: &Survey) -> Markup {
+    let table = |head: &str, last: &str, findings: &[Finding]| {
+        html! {
+            table.data {
+                thead { tr { th { (head) } th.n { (last) } } }
+                tbody { @for one in findings.iter().take(MOST_FINDINGS) { tr { td { code { (one.name) } } td.n { (percent(one.share)) } } } }
+            }
+        }
+    };
+    html! {
+        (table("Enters", "of the best promise", &survey.rows))
+        (table("Variable", "lost without it", &survey.variables))
+        p.note {
+            "By what terms of one product promise before any is fitted. Left column of a row: the best term there beside the best of all. "
+            "Of a variable: how much of the promise is lost when no term may use it; " code { "z" } " is a memory. Rows and variables "
+            "that stand close together are not told apart by these recordings."
+        }
+    }
+}
+
+/// Most rows and variables in the survey.
+const MOST_FINDINGS: usize = 8;
 
 fn table(found: &Proposals) -> Markup {
     html! {

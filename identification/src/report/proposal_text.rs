@@ -46,7 +46,7 @@ pub fn proposal_sentence(model: &Model, found: &Proposals) -> String {
     sentences.join(" ")
 }
 
-/// What the equations alone say of a law that is missing.
+/// What single terms promise.
 pub fn guess_sentence(guess: &Guess) -> String {
     let text = &guess.text;
     let number = |(name, parameter): (&String, &excavator_model::formula::ParameterText)| {
@@ -56,7 +56,7 @@ pub fn guess_sentence(guess: &Guess) -> String {
     };
     let numbers: Vec<String> = text.parameters.iter().map(number).collect();
     format!(
-        "Of single terms, {} = {} at the {} explains most of it in the equations, with {}; it was not fitted or judged.",
+        "Of single terms, {} = {} at the {} promises most, with {}; it was not fitted or judged.",
         words::spoken(&text.acts_on),
         text.formula,
         guess.place,

@@ -1,7 +1,7 @@
 //! Proposed laws for people and for programs.
 
 use comfy_table::{Cell, ContentArrangement, Table};
-use excavator_identification::proposal::{Guess, Proposal, ProposalVerdict, Proposals};
+use excavator_identification::proposal::{Finding, Guess, Proposal, ProposalVerdict, Proposals};
 use excavator_identification::report::{law_remarks, law_result};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -32,7 +32,7 @@ pub fn proposal_table(found: &Proposals) -> Table {
     table
 }
 
-/// What the equations alone say of a law that is missing.
+/// What single terms promise.
 pub fn guess_json(guess: &Guess) -> Value {
     json!({
         "formula": guess.text.formula,
@@ -43,8 +43,12 @@ pub fn guess_json(guess: &Guess) -> Value {
             "value": parameter.start.first(),
             "unit": parameter.unit,
         })).collect::<Vec<_>>(),
-        "evidence": finite(guess.evidence),
+        "promised_improvement": finite(guess.improvement),
     })
+}
+
+fn findings(findings: &[Finding]) -> Vec<Value> {
+    findings.iter().map(|one| json!({"name": one.name, "share": finite(one.share)})).collect()
 }
 
 /// Result of `propose`.
@@ -94,6 +98,8 @@ pub fn proposal_json(model: &Model, found: &Proposals, validation: &[&Recording]
         "verdict": found.kind.name(),
         "proposals": found.proposals.iter().map(proposal).collect::<Vec<_>>(),
         "unexplained": lacking,
+        "enters": findings(&found.survey.rows),
+        "depends_on": findings(&found.survey.variables),
         "candidates": of_catalogue["candidates"],
         "reasons": of_catalogue["reasons"],
     })

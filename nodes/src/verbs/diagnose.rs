@@ -77,13 +77,14 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     Ok(())
 }
 
-/// Where nothing of the catalogue explains the recordings: what the equations alone say.
+/// Where nothing of the catalogue explains the recordings: the term that promises most.
 fn guess(diagnosis: &Diagnosis, identification: &[&Recording], validation: &[&Recording]) -> Option<Guess> {
     if diagnosis.verdict.kind != Kind::Unexplained {
         return None;
     }
     // Without the signals of an equation there is nothing to guess from; the verdict stands without.
-    first_guess(&diagnosis.supported().fit.model, identification, validation).ok().flatten()
+    let settings = DiagnosisSettings::default().effort.fit;
+    first_guess(&diagnosis.supported().fit, identification, validation, &settings).ok().flatten()
 }
 
 fn propose_command(arguments: &DiagnoseArguments) -> String {

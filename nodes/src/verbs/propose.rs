@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use excavator_identification::diagnosis::DiagnosisSettings;
-use excavator_identification::proposal::{Proposal, ProposalVerdict, Proposals, propose};
+use excavator_identification::proposal::{Finding, Proposal, ProposalVerdict, Proposals, propose};
 use excavator_identification::report::{proposal_page, proposal_sentence};
 use excavator_model::Model;
 use excavator_model::document::catalogue_text;
@@ -55,6 +55,14 @@ fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
     if !found.proposals.is_empty() {
         print(&proposal_table(found).to_string());
     }
+    if !found.survey.rows.is_empty() {
+        let list = |findings: &[Finding]| {
+            let each = findings.iter().take(MOST_FINDINGS);
+            each.map(|one| format!("{} {:.0} %", one.name, 100.0 * one.share)).collect::<Vec<_>>().join(", ")
+        };
+        print(&format!("Single terms promise most in: {} of the best.", list(&found.survey.rows)));
+        print(&format!("Lost without the variable: {}.", list(&found.survey.variables)));
+    }
     let Some(first) = found.proposals.first() else { return };
     let file = arguments.output.as_ref().map_or("laws.toml".to_string(), |path| path.display().to_string());
     let model = &arguments.model.model;
@@ -77,6 +85,9 @@ fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
         ));
     }
 }
+
+/// Most rows and variables that are told.
+const MOST_FINDINGS: usize = 5;
 
 /// Most laws that a manoeuvre is designed for.
 const MOST_TIED: usize = 3;
