@@ -44,11 +44,11 @@ impl Survey {
             let row = rows.entry(format!("{}@{place}", term.term.row.card().name)).or_insert(0.0);
             *row = row.max(one.improvement / best);
         }
-        let needed = |variable: &&str| {
+        let needed = |variable: &str| {
             let without = foretold.iter().find(|one| !one.candidate.terms.iter().any(|term| term.term.uses(variable)));
             1.0 - without.map_or(0.0, |one| (one.improvement / best).max(0.0))
         };
-        let variables = VARIABLES.iter().map(|variable| (variable.to_string(), needed(&variable)));
+        let variables = VARIABLES.iter().map(|variable| (variable.to_string(), needed(variable)));
         Survey { rows: sorted(rows.into_iter()), variables: sorted(variables) }
     }
 }
