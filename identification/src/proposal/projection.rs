@@ -74,48 +74,34 @@ impl Projection {
     pub fn column(&self, fitted: &[f64], predicted: &[f64]) -> Option<Column> {
         let own = self.own_parameters(&weighed(fitted, &self.fitted.weights));
         let column = Column { fitted: self.fitted.rest(fitted, &own), predicted: self.predicted.rest(predicted, &own) };
-        let size = |values: &[f64]| values.iter().zip(&self.fitted.weights).map(|(a, w)| (a * w).powi(2)).sum::<f64>();
-        (size(&column.fitted) > LEAST_REST * size(fitted)).then_some(column)
+        let is_left = self.product(&column.fitted, &column.fitted) > LEAST_REST * self.product(fitted, fitted);
+        is_left.then_some(column)
     }
 
-    /// Coefficients of some terms together, and by how much the logarithm of the likelihood grows with them: on fitted and on predicted
-    /// recordings, each equation with a variance of its own. `None` where they cannot be told from each other.
-    pub fn gain(&self, columns: &[&Column]) -> Option<(Vec<f64>, f64)> {
-        let count = columns.len();
-        let weights = &self.fitted.weights;
-        let product = |one: &[f64], other: &[f64]| -> f64 {
-            one.iter().zip(other).zip(weights).map(|((a, b), weight)| a * b * weight * weight).sum()
-        };
-        let matrix =
-            DMatrix::from_fn(count, count, |row, column| product(&columns[row].fitted, &columns[column].fitted));
-        let right =
-            DVector::from_iterator(count, columns.iter().map(|column| product(&column.fitted, &self.fitted.left)));
-        let lengths: Vec<f64> = (0..count).map(|index| matrix[(index, index)].sqrt()).collect();
-        let alike = |row: usize, column: usize| matrix[(row, column)].abs() / (lengths[row] * lengths[column]);
-        if (0..count).any(|row| (0..row).any(|column| alike(row, column) > MOST_ALIKE)) {
-            return None;
-        }
-        let coefficients = matrix.cholesky()?.solve(&right);
-        let gain = |rows: &Rows, of: fn(&Column) -> &[f64]| {
-            let mut left = rows.left.clone();
-            for (column, coefficient) in columns.iter().zip(coefficients.iter()) {
-                left.iter_mut().zip(of(column)).for_each(|(left, value)| *left -= coefficient * value);
-            }
+    /// Coefficient of a term, and by how much the logarithm of the likelihood grows with it: on fitted and on predicted recordings, each
+    /// equation with a variance of its own.
+    pub fn gain(&self, column: &Column) -> Option<(f64, f64)> {
+        let coefficient =
+            self.product(&column.fitted, &self.fitted.left) / self.product(&column.fitted, &column.fitted);
+        let gain = |rows: &Rows, column: &[f64]| {
+            let left: Vec<f64> = rows.left.iter().zip(column).map(|(left, value)| left - coefficient * value).collect();
             let (before, after) = (rows.spreads(&rows.left), rows.spreads(&left));
             let each = before.iter().zip(&after).zip(&rows.counts);
             each.map(|((before, after), count)| 0.5 * count * (before / after).ln()).sum::<f64>()
         };
-        let both = gain(&self.fitted, |column| &column.fitted) + gain(&self.predicted, |column| &column.predicted);
-        both.is_finite().then(|| (coefficients.iter().copied().collect(), both))
+        let both = gain(&self.fitted, &column.fitted) + gain(&self.predicted, &column.predicted);
+        both.is_finite().then_some((coefficient, both))
+    }
+
+    /// Product of two columns of the fitted recordings, each row by its weight.
+    fn product(&self, one: &[f64], other: &[f64]) -> f64 {
+        one.iter().zip(other).zip(&self.fitted.weights).map(|((a, b), weight)| a * b * weight * weight).sum()
     }
 
     /// Cosine of the angle between two terms, without sign.
     pub fn likeness(&self, one: &Column, other: &Column) -> f64 {
-        let product = |a: &[f64], b: &[f64]| -> f64 {
-            a.iter().zip(b).zip(&self.fitted.weights).map(|((a, b), weight)| a * b * weight * weight).sum()
-        };
-        let lengths = product(&one.fitted, &one.fitted) * product(&other.fitted, &other.fitted);
-        product(&one.fitted, &other.fitted).abs() / lengths.sqrt()
+        let lengths = self.product(&one.fitted, &one.fitted) * self.product(&other.fitted, &other.fitted);
+        self.product(&one.fitted, &other.fitted).abs() / lengths.sqrt()
     }
 
     /// Independent rows of all recordings.
@@ -126,9 +112,6 @@ impl Projection {
 
 /// Least mean square of an equation, in units of what sensor noise explains.
 const LEAST_SPREAD: f64 = 1e-3;
-
-/// Terms more alike than this are one: no recording tells how much is of which.
-const MOST_ALIKE: f64 = 0.9995;
 
 impl Rows {
     fn new(terms: &WeakTerms<'_>, equations: &[EquationKind]) -> Rows {

@@ -1,11 +1,10 @@
 //! What comes of a search for laws.
 
-use excavator_model::formula::{FormulaText, Row};
+use excavator_model::formula::FormulaText;
 use excavator_model::recording::Recording;
 use excavator_model::{ModelEffect, site_name};
 
 use super::merits::{Merits, law_of, merits};
-use super::simplest::parameters_of_laws;
 use super::survey::Survey;
 use super::term::rounded;
 use crate::decision::Verdict;
@@ -64,13 +63,6 @@ pub struct Proposal {
     pub merits: Merits,
 }
 
-impl Proposal {
-    /// The row that it enters.
-    pub fn row(&self) -> Option<Row> {
-        Some(law_of(&self.effect)?.row())
-    }
-}
-
 /// Proposed laws and all that was tried.
 #[derive(Debug, Clone)]
 pub struct Proposals {
@@ -101,6 +93,7 @@ pub(super) fn proposals(
     kind: ProposalVerdict,
     pool: Pool<'_>,
     verdict: Verdict,
+    survey: Survey,
     identification: &[&Recording],
     validation: &[&Recording],
 ) -> Result<Proposals, DiagnosisError> {
@@ -118,7 +111,7 @@ pub(super) fn proposals(
     let is_sure =
         |proposal: &Proposal| proposal.is_in_set || proposal.is_a_curve || proposal.merits.unsure_signs.is_empty();
     proposals.retain(is_sure);
-    Ok(Proposals { survey: Survey::default(), kind, proposals, error_before, before, diagnosis, lacking })
+    Ok(Proposals { kind, survey, proposals, error_before, before, diagnosis, lacking })
 }
 
 /// Trials with laws that improve on the given model: those of the verdict first, then by what they leave; curves last.
@@ -139,7 +132,7 @@ fn ranked(diagnosis: &Diagnosis) -> Vec<usize> {
         curve_a
             .cmp(&curve_b)
             .then(ratio_a.total_cmp(&ratio_b))
-            .then(parameters_of_laws(trial(a)).cmp(&parameters_of_laws(trial(b))))
+            .then(trial(a).added_parameters().cmp(&trial(b).added_parameters()))
     });
     let curves = numbers.iter().copied().filter(|&number| is_curve(&diagnosis.trials[number])).collect::<Vec<_>>();
     numbers.retain(|number| !curves.contains(number));

@@ -1,10 +1,11 @@
 //! Proposes laws for what a model is missing.
 
-use excavator_model::Model;
+use std::sync::Arc;
+
 use excavator_model::effects::AnyEffect;
 use excavator_model::formula::{FormulaText, Law};
 use excavator_model::recording::Recording;
-use std::sync::Arc;
+use excavator_model::{Model, site_name};
 
 use super::curve::table_law;
 use super::proposals::{ProposalVerdict, Proposals, laws_dissipate, proposals};
@@ -55,7 +56,7 @@ pub fn propose(
     };
     let dissipates = |trial: &Trial| laws_dissipate(trial, identification);
     let verdict = simplest_first(pool.verdict(policy), &pool.trials, &dissipates);
-    Ok(Proposals { survey, ..proposals(kind, pool, verdict, identification, validation)? })
+    proposals(kind, pool, verdict, survey, identification, validation)
 }
 
 /// Share of the misfit that a first law may leave for a second one to be looked for beside it.
@@ -110,22 +111,13 @@ impl Trials<'_> {
 
     /// The curve of what is left, so that the error falls where nobody understands it yet.
     fn of_the_curve(&self, pool: &mut Pool<'_>) -> Result<(), DiagnosisError> {
-        let left = unexplained(&pool.given().fit.model, self.identification)?;
-        let Some(text) = left.as_ref().and_then(table_law) else { return Ok(()) };
-        let Ok(law) = Law::read(&text) else { return Ok(()) };
+        let model = &pool.given().fit.model;
+        let Some(left) = unexplained(model, self.identification)? else { return Ok(()) };
+        let Some(law) = table_law(&left).and_then(|text| Law::read(&text).ok()) else { return Ok(()) };
         let physics: AnyEffect = Arc::new(law);
-        let sites = pool.given().fit.model.free_sites(&physics);
-        let place = left.map(|left| left.equation).unwrap_or_default();
-        let machine = &pool.given().fit.model.machine;
-        let own = |site: &excavator_model::effects::Site| {
-            let name = excavator_model::site_name(machine, *site);
-            place.split_once('.').is_some_and(|(place, _)| place == name)
-        };
-        let curve: Vec<Addition> = sites
-            .iter()
-            .filter(|site| sites.len() == 1 || own(site))
-            .map(|&site| Addition { physics: physics.clone(), site })
-            .collect();
+        let place = left.equation.split_once('.').map_or("", |(place, _)| place);
+        let sites = model.free_sites(&physics).into_iter().filter(|&site| site_name(&model.machine, site) == place);
+        let curve: Vec<Addition> = sites.map(|site| Addition { physics: physics.clone(), site }).collect();
         let progress = |what: &str, _: f64| (self.progress)(what, 0.9);
         try_laws(pool, 0, curve, self.effort, self.policy, &progress);
         Ok(())

@@ -93,9 +93,9 @@ pub(super) fn screen(
                 &fitted.regressor(entry.probe, &law.values(&fitted))?,
                 &predicted.regressor(entry.probe, &law.values(&predicted))?,
             )?;
-            let (coefficients, gain) = projection.gain(&[&column])?;
+            let (coefficient, gain) = projection.gain(&column)?;
             let evidence = gain - cost_of_parameter * term.parameters() as f64 - cost_of_search;
-            let sized = Sized { coefficient: coefficients[0], ..law.sized };
+            let sized = Sized { coefficient, ..law.sized };
             Some(Screened { site: entry.site, sized, evidence, column })
         })
         .collect();

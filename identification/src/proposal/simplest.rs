@@ -6,7 +6,7 @@ use crate::search::Trial;
 /// The verdict with the simplest hypothesis of its set first, and those away that predict no better with more parameters: a coefficient
 /// that may be zero, a threshold where nothing is. Of equally simple ones those come first that never put energy into the machine.
 pub(super) fn simplest_first(mut verdict: Verdict, trials: &[Trial], dissipates: &dyn Fn(&Trial) -> bool) -> Verdict {
-    let complexity = |number: &usize| trials.get(*number).map_or(usize::MAX, parameters_of_laws);
+    let complexity = |number: &usize| trials.get(*number).map_or(usize::MAX, Trial::added_parameters);
     let Some(fewest) = verdict.set.iter().map(complexity).min() else { return verdict };
     verdict.set.retain(|number| complexity(number) == fewest);
     let order = |number: &usize| {
@@ -22,10 +22,4 @@ pub(super) fn simplest_first(mut verdict: Verdict, trials: &[Trial], dissipates:
         verdict.reasons.push(Reason::Indistinguishable { hypotheses: verdict.set.clone() });
     }
     verdict
-}
-
-/// Number of parameters that the effects of a trial add.
-pub(super) fn parameters_of_laws(trial: &Trial) -> usize {
-    let effects = trial.additions.iter().filter_map(|addition| trial.effect(addition));
-    effects.flat_map(|effect| &effect.parameters).filter(|parameter| !parameter.known).count()
 }

@@ -11,8 +11,8 @@ use nalgebra::DVector;
 use super::equation::{EquationKind, equations};
 use super::simulated::simulated;
 use super::weak_row::{SensorNoise, weak_row};
-use super::window::windows;
-use super::{RegressionError, WeakFormSettings, observe, observe_guided};
+use super::window::{Window, windows};
+use super::{Observation, RegressionError, WeakFormSettings, observe, observe_guided};
 
 /// One row, divided by what sensor noise puts into its residual.
 pub(super) struct Row {
@@ -60,12 +60,11 @@ pub(super) fn rows(
         };
         for window in windows(&recording.time, recording.sample_interval(), half_width, step) {
             for (index, equation) in measured.iter().enumerate() {
+                if !moves(equation.kind, &window, &observation, settings.velocity_guard) {
+                    continue;
+                }
                 if let EquationKind::Motion(cylinder) = equation.kind {
                     let inside = window.first..window.first + window.weights.len();
-                    let speeds = &observation.cylinders[cylinder].velocity[inside.clone()];
-                    if speeds.iter().any(|speed| speed.is_nan() || speed.abs() <= settings.velocity_guard) {
-                        continue;
-                    }
                     let own = &model.machine.cylinders[cylinder];
                     let positions = &observation.cylinders[cylinder].smooth_displacement[inside];
                     if has_stop[cylinder] && positions.iter().any(|position| own.is_at_an_end(*position, AT_THE_END)) {
@@ -98,6 +97,13 @@ pub(super) fn rows(
         simulations.push(simulation.recording);
     }
     Ok((rows, simulations))
+}
+
+/// Whether the piston of an equation of motion is known to move throughout a window: near standstill the sign of its velocity is noise.
+pub(super) fn moves(kind: EquationKind, window: &Window, observation: &Observation, slowest: f64) -> bool {
+    let EquationKind::Motion(cylinder) = kind else { return true };
+    let speeds = &observation.cylinders[cylinder].velocity[window.first..window.first + window.weights.len()];
+    speeds.iter().all(|speed| speed.abs() > slowest)
 }
 
 /// Share of the stroke at each end within which the force of a stop is a guess: it is stiff, and nobody measured where it begins.

@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 use super::equation::{Equation, EquationKind, equations};
 use super::simulated::simulated;
 use super::weak_row::weak_row;
-use super::weak_rows::sensor_noise;
+use super::weak_rows::{moves, sensor_noise};
 use super::window::{Window, windows};
 use super::{Observation, RegressionError, WeakFormSettings, observe_guided};
 
@@ -82,7 +82,7 @@ pub(crate) fn weak_terms<'m>(
         let windows = windows(&recording.time, recording.sample_interval(), half_width, step);
         for (place, window) in windows.iter().enumerate() {
             for (index, equation) in measured.iter().enumerate() {
-                if !moves(equation, window, &observation, settings.velocity_guard) {
+                if !moves(equation.kind, window, &observation, settings.velocity_guard) {
                     continue;
                 }
                 let Some(row) = weak_row(equation, window, &observation, &noise, &linkages, unknown.len()) else {
@@ -102,13 +102,6 @@ pub(crate) fn weak_terms<'m>(
     }
     terms.regressors = DMatrix::from_row_slice(terms.kinds.len(), own, &regressors);
     Ok(terms)
-}
-
-/// Whether the piston of an equation of motion moves throughout a window: near standstill the sign of its velocity is noise.
-fn moves(equation: &Equation, window: &Window, observation: &Observation, slowest: f64) -> bool {
-    let EquationKind::Motion(cylinder) = equation.kind else { return true };
-    let speeds = &observation.cylinders[cylinder].velocity[window.first..window.first + window.weights.len()];
-    speeds.iter().all(|speed| speed.abs() > slowest)
 }
 
 /// What effects of `model` see along a recording, at each sample.

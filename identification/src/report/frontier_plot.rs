@@ -14,9 +14,7 @@ pub(super) fn frontier_plot(found: &Proposals) -> Markup {
     let mut points = vec![point(0, found.error_before)];
     points.extend(found.proposals.iter().map(|proposal| {
         let trial = &found.diagnosis.trials[proposal.trial];
-        let effects = trial.additions.iter().filter_map(|addition| trial.effect(addition));
-        let free = effects.flat_map(|effect| &effect.parameters).filter(|parameter| !parameter.known);
-        point(free.count(), proposal.validation_error)
+        point(trial.added_parameters(), proposal.validation_error)
     }));
     points.retain(|(_, error)| error.is_finite());
     let most = points.iter().map(|point| point.0).fold(0.0, f64::max);

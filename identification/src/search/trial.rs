@@ -57,6 +57,12 @@ impl Trial {
         self.fit.model.effect(&addition.physics.card().name, addition.site)
     }
 
+    /// Number of free parameters that its additions bring.
+    pub fn added_parameters(&self) -> usize {
+        let effects = self.additions.iter().filter_map(|addition| self.effect(addition));
+        effects.flat_map(|effect| &effect.parameters).filter(|parameter| !parameter.known).count()
+    }
+
     /// The fitted model without one of its additions, nothing fitted again.
     pub fn model_without(&self, addition: &Addition) -> Model {
         let mut model = self.fit.model.clone();

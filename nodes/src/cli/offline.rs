@@ -189,6 +189,13 @@ impl Recordings {
     pub fn bags(&self) -> impl Iterator<Item = &PathBuf> {
         self.identification.iter().chain(&self.validation)
     }
+
+    /// The same choice for another command, as words to paste.
+    pub fn words(&self) -> String {
+        let paths = |bags: &[PathBuf]| bags.iter().map(|bag| bag.display().to_string()).collect::<Vec<_>>().join(" ");
+        let map = self.mapping.map.as_ref().map_or(String::new(), |map| format!(" --map {}", map.display()));
+        format!("--identification {} --validation {}{map}", paths(&self.identification), paths(&self.validation))
+    }
 }
 
 #[derive(Debug, Args)]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use excavator_identification::diagnosis::{Candidate, Diagnosis, Share};
+use excavator_identification::diagnosis::{Candidate, Diagnosis, Share, Unexplained};
 use excavator_identification::fit::{normalised_error, nuisances_shown};
 use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
@@ -194,18 +194,23 @@ pub fn diagnosis_json(given: &Model, diagnosis: &Diagnosis, validation: &[&Recor
         "together": together_json(diagnosis),
         "nuisances": nuisances_json(given, supported),
         "where": where_json(diagnosis),
-        "unexplained": diagnosis.unexplained.as_ref().map(|rest| json!({
-            "equation": rest.equation,
-            "variable": rest.variable,
-            "share_of_residual": finite(rest.share_of_residual),
-            "unit": rest.unit,
-            "curve": rest.curve,
-        })),
+        "unexplained": diagnosis.unexplained.as_ref().map(unexplained_json),
         "construction": construction,
         "too_coarse": diagnosis.verdict.is_too_coarse(),
         "log_error_ratio": finite(diagnosis.verdict.standings[0].log_error_ratio),
         "refitted": parameters(&given_trial.fit.model, &given_trial.fit.model.unknown_parameters()),
         "instruments": instruments_json(diagnosis),
+    })
+}
+
+/// What is left, as a curve.
+pub(super) fn unexplained_json(rest: &Unexplained) -> Value {
+    json!({
+        "equation": rest.equation,
+        "variable": rest.variable,
+        "share_of_residual": finite(rest.share_of_residual),
+        "unit": rest.unit,
+        "curve": rest.curve,
     })
 }
 

@@ -7,7 +7,7 @@ use excavator_model::Model;
 use excavator_model::recording::Recording;
 use serde_json::{Value, json};
 
-use super::json::{diagnosis_json, finite};
+use super::json::{diagnosis_json, finite, unexplained_json};
 use super::tables::{number, right, table};
 
 /// Proposals, the best first.
@@ -85,19 +85,10 @@ pub fn proposal_json(model: &Model, found: &Proposals, validation: &[&Recording]
         })
     };
     let of_catalogue = diagnosis_json(model, &found.diagnosis, validation);
-    let lacking = found.lacking.as_ref().map(|rest| {
-        json!({
-            "equation": rest.equation,
-            "variable": rest.variable,
-            "share_of_residual": finite(rest.share_of_residual),
-            "unit": rest.unit,
-            "curve": rest.curve,
-        })
-    });
     json!({
         "verdict": found.kind.name(),
         "proposals": found.proposals.iter().map(proposal).collect::<Vec<_>>(),
-        "unexplained": lacking,
+        "unexplained": found.lacking.as_ref().map(unexplained_json),
         "enters": findings(&found.survey.rows),
         "depends_on": findings(&found.survey.variables),
         "candidates": of_catalogue["candidates"],

@@ -44,8 +44,8 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         && let Some(guess) = &guess
     {
         print(&guess_sentence(guess));
-        let command = propose_command(arguments);
-        print(&format!("Fit and judge laws: {command}"));
+        let (model, recordings) = (&arguments.model.model, arguments.recordings.words());
+        print(&format!("Fit and judge laws: excavator propose --model {model} {recordings} -o laws.toml"));
     }
     let missing = ledgers(&diagnosis.given().fit.model, &validation);
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
@@ -85,20 +85,6 @@ fn guess(diagnosis: &Diagnosis, identification: &[&Recording], validation: &[&Re
     // Without the signals of an equation there is nothing to guess from; the verdict stands without.
     let settings = DiagnosisSettings::default().effort.fit;
     first_guess(&diagnosis.supported().fit, identification, validation, &settings).ok().flatten()
-}
-
-fn propose_command(arguments: &DiagnoseArguments) -> String {
-    let bags = |paths: &[std::path::PathBuf]| {
-        paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(" ")
-    };
-    let map =
-        arguments.recordings.mapping.map.as_ref().map_or(String::new(), |map| format!(" --map {}", map.display()));
-    format!(
-        "excavator propose --model {} --identification {} --validation {}{map} -o laws.toml",
-        arguments.model.model,
-        bags(&arguments.recordings.identification),
-        bags(&arguments.recordings.validation)
-    )
 }
 
 /// What the energy ledger of the refitted model says of each recording in which energy is known.

@@ -1,6 +1,6 @@
 //! `excavator propose`
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::proposal::{Finding, Proposal, ProposalVerdict, Proposals, propose};
@@ -68,14 +68,10 @@ fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
     let model = &arguments.model.model;
     let name = |proposal: &Proposal| format!("{}@{}", proposal.text.name, proposal.place);
     let written = if arguments.output.is_none() { "Write the laws with -o laws.toml. To add" } else { "To add" };
-    let recordings = &arguments.recordings;
-    let paths = |bags: &[PathBuf]| bags.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(" ");
-    let map = recordings.mapping.map.as_ref().map_or(String::new(), |map| format!(" --map {}", map.display()));
     print(&format!(
-        "{written} the first: excavator refine --model {model} --catalogue {file} --add {} --identification {} --validation {}{map} -o refined.toml",
+        "{written} the first: excavator refine --model {model} --catalogue {file} --add {} {} -o refined.toml",
         name(first),
-        paths(&recordings.identification),
-        paths(&recordings.validation)
+        arguments.recordings.words()
     ));
     let tied: Vec<String> = found.proposals.iter().filter(|one| one.is_in_set).map(name).take(MOST_TIED).collect();
     if found.kind == ProposalVerdict::Law && found.diagnosis.verdict.set.len() > 1 {
