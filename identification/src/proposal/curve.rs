@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use excavator_model::formula::{FormulaText, ParameterText};
 
-use super::term::rounded;
+use super::grammar::rounded;
 use crate::diagnosis::Unexplained;
 
 /// Knots of a table: enough for a dead zone and a fall, few enough that each has many samples.

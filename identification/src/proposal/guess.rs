@@ -4,9 +4,9 @@ use excavator_model::formula::FormulaText;
 use excavator_model::recording::Recording;
 use excavator_model::site_name;
 
+use super::grammar::law_text;
 use super::screening::screen;
 use super::shortlist::Shortlist;
-use super::term::law_text;
 use crate::fit::{Fit, FitSettings};
 use crate::regression::RegressionError;
 

@@ -43,8 +43,7 @@ pub(super) fn memory_along(
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use super::super::factor::REMEMBERING;
-    use super::super::term::{Sized, Term, law_text};
+    use super::super::grammar::{REMEMBERING, Sized, Term, law_text};
     use super::*;
     use excavator_model::document::built_in;
     use excavator_model::formula::Row;

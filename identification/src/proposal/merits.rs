@@ -2,8 +2,8 @@
 
 use excavator_model::ModelEffect;
 
+use super::grammar::COEFFICIENT;
 use super::memory::memory_along;
-use super::term::COEFFICIENT;
 use excavator_model::effects::Site;
 use excavator_model::equations::Situation;
 use excavator_model::formula::{Law, Row};
@@ -64,7 +64,7 @@ pub(super) fn merits(law: &Law, effect: &ModelEffect, situations: &[Situation<'_
 pub(super) fn change(law: &Law, site: Site, parameters: &[f64], states: &[f64], now: &Situation<'_, f64>) -> f64 {
     let value = law.value(site, parameters, states, now);
     match (law.row(), site) {
-        (Row::Opening, Site::Cylinder(cylinder)) => value - now.pistons[cylinder].opening,
+        (row, Site::Cylinder(cylinder)) if row.is_an_opening() => value - now.pistons[cylinder].opening,
         _ => value,
     }
 }

@@ -5,7 +5,6 @@
 //! (`curve`), and says so.
 
 mod curve;
-mod factor;
 mod grammar;
 mod guess;
 mod memory;
@@ -14,15 +13,12 @@ mod projection;
 mod promise;
 mod proposals;
 mod propose;
-mod quantity;
 mod screening;
 mod shortlist;
 mod simplest;
 mod survey;
-mod term;
 #[cfg(test)]
 mod tests;
-mod unit;
 
 pub use guess::{Guess, first_guess};
 pub use merits::Merits;

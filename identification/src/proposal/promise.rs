@@ -11,8 +11,8 @@ use excavator_model::formula::Law;
 use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
+use super::grammar::{Sized, law_text};
 use super::shortlist::Candidate;
-use super::term::{Sized, law_text};
 use crate::fit::{FitSettings, Linearised};
 
 /// Laws that are simulated together. Each costs its evaluation in every direction, all together the directions of the model's own.
@@ -44,6 +44,7 @@ pub(super) fn promised(
                 let terms =
                     candidate.terms.iter().zip(&promise.values).map(|(term, value)| stepped(term, *value)).collect();
                 let candidate = Candidate { terms, ..candidate.clone() };
+                law_text(&candidate.terms, "")?;
                 Some(Promised { candidate, improvement: linearised.loss_before - promise.loss })
             });
             each.collect::<Vec<Promised>>()
@@ -110,11 +111,12 @@ const KEPT: usize = 6;
 /// Fall of the loss that a further term must promise.
 const LEAST_STEP: f64 = 0.03;
 
-/// Whether terms can be one law: in one row, of different kinds, and no two of them forces of pressures.
+/// Whether terms can be one law: products in one row, of different kinds, and no two of them forces of pressures.
 fn fits(singles: &[Candidate], numbers: &[usize]) -> bool {
     let terms: Vec<&Sized> = numbers.iter().filter_map(|&number| singles[number].terms.first()).collect();
     let first = &singles[numbers[0]];
     numbers.iter().all(|&number| singles[number].site == first.site)
+        && !terms.iter().any(|term| term.term.is_whole())
         && terms.iter().all(|term| term.term.row == terms[0].term.row)
         && terms.iter().enumerate().all(|(number, term)| terms[..number].iter().all(|other| other.term != term.term))
         && terms.iter().filter(|term| term.term.is_a_force_of_pressure()).count() < 2

@@ -4,9 +4,9 @@ use excavator_model::formula::FormulaText;
 use excavator_model::recording::Recording;
 use excavator_model::{ModelEffect, site_name};
 
+use super::grammar::rounded;
 use super::merits::{Merits, law_of, merits};
 use super::survey::Survey;
-use super::term::rounded;
 use crate::decision::Verdict;
 use crate::diagnosis::{Diagnosis, DiagnosisError, Unexplained, diagnosis_of, unexplained};
 use crate::regression::situations_along;

@@ -8,12 +8,12 @@ use excavator_model::recording::Recording;
 use excavator_model::{Model, site_name};
 
 use super::curve::table_law;
+use super::grammar::law_text;
 use super::proposals::{ProposalVerdict, Proposals, laws_dissipate, proposals};
 use super::screening::screen;
 use super::shortlist::{Candidate, Shortlist};
 use super::simplest::simplest_first;
 use super::survey::Survey;
-use super::term::law_text;
 use crate::decision::{Kind, Policy, Reason, Verdict};
 use crate::diagnosis::{DiagnosisError, DiagnosisSettings, unexplained};
 use crate::search::{Addition, Effort, Pool, Trial, search, try_laws};

@@ -9,11 +9,10 @@ use excavator_model::formula::{Law, ROWS, Row};
 use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
-use super::grammar::terms;
+use super::grammar::{ONE, Sized, Term, law_text, terms};
 use super::memory::memory_along;
 use super::merits::change;
 use super::projection::{Column, Projection};
-use super::term::{Sized, Term, law_text};
 use crate::regression::{RegressionError, WeakFormSettings, WeakTerms, weak_terms};
 
 /// A place where terms enter: a row at a site, with the number of its probe.
@@ -93,7 +92,7 @@ pub(super) fn screen(
                 &fitted.regressor(entry.probe, &law.values(&fitted))?,
                 &predicted.regressor(entry.probe, &law.values(&predicted))?,
             )?;
-            let (coefficient, gain) = projection.gain(&column)?;
+            let (coefficient, gain) = projection.gain(&column).filter(|(own, _)| *own >= 0.0 || !term.is_whole())?;
             let evidence = gain - cost_of_parameter * term.parameters() as f64 - cost_of_search;
             let sized = Sized { coefficient, ..law.sized };
             Some(Screened { site: entry.site, sized, evidence, column })
@@ -136,7 +135,7 @@ pub(super) fn probed(model: &Model) -> (Model, usize, Vec<Entry>) {
 
 /// An effect that adds its parameter to a row.
 fn probe(row: Row) -> Option<AnyEffect> {
-    let term = Term::of(row, &super::factor::ONE);
+    let term = Term::of(row, &ONE);
     let mut text = law_text(&[Sized { term, shapes: Vec::new(), coefficient: 1.0, cylinder: String::new() }], "")?;
     text.name = format!("probe_{}", row.card().name);
     let parameter = text.parameters.get_mut("k")?;
@@ -156,7 +155,8 @@ fn tries(entries: &[Entry], terms_of: &WeakTerms<'_>) -> Vec<(Entry, Term, Vec<f
             let shapes = term.factors.iter().flat_map(|factor| factor.shapes);
             let mut grid: Vec<Vec<f64>> = vec![Vec::new()];
             for shape in shapes {
-                let starts = shape.quantity.starts(shape.levels, &terms_of.situations, entry.cylinder);
+                let mut starts = shape.quantity.starts(shape.levels, &terms_of.situations, entry.cylinder);
+                starts.retain(|start| shape.is_signed || *start > 0.0);
                 grid = grid
                     .iter()
                     .flat_map(|before| {

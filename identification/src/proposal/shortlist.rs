@@ -4,9 +4,9 @@ use excavator_model::Model;
 use excavator_model::effects::Site;
 use excavator_model::recording::Recording;
 
+use super::grammar::Sized;
 use super::promise::{Promised, combined, promised};
 use super::screening::{Screened, Screening};
-use super::term::Sized;
 use crate::fit::FitSettings;
 
 /// A law that is worth a fit.
@@ -118,12 +118,15 @@ fn distinct<'a>(screening: &Screening, terms: impl Iterator<Item = &'a Candidate
         _ => 0.0,
     };
     let complexity = |one: &Candidate| one.terms.first().map(|sized| (sized.term.parameters(), sized.term.length()));
+    let is_whole = |one: &Candidate| one.terms.iter().any(|sized| sized.term.is_whole());
     let mut kept: Vec<&Candidate> = Vec::new();
     for term in terms {
         if kept.iter().any(|other| other.site == term.site && is_same_kind(other, term)) {
             continue;
         }
-        if let Some(same) = kept.iter_mut().find(|other| likeness(other, term) > SAME) {
+        // A law that is no product is like one only where it is small.
+        let is_same = |other: &Candidate| likeness(other, term) > SAME && is_whole(other) == is_whole(term);
+        if let Some(same) = kept.iter_mut().find(|other| is_same(other)) {
             if complexity(term) < complexity(same) {
                 *same = term;
             }

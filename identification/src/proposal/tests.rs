@@ -10,11 +10,10 @@ use excavator_model::formula::{Law, Row};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 
-use super::factor::{GROWING, OPENING, PAST_THE_PISTON, REMEMBERING, RESISTING, SHIFTING};
+use super::grammar::{GROWING, OPENING, PAST_THE_PISTON, REMEMBERING, RESISTING, SHIFTING, Sized, Term, law_text};
 use super::promise::promised;
 use super::screening::{Evaluated, probed};
 use super::shortlist::Candidate;
-use super::term::{Sized, Term, law_text};
 use crate::fit::FitSettings;
 use crate::regression::{WeakFormSettings, weak_terms};
 
@@ -64,7 +63,7 @@ fn some() -> Vec<Sized> {
 fn the_regressor_of_a_term_is_that_of_its_law() {
     let model = built_in("zx30u-arm").unwrap();
     let recording = swing(&model);
-    for one in some().into_iter().filter(|one| one.term.factors[0].memory.is_none()) {
+    for one in some().into_iter().filter(|one| one.term.factors[0].memory.is_empty()) {
         let with = with_law(&model, &one, 0.0);
         let (probed, probes, entries) = probed(&with);
         let terms = weak_terms(&probed, probes, &[&recording], &WeakFormSettings::default()).unwrap();

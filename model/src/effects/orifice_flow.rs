@@ -75,8 +75,9 @@ impl Physics for OrificeFlow {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &now.pistons[cylinder];
         let (tank, pump) = (now.tank_pressure, now.pump_pressure);
-        let cap_gain = piston.with_hose(parameters[0] * piston.opening);
-        let rod_gain = piston.with_hose(parameters[1] * piston.opening);
+        let [cap_opening, rod_opening] = piston.edges();
+        let cap_gain = piston.with_hose(parameters[0] * cap_opening);
+        let rod_gain = piston.with_hose(parameters[1] * rod_opening);
         if piston.opening.value() >= 0.0 {
             let drawn = cap_gain * piston.drawn_root(pump - piston.cap_pressure);
             rows.cap_flow[cylinder] += drawn;

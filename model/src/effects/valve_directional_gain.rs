@@ -71,9 +71,9 @@ impl Physics for ValveDirectionalGain {
         if piston.opening.value() >= 0.0 {
             return;
         }
-        let drawn = -parameters[1] * piston.opening * piston.drawn_root(now.pump_pressure - piston.rod_pressure);
-        rows.cap_flow[cylinder] +=
-            parameters[0] * piston.opening * piston.root(piston.cap_pressure - now.tank_pressure);
+        let [cap_opening, rod_opening] = piston.edges();
+        let drawn = -parameters[1] * rod_opening * piston.drawn_root(now.pump_pressure - piston.rod_pressure);
+        rows.cap_flow[cylinder] += parameters[0] * cap_opening * piston.root(piston.cap_pressure - now.tank_pressure);
         rows.rod_flow[cylinder] += drawn;
         rows.pump_flow -= drawn;
     }

@@ -38,6 +38,10 @@ pub struct Piston<T> {
     pub spool: T,
     /// Area open to flow, m²: the spool's after dead zone and area law. It sets the metered flow.
     pub opening: T,
+    /// Opening of the edge through which oil comes from the pump line, m²; as `opening` where no effect tells the edges apart.
+    pub supply_opening: T,
+    /// Opening of the edge through which oil returns to the tank, m²; likewise.
+    pub return_opening: T,
     /// By how much the section's bypass has been closed, m²: |spool|, less what the bypass overlaps.
     pub bypass_closing: T,
     /// Share of a flow back from the chamber to the pump that passes the valve section: 1 without a check valve.
@@ -57,6 +61,15 @@ impl<T: Scalar> Piston<T> {
     /// `sgn(v)`, as far as friction knows it.
     pub fn direction(&self) -> T {
         self.rounding.sign(self.velocity)
+    }
+
+    /// Openings of the edges at the cap and at the rod side, m², with the sign of the motion. An edge that an effect closes further than
+    /// shut is shut.
+    pub fn edges(&self) -> [T; 2] {
+        let extends = self.opening.value() >= 0.0;
+        let shut = |opening: T| if (opening.value() >= 0.0) == extends { opening } else { T::from(0.0) };
+        let (supply, back) = (shut(self.supply_opening), shut(self.return_opening));
+        if extends { [supply, back] } else { [back, supply] }
     }
 
     /// Gain of an edge (m³/(s sqrt(Pa))) in series with its hose.
@@ -115,6 +128,8 @@ impl<'m, T: Scalar> Situation<'m, T> {
             rod_flow: zero,
             spool: zero,
             opening: zero,
+            supply_opening: zero,
+            return_opening: zero,
             bypass_closing: zero,
             backflow: T::from(1.0),
             compensator_margin: None,

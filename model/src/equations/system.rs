@@ -288,7 +288,15 @@ impl<'m> System<'m> {
                 situation.pistons[index].opening =
                     T::hooks(&*effect.physics).opening(effect.site, own, opening, situation);
             }
-            T::hooks(&*effect.physics).adjust(effect.site, own, situation);
+        }
+        for piston in &mut situation.pistons {
+            piston.supply_opening = piston.opening;
+            piston.return_opening = piston.opening;
+        }
+        for &number in &self.adjusting {
+            let effect = &self.model.effects[number];
+            let (first, last) = self.parameter_ranges[number];
+            T::hooks(&*effect.physics).adjust(effect.site, &parameters[first..last], situation);
         }
     }
 

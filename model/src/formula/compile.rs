@@ -185,7 +185,9 @@ impl Compiler<'_> {
         };
         let value = match (base.value, exponent.value) {
             (Value::Number(base), Value::Number(exponent)) => Value::Number(base.powf(exponent)),
-            (Value::Register(register), Value::Number(exponent)) => self.emit(fixed_power(register, exponent)),
+            (Value::Register(register), Value::Number(exponent)) => {
+                self.emit(fixed_power(register, exponent, self.corner(base.unit)))
+            }
             (base, exponent) => {
                 let (base, exponent) = (self.register(base), self.register(exponent));
                 self.emit(Operation::Power(base, exponent))
@@ -227,7 +229,7 @@ impl Compiler<'_> {
                 };
                 let register = self.register(value);
                 let operation = match function {
-                    Function::Sqrt => Operation::Sqrt(register),
+                    Function::Sqrt => Operation::Sqrt(register, corner),
                     _ => Operation::Root(register, corner),
                 };
                 Ok(Part { value: self.emit(operation), unit })
@@ -366,13 +368,13 @@ fn combined(one: Unit, other: Unit, combine: fn(Dimension, Dimension) -> Dimensi
     }
 }
 
-fn fixed_power(register: u16, exponent: f64) -> Operation {
+fn fixed_power(register: u16, exponent: f64, corner: Corner) -> Operation {
     if exponent == 0.5 {
-        Operation::Sqrt(register)
+        Operation::Sqrt(register, corner)
     } else if exponent.fract() == 0.0 && exponent.abs() <= LARGEST_WHOLE_POWER {
         Operation::WholePower(register, exponent as i32)
     } else {
-        Operation::FixedPower(register, exponent)
+        Operation::FixedPower(register, exponent, corner)
     }
 }
 

@@ -116,7 +116,7 @@ impl Physics for Law {
     }
 
     fn has_power(&self) -> bool {
-        self.row != Row::Opening && !self.row.is_a_reading()
+        !self.row.is_an_opening() && !self.row.is_a_reading()
     }
 
     fn why_not(&self, machine: &Machine, _site: Site) -> Option<String> {
@@ -145,6 +145,22 @@ impl Physics for Law {
             return opening;
         }
         self.program.evaluate(&Moment { opening: Some(opening), ..Law::moment(site, parameters, &[], now) })
+    }
+
+    fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
+        let Site::Cylinder(cylinder) = site else { return };
+        let of_edge = |opening: T, now: &Situation<T>| {
+            self.program.evaluate(&Moment { opening: Some(opening), ..Law::moment(site, parameters, &[], now) })
+        };
+        match self.row {
+            Row::SupplyOpening => {
+                now.pistons[cylinder].supply_opening = of_edge(now.pistons[cylinder].supply_opening, now);
+            }
+            Row::ReturnOpening => {
+                now.pistons[cylinder].return_opening = of_edge(now.pistons[cylinder].return_opening, now);
+            }
+            _ => {}
+        }
     }
 
     fn distort<T: Scalar>(&self, site: Site, parameters: &[T], instruments: &mut Instruments<T>) {

@@ -16,6 +16,7 @@ mod law;
 mod linearity;
 mod names;
 mod parser;
+mod power;
 mod program;
 mod read;
 mod row;

@@ -2,6 +2,7 @@
 
 use super::corner::Corner;
 use super::expression::Symbol;
+use super::power::{fixed_power, power};
 use super::table::Table;
 use super::variable::Variable;
 use crate::equations::smooth::{orifice_root, rounded_sign, rounded_step};
@@ -26,11 +27,11 @@ pub(super) enum Operation {
     /// A whole power.
     WholePower(u16, i32),
     /// A power that is a number.
-    FixedPower(u16, f64),
+    FixedPower(u16, f64, Corner),
     Power(u16, u16),
     Abs(u16),
     Sign(u16, Corner),
-    Sqrt(u16),
+    Sqrt(u16, Corner),
     Root(u16, Corner),
     Exp(u16),
     Ln(u16),
@@ -118,11 +119,13 @@ impl Program {
             Operation::Negate(a) => -at(a),
             Operation::Scale(a, factor) => at(a) * factor,
             Operation::WholePower(a, power) => at(a).powi(power),
-            Operation::FixedPower(a, power) => at(a).powf(power),
-            Operation::Power(a, b) => (at(a).ln() * at(b)).exp(),
+            Operation::FixedPower(a, power, corner) => {
+                fixed_power(at(a), power, corner.width(moment.now, moment.cylinder))
+            }
+            Operation::Power(a, b) => power(at(a), at(b)),
             Operation::Abs(a) => at(a).abs(),
             Operation::Sign(a, corner) => self.sign(at(a), corner, moment),
-            Operation::Sqrt(a) => at(a).sqrt(),
+            Operation::Sqrt(a, corner) => fixed_power(at(a), 0.5, corner.width(moment.now, moment.cylinder)),
             Operation::Root(a, corner) => self.root(at(a), corner, moment),
             Operation::Exp(a) => at(a).exp(),
             Operation::Ln(a) => at(a).ln(),

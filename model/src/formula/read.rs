@@ -199,7 +199,7 @@ impl<'a> Reader<'a> {
         let refused = |(symbol, at): (&Symbol, std::ops::Range<usize>)| {
             let (name, reason) = match symbol {
                 Symbol::Parameter(_) => return None,
-                Symbol::State(number) if self.row == Row::Opening || self.row.is_a_reading() => {
+                Symbol::State(number) if self.row.is_an_opening() || self.row.is_a_reading() => {
                     (self.states[*number].clone(), "openings and readings have no states")
                 }
                 Symbol::State(_) => return None,
@@ -231,7 +231,7 @@ impl<'a> Reader<'a> {
     }
 
     fn parameter_cards(&self, trees: &[Expression]) -> Result<Vec<ParameterCard>, LawProblem> {
-        let is_row = self.row != Row::Opening && !self.row.is_a_reading() && trees.len() == 1;
+        let is_row = !self.row.is_an_opening() && !self.row.is_a_reading() && trees.len() == 1;
         let linear = if is_row {
             linear_parameters(&trees[0], self.parameters.len())
         } else {

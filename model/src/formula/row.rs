@@ -28,6 +28,10 @@ pub enum Row {
     RodToTank,
     /// Opening of the metering edges, m².
     Opening,
+    /// Opening of the edge through which oil comes from the pump line, m².
+    SupplyOpening,
+    /// Opening of the edge through which oil returns to the tank, m².
+    ReturnOpening,
     /// What the cap pressure's instrument shows beside the truth, Pa.
     CapPressureReading,
     /// What the rod pressure's instrument shows beside the truth, Pa.
@@ -69,10 +73,11 @@ const FORCE: &str = "In the force balance of the cylinder.";
 const CHAMBERS: &str = "In the oil balances of the chambers.";
 const INSTRUMENT: &str = "In one reading, and in nothing that the machine does.";
 const FLOW_POWER: &str = "Flow times the pressures at both of its ends.";
+const THROUGH_THE_VALVE: &str = "Changes the flows through the valve; dissipates nothing itself.";
 const NO_POWER: &str = "None: it acts on the instrument.";
 
 /// All rows.
-pub static ROWS: [RowCard; 15] = [
+pub static ROWS: [RowCard; 17] = [
     card(
         "piston_force",
         Row::PistonForce,
@@ -103,7 +108,23 @@ pub static ROWS: [RowCard; 15] = [
         "m2",
         "opening of the metering edges",
         "In the flows through the valve.",
-        "Changes the supply through the valve; dissipates nothing itself.",
+        THROUGH_THE_VALVE,
+    ),
+    card(
+        "supply_opening",
+        Row::SupplyOpening,
+        "m2",
+        "opening of the edge through which oil comes from the pump line",
+        "In the flow from the pump line, and not in the flow to the tank.",
+        THROUGH_THE_VALVE,
+    ),
+    card(
+        "return_opening",
+        Row::ReturnOpening,
+        "m2",
+        "opening of the edge through which oil returns to the tank",
+        "In the flow to the tank, and not in the flow from the pump line: a filter or a check valve in the return line.",
+        THROUGH_THE_VALVE,
     ),
     card(
         "cap_pressure_reading",
@@ -155,7 +176,8 @@ impl Row {
     pub fn acts_on(self) -> ActsOn {
         match self {
             Row::PumpLeak | Row::PumpPressureReading => ActsOn::PumpLine,
-            Row::PumpToCap | Row::PumpToRod | Row::CapToTank | Row::RodToTank | Row::Opening => ActsOn::Valve,
+            Row::PumpToCap | Row::PumpToRod | Row::CapToTank | Row::RodToTank => ActsOn::Valve,
+            row if row.is_an_opening() => ActsOn::Valve,
             _ => ActsOn::Cylinder,
         }
     }
@@ -167,6 +189,11 @@ impl Row {
             Row::CapPressureReading | Row::RodPressureReading => Needs::Pressures,
             _ => Needs::Oil,
         }
+    }
+
+    /// Whether it is the opening of edges of a valve.
+    pub fn is_an_opening(self) -> bool {
+        matches!(self, Row::Opening | Row::SupplyOpening | Row::ReturnOpening)
     }
 
     /// Whether it is an instrument's.

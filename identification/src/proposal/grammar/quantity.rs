@@ -4,7 +4,7 @@ use excavator_model::equations::Situation;
 
 /// A quantity of a machine whose course gives starts for a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Quantity {
+pub(in crate::proposal) enum Quantity {
     Position,
     Speed,
     CapPressure,
@@ -12,11 +12,12 @@ pub(super) enum Quantity {
     Load,
     PumpPressure,
     Opening,
+    Time,
 }
 
 /// The values from which a search for a shape parameter begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Levels {
+pub(in crate::proposal) enum Levels {
     /// Quantiles of the quantity.
     Quantiles(&'static [f64]),
     /// Shares of its size: of the 95 % quantile without sign.
@@ -40,6 +41,7 @@ impl Quantity {
             Quantity::Load => piston.cap_pressure - piston.rod_pressure,
             Quantity::PumpPressure => now.pump_pressure - now.tank_pressure,
             Quantity::Opening => piston.opening,
+            Quantity::Time => now.time,
         }
     }
 

@@ -20,6 +20,9 @@ pub(super) const ROOT_OF_PRESSURE: Unit = &[("Pa", 0.5)];
 pub(super) const AREA: Unit = &[("m", 2.0)];
 pub(super) const AREA_2: Unit = &[("m", 4.0)];
 pub(super) const AREA_3: Unit = &[("m", 6.0)];
+pub(super) const ROOT_OF_SPEED: Unit = &[("m", 0.5), ("s", -0.5)];
+pub(super) const ACCELERATION: Unit = &[("m", 1.0), ("s", -2.0)];
+pub(super) const FORCE: Unit = &[("N", 1.0)];
 pub(super) const TIME: Unit = &[("s", 1.0)];
 
 /// Unit of a coefficient that makes a product of `factors` what `row` is.
@@ -27,7 +30,7 @@ pub(super) fn of_coefficient(row: Row, factors: &[Unit]) -> String {
     let whole: Unit = match row {
         Row::PistonForce => &[("N", 1.0)],
         Row::JointTorque => &[("N", 1.0), ("m", 1.0)],
-        Row::Opening => AREA,
+        row if row.is_an_opening() => AREA,
         _ => &[("m", 3.0), ("s", -1.0)],
     };
     let mut powers: Vec<(&str, f64)> = whole.to_vec();

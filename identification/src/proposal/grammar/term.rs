@@ -9,7 +9,7 @@ use super::unit;
 
 /// A product of two factors in a row, times a coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Term {
+pub(in crate::proposal) struct Term {
     /// The row that it enters.
     pub row: Row,
     /// What it is a product of; the second may be one.
@@ -18,7 +18,7 @@ pub(super) struct Term {
 
 /// A term with numbers.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Sized {
+pub(in crate::proposal) struct Sized {
     /// The term.
     pub term: Term,
     /// Values of the shape parameters of its factors, in their order.
@@ -50,13 +50,18 @@ impl Term {
         let is_word = |part: &str| part == variable || variable == "q" && part == "qd";
         self.factors.iter().any(|factor| {
             let words = factor.text.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_');
-            factor.memory.is_some() && variable == "z" || words.into_iter().any(is_word)
+            !factor.memory.is_empty() && variable == "z" || words.into_iter().any(is_word)
         })
     }
 
     /// Whether it names a cylinder.
     pub fn names_a_cylinder(&self) -> bool {
         self.factors.iter().any(|factor| factor.text.contains("{c}"))
+    }
+
+    /// Whether it is a law of its own and no product.
+    pub fn is_whole(&self) -> bool {
+        self.factors[0].is_whole
     }
 
     /// Length of its formula, for choosing the simpler one of two.
@@ -76,18 +81,24 @@ impl Term {
     }
 }
 
-/// A law of these terms, which enter one row, as a text.
-pub(super) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
+/// A law of these terms, which enter one row, as a text. `None` where a law that is no product stands beside others or has a coefficient
+/// below zero.
+pub(in crate::proposal) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
     let row = terms.first()?.term.row;
+    let is_whole = |sized: &&Sized| sized.term.is_whole();
+    if terms.iter().find(is_whole).is_some_and(|whole| terms.len() > 1 || whole.coefficient < 0.0) {
+        return None;
+    }
     let (mut parameters, mut states) = (BTreeMap::new(), BTreeMap::new());
-    let mut formula = if row == Row::Opening { "u".to_string() } else { String::new() };
+    let mut formula = if row.is_an_opening() { "u".to_string() } else { String::new() };
     let mut words = vec![row.card().name.to_string()];
     for (number, sized) in terms.iter().enumerate() {
         let suffix = if number == 0 { String::new() } else { format!("_{}", number + 1) };
         let mut factors = vec![format!("k{suffix}")];
         let mut shapes = sized.shapes.iter();
         for factor in sized.term.factors.iter().filter(|factor| !factor.text.is_empty()) {
-            let mut names = vec![("c", sized.cylinder.clone()), ("z", format!("z{suffix}"))];
+            let mut names = vec![("c", sized.cylinder.clone()), ("k", format!("k{suffix}"))];
+            names.extend(factor.memory.iter().map(|state| (state.name, format!("{}{suffix}", state.name))));
             for shape in factor.shapes {
                 let name = format!("{}{suffix}", shape.name);
                 parameters.insert(name.clone(), shape_text(shape, *shapes.next()?));
@@ -97,9 +108,10 @@ pub(super) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
                 names.iter().fold(text.to_string(), |text, (place, name)| text.replace(&format!("{{{place}}}"), name))
             };
             factors.push(filled(factor.text));
-            if let Some(memory) = &factor.memory {
-                let (start, rate) = (filled(memory.start), filled(memory.rate));
-                states.insert(filled("{z}"), StateText { start, rate, unit: memory.unit.to_string(), typical: None });
+            for state in factor.memory {
+                let (start, rate) = (filled(state.start), filled(state.rate));
+                let text = StateText { start, rate, unit: state.unit.to_string(), typical: None };
+                states.insert(format!("{}{suffix}", state.name), text);
             }
         }
         let units: Vec<unit::Unit> = sized.term.factors.iter().map(|factor| factor.unit).collect();
@@ -111,14 +123,17 @@ pub(super) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
             ..blank()
         };
         parameters.insert(format!("k{suffix}"), coefficient);
-        let is_negative = sized.coefficient < 0.0;
-        formula += match (formula.is_empty(), is_negative) {
-            (true, false) => "",
-            (true, true) => "-",
-            (false, false) => " + ",
-            (false, true) => " - ",
-        };
-        formula += &factors.join("*");
+        if sized.term.is_whole() {
+            formula = factors.pop()?;
+        } else {
+            formula += match (formula.is_empty(), sized.coefficient < 0.0) {
+                (true, false) => "",
+                (true, true) => "-",
+                (false, false) => " + ",
+                (false, true) => " - ",
+            };
+            formula += &factors.join("*");
+        }
         words.push(sized.term.words());
     }
     let name: String = words.join("_").chars().take(LONGEST_NAME).collect();
@@ -127,7 +142,7 @@ pub(super) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
         acts_on: row.card().name.to_string(),
         formula,
         summary: summary.to_string(),
-        source: super::proposals::PROPOSED.to_string(),
+        source: crate::proposal::proposals::PROPOSED.to_string(),
         shows: String::new(),
         experiment: String::new(),
         parameters,
@@ -136,12 +151,12 @@ pub(super) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
 }
 
 /// What a coefficient is, in the words of its card.
-pub(super) const COEFFICIENT: &str = "coefficient";
+pub(in crate::proposal) const COEFFICIENT: &str = "coefficient";
 
 /// Where the search for a coefficient begins. A flow is not linear in a change of the opening: what a regression says of that is too large
 /// where the change is.
 fn starts(row: Row, coefficient: f64) -> Vec<f64> {
-    let shares: &[f64] = if row == Row::Opening { &[1.0, 0.5, 0.25] } else { &[1.0] };
+    let shares: &[f64] = if row.is_an_opening() { &[1.0, 0.5, 0.25] } else { &[1.0] };
     shares.iter().map(|share| rounded(share * coefficient)).collect()
 }
 
@@ -181,6 +196,6 @@ fn blank() -> ParameterText {
 }
 
 /// To four digits: a start says no more.
-pub(super) fn rounded(value: f64) -> f64 {
+pub(in crate::proposal) fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

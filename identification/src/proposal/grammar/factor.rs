@@ -1,0 +1,83 @@
+//! What terms are products of.
+
+use super::quantity::{Levels, Quantity};
+use super::unit::{PURE, Unit};
+
+/// A factor of a term.
+#[derive(Debug, PartialEq)]
+pub(in crate::proposal) struct Factor {
+    /// What it is, as a part of a name; empty for the factor one.
+    pub word: &'static str,
+    /// As a formula writes it, its shape parameters and states in braces; empty for the factor one.
+    pub text: &'static str,
+    /// Its unit.
+    pub unit: Unit,
+    /// Its shape parameters.
+    pub shapes: &'static [Shape],
+    /// Its states.
+    pub memory: &'static [Memory],
+    /// Whether its text is the whole law with the coefficient `{k}` inside, and nothing where that is zero. The law is no product then, and
+    /// what it adds is only to first order linear in the coefficient.
+    pub is_whole: bool,
+}
+
+/// A state of a factor.
+#[derive(Debug, PartialEq)]
+pub(in crate::proposal) struct Memory {
+    /// Its name in the factor.
+    pub name: &'static str,
+    /// Where it begins, as a formula.
+    pub start: &'static str,
+    /// How fast it changes, as a formula.
+    pub rate: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+/// A parameter in which a factor is not linear.
+#[derive(Debug, PartialEq)]
+pub(in crate::proposal) struct Shape {
+    /// Its name in the factor.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it is measured by.
+    pub quantity: Quantity,
+    /// Where a search begins.
+    pub levels: Levels,
+    /// Whether it may be below zero.
+    pub is_signed: bool,
+    /// What it is.
+    pub meaning: &'static str,
+}
+
+/// The factor one.
+pub(in crate::proposal) static ONE: Factor = plain("", "", PURE);
+
+pub(super) const fn plain(word: &'static str, text: &'static str, unit: Unit) -> Factor {
+    Factor { word, text, unit, shapes: &[], memory: &[], is_whole: false }
+}
+
+/// A law that is no product; `unit` is that of one over its coefficient, times that of its row.
+pub(super) const fn whole(word: &'static str, text: &'static str, unit: Unit) -> Factor {
+    Factor { is_whole: true, ..plain(word, text, unit) }
+}
+
+pub(super) const fn shaped(word: &'static str, text: &'static str, unit: Unit, shapes: &'static [Shape]) -> Factor {
+    Factor { word, text, unit, shapes, memory: &[], is_whole: false }
+}
+
+pub(super) const fn remembering(
+    word: &'static str,
+    text: &'static str,
+    unit: Unit,
+    shapes: &'static [Shape],
+    memory: &'static [Memory],
+) -> Factor {
+    Factor { word, text, unit, shapes, memory, is_whole: false }
+}
+
+/// The state `z` of a factor.
+pub(super) const fn memory(start: &'static str, rate: &'static str, unit: &'static str) -> Memory {
+    Memory { name: "z", start, rate, unit }
+}
