@@ -17,5 +17,6 @@ pub mod refinement;
 pub mod regression;
 pub mod report;
 pub mod search;
+pub mod selection;
 pub mod validation;
 pub mod value_marks;

@@ -11,6 +11,7 @@ mod diagnosis_file;
 mod energy_monitor;
 mod error;
 mod identification_node;
+mod long_recording;
 mod output;
 mod outputs;
 mod play;

@@ -38,13 +38,29 @@ impl Part {
         Ok((PathBuf::from(before), Some(Part { from, to })))
     }
 
+    /// What is wanted of a block that begins `offset` s after the first sample of its recording; `None` where that is nothing.
+    pub fn of_block(self, block: &Recording, offset: f64) -> Option<Recording> {
+        let part = block.part(self.from - offset, self.to - offset);
+        (!part.is_empty()).then_some(part)
+    }
+
+    /// Whether nothing is wanted of what comes after `time`, s.
+    pub fn ends_before(self, time: f64) -> bool {
+        self.to < time
+    }
+
+    /// That the recording from `path` ends at `end`, s, before anything that is wanted.
+    pub fn is_beyond(self, end: f64, path: &Path) -> VerbError {
+        wrong(path, format!("the recording ends at {end:.2} s"))
+    }
+
     /// That part of what was read from `path`.
     ///
     /// # Errors
     /// [`VerbError::Part`] where the recording has ended before.
     pub fn of(self, recording: &Recording, path: &Path) -> Result<Recording, VerbError> {
         if self.from >= recording.duration() {
-            return Err(wrong(path, format!("the recording ends at {:.2} s", recording.duration())));
+            return Err(self.is_beyond(recording.duration(), path));
         }
         let mut part = recording.part(self.from, self.to);
         part.source = path.display().to_string();

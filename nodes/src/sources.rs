@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use excavator_bags::map::read_recording_or_mapped;
-use excavator_bags::{ReadLimits, read_regular_text};
+use excavator_bags::{ReadLimits, ReadReport, read_regular_text};
 use excavator_identification::gate;
+use excavator_identification::selection::Chosen;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse, parse_catalogue};
 use excavator_model::effects::Catalogue;
@@ -13,8 +14,9 @@ use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::input_holes;
 
-use crate::cli::{self, Mapping};
+use crate::cli::{self, Extent, Mapping};
 use crate::error::VerbError;
+use crate::long_recording::recording_or_stretches;
 use crate::recording_part::Part;
 use crate::terminal::complain;
 
@@ -72,6 +74,49 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
     if let Some(part) = part {
         recording = part.of(&recording, path)?;
     }
+    checked(path, recording, &report, map, model)
+}
+
+/// As [`recording`]; of a long one the stretches that tell most of the parameters of `model`, unless all of it is wanted. What was
+/// chosen is told on standard error.
+pub fn telling_recording(path: &Path, extent: Extent, map: &Mapping, model: &Model) -> Result<Recording, VerbError> {
+    if extent.whole {
+        return recording(path, map, model);
+    }
+    let (recording, report, chosen) = recording_or_stretches(path, map.map.as_deref(), model)?;
+    if let Some(chosen) = &chosen {
+        complain(&format!("{}: {}", path.display(), choice(chosen)));
+    }
+    checked(path, recording, &report, map, model)
+}
+
+/// Which stretches were chosen, in a sentence.
+fn choice(chosen: &Chosen) -> String {
+    let starts: Vec<String> = chosen.starts.iter().map(|start| format!("{start:.0}")).collect();
+    format!(
+        "{:.0} of {:.0} s are used: the stretches of {:.0} s from {} s, which together tell most about the parameters (as much time at random \
+         would widen their intervals {:.1} times); --whole uses all",
+        chosen
+            .recording
+            .pieces()
+            .iter()
+            .map(|piece| chosen.recording.time[piece.end - 1] - chosen.recording.time[piece.start])
+            .sum::<f64>(),
+        chosen.duration,
+        chosen.stretch,
+        starts.join(", "),
+        chosen.gain
+    )
+}
+
+/// A recording as it is used, and what is told of it.
+fn checked(
+    path: &Path,
+    mut recording: Recording,
+    report: &ReadReport,
+    map: &Mapping,
+    model: &Model,
+) -> Result<Recording, VerbError> {
     leave_pump_pressure_out(model, &mut recording, &report.left_out);
     for problem in report.problems() {
         complain(&format!("{}: {problem}", path.display()));
@@ -159,14 +204,24 @@ pub fn recordings(paths: &[impl AsRef<Path>], map: &Mapping, model: &Model) -> R
     paths.iter().map(|path| recording(path.as_ref(), map, model)).collect()
 }
 
+/// Several recordings, of long ones the stretches that tell most.
+pub fn telling_recordings(
+    paths: &[impl AsRef<Path>],
+    extent: Extent,
+    map: &Mapping,
+    model: &Model,
+) -> Result<Vec<Recording>, VerbError> {
+    paths.iter().map(|path| telling_recording(path.as_ref(), extent, map, model)).collect()
+}
+
 /// The recordings that parameters are fitted to and those that judge the fit, with what they have in common told on standard
 /// error.
 pub fn fitted_and_judging(
     paths: &cli::Recordings,
     model: &Model,
 ) -> Result<(Vec<Recording>, Vec<Recording>), VerbError> {
-    let identification = recordings(&paths.identification, &paths.mapping, model)?;
-    let validation = recordings(&paths.validation, &paths.mapping, model)?;
+    let identification = telling_recordings(&paths.identification, paths.extent, &paths.mapping, model)?;
+    let validation = telling_recordings(&paths.validation, paths.extent, &paths.mapping, model)?;
     let (fitted, judging): (Vec<_>, Vec<_>) = (identification.iter().collect(), validation.iter().collect());
     for shared in gate::shared_readings(&fitted, &judging) {
         complain(&shared.to_string());

@@ -102,8 +102,8 @@ fn stepped(term: &Sized, value: f64) -> Sized {
     Sized { coefficient: value.copysign(value * term.coefficient), ..term.clone() }
 }
 
-/// Most terms of a law: more are a curve.
-const MOST_TERMS: usize = 3;
+/// Most terms of all laws together: more are a curve.
+pub(super) const MOST_TERMS: usize = 3;
 
 /// Laws of one number of terms that are kept, and extended.
 const KEPT: usize = 6;

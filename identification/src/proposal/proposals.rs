@@ -142,7 +142,7 @@ fn ranked(diagnosis: &Diagnosis) -> Vec<usize> {
 }
 
 /// Whether a formula was proposed, and is not one that the user has given.
-fn is_new(text: &FormulaText) -> bool {
+pub(super) fn is_new(text: &FormulaText) -> bool {
     text.source == PROPOSED || text.source == CURVE
 }
 

@@ -8,8 +8,9 @@ use excavator_model::recording::Recording;
 use excavator_model::{Model, site_name};
 
 use super::curve::table_law;
-use super::grammar::law_text;
-use super::proposals::{ProposalVerdict, Proposals, laws_dissipate, proposals};
+use super::grammar::{COEFFICIENT, law_text};
+use super::promise::MOST_TERMS;
+use super::proposals::{ProposalVerdict, Proposals, is_new, laws_dissipate, proposals};
 use super::screening::screen;
 use super::shortlist::{Candidate, Shortlist};
 use super::simplest::simplest_first;
@@ -84,6 +85,10 @@ impl Trials<'_> {
         for round in 0..ROUNDS {
             let share = |done: f64| 0.5 + 0.5 * (round as f64 + done) / (ROUNDS + 1) as f64;
             (self.progress)("terms on the equations", share(0.0));
+            let left = MOST_TERMS.saturating_sub(terms_of(&pool.trials[base]));
+            if left == 0 {
+                return Ok(survey);
+            }
             let given = pool.trials[base].fit.clone();
             let screening = screen(&given.model, self.identification, self.validation)?;
             let fitting = &self.effort.fit;
@@ -95,7 +100,9 @@ impl Trials<'_> {
             let laws = additions(&listed.singles, pool);
             try_laws(pool, base, laws, self.effort, self.policy, &progress);
             if !is_explained(&pool.verdict(self.policy)) {
-                let laws = additions(&listed.several(&given.model, self.identification, fitting), pool);
+                let mut several = listed.several(&given.model, self.identification, fitting);
+                several.retain(|law| law.terms.len() <= left);
+                let laws = additions(&several, pool);
                 try_laws(pool, base, laws, self.effort, self.policy, &progress);
             }
             let verdict = pool.verdict(self.policy);
@@ -122,6 +129,13 @@ impl Trials<'_> {
         try_laws(pool, 0, curve, self.effort, self.policy, &progress);
         Ok(())
     }
+}
+
+/// Terms of the laws that a hypothesis adds.
+fn terms_of(trial: &Trial) -> usize {
+    let laws = trial.additions.iter().filter_map(|addition| trial.effect(addition));
+    let proposed = laws.filter(|effect| effect.physics.formula().is_some_and(is_new));
+    proposed.flat_map(|effect| &effect.parameters).filter(|parameter| parameter.card.meaning == COEFFICIENT).count()
 }
 
 /// The laws of a shortlist as effects with names of their own.

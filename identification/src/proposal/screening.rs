@@ -64,7 +64,7 @@ pub(super) struct Screening {
 /// Terms that are kept.
 const KEPT: usize = 480;
 
-/// Choices of each shape of a term that are kept: noise in the equations may favour a wrong one.
+/// Choices of the shapes of a term that are kept for each sign: noise in the equations may favour a wrong one.
 const KEPT_SHAPES: usize = 3;
 
 /// Tries all terms on what `model` leaves.
@@ -102,9 +102,12 @@ pub(super) fn screen(
     let mut kept: Vec<Screened> = Vec::new();
     for one in best {
         let is_same = |other: &&Screened| {
-            other.site == one.site && other.sized.term == one.sized.term && other.sized.cylinder == one.sized.cylinder
+            other.site == one.site
+                && other.sized.term == one.sized.term
+                && other.sized.cylinder == one.sized.cylinder
+                && other.sized.coefficient.is_sign_negative() == one.sized.coefficient.is_sign_negative()
         };
-        let shapes = KEPT_SHAPES * one.sized.shapes.len().clamp(1, 2);
+        let shapes = KEPT_SHAPES;
         if kept.len() < KEPT && kept.iter().filter(is_same).count() < shapes {
             kept.push(one);
         }

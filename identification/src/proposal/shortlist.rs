@@ -20,12 +20,25 @@ pub(super) struct Candidate {
     pub evidence: f64,
 }
 
+impl Candidate {
+    /// Whether it is a law of its own and no sum of products.
+    fn is_whole(&self) -> bool {
+        self.terms.iter().any(|sized| sized.term.is_whole())
+    }
+}
+
 /// Most laws of one term by what they promise, by evidence of the equations, and of several terms. The equations are right where an effect is
 /// large and its outputs far from linear; the outputs where it is small.
 const MOST: [usize; 3] = [12, 4, 4];
 
 /// Share of the loss that the best term promises from which on the promises are believed.
 const LARGE_SHARE: f64 = 0.5;
+
+/// Most laws that resist the motion, in any case: what pushes it where the rest of the friction became too large often promises more.
+const RESISTING: usize = 4;
+
+/// Share of the best promise from which on a law that is no product is fitted: a step from zero foretells less of it than it brings.
+const BENT_SHARE: f64 = 0.3;
 
 /// Terms from which laws of several are made.
 const COMBINED: usize = 24;
@@ -60,9 +73,17 @@ impl<'a> Shortlist<'a> {
         let all: Vec<Candidate> = screening.best.iter().map(single).collect();
         let foretold = promised(model, &all, identification, settings);
         let mut singles: Vec<Candidate> = Vec::new();
+        let resisting = foretold.iter().filter(|one| one.improvement > 0.0).map(|one| &one.candidate);
+        let resisting = resisting.filter(|one| one.terms.iter().all(|sized| sized.resists()));
+        extend(&mut singles, distinct(screening, resisting, RESISTING));
         let by_promise = foretold.iter().filter(|one| one.improvement > 0.0).map(|one| &one.candidate);
         extend(&mut singles, distinct(screening, by_promise, MOST[0]));
-        if foretold.first().map_or(0.0, |one| one.improvement) < LARGE_SHARE * loss {
+        let beside = siblings(&singles, &foretold);
+        extend(&mut singles, beside);
+        let most = foretold.first().map_or(0.0, |one| one.improvement);
+        let bent = foretold.iter().filter(|one| one.candidate.is_whole() && one.improvement > BENT_SHARE * most);
+        extend(&mut singles, bent.map(|one| &one.candidate).collect());
+        if most < LARGE_SHARE * loss {
             let by_evidence = all.iter().filter(|one| one.evidence > 0.0);
             extend(&mut singles, distinct(screening, by_evidence, MOST[1]));
         }
@@ -92,18 +113,46 @@ fn extend(listed: &mut Vec<Candidate>, more: Vec<&Candidate>) {
     }
 }
 
+/// Terms beside the best products that differ in what they multiply by the same, with the same sign: speed, its sign and its root look alike as long as a model
+/// is far off.
+fn siblings<'a>(singles: &[Candidate], foretold: &'a [Promised]) -> Vec<&'a Candidate> {
+    let products = singles.iter().filter(|one| one.terms.first().is_some_and(|sized| sized.term.is_product()));
+    let of_one = |one: &Candidate| {
+        let alike = |one: &Candidate| {
+            let of_term = |sized: &Sized| (sized.term.row, sized.term.factors[1], sized.coefficient.is_sign_negative());
+            (one.site, one.terms.first().map(of_term))
+        };
+        let own = alike(one);
+        let is_sibling = move |other: &&Candidate| alike(other) == own;
+        let mut kinds: Vec<&Candidate> = Vec::new();
+        for other in foretold.iter().map(|one| &one.candidate).filter(is_sibling) {
+            if !kinds.iter().any(|known| is_same_kind(known, other)) {
+                kinds.push(other);
+            }
+        }
+        kinds.truncate(SIBLINGS);
+        kinds
+    };
+    products.take(WITH_SIBLINGS).flat_map(of_one).collect()
+}
+
+/// Best products whose siblings are fitted too.
+const WITH_SIBLINGS: usize = 5;
+
+/// Siblings of each, itself among them.
+const SIBLINGS: usize = 4;
+
 fn single(one: &Screened) -> Candidate {
     Candidate { site: one.site, terms: vec![one.sized.clone()], evidence: one.evidence }
 }
 
-/// Whether two laws have the same terms, whatever their numbers.
+/// Whether two laws have the same terms with the same signs, whatever their numbers.
 fn is_same_kind(one: &Candidate, other: &Candidate) -> bool {
     one.terms.len() == other.terms.len()
-        && one
-            .terms
-            .iter()
-            .zip(&other.terms)
-            .all(|(one, other)| one.term == other.term && one.cylinder == other.cylinder)
+        && one.terms.iter().zip(&other.terms).all(|(one, other)| {
+            let has_sign = one.coefficient.is_sign_negative() == other.coefficient.is_sign_negative();
+            one.term == other.term && one.cylinder == other.cylinder && has_sign
+        })
 }
 
 /// Terms that differ, each with the numbers with which it comes first: of those that are alike only the first few.
@@ -118,14 +167,13 @@ fn distinct<'a>(screening: &Screening, terms: impl Iterator<Item = &'a Candidate
         _ => 0.0,
     };
     let complexity = |one: &Candidate| one.terms.first().map(|sized| (sized.term.parameters(), sized.term.length()));
-    let is_whole = |one: &Candidate| one.terms.iter().any(|sized| sized.term.is_whole());
     let mut kept: Vec<&Candidate> = Vec::new();
     for term in terms {
         if kept.iter().any(|other| other.site == term.site && is_same_kind(other, term)) {
             continue;
         }
         // A law that is no product is like one only where it is small.
-        let is_same = |other: &Candidate| likeness(other, term) > SAME && is_whole(other) == is_whole(term);
+        let is_same = |other: &Candidate| likeness(other, term) > SAME && other.is_whole() == term.is_whole();
         if let Some(same) = kept.iter_mut().find(|other| is_same(other)) {
             if complexity(term) < complexity(same) {
                 *same = term;

@@ -6,6 +6,7 @@
 
 mod equation;
 mod error;
+mod information;
 mod least_squares;
 mod observation;
 mod simulated;
@@ -21,6 +22,7 @@ mod window;
 
 pub use equation::{Equation, EquationKind, Sensor, Term, equations};
 pub use error::RegressionError;
+pub(crate) use information::Gauge;
 pub use least_squares::least_squares;
 pub use observation::{Observation, observe, observe_guided};
 pub use solution::{ConditionNumber, EquationGauge, Regression};

@@ -40,6 +40,21 @@ impl CylinderSignals {
         }
     }
 
+    /// The signals with what `pick` makes of each.
+    pub(super) fn with_columns(&self, pick: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        CylinderSignals {
+            name: self.name.clone(),
+            joint_angle: pick(&self.joint_angle),
+            displacement: pick(&self.displacement),
+            velocity: pick(&self.velocity),
+            cap_pressure: pick(&self.cap_pressure),
+            rod_pressure: pick(&self.rod_pressure),
+            orifice_area: pick(&self.orifice_area),
+            rod_force: pick(&self.rod_force),
+            orifice_command: pick(&self.orifice_command),
+        }
+    }
+
     /// Every signal, in message order.
     pub fn columns_mut(&mut self) -> [&mut Vec<f64>; 8] {
         [

@@ -71,21 +71,27 @@ impl Recording {
 
     /// The samples with these numbers, which are in order and below the recording's length.
     pub fn at(&self, samples: &[usize]) -> Self {
-        let mut part = self.clone();
-        for column in part.columns_mut() {
-            *column = samples.iter().map(|&sample| column[sample]).collect();
+        self.with_columns(|column| samples.iter().map(|&sample| column[sample]).collect())
+    }
+
+    /// The recording with what `pick` makes of each column. A clone that is cut afterwards would keep the memory of the whole.
+    fn with_columns(&self, pick: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        Recording {
+            source: self.source.clone(),
+            start_nanoseconds: self.start_nanoseconds,
+            time: pick(&self.time),
+            cylinders: self.cylinders.iter().map(|cylinder| cylinder.with_columns(&pick)).collect(),
+            pump_pressure: pick(&self.pump_pressure),
+            tank_pressure: pick(&self.tank_pressure),
+            pump_flow: pick(&self.pump_flow),
+            oil_temperature: pick(&self.oil_temperature),
         }
-        part
     }
 
     /// The samples from `from` to `to`, s after the first; the first of them is time 0 of the part.
     pub fn part(&self, from: f64, to: f64) -> Self {
         let (first, last) = (self.time.partition_point(|&t| t < from), self.time.partition_point(|&t| t <= to));
-        let mut part = self.clone();
-        for column in part.columns_mut() {
-            column.truncate(last);
-            column.drain(..first.min(last));
-        }
+        let mut part = self.with_columns(|column| column.get(first..last).unwrap_or_default().to_vec());
         let start = part.time.first().copied().unwrap_or(0.0);
         part.time.iter_mut().for_each(|t| *t -= start);
         part.start_nanoseconds += (start * 1e9).round() as i64;

@@ -38,6 +38,14 @@ pub struct Mapping {
     pub conditions: Vec<String>,
 }
 
+#[derive(Debug, Default, Clone, Copy, Args)]
+pub struct Extent {
+    /// Use all of a recording of more than three minutes, not only the stretches that tell most about the parameters: slow, and in memory
+    /// as a whole.
+    #[arg(long)]
+    pub whole: bool,
+}
+
 #[derive(Debug, Clone, Args)]
 pub struct ModelChoice {
     /// Model: built-in name or TOML file.
@@ -106,6 +114,8 @@ pub struct IdentifyArguments {
     pub bag: Vec<PathBuf>,
     #[command(flatten)]
     pub mapping: Mapping,
+    #[command(flatten)]
+    pub extent: Extent,
     /// Model file to write.
     #[arg(short, long, value_name = "MODEL")]
     pub output: Option<PathBuf>,
@@ -127,6 +137,8 @@ pub struct CompareArguments {
     pub bag: PathBuf,
     #[command(flatten)]
     pub mapping: Mapping,
+    #[command(flatten)]
+    pub extent: Extent,
     /// Write a page with plots of every signal, residuals, and error against command, speed, pressure and position.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
@@ -182,6 +194,8 @@ pub struct Recordings {
     pub validation: Vec<PathBuf>,
     #[command(flatten)]
     pub mapping: Mapping,
+    #[command(flatten)]
+    pub extent: Extent,
 }
 
 impl Recordings {
@@ -194,7 +208,8 @@ impl Recordings {
     pub fn words(&self) -> String {
         let paths = |bags: &[PathBuf]| bags.iter().map(|bag| bag.display().to_string()).collect::<Vec<_>>().join(" ");
         let map = self.mapping.map.as_ref().map_or(String::new(), |map| format!(" --map {}", map.display()));
-        format!("--identification {} --validation {}{map}", paths(&self.identification), paths(&self.validation))
+        let whole = if self.extent.whole { " --whole" } else { "" };
+        format!("--identification {} --validation {}{map}{whole}", paths(&self.identification), paths(&self.validation))
     }
 }
 

@@ -18,7 +18,7 @@ use super::library::{Library, QUOTED, Unusable};
 use super::printable::printable;
 use super::refusals::tell_operator;
 use super::types::{Goal, Outcome};
-use crate::cli::Mapping;
+use crate::cli::{Extent, Mapping};
 use crate::error::VerbError;
 use crate::sources;
 
@@ -163,7 +163,7 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
 /// A bag of the library as a recording. What a reader says may repeat what is in a file: that is for the console only.
 fn recording(name: &str, library: &Library, wanted: &Model) -> Result<Recording, Ended> {
     let path = library.bag(name)?;
-    sources::recording(&path, &Mapping::default(), wanted).map_err(|error| match error {
+    sources::telling_recording(&path, Extent::default(), &Mapping::default(), wanted).map_err(|error| match error {
         VerbError::Bag(error) => {
             tell_operator(&error.to_string());
             Ended::Unusable(Unusable::NotARecording(printable(name, QUOTED)))

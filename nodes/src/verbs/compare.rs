@@ -18,7 +18,7 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
         Inputs::recordings([&arguments.bag], arguments.mapping.map.as_deref()).and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
-    let recording = sources::recording(&arguments.bag, &arguments.mapping, &model)?;
+    let recording = sources::telling_recording(&arguments.bag, arguments.extent, &arguments.mapping, &model)?;
     let comparison = compare(&model, &recording)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         print(&format!("{} simulated with the input of {}", model.machine.name, recording.source));

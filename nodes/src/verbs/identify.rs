@@ -40,7 +40,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     outputs::check(&outputs[1..], &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
-    let recordings = sources::recordings(&arguments.bag, &arguments.mapping, &model)?;
+    let recordings = sources::telling_recordings(&arguments.bag, arguments.extent, &arguments.mapping, &model)?;
     let recordings: Vec<&Recording> = recordings.iter().collect();
     let mut result = identify(&model, &recordings, arguments.method)?;
     result.model.history.push(HistoryEntry {

@@ -22,8 +22,8 @@ pub(in crate::proposal) static RESISTING: &[Factor] = &[
     shaped("saturating", "tanh(v/{v0})", PURE, &[KNEE]),
 ];
 
-/// How a torque on the joint depends on the joint.
-static TURNING: &[Factor] = &[
+/// How a torque on the joint depends on the joint; the first three are against the motion.
+pub(super) static TURNING: &[Factor] = &[
     plain("joint_coulomb", "sign(qd)", PURE),
     plain("joint_viscous", "qd", RATE),
     plain("joint_quadratic", "qd*abs(qd)", RATE_2),

@@ -55,8 +55,9 @@ mod tests {
         let terms = terms();
         for term in &terms {
             let shapes = vec![0.01; term.parameters() - 1];
-            let text =
-                law_text(&[Sized { term: *term, shapes, coefficient: -1.5, cylinder: "arm".into() }], "").unwrap();
+            let coefficient = if term.is_whole() { 1.5 } else { -1.5 };
+            let sized = Sized { term: *term, shapes, coefficient, cylinder: "arm".into() };
+            let text = law_text(&[sized], "").unwrap();
             Law::read(&text).unwrap_or_else(|error| panic!("{}: {error}", text.formula));
             assert!(names.insert(text.name.clone()), "{} twice", text.name);
         }

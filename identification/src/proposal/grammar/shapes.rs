@@ -34,7 +34,7 @@ pub(super) const CENTRE: Shape = Shape {
     name: "s0",
     unit: "m",
     quantity: Quantity::Position,
-    levels: Levels::Quantiles(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]),
+    levels: Levels::Quantiles(&[0.03, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.97]),
     is_signed: true,
     meaning: "position of its middle",
 };
@@ -43,7 +43,7 @@ pub(super) const WIDTH: Shape = Shape {
     name: "w",
     unit: "m",
     quantity: Quantity::Position,
-    levels: Levels::OfRange(&[0.1, 0.3, 0.6]),
+    levels: Levels::OfRange(&[0.05, 0.1, 0.3, 0.6]),
     is_signed: false,
     meaning: "width",
 };

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use excavator_model::formula::{FormulaText, ParameterText, Row, StateText};
 
 use super::factor::{Factor, ONE};
+use super::forces::{RESISTING, TURNING};
 use super::unit;
 
 /// A product of two factors in a row, times a coefficient.
@@ -27,6 +28,15 @@ pub(in crate::proposal) struct Sized {
     pub coefficient: f64,
     /// Name of the cylinder that it names, where its row is not a cylinder's own.
     pub cylinder: String,
+}
+
+impl Sized {
+    /// Whether it is a force or a torque against the motion.
+    pub fn resists(&self) -> bool {
+        let word = self.term.factors[0].word;
+        let of_motion = RESISTING.iter().chain(&TURNING[..3]).any(|factor| factor.word == word);
+        matches!(self.term.row, Row::PistonForce | Row::JointTorque) && of_motion && self.coefficient < 0.0
+    }
 }
 
 impl Term {
@@ -57,6 +67,11 @@ impl Term {
     /// Whether it names a cylinder.
     pub fn names_a_cylinder(&self) -> bool {
         self.factors.iter().any(|factor| factor.text.contains("{c}"))
+    }
+
+    /// Whether both of its factors say something.
+    pub fn is_product(&self) -> bool {
+        self.factors.iter().all(|factor| !factor.text.is_empty())
     }
 
     /// Whether it is a law of its own and no product.

@@ -1,0 +1,94 @@
+//! What a stretch of a recording tells of the parameters, before any fit.
+
+use excavator_model::Model;
+use excavator_model::effects::Family;
+use excavator_model::equations::System;
+use excavator_model::machine::Linkage;
+use excavator_model::recording::Recording;
+use excavator_model::simulation::undistorted;
+use nalgebra::DMatrix;
+
+use super::equation::equations;
+use super::simulated::simulated;
+use super::weak_row::{SensorNoise, weak_row};
+use super::weak_rows::{moves, sensor_noise};
+use super::window::windows;
+use super::{RegressionError, WeakFormSettings, observe};
+
+/// Samples per second from which information is worked out, on a machine of the reference size. An order of magnitude is enough to
+/// choose between stretches, and a recorder's full rate would cost ten times as much.
+const RATE: f64 = 100.0;
+
+/// What does not change from stretch to stretch.
+pub(crate) struct Gauge<'m> {
+    model: &'m Model,
+    unknown: Vec<usize>,
+    /// Size of each unknown parameter, in its unit.
+    sizes: Vec<f64>,
+    linkages: Vec<Linkage>,
+    noise: SensorNoise,
+}
+
+impl<'m> Gauge<'m> {
+    /// For the parameters of `model` that are not known. Noise is that of `recording`: a stretch in which nothing moves has less.
+    ///
+    /// # Errors
+    /// [`RegressionError`] when the recording lacks a cylinder of the model.
+    pub fn new(model: &'m Model, recording: &Recording) -> Result<Self, RegressionError> {
+        let cards: Vec<_> = model.parameters().collect();
+        let is_told = |index: &usize| model.effects[cards[*index].0].physics.card().family != Family::Rounding;
+        let unknown: Vec<usize> = model.unknown_parameters().into_iter().filter(is_told).collect();
+        let size = |index: &usize| {
+            let parameter = cards[*index].1;
+            if parameter.value == 0.0 { parameter.card.typical.abs() } else { parameter.value.abs() }
+        };
+        Ok(Gauge {
+            model,
+            sizes: unknown.iter().map(size).collect(),
+            unknown,
+            linkages: model.machine.cylinders.iter().map(|cylinder| cylinder.linkage).collect(),
+            noise: sensor_noise(recording, model)?,
+        })
+    }
+
+    /// Number of parameters.
+    pub fn parameters(&self) -> usize {
+        self.unknown.len()
+    }
+
+    /// Information matrix of a stretch about the parameters, each in units of its size: the inverse is the covariance of relative errors,
+    /// as far as sensor noise goes.
+    ///
+    /// # Errors
+    /// [`RegressionError`] when the stretch lacks inputs.
+    pub fn information(&self, stretch: &Recording) -> Result<DMatrix<f64>, RegressionError> {
+        let model = self.model;
+        let rate = RATE / model.machine.size().time();
+        let stride = (1.0 / (stretch.sample_interval() * rate)).floor().max(1.0);
+        let thin = stretch.thinned(if stride.is_finite() { stride as usize } else { 1 });
+        let truth = undistorted(model, &thin);
+        let has_states = model.effects.iter().any(|effect| effect.physics.states() > 0);
+        let effect_states = if has_states { simulated(model, &thin, &truth)?.effect_states } else { Vec::new() };
+        let observation = observe(model, &truth)?;
+        let equations = equations(&System::new(model), &observation, &effect_states, &self.unknown);
+        let settings = WeakFormSettings::default();
+        let (half_width, _) = settings.widths(model, &[&thin]);
+        let mut information = DMatrix::zeros(self.parameters(), self.parameters());
+        // Windows side by side: those between them add rows but hardly information.
+        for window in windows(&thin.time, thin.sample_interval(), half_width, half_width) {
+            for equation in &equations {
+                if !moves(equation.kind, &window, &observation, settings.velocity_guard) {
+                    continue;
+                }
+                let row = weak_row(equation, &window, &observation, &self.noise, &self.linkages, self.parameters());
+                let Some(row) = row.filter(|row| row.regressors.iter().all(|slope| slope.is_finite())) else {
+                    continue;
+                };
+                let mut scaled = row.regressors;
+                scaled.iter_mut().zip(&self.sizes).for_each(|(slope, size)| *slope *= size / row.noise);
+                information.ger(1.0, &scaled, &scaled, 1.0);
+            }
+        }
+        Ok(information)
+    }
+}

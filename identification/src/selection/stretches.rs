@@ -1,0 +1,204 @@
+//! Stretches chosen one after the other, as a recording goes by.
+
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use super::joined;
+use crate::regression::{Gauge, RegressionError};
+
+/// How much of a recording is kept, on a machine of the reference size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelectionSettings {
+    /// Length of a stretch, s: two shooting segments of a fit.
+    pub stretch: f64,
+    /// Most stretches that are kept. Twelve are a minute and a half, which a fit takes a few seconds for. Of eight minutes of which a fifth
+    /// moves far they leave intervals less than 1.6 times as wide as all of it would.
+    pub most: usize,
+}
+
+impl Default for SelectionSettings {
+    fn default() -> Self {
+        SelectionSettings { stretch: 8.0, most: 12 }
+    }
+}
+
+/// A choice that goes on as blocks of the recording are offered.
+pub struct Selection<'m> {
+    model: &'m Model,
+    settings: SelectionSettings,
+    gauge: Option<Gauge<'m>>,
+    kept: Vec<Stretch>,
+    /// Information of all stretches so far.
+    all: DMatrix<f64>,
+    offered: usize,
+    /// Stamps of the first sample and of the last, ns.
+    span: Option<[i64; 2]>,
+}
+
+struct Stretch {
+    recording: Recording,
+    information: DMatrix<f64>,
+}
+
+/// What was chosen.
+#[derive(Debug, Clone)]
+pub struct Chosen {
+    /// The stretches as one recording with gaps in its clock.
+    pub recording: Recording,
+    /// When each begins, s after the first sample that was offered.
+    pub starts: Vec<f64>,
+    /// Length of a stretch, s.
+    pub stretch: f64,
+    /// Length of what was offered, s.
+    pub duration: f64,
+    /// By how much wider the intervals of the parameters would be, on the geometric mean, with as many stretches at random.
+    pub gain: f64,
+}
+
+impl<'m> Selection<'m> {
+    /// For fits of `model`.
+    pub fn new(model: &'m Model, settings: SelectionSettings) -> Self {
+        let (gauge, kept, all) = (None, Vec::new(), DMatrix::zeros(0, 0));
+        Selection { model, settings, gauge, kept, all, offered: 0, span: None }
+    }
+
+    /// Takes the next block of the recording.
+    ///
+    /// # Errors
+    /// [`RegressionError`] when it lacks a cylinder of the model, or all of its stretches lack inputs.
+    pub fn offer(&mut self, block: &Recording) -> Result<(), RegressionError> {
+        let last = block.start_nanoseconds + (block.duration() * 1e9).round() as i64;
+        let [start, end] = self.span.unwrap_or([block.start_nanoseconds, last]);
+        self.span = Some([start, end.max(last)]);
+        if self.gauge.is_none() {
+            let gauge = Gauge::new(self.model, block)?;
+            self.all = DMatrix::zeros(gauge.parameters(), gauge.parameters());
+            self.gauge = Some(gauge);
+        }
+        let Some(gauge) = &self.gauge else { return Ok(()) };
+        let length = self.length();
+        let pieces = (block.duration() / length).round().max(1.0) as usize;
+        let results: Vec<Result<Stretch, RegressionError>> = (0..pieces)
+            .into_par_iter()
+            .map(|piece| {
+                let end = if piece + 1 == pieces { f64::INFINITY } else { (piece + 1) as f64 * length };
+                let recording = block.part(piece as f64 * length, end);
+                let information = gauge.information(&recording)?;
+                Ok(Stretch { recording, information })
+            })
+            .collect();
+        let mut failure = None;
+        let mut taken = 0;
+        for result in results {
+            match result {
+                Ok(stretch) => {
+                    taken += 1;
+                    self.consider(stretch);
+                }
+                Err(error) => failure = Some(error),
+            }
+        }
+        // A hole in the inputs costs its stretch; inputs that are never there are an error.
+        failure.filter(|_| taken == 0).map_or(Ok(()), Err)
+    }
+
+    fn length(&self) -> f64 {
+        self.settings.stretch * self.model.machine.size().time()
+    }
+
+    /// Keeps a stretch, and drops the one without which most is left where there are too many.
+    fn consider(&mut self, stretch: Stretch) {
+        self.all += &stretch.information;
+        self.offered += 1;
+        self.kept.push(stretch);
+        if self.kept.len() <= self.settings.most {
+            return;
+        }
+        let total = self.kept_information();
+        let without = |kept: &Stretch| log_determinant(&total - &kept.information);
+        let least = self.kept.iter().map(without).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((number, _)) = least {
+            self.kept.remove(number);
+        }
+    }
+
+    fn kept_information(&self) -> DMatrix<f64> {
+        self.kept.iter().fold(DMatrix::zeros(self.all.nrows(), self.all.ncols()), |sum, kept| sum + &kept.information)
+    }
+
+    /// What was chosen, under the name `source`.
+    pub fn finish(self, source: &str) -> Chosen {
+        let parameters = self.all.nrows().max(1) as f64;
+        let share = self.kept.len() as f64 / self.offered.max(1) as f64;
+        let ratio = log_determinant(self.kept_information()) - log_determinant(&self.all * share);
+        let stretch = self.length();
+        let [start, end] = self.span.unwrap_or([0, 0]);
+        let mut parts: Vec<Recording> = self.kept.into_iter().map(|kept| kept.recording).collect();
+        parts.sort_by_key(|part| part.start_nanoseconds);
+        Chosen {
+            recording: joined(source, &parts),
+            starts: parts.iter().map(|part| (part.start_nanoseconds - start) as f64 * 1e-9).collect(),
+            stretch,
+            duration: (end - start) as f64 * 1e-9,
+            gain: (ratio / (2.0 * parameters)).exp(),
+        }
+    }
+}
+
+/// Logarithm of the determinant of what is known with this information (in units of the parameters' sizes) besides that a parameter is of
+/// its size; without it a parameter that no stretch shows would make all stretches alike.
+fn log_determinant(mut information: DMatrix<f64>) -> f64 {
+    for number in 0..information.nrows() {
+        information[(number, number)] += 1.0;
+    }
+    // Differences of sums may fall below zero by rounding: then nothing is known.
+    information
+        .cholesky()
+        .map_or(f64::NEG_INFINITY, |factor| 2.0 * factor.l().diagonal().iter().map(|root| root.ln()).sum::<f64>())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use excavator_model::document::built_in;
+    use excavator_model::simulation::{Tolerances, simulate_from_rest};
+
+    /// `seconds` of the arm at 250 Hz: at rest but for one fast stretch and one slow one.
+    fn mostly_at_rest(model: &Model, seconds: u32) -> Recording {
+        let time: Vec<f64> = (0..seconds * 250).map(|index| f64::from(index) * 4e-3).collect();
+        let mut recording = Recording::unmeasured("day", time, &["arm"]);
+        recording.tank_pressure.fill(3e5);
+        recording.pump_flow.fill(3.8e-4);
+        let area = |t: &f64| match *t {
+            t if (40.0..48.0).contains(&t) => 6e-5 * (6.3 * t).sin(),
+            t if (64.0..72.0).contains(&t) => 2e-5 * (1.6 * t).sin(),
+            _ => 0.0,
+        };
+        recording.cylinders[0].orifice_area = recording.time.iter().map(area).collect();
+        simulate_from_rest(model, &recording, &[0.0], Tolerances::default()).unwrap()
+    }
+
+    #[test]
+    fn where_the_machine_moves_is_where_a_recording_tells_something() {
+        let model = built_in("zx30u-arm").unwrap();
+        let recording = mostly_at_rest(&model, 160);
+        let mut selection = Selection::new(&model, SelectionSettings { stretch: 8.0, most: 2 });
+        for block in 0..4 {
+            let from = 40.0 * f64::from(block);
+            selection.offer(&recording.part(from, from + 40.0 - 1e-6)).unwrap();
+            assert!(selection.kept.len() <= 2);
+        }
+        let chosen = selection.finish("day");
+        assert_eq!(chosen.starts, [40.0, 64.0]);
+        assert!((chosen.duration - 160.0).abs() < 0.01 && chosen.gain > 1.5, "{} {}", chosen.duration, chosen.gain);
+        let parts = chosen.recording.pieces();
+        assert_eq!(parts.len(), 2);
+        // Samples are those of the recording, at their times.
+        let first = recording.time.partition_point(|time| *time < 40.0);
+        assert_eq!(chosen.recording.cylinders[0].cap_pressure[7], recording.cylinders[0].cap_pressure[first + 7]);
+        assert!((chosen.recording.time[parts[1].start] - 24.0).abs() < 1e-6);
+    }
+}

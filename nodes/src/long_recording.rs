@@ -1,0 +1,133 @@
+//! Long recordings: the stretches that tell most, chosen while the bag goes by.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, sync_channel};
+
+use excavator_bags::map::{TopicMap, read_recording_or_mapped};
+use excavator_bags::table::Table;
+use excavator_bags::{ReadReport, Topics, read_recording_in_blocks};
+use excavator_identification::regression::RegressionError;
+use excavator_identification::selection::{Chosen, Selection, SelectionSettings, joined};
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+
+use crate::error::VerbError;
+use crate::recording_part::Part;
+
+/// Time on a machine of the reference size, s, from which on a recording is long. A fit of three minutes takes a minute.
+const LONG: f64 = 180.0;
+
+/// Samples that are in memory at a time, three minutes at 1 kHz; a recording of more is long.
+const BLOCK: usize = 180_000;
+
+/// Blocks that may wait to be looked at.
+const WAITING: usize = 1;
+
+/// A recording, or of a long one the stretches that tell most of the parameters of `model`, and how they were chosen.
+///
+/// # Errors
+/// [`VerbError::Bag`] where there is no recording, [`VerbError::Part`], and [`VerbError::Regression`] where a long one lacks inputs.
+pub fn recording_or_stretches(
+    path: &Path,
+    map: Option<&Path>,
+    model: &Model,
+) -> Result<(Recording, ReadReport, Option<Chosen>), VerbError> {
+    let (whole, part) = Part::split(path)?;
+    let has_map = map.is_some() || TopicMap::beside(&whole).is_some() || Table::is_table(&whole);
+    if has_map || !whole.exists() {
+        // A map brings every signal onto one clock, and needs all of it for that.
+        let (recording, report) = read_recording_or_mapped(&whole, map)?;
+        let recording = in_part(recording, part, path)?;
+        if !is_long(recording.len(), recording.duration(), model) {
+            return Ok((recording, report, None));
+        }
+        let mut selection = Selection::new(model, SelectionSettings::default());
+        selection.offer(&recording)?;
+        let chosen = selection.finish(&path.display().to_string());
+        return Ok((chosen.recording.clone(), report, Some(chosen)));
+    }
+    in_blocks(path, &whole, part, model)
+}
+
+fn in_part(recording: Recording, part: Option<Part>, path: &Path) -> Result<Recording, VerbError> {
+    match part {
+        Some(part) => part.of(&recording, path),
+        None => Ok(recording),
+    }
+}
+
+fn is_long(samples: usize, duration: f64, model: &Model) -> bool {
+    samples > BLOCK || duration > LONG * model.machine.size().time()
+}
+
+/// A bag of our own topics, one block after the other: the next is read while one is looked at.
+fn in_blocks(
+    path: &Path,
+    whole: &Path,
+    part: Option<Part>,
+    model: &Model,
+) -> Result<(Recording, ReadReport, Option<Chosen>), VerbError> {
+    let (sender, blocks) = sync_channel::<Recording>(WAITING);
+    let (reading, outcome) = std::thread::scope(|scope| {
+        let reader = scope.spawn(move || {
+            let (mut start, mut end) = (None, 0.0);
+            let report = read_recording_in_blocks(whole, &Topics::default(), BLOCK, |block| {
+                let offset = (block.start_nanoseconds - *start.get_or_insert(block.start_nanoseconds)) as f64 * 1e-9;
+                end = offset + block.duration();
+                let wanted = match part {
+                    Some(part) => part.of_block(&block, offset),
+                    None => Some(block),
+                };
+                // The other side may have ended; it says why.
+                let has_ended = wanted.is_some_and(|wanted| sender.send(wanted).is_err());
+                if has_ended || part.is_some_and(|part| part.ends_before(end)) {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            });
+            (report, end)
+        });
+        let outcome = taken(blocks, path, model);
+        (reader.join(), outcome)
+    });
+    let (report, end) = match reading {
+        Ok((report, end)) => (report?, end),
+        Err(panic) => std::panic::resume_unwind(panic),
+    };
+    match outcome? {
+        Taken::Whole(recording) if recording.is_empty() => match part {
+            Some(part) => Err(part.is_beyond(end, path)),
+            None => Ok((recording, report, None)),
+        },
+        Taken::Whole(recording) => Ok((recording, report, None)),
+        Taken::Stretches(chosen) => Ok((chosen.recording.clone(), report, Some(chosen))),
+    }
+}
+
+enum Taken {
+    Whole(Recording),
+    Stretches(Chosen),
+}
+
+/// All blocks together where they are short, else the stretches that tell most.
+fn taken(blocks: Receiver<Recording>, path: &Path, model: &Model) -> Result<Taken, RegressionError> {
+    let source = path.display().to_string();
+    let mut pending: Vec<Recording> = Vec::new();
+    let mut selection: Option<Selection<'_>> = None;
+    for block in blocks {
+        pending.push(block);
+        let (samples, duration) =
+            (pending.iter().map(Recording::len).sum(), pending.iter().map(Recording::duration).sum());
+        if selection.is_some() || is_long(samples, duration, model) {
+            let selection = selection.get_or_insert_with(|| Selection::new(model, SelectionSettings::default()));
+            pending.drain(..).try_for_each(|block| selection.offer(&block))?;
+        }
+    }
+    Ok(match (selection, pending.len()) {
+        (Some(selection), _) => Taken::Stretches(selection.finish(&source)),
+        (None, 1) => Taken::Whole(Recording { source, ..pending.swap_remove(0) }),
+        (None, _) => Taken::Whole(joined(&source, &pending)),
+    })
+}
