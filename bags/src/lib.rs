@@ -47,7 +47,8 @@ pub mod yaml;
 pub use container::{Damage, DamageKind};
 pub use error::BagError;
 pub use info::{
-    BagInfo, ColumnInfo, EquationInfo, SignalInfo, SignalsInfo, StampTiming, TableInfo, Timing, TopicInfo, info,
+    BagInfo, ColumnInfo, EquationInfo, SignalInfo, SignalsInfo, SignalsTally, StampTiming, TableInfo, Timing,
+    TopicInfo, info,
 };
 pub use limits::{Limit, LimitError, ReadLimits};
 pub use printable::printable;

@@ -21,7 +21,7 @@ fn eight_minutes() -> Recording {
     recording.pump_flow.fill(3.8e-4);
     let area = |t: &f64| {
         let large = if (t / 40.0).fract() < 0.2 { 6e-5 } else { 0.5e-5 };
-        large * (3.14 * t).sin() + 0.4 * large * (8.3 * t).sin()
+        large * (3.1 * t).sin() + 0.4 * large * (8.3 * t).sin()
     };
     recording.cylinders[0].orifice_area = recording.time.iter().map(area).collect();
     let mut run = simulate_from_rest(&model, &recording, &[0.0], Tolerances::default()).unwrap();

@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::location::BagFiles;
 use crate::{BagError, RawMessages};
 
-pub use signals::{EquationInfo, SignalInfo, SignalsInfo};
+pub use signals::{EquationInfo, SignalInfo, SignalsInfo, SignalsTally};
 pub use table::{ColumnInfo, TableInfo};
 use timing::Times;
 pub use timing::{StampTiming, Timing};

@@ -1,6 +1,8 @@
 //! Which signals a recording has, and what they are good for.
 
-use excavator_model::recording::{CylinderSignals, Recording, is_measured};
+use std::collections::BTreeSet;
+
+use excavator_model::recording::Recording;
 use serde::Serialize;
 
 /// One measured signal.
@@ -32,108 +34,185 @@ pub struct EquationInfo {
 pub struct SignalsInfo {
     /// Samples of the clock.
     pub samples: usize,
+    /// Time from the first sample to the last, s.
+    #[serde(skip)]
+    pub duration: f64,
     /// Measured signals, in the order of the messages.
     pub measured: Vec<SignalInfo>,
     /// The equations that such a machine has.
     pub equations: Vec<EquationInfo>,
 }
 
+/// What is known of the signals of a recording that goes by in blocks.
+#[derive(Debug, Clone, Default)]
+pub struct SignalsTally {
+    samples: usize,
+    /// First and last moment, ns.
+    span: Option<[i64; 2]>,
+    cylinders: Vec<String>,
+    signals: Vec<Range>,
+}
+
+/// Values of one signal so far.
+#[derive(Debug, Clone)]
+struct Range {
+    name: String,
+    finite: usize,
+    least: f64,
+    most: f64,
+}
+
+impl Range {
+    fn new(name: String) -> Self {
+        Range { name, finite: 0, least: f64::INFINITY, most: f64::NEG_INFINITY }
+    }
+
+    fn add(&mut self, values: &[f64]) {
+        for &value in values.iter().filter(|value| value.is_finite()) {
+            self.finite += 1;
+            self.least = self.least.min(value);
+            self.most = self.most.max(value);
+        }
+    }
+
+    fn info(self, samples: usize) -> SignalInfo {
+        let missing = 1.0 - self.finite as f64 / samples.max(1) as f64;
+        SignalInfo { name: self.name, missing, least: self.least, most: self.most }
+    }
+}
+
+impl SignalsTally {
+    /// Takes the next block.
+    pub fn add(&mut self, block: &Recording) {
+        self.samples += block.len();
+        let last = block.start_nanoseconds.saturating_add((block.duration() * 1e9).round() as i64);
+        let [start, end] = self.span.unwrap_or([block.start_nanoseconds, last]);
+        self.span = Some([start, end.max(last)]);
+        for cylinder in &block.cylinders {
+            if !self.cylinders.contains(&cylinder.name) {
+                self.cylinders.push(cylinder.name.clone());
+            }
+        }
+        for (name, values) in block.signals() {
+            match self.signals.iter_mut().find(|signal| signal.name == name) {
+                Some(signal) => signal.add(values),
+                None => {
+                    let mut signal = Range::new(name);
+                    signal.add(values);
+                    self.signals.push(signal);
+                }
+            }
+        }
+    }
+
+    /// All that was seen.
+    pub fn info(self) -> SignalsInfo {
+        let measured = self.signals.iter().filter(|signal| signal.finite > 0).map(|signal| signal.name.clone());
+        let known = Measured(measured.collect());
+        let mut equations: Vec<EquationInfo> = Vec::new();
+        for cylinder in &self.cylinders {
+            equations.push(known.motion(cylinder));
+            // A drive of which nothing hydraulic is measured has no chambers as far as anybody can tell.
+            if known.has_oil(cylinder) {
+                equations.push(known.chambers(cylinder));
+            }
+        }
+        if self.cylinders.iter().any(|cylinder| known.has_oil(cylinder)) {
+            equations.push(known.pump_line(&self.cylinders));
+        }
+        let [start, end] = self.span.unwrap_or_default();
+        let signals = self.signals.into_iter().filter(|signal| signal.finite > 0);
+        SignalsInfo {
+            samples: self.samples,
+            duration: end.saturating_sub(start) as f64 / 1e9,
+            measured: signals.map(|signal| signal.info(self.samples)).collect(),
+            equations,
+        }
+    }
+}
+
 impl SignalsInfo {
     /// Looks at every signal of a recording.
     pub fn of(recording: &Recording) -> SignalsInfo {
-        let measured = recording.signals().into_iter().filter(|(_, values)| is_measured(values));
-        let mut equations: Vec<EquationInfo> = Vec::new();
-        for cylinder in &recording.cylinders {
-            equations.push(motion(cylinder));
-            // A drive of which nothing hydraulic is measured has no chambers as far as anybody can tell.
-            if has_oil(cylinder) {
-                equations.push(chambers(cylinder, recording));
-            }
-        }
-        if recording.cylinders.iter().any(has_oil) {
-            equations.push(pump_line(recording));
-        }
-        SignalsInfo {
-            samples: recording.len(),
-            measured: measured.map(|(name, values)| SignalInfo::of(name, values)).collect(),
-            equations,
-        }
+        let mut tally = SignalsTally::default();
+        tally.add(recording);
+        tally.info()
     }
 }
 
 impl SignalInfo {
     /// Looks at all values of a signal.
     pub(super) fn of(name: String, values: &[f64]) -> SignalInfo {
-        let finite = || values.iter().copied().filter(|value| value.is_finite());
-        SignalInfo {
-            name,
-            missing: 1.0 - finite().count() as f64 / values.len().max(1) as f64,
-            least: finite().fold(f64::INFINITY, f64::min),
-            most: finite().fold(f64::NEG_INFINITY, f64::max),
+        let mut range = Range::new(name);
+        range.add(values);
+        range.info(values.len())
+    }
+}
+
+/// Names of the signals that are measured.
+struct Measured(BTreeSet<String>);
+
+impl Measured {
+    fn is(&self, cylinder: &str, signal: &str) -> bool {
+        self.0.contains(&format!("{cylinder}.{signal}"))
+    }
+
+    fn has_oil(&self, cylinder: &str) -> bool {
+        ["cap_pressure", "rod_pressure", "orifice_area", "orifice_command"].iter().any(|own| self.is(cylinder, own))
+    }
+
+    fn position(&self, cylinder: &str, missing: &mut Vec<String>) {
+        if !self.is(cylinder, "displacement") && !self.is(cylinder, "joint_angle") {
+            missing.push(format!("{cylinder}.displacement or {cylinder}.joint_angle"));
         }
     }
-}
 
-fn has_oil(cylinder: &CylinderSignals) -> bool {
-    [&cylinder.cap_pressure, &cylinder.rod_pressure, &cylinder.orifice_area, &cylinder.orifice_command]
-        .into_iter()
-        .any(|values| is_measured(values))
-}
-
-fn position(cylinder: &CylinderSignals, missing: &mut Vec<String>) {
-    if !is_measured(&cylinder.displacement) && !is_measured(&cylinder.joint_angle) {
-        missing.push(format!("{0}.displacement or {0}.joint_angle", cylinder.name));
+    fn pressures(&self, cylinder: &str, missing: &mut Vec<String>) {
+        let lacking = ["cap_pressure", "rod_pressure"].into_iter().filter(|own| !self.is(cylinder, own));
+        missing.extend(lacking.map(|own| format!("{cylinder}.{own}")));
     }
-}
 
-fn pressures(cylinder: &CylinderSignals, missing: &mut Vec<String>) {
-    for (name, values) in [("cap_pressure", &cylinder.cap_pressure), ("rod_pressure", &cylinder.rod_pressure)] {
-        if !is_measured(values) {
-            missing.push(format!("{}.{name}", cylinder.name));
+    fn opening(&self, cylinder: &str, missing: &mut Vec<String>) {
+        if !self.is(cylinder, "orifice_area") && !self.is(cylinder, "orifice_command") {
+            missing.push(format!("{cylinder}.orifice_area or {cylinder}.orifice_command"));
         }
     }
-}
 
-fn opening(cylinder: &CylinderSignals, missing: &mut Vec<String>) {
-    if !is_measured(&cylinder.orifice_area) && !is_measured(&cylinder.orifice_command) {
-        missing.push(format!("{0}.orifice_area or {0}.orifice_command", cylinder.name));
-    }
-}
-
-/// Torque or force on what the cylinder moves: from both pressures, or from a load cell alone.
-fn motion(cylinder: &CylinderSignals) -> EquationInfo {
-    let mut missing = Vec::new();
-    position(cylinder, &mut missing);
-    if !is_measured(&cylinder.rod_force) {
-        pressures(cylinder, &mut missing);
-        if !has_oil(cylinder) {
-            missing.retain(|name| !name.ends_with("_pressure"));
-            missing.push(format!("{0}.rod_force, or {0}.cap_pressure and {0}.rod_pressure", cylinder.name));
+    /// Torque or force on what the cylinder moves: from both pressures, or from a load cell alone.
+    fn motion(&self, cylinder: &str) -> EquationInfo {
+        let mut missing = Vec::new();
+        self.position(cylinder, &mut missing);
+        if !self.is(cylinder, "rod_force") {
+            self.pressures(cylinder, &mut missing);
+            if !self.has_oil(cylinder) {
+                missing.retain(|name| !name.ends_with("_pressure"));
+                missing.push(format!("{cylinder}.rod_force, or {cylinder}.cap_pressure and {cylinder}.rod_pressure"));
+            }
         }
+        EquationInfo { equation: format!("{cylinder} motion"), missing, constant: Vec::new() }
     }
-    EquationInfo { equation: format!("{} motion", cylinder.name), missing, constant: Vec::new() }
-}
 
-/// Continuity of both chambers.
-fn chambers(cylinder: &CylinderSignals, recording: &Recording) -> EquationInfo {
-    let mut missing = Vec::new();
-    position(cylinder, &mut missing);
-    pressures(cylinder, &mut missing);
-    opening(cylinder, &mut missing);
-    let ends = [("pump_pressure", &recording.pump_pressure), ("tank_pressure", &recording.tank_pressure)];
-    EquationInfo { equation: format!("{} chambers", cylinder.name), missing, constant: unmeasured(&ends) }
-}
-
-/// Continuity of the line between pump and valves.
-fn pump_line(recording: &Recording) -> EquationInfo {
-    let mut missing = unmeasured(&[("pump_pressure", &recording.pump_pressure)]);
-    let constant = unmeasured(&[("tank_pressure", &recording.tank_pressure), ("pump_flow", &recording.pump_flow)]);
-    for cylinder in recording.cylinders.iter().filter(|cylinder| has_oil(cylinder)) {
-        opening(cylinder, &mut missing);
+    /// Continuity of both chambers.
+    fn chambers(&self, cylinder: &str) -> EquationInfo {
+        let mut missing = Vec::new();
+        self.position(cylinder, &mut missing);
+        self.pressures(cylinder, &mut missing);
+        self.opening(cylinder, &mut missing);
+        let constant = self.lacking(&["pump_pressure", "tank_pressure"]);
+        EquationInfo { equation: format!("{cylinder} chambers"), missing, constant }
     }
-    EquationInfo { equation: "pump line".to_string(), missing, constant }
-}
 
-fn unmeasured(signals: &[(&str, &Vec<f64>)]) -> Vec<String> {
-    signals.iter().filter(|(_, values)| !is_measured(values)).map(|(name, _)| name.to_string()).collect()
+    /// Continuity of the line between pump and valves.
+    fn pump_line(&self, cylinders: &[String]) -> EquationInfo {
+        let mut missing = self.lacking(&["pump_pressure"]);
+        let constant = self.lacking(&["tank_pressure", "pump_flow"]);
+        for cylinder in cylinders.iter().filter(|cylinder| self.has_oil(cylinder)) {
+            self.opening(cylinder, &mut missing);
+        }
+        EquationInfo { equation: "pump line".to_string(), missing, constant }
+    }
+
+    fn lacking(&self, signals: &[&str]) -> Vec<String> {
+        signals.iter().filter(|signal| !self.0.contains(**signal)).map(|signal| signal.to_string()).collect()
+    }
 }

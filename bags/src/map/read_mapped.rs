@@ -1,5 +1,6 @@
 //! Any data with its map as a recording.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use excavator_model::recording::Recording;
@@ -8,7 +9,8 @@ use super::document::TopicMap;
 use super::read_bag::read_bag;
 use super::read_table::read_table;
 use super::table_clock::{Dating, EPOCH_SECONDS};
-use crate::reading::{ReadReport, read_recording};
+use crate::info::{SignalsInfo, SignalsTally};
+use crate::reading::{ReadReport, read_recording, read_recording_in_blocks};
 use crate::table::Table;
 use crate::{BagError, Topics};
 
@@ -48,6 +50,28 @@ pub fn read_recording_or_mapped(path: &Path, map: Option<&Path>) -> Result<(Reco
     let map = map_of(path, map)?;
     read_with(path, map.as_ref()).map(|(recording, report, _)| (recording, report))
 }
+
+/// Looks at the signals of the data at `path`, read as by [`read_recording_or_mapped`]; a bag of our own topics in blocks, so that its length
+/// costs no memory.
+///
+/// # Errors
+/// As [`read_recording_or_mapped`].
+pub fn read_signals(path: &Path, map: Option<&Path>) -> Result<(SignalsInfo, ReadReport), BagError> {
+    let map = map_of(path, map)?;
+    if map.is_some() || Table::is_table(path) {
+        let (recording, report, _) = read_with(path, map.as_ref())?;
+        return Ok((SignalsInfo::of(&recording), report));
+    }
+    let mut tally = SignalsTally::default();
+    let report = read_recording_in_blocks(path, &Topics::default(), BLOCK, |block| {
+        tally.add(&block);
+        ControlFlow::Continue(())
+    })?;
+    Ok((tally.info(), report))
+}
+
+/// Samples that are in memory at a time.
+const BLOCK: usize = 20_000;
 
 /// The map in the given file, else the one beside the data, if there is one.
 pub(super) fn map_of(data: &Path, map: Option<&Path>) -> Result<Option<TopicMap>, BagError> {

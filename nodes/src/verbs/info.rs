@@ -4,7 +4,7 @@ use std::path::Path;
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{Attribute, Cell, CellAlignment, Table};
-use excavator_bags::map::{TopicMap, read_recording_or_mapped};
+use excavator_bags::map::{TopicMap, read_signals};
 use excavator_bags::table::Table as DataTable;
 use excavator_bags::{BagError, BagInfo, ColumnInfo, SignalsInfo, TableInfo, Timing, info};
 use serde_json::{Value, json};
@@ -25,15 +25,21 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     if DataTable::is_table(path) && arguments.map.is_none() && TopicMap::beside(path).is_none() {
         return table_without_map(arguments);
     }
-    let bag = if DataTable::is_table(path) { None } else { Some(info(path)?) };
-    let signals = read_recording_or_mapped(path, arguments.map.as_deref());
+    // Two ways through the bag, one for each processor.
+    let (bag, signals) = std::thread::scope(|scope| {
+        let signals = scope.spawn(|| read_signals(path, arguments.map.as_deref()));
+        let bag = (!DataTable::is_table(path)).then(|| info(path)).transpose();
+        (bag, signals.join())
+    });
+    let bag = bag?;
+    let signals = signals.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         if let Some(bag) = &bag {
             show_bag(bag);
         }
         match &signals {
-            Ok((recording, report)) => {
-                show_signals(&SignalsInfo::of(recording), recording.duration());
+            Ok((signals, report)) => {
+                show_signals(signals);
                 // Damage is the bag's; it has been told.
                 for note in report.notes.iter().chain(bag.is_none().then(|| report.problems()).iter().flatten()) {
                     print(&format!("note: {note}"));
@@ -43,7 +49,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
         }
     }
     if let Some(file) = &arguments.json.json {
-        let signals = signals.as_ref().map(|(recording, _)| SignalsInfo::of(recording));
+        let signals = signals.as_ref().map(|(signals, _)| signals);
         write_json(file, &to_json(bag.as_ref(), &signals)?, arguments.overwriting)?;
     }
     // A bag without our topics is still a bag; a table or map that cannot be read is a failure.
@@ -103,7 +109,7 @@ fn advice(error: &BagError) -> &'static str {
     }
 }
 
-fn to_json(bag: Option<&BagInfo>, signals: &Result<SignalsInfo, &BagError>) -> Result<Value, VerbError> {
+fn to_json(bag: Option<&BagInfo>, signals: &Result<&SignalsInfo, &BagError>) -> Result<Value, VerbError> {
     let mut value = match bag {
         Some(bag) => serde_json::to_value(bag)?,
         None => json!({}),
@@ -198,8 +204,8 @@ fn clock_problems(timing: &Timing) -> Vec<String> {
     lines
 }
 
-fn show_signals(signals: &SignalsInfo, duration: f64) {
-    print(&format!("signals: {} samples in {duration:.2} s", signals.samples));
+fn show_signals(signals: &SignalsInfo) {
+    print(&format!("signals: {} samples in {:.2} s", signals.samples, signals.duration));
     let mut rows = table(&["signal", "from", "to", "unit", "not measured"]);
     for signal in &signals.measured {
         let (factor, unit) = display_unit(&signal.name);
