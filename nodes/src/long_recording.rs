@@ -39,7 +39,7 @@ pub fn recording_or_stretches(
         // A map brings every signal onto one clock, and needs all of it for that.
         let (recording, report) = read_recording_or_mapped(&whole, map)?;
         let recording = in_part(recording, part, path)?;
-        if !is_long(recording.len(), recording.duration(), model) {
+        if !is_long(recording.len(), recording.recorded_time(), model) {
             return Ok((recording, report, None));
         }
         let mut selection = Selection::new(model, SelectionSettings::default());
@@ -119,7 +119,7 @@ fn taken(blocks: Receiver<Recording>, path: &Path, model: &Model) -> Result<Take
     for block in blocks {
         pending.push(block);
         let (samples, duration) =
-            (pending.iter().map(Recording::len).sum(), pending.iter().map(Recording::duration).sum());
+            (pending.iter().map(Recording::len).sum(), pending.iter().map(Recording::recorded_time).sum());
         if selection.is_some() || is_long(samples, duration, model) {
             let selection = selection.get_or_insert_with(|| Selection::new(model, SelectionSettings::default()));
             pending.drain(..).try_for_each(|block| selection.offer(&block))?;

@@ -96,12 +96,7 @@ fn choice(chosen: &Chosen) -> String {
     format!(
         "{:.0} of {:.0} s are used: the stretches of {:.0} s from {} s, which together tell most about the parameters (as much time at random \
          would widen their intervals {:.1} times); --whole uses all",
-        chosen
-            .recording
-            .pieces()
-            .iter()
-            .map(|piece| chosen.recording.time[piece.end - 1] - chosen.recording.time[piece.start])
-            .sum::<f64>(),
+        chosen.recording.recorded_time(),
         chosen.duration,
         chosen.stretch,
         starts.join(", "),

@@ -29,6 +29,24 @@ pub(crate) struct Gauge<'m> {
     noise: SensorNoise,
 }
 
+/// No instrument's noise is less than this share of the stroke, or of the full opening.
+const LEAST_SHARE: f64 = 1e-4;
+
+/// No pressure sensor's noise is less, Pa.
+const LEAST_PRESSURE: f64 = 1e3;
+
+/// Noise that is at least that of good instruments: what a simulation, or a machine at rest, shows without noise is not infinitely certain.
+fn at_least(mut noise: SensorNoise, model: &Model) -> SensorNoise {
+    noise.pump_pressure = noise.pump_pressure.max(LEAST_PRESSURE);
+    for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
+        noise.displacement[number] = noise.displacement[number].max(LEAST_SHARE * cylinder.usual_travel());
+        noise.pressures[number].iter_mut().for_each(|own| *own = own.max(LEAST_PRESSURE));
+        let full = cylinder.chambers.as_ref().map_or(0.0, |oil| oil.full_command());
+        noise.spool[number] = noise.spool[number].max(LEAST_SHARE * full);
+    }
+    noise
+}
+
 impl<'m> Gauge<'m> {
     /// For the parameters of `model` that are not known. Noise is that of `recording`: a stretch in which nothing moves has less.
     ///
@@ -47,7 +65,7 @@ impl<'m> Gauge<'m> {
             sizes: unknown.iter().map(size).collect(),
             unknown,
             linkages: model.machine.cylinders.iter().map(|cylinder| cylinder.linkage).collect(),
-            noise: sensor_noise(recording, model)?,
+            noise: at_least(sensor_noise(recording, model)?, model),
         })
     }
 

@@ -27,6 +27,11 @@ impl Recording {
         }
         pieces
     }
+
+    /// Time of all pieces together, s: a clock that is set forward adds nothing.
+    pub fn recorded_time(&self) -> f64 {
+        self.pieces().iter().map(|piece| self.time[piece.end - 1] - self.time[piece.start]).sum()
+    }
 }
 
 /// Longest time between two samples of one piece, s, for this sample interval.
