@@ -29,7 +29,7 @@ pub struct Survey {
 const LEAST: f64 = 0.02;
 
 /// Variables as formulas write them, with what people call them.
-const VARIABLES: [&str; 9] = ["v", "s", "p_cap", "p_rod", "p_pump", "u", "q", "t", "z"];
+const VARIABLES: [&str; 8] = ["v", "s", "p_cap", "p_rod", "p_pump", "u", "t", "z"];
 
 impl Survey {
     /// Of the promises of single terms, the best first.

@@ -55,9 +55,9 @@ impl Term {
         1 + self.factors.iter().map(|factor| factor.shapes.len()).sum::<usize>()
     }
 
-    /// Whether a variable is in its formula; `z` is its memory.
+    /// Whether a variable is in its formula; `z` is its memory. Coordinate and rate of the joint say what position and speed of the piston say.
     pub fn uses(&self, variable: &str) -> bool {
-        let is_word = |part: &str| part == variable || variable == "q" && part == "qd";
+        let is_word = |part: &str| part == variable || matches!((variable, part), ("v", "qd") | ("s", "q"));
         self.factors.iter().any(|factor| {
             let words = factor.text.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_');
             !factor.memory.is_empty() && variable == "z" || words.into_iter().any(is_word)
