@@ -3,6 +3,7 @@
 mod arm_bridge;
 mod arm_simulator;
 mod arm_state;
+mod block_reader;
 mod cli;
 mod command_gate;
 pub mod dashboard;

@@ -2,16 +2,16 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::mpsc::Receiver;
 
-use excavator_bags::map::{TopicMap, read_recording_or_mapped};
-use excavator_bags::table::Table;
-use excavator_bags::{ReadReport, Topics, read_recording_in_blocks};
+use excavator_bags::ReadReport;
+use excavator_bags::map::read_recording_or_mapped;
 use excavator_identification::regression::RegressionError;
 use excavator_identification::selection::{Chosen, Selection, SelectionSettings, joined};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
+use crate::block_reader::{needs_a_map, read_beside};
 use crate::error::VerbError;
 use crate::recording_part::Part;
 
@@ -24,7 +24,8 @@ const BLOCK: usize = 180_000;
 /// Blocks that may wait to be looked at.
 const WAITING: usize = 1;
 
-/// A recording, or of a long one the stretches that tell most of the parameters of `model`, and how they were chosen.
+/// A recording, or of a long one the stretches that tell most of the parameters of `model`, and how they were chosen (without the
+/// recording itself).
 ///
 /// # Errors
 /// [`VerbError::Bag`] where there is no recording, [`VerbError::Part`], and [`VerbError::Regression`] where a long one lacks inputs.
@@ -34,9 +35,7 @@ pub fn recording_or_stretches(
     model: &Model,
 ) -> Result<(Recording, ReadReport, Option<Chosen>), VerbError> {
     let (whole, part) = Part::split(path)?;
-    let has_map = map.is_some() || TopicMap::beside(&whole).is_some() || Table::is_table(&whole);
-    if has_map || !whole.exists() {
-        // A map brings every signal onto one clock, and needs all of it for that.
+    if !whole.exists() || needs_a_map(&whole, map) {
         let (recording, report) = read_recording_or_mapped(&whole, map)?;
         let recording = in_part(recording, part, path)?;
         if !is_long(recording.len(), recording.recorded_time(), model) {
@@ -44,8 +43,7 @@ pub fn recording_or_stretches(
         }
         let mut selection = Selection::new(model, SelectionSettings::default());
         selection.offer(&recording)?;
-        let chosen = selection.finish(&path.display().to_string());
-        return Ok((chosen.recording.clone(), report, Some(chosen)));
+        return Ok(of_stretches(selection.finish(&path.display().to_string()), report));
     }
     in_blocks(path, &whole, part, model)
 }
@@ -68,42 +66,30 @@ fn in_blocks(
     part: Option<Part>,
     model: &Model,
 ) -> Result<(Recording, ReadReport, Option<Chosen>), VerbError> {
-    let (sender, blocks) = sync_channel::<Recording>(WAITING);
-    let (reading, outcome) = std::thread::scope(|scope| {
-        let reader = scope.spawn(move || {
-            let (mut start, mut end) = (None, 0.0);
-            let report = read_recording_in_blocks(whole, &Topics::default(), BLOCK, |block| {
-                let offset = (block.start_nanoseconds - *start.get_or_insert(block.start_nanoseconds)) as f64 * 1e-9;
-                end = offset + block.duration();
-                let wanted = match part {
-                    Some(part) => part.of_block(&block, offset),
-                    None => Some(block),
-                };
-                // The other side may have ended; it says why.
-                let has_ended = wanted.is_some_and(|wanted| sender.send(wanted).is_err());
-                if has_ended || part.is_some_and(|part| part.ends_before(end)) {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
-            });
-            (report, end)
-        });
-        let outcome = taken(blocks, path, model);
-        (reader.join(), outcome)
-    });
-    let (report, end) = match reading {
-        Ok((report, end)) => (report?, end),
-        Err(panic) => std::panic::resume_unwind(panic),
+    let (mut start, mut end) = (None, 0.0);
+    let choose = |block: Recording| {
+        let offset = (block.start_nanoseconds - *start.get_or_insert(block.start_nanoseconds)) as f64 * 1e-9;
+        end = offset + block.duration();
+        let is_last = part.is_some_and(|part| part.ends_before(end));
+        let wanted = match part {
+            Some(part) => part.of_block(&block, offset),
+            None => Some(block),
+        };
+        (wanted, if is_last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     };
+    let (report, outcome) = read_beside(whole, BLOCK, WAITING, choose, |blocks| taken(blocks, path, model))?;
     match outcome? {
         Taken::Whole(recording) if recording.is_empty() => match part {
             Some(part) => Err(part.is_beyond(end, path)),
             None => Ok((recording, report, None)),
         },
         Taken::Whole(recording) => Ok((recording, report, None)),
-        Taken::Stretches(chosen) => Ok((chosen.recording.clone(), report, Some(chosen))),
+        Taken::Stretches(chosen) => Ok(of_stretches(chosen, report)),
     }
+}
+
+fn of_stretches(mut chosen: Chosen, report: ReadReport) -> (Recording, ReadReport, Option<Chosen>) {
+    (std::mem::take(&mut chosen.recording), report, Some(chosen))
 }
 
 enum Taken {

@@ -85,18 +85,18 @@ pub fn telling_recording(path: &Path, extent: Extent, map: &Mapping, model: &Mod
     }
     let (recording, report, chosen) = recording_or_stretches(path, map.map.as_deref(), model)?;
     if let Some(chosen) = &chosen {
-        complain(&format!("{}: {}", path.display(), choice(chosen)));
+        complain(&format!("{}: {}", path.display(), choice(&recording, chosen)));
     }
     checked(path, recording, &report, map, model)
 }
 
 /// Which stretches were chosen, in a sentence.
-fn choice(chosen: &Chosen) -> String {
+fn choice(used: &Recording, chosen: &Chosen) -> String {
     let starts: Vec<String> = chosen.starts.iter().map(|start| format!("{start:.0}")).collect();
     format!(
         "{:.0} of {:.0} s are used: the stretches of {:.0} s from {} s, which together tell most about the parameters (as much time at random \
          would widen their intervals {:.1} times); --whole uses all",
-        chosen.recording.recorded_time(),
+        used.recorded_time(),
         chosen.duration,
         chosen.stretch,
         starts.join(", "),

@@ -101,14 +101,8 @@ pub(super) fn screen(
     best.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let mut kept: Vec<Screened> = Vec::new();
     for one in best {
-        let is_same = |other: &&Screened| {
-            other.site == one.site
-                && other.sized.term == one.sized.term
-                && other.sized.cylinder == one.sized.cylinder
-                && other.sized.coefficient.is_sign_negative() == one.sized.coefficient.is_sign_negative()
-        };
-        let shapes = KEPT_SHAPES;
-        if kept.len() < KEPT && kept.iter().filter(is_same).count() < shapes {
+        let is_same = |other: &&Screened| other.site == one.site && other.sized.is_same_kind(&one.sized);
+        if kept.len() < KEPT && kept.iter().filter(is_same).count() < KEPT_SHAPES {
             kept.push(one);
         }
     }

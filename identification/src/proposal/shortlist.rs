@@ -149,10 +149,7 @@ fn single(one: &Screened) -> Candidate {
 /// Whether two laws have the same terms with the same signs, whatever their numbers.
 fn is_same_kind(one: &Candidate, other: &Candidate) -> bool {
     one.terms.len() == other.terms.len()
-        && one.terms.iter().zip(&other.terms).all(|(one, other)| {
-            let has_sign = one.coefficient.is_sign_negative() == other.coefficient.is_sign_negative();
-            one.term == other.term && one.cylinder == other.cylinder && has_sign
-        })
+        && one.terms.iter().zip(&other.terms).all(|(one, other)| one.is_same_kind(other))
 }
 
 /// Terms that differ, each with the numbers with which it comes first: of those that are alike only the first few.

@@ -2,16 +2,15 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::mpsc::sync_channel;
+use std::sync::mpsc::Receiver;
 
-use excavator_bags::map::TopicMap;
-use excavator_bags::table::Table;
-use excavator_bags::{BagError, Topics, read_recording_in_blocks};
 use excavator_identification::energy::{Analyser, EnergyAnalysis, EnergyError, EnergySettings, analyse, missing_power};
 use excavator_identification::report::energy_page;
 use excavator_model::Model;
+use excavator_model::recording::Recording;
 
 use super::print;
+use crate::block_reader::{needs_a_map, read_beside};
 use crate::cli::{EnergyArguments, Mapping};
 use crate::error::VerbError;
 use crate::output::{energy_json, energy_table, ledger_table, write_json};
@@ -45,34 +44,18 @@ pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
 /// A bag of our own topics goes through in blocks, whatever its length; what needs a map is read whole.
 fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAnalysis, VerbError> {
     let settings = EnergySettings::default();
-    if mapping.map.is_some() || TopicMap::beside(bag).is_some() || Table::is_table(bag) {
+    if needs_a_map(bag, mapping.map.as_deref()) {
         return Ok(analyse(model, &sources::recording(bag, mapping, model)?, settings)?);
     }
-    if !bag.exists() {
-        return Err(BagError::DoesNotExist { path: bag.to_path_buf() }.into());
-    }
-    let (sender, blocks) = sync_channel(WAITING);
-    let (report, analysis) = std::thread::scope(|scope| {
-        let reader = scope.spawn(move || {
-            read_recording_in_blocks(bag, &Topics::default(), BLOCK, |block| match sender.send(block) {
-                Ok(()) => ControlFlow::Continue(()),
-                // The analysis has ended; it says why.
-                Err(_) => ControlFlow::Break(()),
-            })
-        });
-        let analysis = (|| {
-            let mut analyser = Analyser::new(model, settings);
-            for block in blocks {
-                analyser.push(&block)?;
-            }
-            Ok::<_, EnergyError>(analyser)
-        })();
-        (reader.join(), analysis)
-    });
-    let report = match report {
-        Ok(report) => report?,
-        Err(panic) => std::panic::resume_unwind(panic),
+    let work = |blocks: Receiver<Recording>| {
+        let mut analyser = Analyser::new(model, settings);
+        for block in blocks {
+            analyser.push(&block)?;
+        }
+        Ok::<_, EnergyError>(analyser)
     };
+    let all = |block| (Some(block), ControlFlow::Continue(()));
+    let (report, analysis) = read_beside(bag, BLOCK, WAITING, all, work)?;
     for problem in report.problems() {
         terminal::complain(&format!("{}: {problem}", bag.display()));
     }

@@ -67,7 +67,7 @@ static PUMP_WALL: &[Factor] = &[
         &[LAG],
         &[
             Memory { name: "y", start: "{c}.v", rate: "10*({c}.v - {y})/{tau}", unit: "m/s" },
-            memory("0*{c}.v/{tau}", "(10*abs({c}.v - {y})/{tau} - {z})/{tau}", "m/s2"),
+            memory("0", "(10*abs({c}.v - {y})/{tau} - {z})/{tau}", "m/s2"),
         ],
     ),
 ];

@@ -31,6 +31,13 @@ pub(in crate::proposal) struct Sized {
 }
 
 impl Sized {
+    /// Whether it differs in its numbers only: it is the same term, with the same sign.
+    pub fn is_same_kind(&self, other: &Sized) -> bool {
+        self.term == other.term
+            && self.cylinder == other.cylinder
+            && self.coefficient.is_sign_negative() == other.coefficient.is_sign_negative()
+    }
+
     /// Whether it is a force or a torque against the motion.
     pub fn resists(&self) -> bool {
         let word = self.term.factors[0].word;

@@ -1,0 +1,46 @@
+//! A bag of our own topics, read in blocks beside what works on them.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, sync_channel};
+
+use excavator_bags::map::TopicMap;
+use excavator_bags::table::Table;
+use excavator_bags::{BagError, ReadReport, Topics, read_recording_in_blocks};
+use excavator_model::recording::Recording;
+
+/// Whether a recording can only be read whole: a map brings every signal onto one clock, and needs all of it for that.
+pub fn needs_a_map(path: &Path, map: Option<&Path>) -> bool {
+    map.is_some() || TopicMap::beside(path).is_some() || Table::is_table(path)
+}
+
+/// Reads the bag in blocks of `samples`, of which no more than `waiting` wait, while `work` takes them. `choose` says what is wanted of a
+/// block, and whether to read on. Gives what was found in the bag, and what `work` gives.
+///
+/// # Errors
+/// Those of [`read_recording_in_blocks`].
+pub fn read_beside<T>(
+    path: &Path,
+    samples: usize,
+    waiting: usize,
+    mut choose: impl FnMut(Recording) -> (Option<Recording>, ControlFlow<()>) + Send,
+    work: impl FnOnce(Receiver<Recording>) -> T,
+) -> Result<(ReadReport, T), BagError> {
+    if !path.exists() {
+        return Err(BagError::DoesNotExist { path: path.to_path_buf() });
+    }
+    let (sender, blocks) = sync_channel(waiting);
+    std::thread::scope(|scope| {
+        let reader = scope.spawn(move || {
+            read_recording_in_blocks(path, &Topics::default(), samples, |block| {
+                let (wanted, goes_on) = choose(block);
+                // The other side may have ended; it says why.
+                let has_ended = wanted.is_some_and(|wanted| sender.send(wanted).is_err());
+                if has_ended { ControlFlow::Break(()) } else { goes_on }
+            })
+        });
+        let outcome = work(blocks);
+        let report = reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        Ok((report?, outcome))
+    })
+}
