@@ -16,7 +16,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use diffsol_reference::{Method, solve};
 use excavator_model::Model;
 use excavator_model::document::built_in;
-use excavator_model::energy::ledger;
+use excavator_model::energy::Accountant;
 use excavator_model::equations::{Inputs, System};
 use excavator_model::simulation::{InputSignals, Integrator, Linearisation, Sensitivity, Tolerances};
 
@@ -48,7 +48,7 @@ fn run(model: &Model, signals: &InputSignals, with_sensitivities: bool) -> Vec<V
     let wanted = if with_sensitivities { model.unknown_parameters() } else { Vec::new() };
     let mut integrator = Integrator::new(&system, &model.parameter_values(), &wanted, Tolerances::default());
     let mut state = common::at_rest(&system);
-    let mut sensitivity = with_sensitivities.then(|| Sensitivity::at_start(state.len(), wanted.len()));
+    let mut sensitivity = with_sensitivities.then(|| Sensitivity::at_start(&system, &wanted));
     let mut states = Vec::with_capacity(signals.len());
     let Some(sensitivity) = &mut sensitivity else {
         integrator.follow(signals, &mut state, |_, state| states.push(state.to_vec())).unwrap();
@@ -150,8 +150,9 @@ fn simulation(criterion: &mut Criterion) {
                 b.iter(|| linearisation.evaluate(&system, &parameters, black_box(&state), &inputs));
             });
         }
+        let mut accountant = Accountant::new(&system);
         group.bench_function(format!("{name} ledger"), |b| {
-            b.iter(|| ledger(&system, &parameters, black_box(&state), &inputs));
+            b.iter(|| accountant.ledger(&parameters, black_box(&state), &inputs));
         });
     }
     group.finish();

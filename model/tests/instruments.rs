@@ -188,7 +188,7 @@ fn observe(model: &Model, parameters: &[f64], start: &[f64], with_gradients: boo
     let tolerances = Tolerances { maximum_step: 2e-4, ..Tolerances::default().scaled(1e-2) };
     let mut integrator = Integrator::new(&system, parameters, &wanted, tolerances);
     let mut observer = Observer::new(&system, parameters, &wanted, &Channel::all(system.layout()));
-    let mut sensitivity = with_gradients.then(|| Sensitivity::at_start(start.len(), wanted.len()));
+    let mut sensitivity = with_gradients.then(|| Sensitivity::at_start(&system, &wanted));
     let mut state = start.to_vec();
     let (mut readings, mut columns) = (Vec::new(), Vec::new());
     for index in 0..1000 {
@@ -293,7 +293,7 @@ fn shown(model: &Model, recording: &Recording) -> Vec<f64> {
     let mut integrator = Integrator::new(&system, &parameters, &wanted, Tolerances::default());
     let mut observer = Observer::new(&system, &parameters, &wanted, &channels);
     let mut state = common::at_rest(&system);
-    let mut sensitivity = Sensitivity::at_start(state.len(), wanted.len());
+    let mut sensitivity = Sensitivity::at_start(&system, &wanted);
     let mut shown = vec![0.0_f64; own];
     for index in 0..signals.len() - 1 {
         observer.observe(&signals, index, &state, Some(&sensitivity));

@@ -7,6 +7,7 @@ use excavator_model::Model;
 use excavator_model::equations::{Channel, System};
 use excavator_model::machine::Cylinder;
 use excavator_model::simulation::{InputSignals, Integrator, Sensitivity, Tolerances};
+use nalgebra::DVector;
 
 const SAMPLES: usize = 800;
 
@@ -52,14 +53,14 @@ fn errors(model: &Model, settings: Tolerances) -> Vec<(String, f64)> {
     }
     let wanted = model.unknown_parameters();
     let mut integrator = Integrator::new(&system, &parameters, &wanted, settings);
-    let mut sensitivity = Sensitivity::at_start(states, wanted.len());
+    let mut sensitivity = Sensitivity::at_start(&system, &wanted);
     let mut state = start.clone();
-    let mut columns: Vec<Vec<f64>> = sensitivity.matrix.column_iter().map(|c| c.iter().copied().collect()).collect();
+    let mut columns: Vec<Vec<f64>> = (0..sensitivity.width()).map(|column| sensitivity.by_column(column)).collect();
     for index in 0..SAMPLES {
         integrator.advance(&signals, index, &mut state, Some(&mut sensitivity)).unwrap();
         if (index + 1) % 10 == 0 {
             for (number, column) in columns.iter_mut().enumerate() {
-                column.extend(sensitivity.matrix.column(number).iter());
+                column.extend(sensitivity.by_column(number));
             }
         }
     }
@@ -189,15 +190,16 @@ fn a_state_set_by_the_caller_is_noticed() {
     let start = common::at_rest(&system);
     let mut used = Integrator::new(&system, &parameters, &wanted, Tolerances::default());
     let mut state = start.clone();
-    let mut sensitivity = Sensitivity::at_start(start.len(), wanted.len());
+    let mut sensitivity = Sensitivity::at_start(&system, &wanted);
     for index in 0..10 {
         used.advance(&signals, index, &mut state, Some(&mut sensitivity)).unwrap();
     }
     let result = |integrator: &mut Integrator<'_, '_>| {
         let mut state = start.clone();
-        let mut sensitivity = Sensitivity::at_start(start.len(), wanted.len());
+        let mut sensitivity = Sensitivity::at_start(&system, &wanted);
         integrator.advance(&signals, 10, &mut state, Some(&mut sensitivity)).unwrap();
-        (state, sensitivity.matrix)
+        let columns = (0..sensitivity.width()).flat_map(|column| sensitivity.by_column(column));
+        (state, DVector::from_iterator(start.len() * sensitivity.width(), columns))
     };
     let mut fresh = Integrator::new(&system, &parameters, &wanted, Tolerances::default());
     let (from_used, from_fresh) = (result(&mut used), result(&mut fresh));

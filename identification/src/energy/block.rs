@@ -1,7 +1,7 @@
 //! A stretch of a recording, and the books of what was measured in it.
 
 use excavator_model::SignalError;
-use excavator_model::energy::ledger;
+use excavator_model::energy::Accountant;
 use excavator_model::equations::{Inputs, LawStates, System};
 use excavator_model::machine::Supply;
 use excavator_model::recording::{Recording, is_measured};
@@ -71,7 +71,7 @@ pub(super) fn measured_books(
             Ok((displacement, signals))
         })
         .collect::<Result<Vec<_>, SignalError>>()?;
-    let (mut books, mut laws) = (Books::new(model), LawStates::new(system));
+    let (mut books, mut laws, mut accountant) = (Books::new(model), LawStates::new(system), Accountant::new(system));
     let mut state = vec![0.0; layout.len];
     let mut inputs = Inputs::zero(model.machine.cylinders.len());
     let (mut motion, mut pressure) = (Parabola::default(), Parabola::default());
@@ -104,7 +104,7 @@ pub(super) fn measured_books(
             (None, _) => {}
         }
         laws.follow(system, parameters, inputs.time, &inputs, &mut state);
-        enter(system, parameters, &state, &inputs, &mut books);
+        enter(system, &mut accountant, parameters, &state, &inputs, &mut books);
     }
     Ok(books)
 }
@@ -116,7 +116,7 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
     let parameters = model.parameter_values();
     let truth = undistorted(model, simulated);
     let signals = InputSignals::from_recording(model, &block.recording)?;
-    let (mut books, mut laws) = (Books::new(model), LawStates::new(system));
+    let (mut books, mut laws, mut accountant) = (Books::new(model), LawStates::new(system), Accountant::new(system));
     let mut state = vec![0.0; layout.len];
     let mut inputs = Inputs::zero(model.machine.cylinders.len());
     for sample in block.entries() {
@@ -132,14 +132,21 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
             state[pump] = truth.pump_pressure[sample];
         }
         laws.follow(system, &parameters, inputs.time, &inputs, &mut state);
-        enter(system, &parameters, &state, &inputs, &mut books);
+        enter(system, &mut accountant, &parameters, &state, &inputs, &mut books);
     }
     Ok(books)
 }
 
-fn enter(system: &System<'_>, parameters: &[f64], state: &[f64], inputs: &Inputs<f64>, books: &mut Books) {
+fn enter(
+    system: &System<'_>,
+    accountant: &mut Accountant<'_, '_, f64>,
+    parameters: &[f64],
+    state: &[f64],
+    inputs: &Inputs<f64>,
+    books: &mut Books,
+) {
     if state.iter().all(|value| value.is_finite()) {
-        let ledger = ledger(system, parameters, state, inputs);
+        let ledger = accountant.ledger(parameters, state, inputs);
         books.enter(system.model(), system.layout(), &ledger, state, inputs);
     }
 }

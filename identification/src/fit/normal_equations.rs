@@ -109,7 +109,7 @@ impl Shared<'_, '_> {
         let fitted = self.fitted.len();
         let columns = fitted + states;
         let mut integrator = Integrator::new(self.system, self.parameters, self.fitted, self.tolerances);
-        let mut sensitivity = Sensitivity::at_start(states, fitted);
+        let mut sensitivity = Sensitivity::at_start(self.system, self.fitted);
         let channels: Vec<Channel> = self.instruments.iter().map(|instrument| instrument.channel).collect();
         let mut observer = Observer::new(self.system, self.parameters, self.fitted, &channels);
         let mut state = segment.state.clone();

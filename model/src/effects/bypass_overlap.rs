@@ -50,6 +50,10 @@ impl Physics for BypassOverlap {
         false
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn adjust<T: Scalar>(&self, _site: Site, parameters: &[T], now: &mut Situation<T>) {
         for piston in &mut now.pistons {
             piston.bypass_closing = (piston.bypass_closing - parameters[0]).positive_part();

@@ -121,6 +121,10 @@ impl Physics for EndStopCorrection {
         Some(Corner::EndStop)
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         now.pistons[cylinder].rounding.end_stop = Some(Correction {

@@ -75,6 +75,10 @@ impl Physics for FrictionCorner {
         Some(Corner::Friction)
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         now.pistons[cylinder].rounding.corner_sharpness = Some(parameters[0]);

@@ -74,6 +74,10 @@ impl Physics for FrictionReversal {
         Some(Corner::Friction)
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         now.pistons[cylinder].rounding.reversal_speed = parameters[0];

@@ -56,6 +56,10 @@ impl Physics for HosePressureLoss {
         false
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         now.pistons[cylinder].hose_resistance = Some(parameters[0]);

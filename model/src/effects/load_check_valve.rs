@@ -58,6 +58,10 @@ impl Physics for LoadCheckValve {
         false
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         now.pistons[cylinder].backflow *= -parameters[0] + 1.0;

@@ -61,6 +61,10 @@ impl Physics for OpeningScale {
         parameters.first().is_some_and(|scale| scale.abs() >= ACCURACY)
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         let piston = &mut now.pistons[cylinder];

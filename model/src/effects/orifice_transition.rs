@@ -76,6 +76,10 @@ impl Physics for OrificeTransition {
         Some(Corner::OrificeFlow)
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         now.pistons[cylinder].rounding.transition_pressure = parameters[0];

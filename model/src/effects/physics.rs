@@ -100,9 +100,14 @@ pub trait Physics: Send + Sync {
         false
     }
 
+    /// Whether it has a say in what other effects see: through [`Physics::spool`], [`Physics::opening`] or [`Physics::adjust`], which are
+    /// asked of such effects only. The parameters of all others act on their own rows alone, which makes their derivatives cheap.
+    fn adjusts_others(&self) -> bool {
+        false
+    }
+
     /// Where the metering edges and where the bypass's really are (m²), given where the input says the spool is; `states` are the
-    /// effect's own, whose rates go to `rates`. `size` is that of the valve's cylinder. Asked of effects of valves only, as is
-    /// [`Physics::opening`].
+    /// effect's own, whose rates go to `rates`. `size` is that of the valve's cylinder.
     fn spool<T: Scalar>(&self, _size: &Size, _parameters: &[T], _states: &[T], _rates: &mut [T], spool: T) -> [T; 2] {
         [spool, spool]
     }
@@ -123,8 +128,8 @@ pub trait Physics: Send + Sync {
         opening
     }
 
-    /// Adjusts what the valve's other effects see: the closing of the bypass, the share of flow back to the pump. Asked
-    /// of effects of valves and of the pump line, after all openings are known, and of those that round a corner.
+    /// Adjusts what other effects see, after all openings are known: the closing of the bypass, the share of flow back to the pump, how
+    /// a corner is rounded.
     fn adjust<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &mut Situation<T>) {}
 
     /// Adds to what instruments make of what they measure, for an effect that acts on them and not on the machine.
@@ -225,6 +230,7 @@ hooks! {
         fn state_scale(state: usize) -> f64;
         fn reads_metering_flows() -> bool;
         fn reads_course() -> bool;
+        fn adjusts_others() -> bool;
     }
     in number type T {
         fn spool(size: &Size, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2];

@@ -57,6 +57,10 @@ impl Physics for PressureCompensation {
         false
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn adjust<T: Scalar>(&self, site: Site, parameters: &[T], now: &mut Situation<T>) {
         let Site::Cylinder(cylinder) = site else { return };
         now.pistons[cylinder].compensator_margin = Some(parameters[0]);

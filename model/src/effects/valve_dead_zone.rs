@@ -69,6 +69,10 @@ impl Physics for ValveDeadZone {
         false
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn opening<T: Scalar>(&self, _site: Site, parameters: &[T], opening: T, _now: &Situation<T>) -> T {
         (opening - parameters[0]).positive_part() - (-opening - parameters[1]).positive_part()
     }

@@ -67,6 +67,10 @@ impl Physics for ValveGainCurve {
         false
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn opening<T: Scalar>(&self, site: Site, parameters: &[T], opening: T, now: &Situation<T>) -> T {
         let travel = opening.abs() / now.largest_opening(site);
         opening * (travel * (parameters[0] + parameters[1] * travel) + 1.0)

@@ -93,6 +93,10 @@ impl Physics for ValveHysteresis {
         1
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn spool<T: Scalar>(&self, size: &Size, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2] {
         let ahead = spool - states[0];
         let half = parameters[0] * 0.5;

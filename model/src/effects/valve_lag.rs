@@ -80,6 +80,10 @@ impl Physics for ValveLag {
         2
     }
 
+    fn adjusts_others(&self) -> bool {
+        true
+    }
+
     fn spool<T: Scalar>(&self, size: &Size, parameters: &[T], states: &[T], rates: &mut [T], spool: T) -> [T; 2] {
         let (lag, share) = (parameters[0], parameters[1]);
         let (before, opening) = (states[0], states[1]);

@@ -6,58 +6,49 @@ use crate::effects::{Number, Site};
 use crate::equations::{Inputs, Rows, Situation, System, Workspace};
 use crate::machine::Supply;
 
-/// Storage and powers of a model at one instant: parameters in the model's order, state in the order of its layout.
+/// Storage and powers of a model at one instant: parameters in the model's order, state in the order of its layout. Many instants are
+/// cheaper with an [`Accountant`].
 pub fn ledger<'m, T: Number>(system: &System<'m>, parameters: &[T], state: &[T], inputs: &Inputs<T>) -> Ledger<T> {
-    let zero = T::from(0.0);
-    let mut workspace = system.workspace();
-    let mut rates = vec![zero; state.len()];
-    // The rows are evaluated too: the mass matrix gives the kinetic energy.
-    system.rates(&mut workspace, parameters, state, inputs, &mut rates);
-    let mut account = Account { system, parameters, state, workspace };
+    Accountant::new(system).ledger(parameters, state, inputs)
+}
 
-    let mut cylinders = account.mechanical_storage();
-    let mut potentials = Vec::with_capacity(cylinders.len());
-    for (index, storage) in cylinders.iter_mut().enumerate() {
-        let piston = account.workspace.situation.pistons[index];
-        if account.workspace.situation.chambers(index).is_none() {
-            potentials.push((zero, zero));
-            continue;
+/// Writes ledgers of one model, with memory that is reused.
+#[derive(Debug)]
+pub struct Accountant<'m, 's, T> {
+    system: &'s System<'m>,
+    workspace: Workspace<'m, T>,
+    rates: Vec<T>,
+    /// What each effect alone adds to the rows.
+    alone: Vec<Rows<T>>,
+}
+
+impl<'m, 's, T: Number> Accountant<'m, 's, T> {
+    /// For the model of `system`.
+    pub fn new(system: &'s System<'m>) -> Self {
+        let layout = system.layout();
+        Accountant {
+            system,
+            workspace: system.workspace(),
+            rates: vec![T::from(0.0); layout.len],
+            alone: vec![Rows::zero(layout.joints); system.model().effects.len()],
         }
-        let cap = account.oil(Oil::Cap(index), piston.cap_pressure, piston.cap_volume);
-        let rod = account.oil(Oil::Rod(index), piston.rod_pressure, piston.rod_volume);
-        storage.cap_internal = cap.stored * piston.cap_volume;
-        storage.rod_internal = rod.stored * piston.rod_volume;
-        potentials.push((cap.potential, rod.potential));
     }
-    let supply_pressure = account.workspace.situation.pump_pressure;
-    let (pump_line, pump_potential) = match system.model().machine.supply {
-        Supply::PumpLine(line) => {
-            let oil = account.oil(Oil::PumpLine, supply_pressure, T::from(line.volume));
-            (oil.stored * line.volume + account.stored_in_accumulators(supply_pressure, line.volume), oil.potential)
-        }
-        // A pressure given from outside has no volume that could store anything.
-        Supply::PressureSource(_) => (zero, supply_pressure),
-        Supply::None => (zero, zero),
-    };
-    let effects = account.effect_powers(&potentials, pump_potential);
 
-    let pump_power = match system.model().machine.supply {
-        Supply::PumpLine(_) => pump_potential * inputs.pump_flow,
-        Supply::PressureSource(_) | Supply::None => effects.iter().fold(zero, |sum, effect| sum - effect.pump_line),
-    };
-    let pistons = account.workspace.situation.pistons.iter().zip(&system.model().machine.cylinders);
-    let rod_force_power = pistons
-        .filter(|(_, cylinder)| cylinder.chambers.is_none())
-        .fold(zero, |sum, (piston, _)| sum + piston.rod_force * piston.velocity);
-    let machine = &system.model().machine;
-    let motors = machine.cylinders.iter().enumerate().filter(|(_, cylinder)| cylinder.is_motor());
-    let expansion_loss = motors.fold(zero, |sum, (index, _)| {
-        let (piston, (cap, rod)) = (&account.workspace.situation.pistons[index], potentials[index]);
-        let Some(chambers) = account.workspace.situation.chambers(index) else { return sum };
-        let stored = [cap - piston.cap_pressure, rod - piston.rod_pressure];
-        sum + (stored[0] * chambers.cap_area - stored[1] * chambers.rod_area) * piston.velocity
-    });
-    Ledger { cylinders, pump_line, effects, pump_power, rod_force_power, expansion_loss }
+    /// Storage and powers at one instant: parameters in the model's order, state in the order of its layout.
+    pub fn ledger(&mut self, parameters: &[T], state: &[T], inputs: &Inputs<T>) -> Ledger<T> {
+        // The rates are evaluated for the situation, which may hold flows of the valve, and for the mass matrix.
+        self.system.rates(&mut self.workspace, parameters, state, inputs, &mut self.rates);
+        let totals = self.workspace.rows.clone();
+        for (number, alone) in self.alone.iter_mut().enumerate() {
+            self.workspace.rows.clear();
+            self.system.contribute_one(number, &mut self.workspace, parameters, state);
+            std::mem::swap(alone, &mut self.workspace.rows);
+        }
+        self.workspace.rows = totals;
+        let Accountant { system, workspace, alone, .. } = self;
+        let mut account = Account { system, parameters, state, workspace, alone };
+        account.ledger(inputs)
+    }
 }
 
 /// One volume of oil.
@@ -76,26 +67,83 @@ impl Oil {
             Oil::PumpLine => situation.pump_pressure = pressure,
         }
     }
+
+    fn compliance<T: Copy>(self, rows: &Rows<T>) -> T {
+        match self {
+            Oil::Cap(index) => rows.cap_compliance[index],
+            Oil::Rod(index) => rows.rod_compliance[index],
+            Oil::PumpLine => rows.pump_compliance,
+        }
+    }
 }
 
 struct Account<'m, 'a, T> {
     system: &'a System<'m>,
     parameters: &'a [T],
     state: &'a [T],
-    workspace: Workspace<'m, T>,
+    workspace: &'a mut Workspace<'m, T>,
+    /// What each effect alone adds to the rows.
+    alone: &'a [Rows<T>],
 }
 
 impl<T: Number> Account<'_, '_, T> {
-    /// What effect `number` alone adds to the rows.
+    fn ledger(&mut self, inputs: &Inputs<T>) -> Ledger<T> {
+        let zero = T::from(0.0);
+        let mut cylinders = self.mechanical_storage();
+        let mut potentials = Vec::with_capacity(cylinders.len());
+        for (index, storage) in cylinders.iter_mut().enumerate() {
+            let piston = self.workspace.situation.pistons[index];
+            if self.workspace.situation.chambers(index).is_none() {
+                potentials.push((zero, zero));
+                continue;
+            }
+            let cap = self.oil(Oil::Cap(index), piston.cap_pressure, piston.cap_volume);
+            let rod = self.oil(Oil::Rod(index), piston.rod_pressure, piston.rod_volume);
+            storage.cap_internal = cap.stored * piston.cap_volume;
+            storage.rod_internal = rod.stored * piston.rod_volume;
+            potentials.push((cap.potential, rod.potential));
+        }
+        let supply_pressure = self.workspace.situation.pump_pressure;
+        let (pump_line, pump_potential) = match self.system.model().machine.supply {
+            Supply::PumpLine(line) => {
+                let oil = self.oil(Oil::PumpLine, supply_pressure, T::from(line.volume));
+                (oil.stored * line.volume + self.stored_in_accumulators(supply_pressure, line.volume), oil.potential)
+            }
+            // A pressure given from outside has no volume that could store anything.
+            Supply::PressureSource(_) => (zero, supply_pressure),
+            Supply::None => (zero, zero),
+        };
+        let effects = self.effect_powers(&potentials, pump_potential);
+
+        let pump_power = match self.system.model().machine.supply {
+            Supply::PumpLine(_) => pump_potential * inputs.pump_flow,
+            Supply::PressureSource(_) | Supply::None => effects.iter().fold(zero, |sum, effect| sum - effect.pump_line),
+        };
+        let pistons = self.workspace.situation.pistons.iter().zip(&self.system.model().machine.cylinders);
+        let rod_force_power = pistons
+            .filter(|(_, cylinder)| cylinder.chambers.is_none())
+            .fold(zero, |sum, (piston, _)| sum + piston.rod_force * piston.velocity);
+        let machine = &self.system.model().machine;
+        let motors = machine.cylinders.iter().enumerate().filter(|(_, cylinder)| cylinder.is_motor());
+        let expansion_loss = motors.fold(zero, |sum, (index, _)| {
+            let (piston, (cap, rod)) = (&self.workspace.situation.pistons[index], potentials[index]);
+            let Some(chambers) = self.workspace.situation.chambers(index) else { return sum };
+            let stored = [cap - piston.cap_pressure, rod - piston.rod_pressure];
+            sum + (stored[0] * chambers.cap_area - stored[1] * chambers.rod_area) * piston.velocity
+        });
+        Ledger { cylinders, pump_line, effects, pump_power, rod_force_power, expansion_loss }
+    }
+
+    /// What effect `number` alone adds to the rows, in a situation that has been changed.
     fn contribute_alone(&mut self, number: usize) {
         self.workspace.rows.clear();
-        self.system.contribute_one(number, &mut self.workspace, self.parameters, self.state);
+        self.system.contribute_one(number, self.workspace, self.parameters, self.state);
     }
 
     /// Kinetic and potential energy of each joint, \[A\] Eq. 9, from rows that all effects have added to.
     fn mechanical_storage(&self) -> Vec<CylinderStorage<T>> {
         let zero = T::from(0.0);
-        let Workspace { situation, rows, .. } = &self.workspace;
+        let Workspace { situation, rows, .. } = &*self.workspace;
         let mut storage: Vec<CylinderStorage<T>> = kinetic_energies(situation, rows)
             .map(|kinetic| CylinderStorage { kinetic, potential: zero, cap_internal: zero, rod_internal: zero })
             .collect();
@@ -110,41 +158,31 @@ impl<T: Number> Account<'_, '_, T> {
 
     /// Energy of one volume of oil, from the compliances of all effects at the pressures below its own.
     fn oil(&mut self, oil: Oil, pressure: T, volume: T) -> OilEnergy<T> {
-        let mut springs = Vec::new();
-        for number in 0..self.system.model().effects.len() {
-            self.contribute_alone(number);
-            if self.compliance(oil).value() != 0.0 {
-                springs.push(number);
-            }
-        }
+        let stiffens = |number: &usize| oil.compliance(&self.alone[*number]).value() != 0.0;
+        let springs: Vec<usize> = (0..self.alone.len()).filter(stiffens).collect();
         let constant =
             springs.iter().all(|&number| self.system.model().effects[number].physics.has_constant_compliance());
+        if constant {
+            let compliance =
+                springs.iter().fold(T::from(0.0), |sum, &number| sum + oil.compliance(&self.alone[number]));
+            return OilEnergy::of_constant(compliance / volume, pressure);
+        }
         let mut compressibility = |pressure: T| {
             oil.set_pressure(&mut self.workspace.situation, pressure);
             springs.iter().fold(T::from(0.0), |sum, &number| {
                 self.contribute_alone(number);
-                sum + self.compliance(oil)
+                sum + oil.compliance(&self.workspace.rows)
             }) / volume
         };
-        let energy = if constant {
-            OilEnergy::of_constant(compressibility(pressure), pressure)
-        } else {
-            OilEnergy::of_varying(&mut compressibility, pressure)
-        };
+        let energy = OilEnergy::of_varying(&mut compressibility, pressure);
         oil.set_pressure(&mut self.workspace.situation, pressure);
         energy
     }
 
     /// Energy of the gas behind oil of the pump line, which has this volume (m³).
     fn stored_in_accumulators(&mut self, pressure: T, volume: f64) -> T {
-        let effects = self.system.model().effects.iter().enumerate();
-        let at_the_line = effects.filter(|(_, effect)| effect.site == Site::PumpLine).map(|(number, _)| number);
-        let accumulators: Vec<usize> = at_the_line
-            .filter(|&number| {
-                self.contribute_alone(number);
-                self.workspace.rows.accumulator_compliance.value() != 0.0
-            })
-            .collect();
+        let has_gas = |number: &usize| self.alone[*number].accumulator_compliance.value() != 0.0;
+        let accumulators: Vec<usize> = (0..self.alone.len()).filter(has_gas).collect();
         if accumulators.is_empty() {
             return T::from(0.0);
         }
@@ -164,24 +202,14 @@ impl<T: Number> Account<'_, '_, T> {
         stored
     }
 
-    fn compliance(&self, oil: Oil) -> T {
-        let rows = &self.workspace.rows;
-        match oil {
-            Oil::Cap(index) => rows.cap_compliance[index],
-            Oil::Rod(index) => rows.rod_compliance[index],
-            Oil::PumpLine => rows.pump_compliance,
-        }
-    }
-
     /// Power of each effect; `potentials` are e(p+) and e(p-) of each cylinder, `pump_potential` is e(pp).
     fn effect_powers(&mut self, potentials: &[(T, T)], pump_potential: T) -> Vec<EffectPower<T>> {
         let zero = T::from(0.0);
         (0..self.system.model().effects.len())
             .map(|number| {
-                self.contribute_alone(number);
                 let effect = &self.system.model().effects[number];
                 let (first, last) = self.system.parameter_ranges()[number];
-                let Workspace { situation, rows, .. } = &self.workspace;
+                let (situation, rows) = (&self.workspace.situation, &self.alone[number]);
                 let parameters = &self.parameters[first..last];
                 // The torque of what has mass is its Coriolis torque, whose power is the change of the mass matrix.
                 let has_mass = rows.mass.iter().any(|entry| entry.value() != 0.0);
@@ -230,7 +258,7 @@ impl<T: Number> Account<'_, '_, T> {
             self.contribute_alone(number);
             let effect = &self.system.model().effects[number];
             let (first, last) = self.system.parameter_ranges()[number];
-            let Workspace { situation, rows, .. } = &self.workspace;
+            let Workspace { situation, rows, .. } = &*self.workspace;
             let potential = T::hooks(&*effect.physics).potential(effect.site, &self.parameters[first..last], situation);
             kinetic_energies(situation, rows).fold(potential.unwrap_or(T::from(0.0)), |sum, part| sum + part)
         };

@@ -13,6 +13,6 @@ mod ledger;
 pub mod monitor;
 mod oil;
 
-pub use account::ledger;
+pub use account::{Accountant, ledger};
 pub use ledger::{CylinderStorage, EffectPower, Ledger};
 pub use oil::OilEnergy;

@@ -30,6 +30,30 @@ pub struct EndStopCorrection<T> {
     pub shifts: [T; 2],
 }
 
+impl<T> EndStopCorrection<T> {
+    /// What `of` makes of each number.
+    pub fn each<U>(&self, of: impl Fn(&T) -> U) -> EndStopCorrection<U> {
+        EndStopCorrection {
+            stiffness: of(&self.stiffness),
+            damping: of(&self.damping),
+            viscous_damping: of(&self.viscous_damping),
+            shifts: self.shifts.each_ref().map(of),
+        }
+    }
+}
+
+impl<T> Rounding<T> {
+    /// What `of` makes of each number.
+    pub fn each<U>(&self, of: impl Fn(&T) -> U) -> Rounding<U> {
+        Rounding {
+            reversal_speed: of(&self.reversal_speed),
+            corner_sharpness: self.corner_sharpness.as_ref().map(&of),
+            transition_pressure: of(&self.transition_pressure),
+            end_stop: self.end_stop.as_ref().map(|stop| stop.each(&of)),
+        }
+    }
+}
+
 impl<T: Scalar> Rounding<T> {
     /// The convention of the equations for a piston of this size, where no effect rounds otherwise.
     pub fn of_the_equations(size: &Size) -> Self {

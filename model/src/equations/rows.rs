@@ -1,7 +1,7 @@
 //! The rows of the equations of motion, as sums that effects add to.
 
 use super::Situation;
-use crate::scalar::Scalar;
+use crate::scalar::{Dual, Scalar};
 
 /// Sums of what effects add. Pressure forces `A+ p+ - A- p-` and the oil displaced by the piston `A v` belong to the
 /// machine itself and are not in here.
@@ -101,5 +101,26 @@ impl<T: Scalar> Rows<T> {
     /// Number of joints.
     pub fn joints(&self) -> usize {
         self.joints
+    }
+}
+
+impl Rows<Dual> {
+    /// Takes the values of `totals`, and keeps its own derivatives.
+    pub(super) fn set_values(&mut self, totals: &Rows<Dual>) {
+        let sums = [
+            (&mut self.mass, &totals.mass),
+            (&mut self.torque, &totals.torque),
+            (&mut self.piston_force, &totals.piston_force),
+            (&mut self.cap_flow, &totals.cap_flow),
+            (&mut self.rod_flow, &totals.rod_flow),
+            (&mut self.cap_compliance, &totals.cap_compliance),
+            (&mut self.rod_compliance, &totals.rod_compliance),
+        ];
+        for (own, totals) in sums {
+            own.iter_mut().zip(totals).for_each(|(own, total)| own.re = total.re);
+        }
+        self.pump_flow.re = totals.pump_flow.re;
+        self.pump_compliance.re = totals.pump_compliance.re;
+        self.accumulator_compliance.re = totals.accumulator_compliance.re;
     }
 }

@@ -4,7 +4,7 @@ use super::Rounding;
 use super::smooth::at_most;
 use crate::effects::Site;
 use crate::machine::{Chambers, Machine, Size};
-use crate::scalar::Scalar;
+use crate::scalar::{Dual, Scalar, constant};
 
 /// State of one cylinder and its joint at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +55,36 @@ pub struct Piston<T> {
     /// Force that drives a cylinder without chambers, N: measured on the rod, and with the pressures' where the motion is
     /// imposed.
     pub rod_force: T,
+}
+
+impl<T> Piston<T> {
+    /// What `of` makes of each number.
+    pub fn each<U>(&self, of: impl Fn(&T) -> U) -> Piston<U> {
+        Piston {
+            joint: of(&self.joint),
+            rate: of(&self.rate),
+            displacement: of(&self.displacement),
+            velocity: of(&self.velocity),
+            lever: of(&self.lever),
+            cap_pressure: of(&self.cap_pressure),
+            rod_pressure: of(&self.rod_pressure),
+            cap_volume: of(&self.cap_volume),
+            rod_volume: of(&self.rod_volume),
+            command: of(&self.command),
+            cap_flow: of(&self.cap_flow),
+            rod_flow: of(&self.rod_flow),
+            spool: of(&self.spool),
+            opening: of(&self.opening),
+            supply_opening: of(&self.supply_opening),
+            return_opening: of(&self.return_opening),
+            bypass_closing: of(&self.bypass_closing),
+            backflow: of(&self.backflow),
+            compensator_margin: self.compensator_margin.as_ref().map(&of),
+            hose_resistance: self.hose_resistance.as_ref().map(&of),
+            rounding: self.rounding.each(&of),
+            rod_force: of(&self.rod_force),
+        }
+    }
 }
 
 impl<T: Scalar> Piston<T> {
@@ -157,5 +187,19 @@ impl<'m, T: Scalar> Situation<'m, T> {
     /// Known constants of a cylinder's chambers; `None` for a cylinder driven by a measured force.
     pub fn chambers(&self, cylinder: usize) -> Option<&'m Chambers> {
         self.machine.cylinders.get(cylinder).and_then(|c| c.chambers.as_ref())
+    }
+}
+
+impl Situation<'_, Dual> {
+    /// Takes over the values of `other`, which is of the same machine, as constants.
+    pub(super) fn hold(&mut self, other: &Self) {
+        let held = |number: &Dual| constant(number.re);
+        self.time = held(&other.time);
+        for (own, piston) in self.pistons.iter_mut().zip(&other.pistons) {
+            *own = piston.each(held);
+        }
+        self.pump_pressure = held(&other.pump_pressure);
+        self.tank_pressure = held(&other.tank_pressure);
+        self.pump_flow = held(&other.pump_flow);
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{Inputs, Instruments, Layout, Rounding, Rows, Situation};
 use crate::Model;
-use crate::effects::{ActsOn, Family, Number, Site};
+use crate::effects::{ActsOn, Number, Site};
 use crate::machine::{Growth, Size, Supply};
 
 /// A model's equations of motion `dx/dt = f(x, inputs, parameters)`.
@@ -13,7 +13,7 @@ pub struct System<'m> {
     model: &'m Model,
     layout: Layout,
     parameter_ranges: Vec<(usize, usize)>,
-    /// Effects of valves and of the pump line, which alone have a say in spools, openings and bypass, and those that round corners.
+    /// Effects that have a say in what others see.
     adjusting: Vec<usize>,
     /// Effects that look at how the input changes.
     readers_of_course: Vec<usize>,
@@ -52,12 +52,8 @@ impl<'m> System<'m> {
                 range
             })
             .collect();
-        let adjusting = (0..model.effects.len())
-            .filter(|&number| {
-                let card = model.effects[number].physics.card();
-                matches!(card.acts_on, ActsOn::Valve | ActsOn::PumpLine) || card.family == Family::Rounding
-            })
-            .collect();
+        let adjusting =
+            (0..model.effects.len()).filter(|&number| model.effects[number].physics.adjusts_others()).collect();
         let readers_of_course =
             (0..model.effects.len()).filter(|&number| model.effects[number].physics.reads_course()).collect();
         let remembering =
@@ -90,6 +86,11 @@ impl<'m> System<'m> {
     /// Where each state stands.
     pub fn layout(&self) -> &Layout {
         &self.layout
+    }
+
+    /// Whether an effect needs the metering flows.
+    pub(super) fn reads_metering_flows(&self) -> bool {
+        self.reads_metering_flows
     }
 
     /// Index range of each effect's parameters in the model's parameter vector.
@@ -134,10 +135,7 @@ impl<'m> System<'m> {
             self.contribute(workspace, parameters, state, |_| true);
         }
         for &number in &self.remembering {
-            let effect = &self.model.effects[number];
-            let (own, states) = (&parameters[self.parameters_of(number)], self.states_of(number));
-            let (situation, rates) = (&workspace.situation, &mut rates[states.clone()]);
-            T::hooks(&*effect.physics).remember(effect.site, own, &state[states], situation, rates);
+            self.remember_one(number, workspace, parameters, state, rates);
         }
         if self.layout.rod_forces.is_some() {
             self.assemble_rod_forces(workspace, state, rates);
@@ -178,6 +176,24 @@ impl<'m> System<'m> {
         } else {
             hooks.contribute_remembering(effect.site, own, &state[states], situation, rows);
         }
+    }
+
+    /// Rates of one effect's memory, where it has any.
+    pub(super) fn remember_one<T: Number>(
+        &self,
+        number: usize,
+        workspace: &Workspace<'m, T>,
+        parameters: &[T],
+        state: &[T],
+        rates: &mut [T],
+    ) {
+        let effect = &self.model.effects[number];
+        if !effect.physics.has_memory() {
+            return;
+        }
+        let (own, states) = (&parameters[self.parameters_of(number)], self.states_of(number));
+        let rates = &mut rates[states.clone()];
+        T::hooks(&*effect.physics).remember(effect.site, own, &state[states], &workspace.situation, rates);
     }
 
     fn parameters_of(&self, number: usize) -> Range<usize> {
@@ -377,7 +393,7 @@ impl<'m> System<'m> {
     }
 
     /// From rows to rates: solves the mass matrix and divides flows by compliances.
-    fn assemble<T: Number>(&self, workspace: &mut Workspace<'m, T>, rates: &mut [T]) {
+    pub(super) fn assemble<T: Number>(&self, workspace: &mut Workspace<'m, T>, rates: &mut [T]) {
         let layout = &self.layout;
         let Workspace { situation, rows, mass, torque } = workspace;
         for (index, piston) in situation.pistons.iter().enumerate() {

@@ -140,6 +140,10 @@ impl Physics for Law {
         self.reads_metering_flows
     }
 
+    fn adjusts_others(&self) -> bool {
+        self.row.is_an_opening()
+    }
+
     fn opening<T: Scalar>(&self, site: Site, parameters: &[T], opening: T, now: &Situation<T>) -> T {
         if self.row != Row::Opening {
             return opening;

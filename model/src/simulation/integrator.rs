@@ -93,7 +93,7 @@ impl Default for Tolerances {
             rate: 5e-5,
             pressure: 200.0,
             minimum_step: 1e-9,
-            maximum_step: 5e-3,
+            maximum_step: 1e-2,
             most_steps_per_second: 2e4,
         }
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::equations::{Inputs, System, Workspace};
+use crate::equations::{Inputs, OwnRows, Reach, System, Workspace};
 use crate::scalar::{DIRECTIONS, Dual, constant, derivative, variable};
 
 /// Jacobians of the rates at one instant, exact to rounding (forward dual numbers).
@@ -14,7 +14,9 @@ pub struct Linearisation<'m> {
     pub by_state: DMatrix<f64>,
     /// df/dp, states by the parameters asked for.
     pub by_parameter: DMatrix<f64>,
-    parameters_wanted: Vec<usize>,
+    /// Parameters that the whole model has to be asked about, with their columns.
+    far_reaching: Vec<(usize, usize)>,
+    own_rows: OwnRows<'m>,
     workspace: Workspace<'m, Dual>,
     dual_state: Vec<Dual>,
     dual_parameters: Vec<Dual>,
@@ -26,12 +28,17 @@ impl<'m> Linearisation<'m> {
     /// Memory for linearisations of `system` with respect to its states and the parameters with these indices.
     pub fn new(system: &System<'m>, parameters_wanted: &[usize]) -> Self {
         let states = system.layout().len;
+        let columns = |reach: Reach| -> Vec<(usize, usize)> {
+            let each = parameters_wanted.iter().enumerate().map(|(column, &parameter)| (parameter, column));
+            each.filter(|&(parameter, _)| system.reach(parameter) == reach).collect()
+        };
         let zero = constant(0.0);
         Linearisation {
             rates: vec![0.0; states],
             by_state: DMatrix::zeros(states, states),
             by_parameter: DMatrix::zeros(states, parameters_wanted.len()),
-            parameters_wanted: parameters_wanted.to_vec(),
+            far_reaching: columns(Reach::Others),
+            own_rows: OwnRows::new(system, &columns(Reach::OwnRows)),
             workspace: system.workspace(),
             dual_state: vec![zero; states],
             dual_parameters: vec![zero; system.model().parameters().count()],
@@ -44,7 +51,7 @@ impl<'m> Linearisation<'m> {
     pub fn evaluate(&mut self, system: &System<'m>, parameters: &[f64], state: &[f64], inputs: &Inputs<f64>) {
         self.dual_inputs.lift_from(inputs);
         let states = state.len();
-        let directions = states + self.parameters_wanted.len();
+        let directions = states + self.far_reaching.len();
         let mut first = 0;
         while first < directions {
             let last = (first + DIRECTIONS).min(directions);
@@ -58,7 +65,7 @@ impl<'m> Linearisation<'m> {
                 if let Some(&value) = state.get(direction) {
                     self.dual_state[direction] = variable(value, direction - first);
                 } else {
-                    let parameter = self.parameters_wanted[direction - states];
+                    let (parameter, _) = self.far_reaching[direction - states];
                     self.dual_parameters[parameter] = variable(parameters[parameter], direction - first);
                 }
             }
@@ -70,13 +77,13 @@ impl<'m> Linearisation<'m> {
                 &mut self.dual_rates,
             );
             for direction in first..last {
-                for (row, rate) in self.dual_rates.iter().enumerate() {
-                    let slope = derivative(rate, direction - first);
-                    if direction < states {
-                        self.by_state[(row, direction)] = slope;
-                    } else {
-                        self.by_parameter[(row, direction - states)] = slope;
-                    }
+                let mut column = if direction < states {
+                    self.by_state.column_mut(direction)
+                } else {
+                    self.by_parameter.column_mut(self.far_reaching[direction - states].1)
+                };
+                for (slot, rate) in column.iter_mut().zip(&self.dual_rates) {
+                    *slot = derivative(rate, direction - first);
                 }
             }
             first = last;
@@ -84,5 +91,6 @@ impl<'m> Linearisation<'m> {
         for (slot, rate) in self.rates.iter_mut().zip(&self.dual_rates) {
             *slot = rate.re;
         }
+        self.own_rows.evaluate(system, parameters, state, &self.workspace, &mut self.by_parameter);
     }
 }

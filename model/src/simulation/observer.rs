@@ -120,7 +120,7 @@ impl<'m, 's> Observer<'m, 's> {
         state: &[f64],
         sensitivity: Option<&Sensitivity>,
     ) -> &[f64] {
-        let columns = sensitivity.map_or(0, |sensitivity| sensitivity.matrix.ncols());
+        let columns = sensitivity.map_or(0, Sensitivity::width);
         if self.gradients.ncols() != columns {
             self.gradients = DMatrix::zeros(self.instruments.len(), columns);
         }
@@ -203,10 +203,12 @@ fn gradient(
     gradients: &mut DMatrix<f64>,
 ) {
     let [(a, by_a), (b, by_b)] = channel.gradient(system, state);
-    for column in 0..gradients.ncols() {
-        let mut slope = by_a * sensitivity.matrix[(a, column)];
+    let (of_a, of_b) = (sensitivity.of_state(a), sensitivity.of_state(b));
+    gradients.row_mut(row).fill(0.0);
+    for (&column, (slope_a, slope_b)) in sensitivity.columns().iter().zip(of_a.iter().zip(of_b)) {
+        let mut slope = by_a * slope_a;
         if by_b != 0.0 {
-            slope += by_b * sensitivity.matrix[(b, column)];
+            slope += by_b * slope_b;
         }
         gradients[(row, column)] = slope;
     }

@@ -1,9 +1,8 @@
 //! How a trajectory depends on parameters and initial states.
 
-use nalgebra::DMatrix;
-
 use super::Linearisation;
 use super::factors::Factors;
+use crate::equations::{Reach, System};
 
 /// Forward sensitivities `S = dx/d(parameters, initial states)`, carried along a trajectory.
 ///
@@ -12,42 +11,83 @@ use super::factors::Factors;
 /// relative error of 1e-3 is ample.
 #[derive(Debug, Clone)]
 pub struct Sensitivity {
-    /// dx/d(parameters, initial states), states by parameters then states.
-    pub matrix: DMatrix<f64>,
-    parameters: usize,
-    start_by_state: DMatrix<f64>,
-    start_by_parameter: DMatrix<f64>,
-    middle_by_state: Vec<f64>,
-    factors: Factors,
-    /// The sensitivities, row-major, so that one row operation runs over all parameters and initial states at once.
-    old: Vec<f64>,
-    /// The stage that is being solved for, row-major.
+    /// Columns of the parameters asked for, then of the initial states, that can be other than zero; those of instruments cannot.
+    columns: Vec<usize>,
+    /// How many columns there are.
+    width: usize,
+    /// How many of `columns` are of parameters.
+    acting: usize,
+    states: usize,
+    /// The sensitivities, row-major, so that one row operation runs over all columns at once.
+    values: Vec<f64>,
+    /// The stage that is being solved for, likewise.
     stage: Vec<f64>,
+    start_by_state: Vec<f64>,
+    middle_by_state: Vec<f64>,
+    /// By the acting parameters, row-major: at the start of a step, at its end.
+    by_parameter: [Vec<f64>; 2],
+    factors: Factors,
 }
 
 impl Sensitivity {
-    /// At the start of a trajectory: zero for `parameters` parameters, one for each of `states` initial states.
-    pub fn at_start(states: usize, parameters: usize) -> Self {
-        let mut matrix = DMatrix::zeros(states, parameters + states);
+    /// At the start of a trajectory: zero for the parameters with these indices, one for each initial state.
+    pub fn at_start(system: &System<'_>, parameters: &[usize]) -> Self {
+        let states = system.layout().len;
+        let acts = |&column: &usize| system.reach(parameters[column]) != Reach::Instruments;
+        let mut columns: Vec<usize> = (0..parameters.len()).filter(acts).collect();
+        let acting = columns.len();
+        columns.extend(parameters.len()..parameters.len() + states);
+        let mut values = vec![0.0; states * columns.len()];
         for state in 0..states {
-            matrix[(state, parameters + state)] = 1.0;
+            values[state * columns.len() + acting + state] = 1.0;
         }
         Sensitivity {
-            matrix,
-            parameters,
-            start_by_state: DMatrix::zeros(states, states),
-            start_by_parameter: DMatrix::zeros(states, parameters),
+            width: parameters.len() + states,
+            acting,
+            states,
+            stage: values.clone(),
+            values,
+            columns,
+            start_by_state: vec![0.0; states * states],
             middle_by_state: vec![0.0; states * states],
+            by_parameter: [vec![0.0; states * acting], vec![0.0; states * acting]],
             factors: Factors::new(states),
-            old: vec![0.0; states * (parameters + states)],
-            stage: vec![0.0; states * (parameters + states)],
         }
+    }
+
+    /// How many columns there are: one for each parameter asked for, then one for each initial state.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// The columns that can be other than zero, in ascending order.
+    pub fn columns(&self) -> &[usize] {
+        &self.columns
+    }
+
+    /// Derivatives of one state by what each of [`Sensitivity::columns`] is for.
+    pub fn of_state(&self, state: usize) -> &[f64] {
+        &self.values[state * self.columns.len()..(state + 1) * self.columns.len()]
+    }
+
+    /// Derivatives of all states by what one column is for.
+    pub fn by_column(&self, column: usize) -> Vec<f64> {
+        let position = self.columns.binary_search(&column);
+        (0..self.states).map(|state| position.map_or(0.0, |position| self.of_state(state)[position])).collect()
     }
 
     /// Notes the Jacobians at the start of a step.
     pub(super) fn begin(&mut self, linearisation: &Linearisation<'_>) {
-        self.start_by_state.copy_from(&linearisation.by_state);
-        self.start_by_parameter.copy_from(&linearisation.by_parameter);
+        self.start_by_state.copy_from_slice(linearisation.by_state.as_slice());
+        self.note_by_parameter(linearisation, 0);
+    }
+
+    fn note_by_parameter(&mut self, linearisation: &Linearisation<'_>, end: usize) {
+        for (position, &column) in self.columns[..self.acting].iter().enumerate() {
+            let slopes = linearisation.by_parameter.column(column);
+            let slots = self.by_parameter[end].iter_mut().skip(position).step_by(self.acting);
+            slots.zip(slopes.iter()).for_each(|(slot, slope)| *slot = *slope);
+        }
     }
 
     /// Carries the sensitivities over a step of length `step`, with the Jacobians at its end.
@@ -55,51 +95,49 @@ impl Sensitivity {
         /// Where TR-BDF2 puts its middle stage: 2 - sqrt 2 makes both stages share one coefficient.
         const MIDDLE: f64 = 2.0 - std::f64::consts::SQRT_2;
         let weight = MIDDLE / 2.0 * step;
-        let (states, columns) = self.matrix.shape();
-        let Sensitivity { matrix, start_by_state, start_by_parameter, middle_by_state, factors, old, stage, .. } = self;
+        self.note_by_parameter(linearisation, 1);
+        let (states, width, acting) = (self.states, self.columns.len(), self.acting);
+        let Sensitivity { values, stage, start_by_state, middle_by_state, by_parameter, factors, .. } = self;
+        let [start, end] = by_parameter;
 
-        for row in 0..states {
-            for column in 0..columns {
-                old[row * columns + column] = matrix[(row, column)];
-            }
-        }
-        stage.copy_from_slice(old);
-        for row in 0..states {
-            let target = &mut stage[row * columns..(row + 1) * columns];
-            for (other, values) in old.chunks_exact(columns).enumerate() {
-                let factor = weight * start_by_state[(row, other)];
-                for (slot, value) in target.iter_mut().zip(values) {
-                    *slot += factor * value;
+        stage.copy_from_slice(values);
+        for (row, target) in stage.chunks_exact_mut(width).enumerate() {
+            for (other, values) in values.chunks_exact(width).enumerate() {
+                // Column-major, as the linearisation stores it.
+                let factor = weight * start_by_state[other * states + row];
+                if factor != 0.0 {
+                    add(target, factor, values);
                 }
             }
-            for (column, slot) in target[..self.parameters].iter_mut().enumerate() {
-                let (start, end) = (start_by_parameter[(row, column)], linearisation.by_parameter[(row, column)]);
+            let own = row * acting..(row + 1) * acting;
+            for (slot, (start, end)) in target.iter_mut().zip(start[own.clone()].iter().zip(&end[own])) {
                 *slot += weight * (start * (2.0 - MIDDLE) + end * MIDDLE);
             }
         }
-        let ends = start_by_state.iter().zip(&linearisation.by_state);
+        let ends = start_by_state.iter().zip(linearisation.by_state.as_slice());
         for (slot, (start, end)) in middle_by_state.iter_mut().zip(ends) {
             *slot = start * (1.0 - MIDDLE) + end * MIDDLE;
         }
         factors.factorise(1.0, weight, middle_by_state);
-        factors.solve_side_by_side(stage, columns);
+        factors.solve_side_by_side(stage, width);
 
         let normal = 1.0 / (MIDDLE * (2.0 - MIDDLE));
         let share = (1.0 - MIDDLE) * (1.0 - MIDDLE) * normal;
-        for (slot, old) in stage.iter_mut().zip(&*old) {
-            *slot = normal * *slot - share * old;
+        for (slot, stage) in values.iter_mut().zip(&*stage) {
+            *slot = normal * stage - share * *slot;
         }
-        for (row, target) in stage.chunks_exact_mut(columns).enumerate() {
-            for (column, slot) in target[..self.parameters].iter_mut().enumerate() {
-                *slot += weight * linearisation.by_parameter[(row, column)];
+        for (row, target) in values.chunks_exact_mut(width).enumerate() {
+            for (slot, end) in target.iter_mut().zip(&end[row * acting..(row + 1) * acting]) {
+                *slot += weight * end;
             }
         }
         factors.factorise(1.0, weight, linearisation.by_state.as_slice());
-        factors.solve_side_by_side(stage, columns);
-        for row in 0..states {
-            for column in 0..columns {
-                matrix[(row, column)] = stage[row * columns + column];
-            }
-        }
+        factors.solve_side_by_side(values, width);
+    }
+}
+
+fn add(to: &mut [f64], factor: f64, values: &[f64]) {
+    for (slot, value) in to.iter_mut().zip(values) {
+        *slot += factor * value;
     }
 }

@@ -6,7 +6,7 @@ use super::slope::slope_at;
 use super::{Balance, CylinderBalance, EffectTerm};
 use crate::Model;
 use crate::effects::{ActsOn, Site};
-use crate::energy::ledger;
+use crate::energy::Accountant;
 use crate::equations::{Inputs, LawStates, System};
 use crate::machine::Supply;
 use crate::recording::{CylinderSample, Sample};
@@ -64,6 +64,7 @@ pub struct Monitor<'m, 's> {
     /// Entries of `waiting` whose storage and powers are known.
     evaluated: usize,
     laws: LawStates<'m>,
+    accountant: Accountant<'m, 's, f64>,
     counts: Counts,
 }
 
@@ -86,6 +87,7 @@ impl<'m, 's> Monitor<'m, 's> {
             given: 0,
             evaluated: 0,
             laws: LawStates::new(system),
+            accountant: Accountant::new(system),
             counts: Counts::default(),
         }
     }
@@ -212,10 +214,10 @@ impl<'m, 's> Monitor<'m, 's> {
     }
 
     /// Storage and powers at one state; the rate of the Hamiltonian is still to come.
-    fn balance(&self, index: usize, state: &[f64], inputs: &Inputs<f64>) -> Balance {
-        let waiting = &self.waiting[index];
+    fn balance(&mut self, index: usize, state: &[f64], inputs: &Inputs<f64>) -> Balance {
         let model: &Model = self.system.model();
-        let book = ledger(self.system, &self.parameters, state, inputs);
+        let book = self.accountant.ledger(&self.parameters, state, inputs);
+        let waiting = &self.waiting[index];
         let cylinders = book
             .cylinders
             .iter()
