@@ -39,15 +39,10 @@ impl Block {
     }
 }
 
-/// The books of what was measured: positions and pressures by parabolas through their samples, valves by the estimate that
-/// drives simulations too. Entries whose windows are cut off by the ends or touch a sample that was not measured are not
-/// there.
-pub(super) fn measured_books(
-    system: &System<'_>,
-    parameters: &[f64],
-    block: &Block,
-    settings: &EnergySettings,
-) -> Result<Books, SignalError> {
+/// What was measured in a block: states and inputs at its entries. Positions and pressures are by parabolas through their samples, valves
+/// by the estimate that drives simulations too. Entries whose windows are cut off by the ends or touch a sample that was not measured are
+/// not there.
+pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySettings) -> Result<Entries, SignalError> {
     let model = system.model();
     let layout = system.layout();
     let mut recording = undistorted(model, &block.recording);
@@ -71,9 +66,8 @@ pub(super) fn measured_books(
             Ok((displacement, signals))
         })
         .collect::<Result<Vec<_>, SignalError>>()?;
-    let (mut books, mut laws, mut accountant) = (Books::new(model), LawStates::new(system), Accountant::new(system));
-    let mut state = vec![0.0; layout.len];
-    let mut inputs = Inputs::zero(model.machine.cylinders.len());
+    let mut entries = Entries::new(system, signals.clone());
+    let (mut state, mut inputs) = (vec![0.0; layout.len], Inputs::zero(model.machine.cylinders.len()));
     let (mut motion, mut pressure) = (Parabola::default(), Parabola::default());
     for sample in block.entries() {
         if !motion.set(&recording.time, sample, settings.motion_half_width)
@@ -82,7 +76,6 @@ pub(super) fn measured_books(
             continue;
         }
         signals.between(sample, 0.0, &mut inputs);
-        inputs.time = block.start + recording.time[sample];
         for (number, (cylinder, (displacement, measured))) in model.machine.cylinders.iter().zip(&sources).enumerate() {
             let joint = cylinder.linkage.joint(motion.value(displacement));
             let velocity = match measured.velocity[sample] {
@@ -103,10 +96,65 @@ pub(super) fn measured_books(
             }
             (None, _) => {}
         }
-        laws.follow(system, parameters, inputs.time, &inputs, &mut state);
-        enter(system, &mut accountant, parameters, &state, &inputs, &mut books);
+        if state.iter().all(|value| value.is_finite()) {
+            entries.push(sample, block.start + recording.time[sample], inputs.supply_pressure, &state);
+        }
     }
-    Ok(books)
+    Ok(entries)
+}
+
+/// States, but for what effects remember, with their inputs.
+pub(super) struct Entries {
+    signals: InputSignals,
+    /// Number of each sample, its time since the start of the recording (s), and the supply's pressure (Pa).
+    samples: Vec<(usize, f64, f64)>,
+    /// The states, one after the other.
+    states: Vec<f64>,
+    states_each: usize,
+}
+
+impl Entries {
+    fn new(system: &System<'_>, signals: InputSignals) -> Self {
+        Entries { signals, samples: Vec::new(), states: Vec::new(), states_each: system.layout().len }
+    }
+
+    fn push(&mut self, sample: usize, time: f64, supply_pressure: f64, state: &[f64]) {
+        self.samples.push((sample, time, supply_pressure));
+        self.states.extend_from_slice(state);
+    }
+}
+
+/// The books of some entries, in order.
+pub(super) fn books_of(system: &System<'_>, parameters: &[f64], entries: &Entries) -> Books {
+    let model = system.model();
+    let (mut books, mut laws) = (Books::new(model, entries.samples.len()), LawStates::new(system));
+    let mut accountant = Accountant::new(system);
+    let mut inputs = Inputs::zero(model.machine.cylinders.len());
+    let mut state = vec![0.0; system.layout().len];
+    for (&(sample, time, supply_pressure), known) in
+        entries.samples.iter().zip(entries.states.chunks_exact(entries.states_each))
+    {
+        entries.signals.between(sample, 0.0, &mut inputs);
+        inputs.time = time;
+        inputs.supply_pressure = supply_pressure;
+        state.copy_from_slice(known);
+        laws.follow(system, parameters, time, &inputs, &mut state);
+        if state.iter().all(|value| value.is_finite()) {
+            let ledger = accountant.ledger(parameters, &state, &inputs);
+            books.enter(model, system.layout(), &ledger, &state, &inputs);
+        }
+    }
+    books
+}
+
+/// The books of what was measured in a block.
+pub(super) fn measured_books(
+    system: &System<'_>,
+    parameters: &[f64],
+    block: &Block,
+    settings: &EnergySettings,
+) -> Result<Books, SignalError> {
+    Ok(books_of(system, parameters, &measured(system, block, settings)?))
 }
 
 /// The books of a simulation on the clock of a block: its states as they are.
@@ -116,12 +164,10 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
     let parameters = model.parameter_values();
     let truth = undistorted(model, simulated);
     let signals = InputSignals::from_recording(model, &block.recording)?;
-    let (mut books, mut laws, mut accountant) = (Books::new(model), LawStates::new(system), Accountant::new(system));
-    let mut state = vec![0.0; layout.len];
-    let mut inputs = Inputs::zero(model.machine.cylinders.len());
+    let (mut state, mut inputs) = (vec![0.0; layout.len], Inputs::zero(model.machine.cylinders.len()));
+    let mut entries = Entries::new(system, signals.clone());
     for sample in block.entries() {
         signals.between(sample, 0.0, &mut inputs);
-        inputs.time = block.start + truth.time[sample];
         for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
             let own = truth.cylinder(&cylinder.name)?;
             let joint = cylinder.linkage.joint(own.displacement[sample]);
@@ -131,22 +177,7 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
         if let Some(pump) = layout.pump {
             state[pump] = truth.pump_pressure[sample];
         }
-        laws.follow(system, &parameters, inputs.time, &inputs, &mut state);
-        enter(system, &mut accountant, &parameters, &state, &inputs, &mut books);
+        entries.push(sample, block.start + truth.time[sample], inputs.supply_pressure, &state);
     }
-    Ok(books)
-}
-
-fn enter(
-    system: &System<'_>,
-    accountant: &mut Accountant<'_, '_, f64>,
-    parameters: &[f64],
-    state: &[f64],
-    inputs: &Inputs<f64>,
-    books: &mut Books,
-) {
-    if state.iter().all(|value| value.is_finite()) {
-        let ledger = accountant.ledger(parameters, state, inputs);
-        books.enter(system.model(), system.layout(), &ledger, state, inputs);
-    }
+    Ok(books_of(system, &parameters, &entries))
 }

@@ -67,22 +67,36 @@ pub struct Books {
 }
 
 impl Books {
-    /// No entries yet.
-    pub(super) fn new(model: &Model) -> Self {
+    /// No entries yet, with room for so many.
+    pub(super) fn new(model: &Model, room: usize) -> Self {
+        let column = || Vec::with_capacity(room);
         let effects = model.effects.iter().map(|effect| EffectBooks {
             effect: effect.name_text(),
             site: effect.site,
             acts_on: effect.physics.card().acts_on,
             has_power: true,
-            mechanical: Vec::new(),
-            cap: Vec::new(),
-            rod: Vec::new(),
-            pump_line: Vec::new(),
+            mechanical: column(),
+            cap: column(),
+            rod: column(),
+            pump_line: column(),
+        });
+        let cylinders = model.machine.cylinders.iter().map(|_| CylinderBooks {
+            kinetic: column(),
+            potential: column(),
+            cap_internal: column(),
+            rod_internal: column(),
+            velocity: column(),
+            opening: column(),
+            cap_work: column(),
+            rod_work: column(),
+            rod_force_power: column(),
         });
         Books {
-            cylinders: vec![CylinderBooks::default(); model.machine.cylinders.len()],
+            time: column(),
+            cylinders: cylinders.collect(),
+            pump_line: column(),
+            pump_power: column(),
             effects: effects.collect(),
-            ..Books::default()
         }
     }
 

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
-use super::block::{Block, measured_books};
+use super::block::{Block, books_of, measured, measured_books};
 use super::windows::windows;
 use super::{Books, EnergySettings, Place};
 
@@ -74,14 +74,15 @@ pub(super) fn study_noise(
         .filter_map(|(index, (_, parameter))| Some((index, parameter.standard_error?)))
         .filter(|(_, error)| error.is_finite() && *error > 0.0)
         .collect();
-    let mut moved = errors
+    let entries = measured(system, block, settings)?;
+    let mut moved: Vec<Vec<Vec<f64>>> = errors
         .into_par_iter()
         .map(|(index, error)| {
             let mut values = parameters.clone();
             values[index] += error;
-            measured_books(system, &values, block, settings).map(|books| residuals_of(&books))
+            residuals_of(&books_of(system, &values, &entries))
         })
-        .collect::<Result<Vec<_>, SignalError>>()?;
+        .collect();
     // A valve's step makes a kink in a pressure, and what a parabola cuts off a kink grows in proportion to its width: the
     // whole of it is what wider ones change, divided by how much wider they are.
     let wider = EnergySettings {

@@ -18,6 +18,27 @@ pub(super) struct Window {
     pub situations: Vec<Situation>,
 }
 
+/// What the books say of one place, entry by entry. Every entry is in several windows.
+struct Columns {
+    /// Energy stored, J.
+    stored: Vec<f64>,
+    /// Power into it, W.
+    power: Vec<f64>,
+    /// Power through it, W.
+    flow: Vec<f64>,
+}
+
+impl Columns {
+    fn of(books: &Books, place: Place) -> Self {
+        let each = |of: &dyn Fn(usize) -> f64| (0..books.len()).map(of).collect();
+        Columns {
+            stored: each(&|k| books.stored_at(place, k)),
+            power: each(&|k| books.power_into(place, k)),
+            flow: each(&|k| books.flow_through(place, k)),
+        }
+    }
+}
+
 /// Fewest entries of a window.
 const FEWEST: usize = 20;
 /// A pause between entries of more than this part of the window's half width leaves the window out.
@@ -37,12 +58,13 @@ pub(super) fn windows(
     let half = settings.window_half_width;
     let step = 0.5 * half;
     let (first, last) = ((own.0 / step).ceil() as i64, (own.1 / step).ceil() as i64);
+    let columns: Vec<Columns> = places.iter().map(|&place| Columns::of(books, place)).collect();
     (first..last)
         .filter_map(|number| {
             let centre = number as f64 * step;
             let start = books.time.partition_point(|&t| t < centre - half);
             let end = books.time.partition_point(|&t| t <= centre + half);
-            window(model, books, places, centre, start..end, half)
+            window(model, books, &columns, centre, start..end, half)
         })
         .collect()
 }
@@ -50,7 +72,7 @@ pub(super) fn windows(
 fn window(
     model: &Model,
     books: &Books,
-    places: &[Place],
+    columns: &[Columns],
     centre: f64,
     range: std::ops::Range<usize>,
     half: f64,
@@ -82,11 +104,8 @@ fn window(
         let level = of(range.start);
         -weights.iter().enumerate().map(|(k, weight)| weight.1 * (of(range.start + k) - level)).sum::<f64>() / area
     };
-    let residuals = places
-        .iter()
-        .map(|&place| rate(&|k| books.stored_at(place, k)) - mean(&|k| books.power_into(place, k)))
-        .collect();
-    let flows = places.iter().map(|&place| mean(&|k| books.flow_through(place, k))).collect();
+    let residuals = columns.iter().map(|own| rate(&|k| own.stored[k]) - mean(&|k| own.power[k])).collect();
+    let flows = columns.iter().map(|own| mean(&|k| own.flow[k])).collect();
     let situations = books
         .cylinders
         .iter()

@@ -16,7 +16,8 @@ pub(crate) struct Linearised {
     sums: Vec<SegmentSums>,
     noise: Vec<f64>,
     scales: Vec<f64>,
-    own: usize,
+    /// Values of the model's own free parameters, and their bounds.
+    own: Vec<(f64, [f64; 2])>,
     /// Loss of the model as it is, after a step of its own parameters; see [`super::Fit::loss`].
     pub loss_before: f64,
 }
@@ -26,6 +27,8 @@ pub(crate) struct Linearised {
 pub(crate) struct Promise {
     /// The chosen parameters after the step, in their units.
     pub values: Vec<f64>,
+    /// The model's own free parameters after the step, within their bounds.
+    pub own: Vec<f64>,
     /// Loss after the step, if the outputs were linear.
     pub loss: f64,
 }
@@ -52,8 +55,9 @@ impl Linearised {
         let raw = problem.sums_at(&values, &problem.segments)?;
         let weights = error_sizes(&raw, &problem.noise);
         let sums = problem.weighed_with_priors(&raw, &weights, &values);
-        let Problem { noise, scales, .. } = problem;
-        let mut linearised = Linearised { raw, sums, noise, scales, own: own.len(), loss_before: f64::NAN };
+        let Problem { noise, scales, priors, .. } = problem;
+        let own = own.iter().map(|&index| (values[index], priors.bounds[index])).collect();
+        let mut linearised = Linearised { raw, sums, noise, scales, own, loss_before: f64::NAN };
         linearised.loss_before = linearised.promise(&[]).map_or(f64::INFINITY, |promise| promise.loss);
         Ok(linearised)
     }
@@ -61,8 +65,9 @@ impl Linearised {
     /// What a step of the model's own parameters and of some of the further ones promises, these given by their numbers. `None` where
     /// the recordings do not tell them apart.
     pub fn promise(&self, chosen: &[usize]) -> Option<Promise> {
+        let own = self.own.len();
         let held: Vec<bool> =
-            (0..self.scales.len()).map(|number| number >= self.own && !chosen.contains(&(number - self.own))).collect();
+            (0..self.scales.len()).map(|number| number >= own && !chosen.contains(&(number - own))).collect();
         let step: DVector<f64> = parameter_step(&self.sums, &held, DAMPING)?;
         let (mut squares, mut counts) = (vec![0.0; self.noise.len()], vec![0usize; self.noise.len()]);
         for (raw, sums) in self.raw.iter().zip(&self.sums) {
@@ -76,8 +81,11 @@ impl Linearised {
             .zip(&self.noise)
             .map(|(error, noise)| error.max(LEAST_ERROR * noise))
             .collect();
-        let values = chosen.iter().map(|&number| step[self.own + number] * self.scales[self.own + number]).collect();
-        Some(Promise { values, loss: loss_per_reading(&errors, &self.noise) })
+        let values = chosen.iter().map(|&number| step[own + number] * self.scales[own + number]).collect();
+        let stepped = self.own.iter().zip(step.iter().zip(&self.scales));
+        let own =
+            stepped.map(|((value, [lowest, highest]), (step, scale))| (value + step * scale).clamp(*lowest, *highest));
+        Some(Promise { values, own: own.collect(), loss: loss_per_reading(&errors, &self.noise) })
     }
 }
 

@@ -84,29 +84,37 @@ pub(super) fn screen(
     let tries = tries(&entries, &fitted);
     let cost_of_parameter = 0.5 * projection.independent().max(1.0).ln();
     let cost_of_search = (tries.len().max(1) as f64).ln();
-    let mut best: Vec<Screened> = tries
+    let column = |entry: Entry, law: &Evaluated| {
+        projection.column(
+            &fitted.regressor(entry.probe, &law.values(&fitted))?,
+            &predicted.regressor(entry.probe, &law.values(&predicted))?,
+        )
+    };
+    // Without their columns: those of all together would fill the memory.
+    let mut tried: Vec<(Entry, Sized, f64)> = tries
         .par_iter()
         .filter_map(|(entry, term, shapes)| {
             let law = Evaluated::new(&probed, *entry, *term, shapes)?;
-            let column = projection.column(
-                &fitted.regressor(entry.probe, &law.values(&fitted))?,
-                &predicted.regressor(entry.probe, &law.values(&predicted))?,
-            )?;
+            let column = column(*entry, &law)?;
             let (coefficient, gain) = projection.gain(&column).filter(|(own, _)| *own >= 0.0 || !term.is_whole())?;
             let evidence = gain - cost_of_parameter * term.parameters() as f64 - cost_of_search;
-            let sized = Sized { coefficient, ..law.sized };
-            Some(Screened { site: entry.site, sized, evidence, column })
+            Some((*entry, Sized { coefficient, ..law.sized }, evidence))
         })
         .collect();
-    best.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    let mut kept: Vec<Screened> = Vec::new();
-    for one in best {
-        let is_same = |other: &&Screened| other.site == one.site && other.sized.is_same_kind(&one.sized);
+    tried.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let mut kept: Vec<(Entry, Sized, f64)> = Vec::new();
+    for one in tried {
+        let is_same = |other: &&(Entry, Sized, f64)| other.0.site == one.0.site && other.1.is_same_kind(&one.1);
         if kept.len() < KEPT && kept.iter().filter(is_same).count() < KEPT_SHAPES {
             kept.push(one);
         }
     }
-    Ok(Screening { projection, best: kept })
+    let best = kept.into_par_iter().filter_map(|(entry, sized, evidence)| {
+        let column = column(entry, &Evaluated::new(&probed, entry, sized.term, &sized.shapes)?)?;
+        Some(Screened { site: entry.site, sized, evidence, column })
+    });
+    let best = best.collect();
+    Ok(Screening { projection, best })
 }
 
 /// The model with a probe in every row at every site.

@@ -93,6 +93,18 @@ pub(super) fn best_start(
     settings: &FitSettings,
 ) -> Result<PromisingStart, AdditionError> {
     let extended = model.with_effect(&addition.physics, addition.site)?;
+    most_promising(starts(&extended, recordings), recordings, settings)
+}
+
+/// Of some starts of one addition, and of those that its window could also have, the one whose first step promises most.
+///
+/// # Errors
+/// [`AdditionError`].
+pub(super) fn most_promising(
+    starts: Vec<Model>,
+    recordings: &[&Recording],
+    settings: &FitSettings,
+) -> Result<PromisingStart, AdditionError> {
     let mut best: Option<PromisingStart> = None;
     let mut failure = None;
     let mut try_one = |start: Model, best: &mut Option<PromisingStart>| match predict(&start, recordings, settings) {
@@ -102,7 +114,7 @@ pub(super) fn best_start(
         Ok(_) => {}
         Err(error) => failure = Some(error),
     };
-    for start in starts(&extended, recordings) {
+    for start in starts {
         try_one(start, &mut best);
     }
     let half_open = best.as_ref().map_or_else(Vec::new, |best| half_open(&best.model));

@@ -27,6 +27,11 @@ pub struct Effort {
     /// The first step of a candidate is trusted to foretell its improvement only where its start is no further than this from the model
     /// without it. Of 627 effects that ran on 40 blind machines this would have dropped 211: none was hidden in its machine.
     pub trusted_distance: f64,
+    /// So many starts of an addition, the most promising by one simulation of the model without any, are simulated themselves.
+    pub promised_starts: usize,
+    /// Where the best of these brings less than this share of what was promised, all starts are tried: the addition is too large for the
+    /// straight line that the promise was read from.
+    pub borne_out: f64,
     /// Share of the misfit below which the best finalist does not end the screening: then all others are fitted too.
     pub little_share: f64,
     /// Share of the misfit from which on it does, where little more than noise remains. A twin of the right effect can reach this.
@@ -57,6 +62,8 @@ impl Default for Effort {
             finalist_margin: 0.5,
             further_finalists: 6,
             trusted_distance: 1.2,
+            promised_starts: 2,
+            borne_out: 0.5,
             little_share: 0.25,
             most_share: 0.8,
             rival_share: 0.5,

@@ -9,6 +9,7 @@ mod input_floor;
 mod named;
 mod pool;
 mod progress;
+mod promises;
 mod scoring;
 mod screening;
 #[expect(clippy::module_inception, reason = "the folder is named after what it does, the file after its function")]

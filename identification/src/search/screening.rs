@@ -1,7 +1,7 @@
 //! Successive halving of the additions to one hypothesis.
 //!
-//! A full fit of every effect at every place would take minutes. One simulation with sensitivities tells which effects promise
-//! nothing; three steps of a fit on the hardest stretches tell how much of the error the others can explain. The best are fitted to
+//! A full fit of every effect at every place would take minutes. One simulation with sensitivities to all of them tells which promise
+//! nothing, and where the others start; three steps of a fit on the hardest stretches tell how much of the error the others can explain. The best are fitted to
 //! the end, on everything. Evidence is from full fits only.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,8 +10,9 @@ use std::time::Instant;
 use excavator_model::site_name;
 use rayon::prelude::*;
 
-use super::addition::{Addition, AdditionError, best_start};
+use super::addition::{Addition, AdditionError, PromisingStart, best_start, most_promising};
 use super::pool::Unpromising;
+use super::promises::{Promised, promises};
 use super::starts::can_be_transient;
 use super::track::{Track, few_steps};
 use super::{Effort, Trial};
@@ -82,12 +83,17 @@ impl Screening<'_> {
         let (done, total) = (AtomicUsize::new(0), wanted.len().max(1) as f64);
         // The longest first, or one core ends with it alone.
         wanted.sort_by_key(|addition| !needs_all(addition));
+        let of_whole = wanted.iter().take_while(|one| needs_all(one)).count();
+        let track = |number: usize| hard.as_ref().filter(|_| number >= of_whole).unwrap_or(&whole);
+        let mut promised = self.promised(&wanted[..of_whole], track(0));
+        promised.extend(self.promised(&wanted[of_whole..], track(of_whole)));
         let outcomes: Vec<(String, Outcome)> = wanted
             .into_par_iter()
-            .map(|addition| {
+            .zip(promised)
+            .enumerate()
+            .map(|(number, (addition, promised))| {
                 let name = addition.name(&self.base.fit.model);
-                let track = hard.as_ref().filter(|_| !needs_all(&addition)).unwrap_or(&whole);
-                let outcome = self.screened(addition, track).unwrap_or_else(Outcome::Failed);
+                let outcome = self.screened(addition, track(number), promised).unwrap_or_else(Outcome::Failed);
                 advance(&name, (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / total);
                 (name, outcome)
             })
@@ -132,23 +138,64 @@ impl Screening<'_> {
             .collect()
     }
 
+    /// What one simulation of the model without additions promises of each.
+    fn promised(&self, wanted: &[Addition], track: &Track) -> Vec<Option<Promised>> {
+        let recordings: Vec<_> = track.recordings.iter().collect();
+        promises(&track.base.model, wanted, &recordings, &self.effort.fit)
+            .unwrap_or_else(|| wanted.iter().map(|_| None).collect())
+    }
+
     /// A few steps from the start that promises most.
-    fn screened(&self, addition: Addition, track: &Track) -> Result<Outcome, AdditionError> {
+    fn screened(
+        &self,
+        addition: Addition,
+        track: &Track,
+        promised: Option<Promised>,
+    ) -> Result<Outcome, AdditionError> {
         let recordings: Vec<_> = track.recordings.iter().collect();
         let base = &track.base.model;
-        let start = best_start(base, &addition, &recordings, &self.effort.fit)?;
-        let promised_improvement = track.base.loss() - start.promise.loss_after;
         let name = addition.name(base);
-        // Only from a start next to the base can the promise of one step be trusted.
-        let is_trusted = (start.promise.loss_before - track.start_loss).abs() < self.effort.trusted_distance;
-        if is_trusted && promised_improvement < self.least_improvement / 4.0 {
+        let unpromising = |promised_improvement: f64| {
             let place = site_name(&base.machine, addition.site).to_string();
             let effect = addition.physics.card().name.clone();
-            return Ok(Outcome::Unpromising(Unpromising { name, effect, place, promised_improvement }));
+            Ok(Outcome::Unpromising(Unpromising { name: name.clone(), effect, place, promised_improvement }))
+        };
+        let least = self.least_improvement / 4.0;
+        if let Some(promised) = promised.as_ref().filter(|own| own.is_straight && own.improvement < least) {
+            return unpromising(promised.improvement);
+        }
+        let start = self.start(&addition, track, promised)?;
+        let promised_improvement = track.base.loss() - start.promise.loss_after;
+        // Only from a start next to the base can the promise of one step be trusted.
+        let is_trusted = (start.promise.loss_before - track.start_loss).abs() < self.effort.trusted_distance;
+        if is_trusted && promised_improvement < least {
+            return unpromising(promised_improvement);
         }
         let fit = fit_predicted(&start.model, start.promise, &recordings, &few_steps(self.effort))?;
         let improvement = track.base.loss() - fit.loss();
         Ok(Outcome::Screened(Box::new(Screen { addition, name, fit, improvement })))
+    }
+
+    /// The most promising start: of those that were promised where the promise is borne out, else of all.
+    fn start(
+        &self,
+        addition: &Addition,
+        track: &Track,
+        promised: Option<Promised>,
+    ) -> Result<PromisingStart, AdditionError> {
+        let recordings: Vec<_> = track.recordings.iter().collect();
+        let settings = &self.effort.fit;
+        let all = || best_start(&track.base.model, addition, &recordings, settings);
+        let Some(Promised { improvement, starts, .. }) = promised else { return all() };
+        if improvement < self.least_improvement / 4.0 {
+            return all();
+        }
+        let first = starts.into_iter().take(self.effort.promised_starts).map(|start| start.model).collect();
+        let Ok(start) = most_promising(first, &recordings, settings) else { return all() };
+        if track.base.loss() - start.promise.loss_after >= self.effort.borne_out * improvement {
+            return Ok(start);
+        }
+        Ok(all().ok().filter(|other| other.promise.loss_after < start.promise.loss_after).unwrap_or(start))
     }
 
     fn trial(&self, screen: Screen) -> Result<Trial, AdditionError> {

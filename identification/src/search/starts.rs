@@ -144,7 +144,8 @@ fn in_window(model: &Model, begin: Option<f64>, end: Option<f64>) -> Model {
 /// Shortest window that a search begins with, s, on a machine of the reference size.
 const SHORTEST: f64 = 0.2;
 
-fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
+/// The model with the last effect's parameters at each combination of their start values.
+pub(super) fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let Some(last) = model.effects.last() else { return vec![model.clone()] };
     let mut starts = if can_be_transient(&*last.physics, &model.machine, last.site) {
         windows(model, recordings)

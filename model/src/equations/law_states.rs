@@ -35,6 +35,9 @@ impl<'m> LawStates<'m> {
         inputs: &Inputs<f64>,
         state: &mut [f64],
     ) {
+        if !system.has_effect_states() {
+            return;
+        }
         system.set_effect_states(&inputs.orifice_area, state);
         let own: Vec<(usize, f64)> = system.law_states().collect();
         if own.is_empty() {

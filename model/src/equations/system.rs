@@ -334,6 +334,11 @@ impl<'m> System<'m> {
         }
     }
 
+    /// Whether any effect has states of its own.
+    pub fn has_effect_states(&self) -> bool {
+        self.layout.effect_states.iter().any(|&(_, states)| states > 0)
+    }
+
     /// Sets the effects' own states. Spools are at these openings (m², one per cylinder; one that is left out is zero): settled, or
     /// where their sensors say. Other states are where they begin.
     pub fn set_effect_states(&self, openings: &[f64], state: &mut [f64]) {
