@@ -1,9 +1,10 @@
 //! Each equation of motion as sampled terms, with derivatives by the parameters.
 
 use excavator_model::Model;
-use excavator_model::equations::{Inputs, Rows, System};
+use excavator_model::equations::{Inputs, Rows, System, Workspace};
 use excavator_model::machine::Supply;
 use excavator_model::scalar::{DIRECTIONS, Dual, constant, derivative, variable};
+use rayon::prelude::*;
 
 use super::Observation;
 
@@ -86,22 +87,22 @@ impl Sensor {
     }
 }
 
-/// Quantities of [`Rows`] at all samples, with derivatives by the parameters of the present pass.
+/// A quantity of [`Rows`] at all samples, with its derivatives in the directions of one pass or more.
 struct Track {
     value: Vec<f64>,
-    by_parameter: Vec<Vec<f64>>,
+    /// Empty where the derivative is zero throughout.
+    slopes: Vec<Vec<f64>>,
 }
 
 impl Track {
-    fn new(samples: usize, parameters: usize) -> Self {
-        Track { value: vec![f64::NAN; samples], by_parameter: vec![Vec::new(); parameters] }
+    fn new(samples: usize, directions: usize) -> Self {
+        Track { value: vec![f64::NAN; samples], slopes: vec![Vec::new(); directions] }
     }
 
-    fn set(&mut self, sample: usize, number: &Dual, first: usize, last: usize) {
+    fn set(&mut self, sample: usize, number: &Dual) {
         self.value[sample] = number.re;
-        for parameter in first..last {
-            let slope = derivative(number, parameter - first);
-            let column = &mut self.by_parameter[parameter];
+        for (direction, column) in self.slopes.iter_mut().enumerate() {
+            let slope = derivative(number, direction);
             if column.is_empty() {
                 if slope == 0.0 {
                     continue;
@@ -113,43 +114,65 @@ impl Track {
     }
 }
 
-/// All equations of a model along an observation, with derivatives by the parameters with indices `fitted`. States of
-/// effects (a lagging spool) are taken from `effect_states`, sample by sample. Samples where something is not measured
-/// are `NaN` in the equations that need it.
-pub fn equations(
-    system: &System<'_>,
-    observation: &Observation,
-    effect_states: &[Vec<f64>],
-    fitted: &[usize],
-) -> Vec<Equation> {
-    let model = system.model();
-    let layout = system.layout();
-    let (joints, samples) = (layout.joints, observation.time.len());
-    let chambers = layout.chambers;
-    let sensors = Sensor::all(joints);
-    let directions = fitted.len() + sensors.len();
-    let track = || Track::new(samples, directions);
-    let mut mass: Vec<Track> = (0..joints * joints).map(|_| track()).collect();
-    let mut torque: Vec<Track> = (0..joints).map(|_| track()).collect();
-    let mut flows: Vec<[Track; 2]> = (0..joints).map(|_| [track(), track()]).collect();
-    let mut compliances: Vec<[Track; 2]> = (0..joints).map(|_| [track(), track()]).collect();
-    let (mut pump_flow, mut pump_compliance) = (track(), track());
+/// All quantities of [`Rows`].
+struct Tracks {
+    mass: Vec<Track>,
+    torque: Vec<Track>,
+    flows: Vec<[Track; 2]>,
+    compliances: Vec<[Track; 2]>,
+    pump_flow: Track,
+    pump_compliance: Track,
+}
 
-    let values = model.parameter_values();
-    let mut parameters: Vec<Dual> = values.iter().map(|&value| constant(value)).collect();
-    let mut workspace = system.workspace::<Dual>();
-    let mut plain_inputs = Inputs::<f64>::zero(joints);
-    let mut inputs = Inputs::<Dual>::zero(joints);
-    let mut state = vec![constant(0.0); layout.len];
-    let mut rates = vec![constant(0.0); layout.len];
-    let passes = (0..directions).step_by(DIRECTIONS).map(|first| (first, (first + DIRECTIONS).min(directions)));
-    for (first, last) in passes {
-        for (slot, &value) in parameters.iter_mut().zip(&values) {
-            *slot = constant(value);
+impl Tracks {
+    fn new(joints: usize, samples: usize, directions: usize) -> Self {
+        let track = || Track::new(samples, directions);
+        Tracks {
+            mass: (0..joints * joints).map(|_| track()).collect(),
+            torque: (0..joints).map(|_| track()).collect(),
+            flows: (0..joints).map(|_| [track(), track()]).collect(),
+            compliances: (0..joints).map(|_| [track(), track()]).collect(),
+            pump_flow: track(),
+            pump_compliance: track(),
         }
+    }
+
+    fn each(&mut self) -> impl Iterator<Item = &mut Track> {
+        let sides = self.flows.iter_mut().chain(&mut self.compliances).flatten();
+        let lines = [&mut self.pump_flow, &mut self.pump_compliance];
+        self.mass.iter_mut().chain(&mut self.torque).chain(sides).chain(lines)
+    }
+
+    /// With the derivatives of a later pass.
+    fn merged(mut self, mut later: Tracks) -> Self {
+        for (own, other) in self.each().zip(later.each()) {
+            own.slopes.append(&mut other.slopes);
+        }
+        self
+    }
+
+    /// The quantities along an observation, with the derivatives in the directions from `first` up to `last`: by the parameters with
+    /// indices `fitted`, then by what each sensor measures.
+    fn along(
+        system: &System<'_>,
+        observation: &Observation,
+        effect_states: &[Vec<f64>],
+        fitted: &[usize],
+        sensors: &[Sensor],
+        (first, last): (usize, usize),
+    ) -> Self {
+        let (model, layout) = (system.model(), system.layout());
+        let (joints, samples) = (layout.joints, observation.time.len());
+        let mut tracks = Tracks::new(joints, samples, last - first);
+        let values = model.parameter_values();
+        let mut parameters: Vec<Dual> = values.iter().map(|&value| constant(value)).collect();
         for number in first..last.min(fitted.len()) {
             parameters[fitted[number]] = variable(values[fitted[number]], number - first);
         }
+        let mut workspace = system.workspace::<Dual>();
+        let (mut plain_inputs, mut inputs) = (Inputs::<f64>::zero(joints), Inputs::<Dual>::zero(joints));
+        let mut state = vec![constant(0.0); layout.len];
+        let mut rates = vec![constant(0.0); layout.len];
         for sample in 0..samples {
             observation.inputs.between(sample, 0.0, &mut plain_inputs);
             inputs.lift_from(&plain_inputs);
@@ -179,30 +202,59 @@ pub fn equations(
                 }
             }
             system.rates(&mut workspace, &parameters, &state, &inputs, &mut rates);
-            let rows: &Rows<Dual> = &workspace.rows;
-            for (slot, number) in mass.iter_mut().zip(&rows.mass) {
-                slot.set(sample, number, first, last);
-            }
-            for index in 0..joints {
-                torque[index].set(sample, &rows.driven_torque(index, &workspace.situation), first, last);
-                if chambers {
-                    flows[index][0].set(sample, &rows.cap_flow[index], first, last);
-                    flows[index][1].set(sample, &rows.rod_flow[index], first, last);
-                    compliances[index][0].set(sample, &rows.cap_compliance[index], first, last);
-                    compliances[index][1].set(sample, &rows.rod_compliance[index], first, last);
-                }
-            }
-            pump_flow.set(sample, &rows.pump_flow, first, last);
-            pump_compliance.set(sample, &rows.pump_line_compliance(), first, last);
+            tracks.set(sample, &workspace, layout.chambers);
         }
+        tracks
     }
 
+    fn set(&mut self, sample: usize, workspace: &Workspace<'_, Dual>, chambers: bool) {
+        let rows: &Rows<Dual> = &workspace.rows;
+        for (slot, number) in self.mass.iter_mut().zip(&rows.mass) {
+            slot.set(sample, number);
+        }
+        for index in 0..self.torque.len() {
+            self.torque[index].set(sample, &rows.driven_torque(index, &workspace.situation));
+            if chambers {
+                self.flows[index][0].set(sample, &rows.cap_flow[index]);
+                self.flows[index][1].set(sample, &rows.rod_flow[index]);
+                self.compliances[index][0].set(sample, &rows.cap_compliance[index]);
+                self.compliances[index][1].set(sample, &rows.rod_compliance[index]);
+            }
+        }
+        self.pump_flow.set(sample, &rows.pump_flow);
+        self.pump_compliance.set(sample, &rows.pump_line_compliance());
+    }
+}
+
+/// All equations of a model along an observation, with derivatives by the parameters with indices `fitted`. States of
+/// effects (a lagging spool) are taken from `effect_states`, sample by sample. Samples where something is not measured
+/// are `NaN` in the equations that need it.
+pub fn equations(
+    system: &System<'_>,
+    observation: &Observation,
+    effect_states: &[Vec<f64>],
+    fitted: &[usize],
+) -> Vec<Equation> {
+    let model = system.model();
+    let layout = system.layout();
+    let (joints, samples) = (layout.joints, observation.time.len());
+    let sensors = Sensor::all(joints);
+    let directions = fitted.len() + sensors.len();
+    let passes: Vec<(usize, usize)> =
+        (0..directions).step_by(DIRECTIONS).map(|first| (first, (first + DIRECTIONS).min(directions))).collect();
+    let tracks = passes
+        .into_par_iter()
+        .map(|pass| Tracks::along(system, observation, effect_states, fitted, &sensors, pass))
+        .reduce_with(Tracks::merged)
+        .unwrap_or_else(|| Tracks::new(joints, samples, 0));
+    let Tracks { mass, torque, flows, compliances, pump_flow, pump_compliance } = tracks;
+
     let parameters_only = |mut track: Track| {
-        track.by_parameter.truncate(fitted.len());
+        track.slopes.truncate(fitted.len());
         track
     };
     let split = |mut track: Track| {
-        let mut by_sensor = track.by_parameter.split_off(fitted.len());
+        let mut by_sensor = track.slopes.split_off(fitted.len());
         for (sensor, column) in sensors.iter().zip(&mut by_sensor) {
             if let Sensor::Velocity(c) = *sensor
                 && !column.is_empty()
@@ -229,7 +281,7 @@ pub fn equations(
                 sensor: Sensor::Velocity(other),
                 quantity: observation.cylinders[other].joint.clone(),
                 storage: track.value,
-                by_parameter: track.by_parameter,
+                by_parameter: track.slopes,
             })
             .collect();
         let (torque, rest_by_sensor) = split(torque);
@@ -237,7 +289,7 @@ pub fn equations(
             kind: EquationKind::Motion(index),
             terms,
             rest: torque.value,
-            rest_by_parameter: torque.by_parameter,
+            rest_by_parameter: torque.slopes,
             rest_by_sensor,
         });
     }
@@ -265,13 +317,13 @@ pub fn equations(
                 sensor: if side == 0 { Sensor::CapPressure(index) } else { Sensor::RodPressure(index) },
                 quantity: cylinder.pressures[side].clone(),
                 storage: compliance.value,
-                by_parameter: compliance.by_parameter,
+                by_parameter: compliance.slopes,
             };
             equations.push(Equation {
                 kind,
                 terms: vec![displaced, compressed],
                 rest: flow.value,
-                rest_by_parameter: flow.by_parameter,
+                rest_by_parameter: flow.slopes,
                 rest_by_sensor,
             });
         }
@@ -286,10 +338,10 @@ pub fn equations(
                 sensor: Sensor::PumpPressure,
                 quantity: observation.pump_pressure.clone(),
                 storage: pump_compliance.value,
-                by_parameter: pump_compliance.by_parameter,
+                by_parameter: pump_compliance.slopes,
             }],
             rest: pump_flow.value,
-            rest_by_parameter: pump_flow.by_parameter,
+            rest_by_parameter: pump_flow.slopes,
             rest_by_sensor,
         });
     }

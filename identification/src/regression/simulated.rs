@@ -4,6 +4,7 @@ use excavator_model::Model;
 use excavator_model::equations::{Channel, System};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Integrator, Tolerances};
+use rayon::prelude::*;
 
 use super::RegressionError;
 use crate::fit::{FitSettings, SegmentedRecording};
@@ -25,27 +26,44 @@ pub(super) fn simulated(model: &Model, recording: &Recording, truth: &Recording)
     let system = System::new(model);
     let duration = FitSettings::default().segment_duration_for(&model.machine.size());
     let segmented = SegmentedRecording::new(model, recording, duration, f64::INFINITY)?;
-    let mut copy = truth.clone();
     let channels = Channel::all(system.layout());
     let own_states: usize = model.effects.iter().map(|effect| effect.physics.states()).sum();
-    let mut effect_states = vec![vec![f64::NAN; own_states]; recording.len()];
-    let mut integrator = Integrator::new(&system, &model.parameter_values(), &[], Tolerances::default());
-    for segment in &segmented.segments {
-        let mut state = segment.state.clone();
-        for index in segment.first..=segment.last {
-            for channel in &channels {
-                if let Some(values) = channel.signal_mut(&model.machine, &mut copy) {
-                    values[index] = channel.value(&system, &state);
+    let parameters = model.parameter_values();
+    let pieces: Vec<Piece> = segmented
+        .segments
+        .par_iter()
+        .map(|segment| {
+            let mut integrator = Integrator::new(&system, &parameters, &[], Tolerances::default());
+            let mut state = segment.state.clone();
+            let mut piece = Piece { first: segment.first, values: Vec::new(), effect_states: Vec::new() };
+            for index in segment.first..=segment.last {
+                piece.values.push(channels.iter().map(|channel| channel.value(&system, &state)).collect());
+                piece.effect_states.push(state[state.len() - own_states..].to_vec());
+                if index < segment.last && integrator.advance(&segmented.inputs, index, &mut state, None).is_err() {
+                    // The rest of the segment stays as measured: worse instruments, but still valid rows.
+                    break;
                 }
             }
-            if let Some(slot) = effect_states.get_mut(index) {
-                slot.copy_from_slice(&state[state.len() - own_states..]);
-            }
-            if index < segment.last && integrator.advance(&segmented.inputs, index, &mut state, None).is_err() {
-                // The rest of the segment stays as measured: worse instruments, but still valid rows.
-                break;
+            piece
+        })
+        .collect();
+    let mut copy = truth.clone();
+    let mut effect_states = vec![vec![f64::NAN; own_states]; recording.len()];
+    for Piece { first, values, effect_states: states } in pieces {
+        for (number, channel) in channels.iter().enumerate() {
+            if let Some(signal) = channel.signal_mut(&model.machine, &mut copy) {
+                signal[first..].iter_mut().zip(&values).for_each(|(slot, values)| *slot = values[number]);
             }
         }
+        effect_states[first..].iter_mut().zip(states).for_each(|(slot, states)| *slot = states);
     }
     Ok(Simulated { recording: copy, effect_states })
+}
+
+/// What was simulated of one segment, sample by sample.
+struct Piece {
+    first: usize,
+    /// Of each channel.
+    values: Vec<Vec<f64>>,
+    effect_states: Vec<Vec<f64>>,
 }

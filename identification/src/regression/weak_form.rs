@@ -11,6 +11,7 @@ use excavator_model::Model;
 use excavator_model::effects::Family;
 use excavator_model::recording::Recording;
 
+use super::seen::{Ground, Seen};
 use super::weak_rows::rows;
 use super::weak_solution::solve;
 use super::{Regression, RegressionError};
@@ -89,6 +90,29 @@ pub fn weak_form_watched(
     settings: &WeakFormSettings,
     watch: Watch<'_>,
 ) -> Result<Regression, RegressionError> {
+    identified(model, recordings, settings, None, watch)
+}
+
+/// [`weak_form`] of a model that sees its recordings as `ground` says, in its first round.
+///
+/// # Errors
+/// [`RegressionError`].
+pub(crate) fn weak_form_on(
+    ground: &Ground,
+    model: &Model,
+    settings: &WeakFormSettings,
+) -> Result<Regression, RegressionError> {
+    let recordings: Vec<&Recording> = ground.recordings.iter().collect();
+    identified(model, &recordings, settings, Some(&ground.seen), &|_| ControlFlow::Continue(()))
+}
+
+fn identified(
+    model: &Model,
+    recordings: &[&Recording],
+    settings: &WeakFormSettings,
+    first_seen: Option<&[Seen]>,
+    watch: Watch<'_>,
+) -> Result<Regression, RegressionError> {
     // A velocity that is smoothed turns round slower than its piston: how widely corners are rounded stays as it is.
     let families: Vec<Family> =
         model.parameters().map(|(effect, _)| model.effects[effect].physics.card().family).collect();
@@ -100,16 +124,26 @@ pub fn weak_form_watched(
     let mut model = model.clone();
     let rounds = settings.rounds.max(1);
     let mut round = 0;
-    let mut guides = None;
+    let mut guides: Option<Vec<Recording>> = None;
     loop {
         if watch(round as f64 / rounds as f64).is_break() {
             return Err(FitError::Stopped.into());
         }
         let last = round + 1 >= rounds;
-        let (rows, simulations) =
-            rows(&model, recordings, settings, &unknown, round >= FIRST_WITH_INSTRUMENTS, guides.as_deref())?;
+        let found;
+        let seen = match first_seen.filter(|_| round == 0) {
+            Some(seen) => seen,
+            None => {
+                let guide = |number: usize| guides.as_ref().and_then(|guides| guides.get(number));
+                let each = recordings.iter().enumerate();
+                let each = each.map(|(number, recording)| Seen::of(&model, recording, guide(number)));
+                found = each.collect::<Result<Vec<Seen>, RegressionError>>()?;
+                &found
+            }
+        };
+        let rows = rows(&model, recordings, settings, &unknown, round >= FIRST_WITH_INSTRUMENTS, seen)?;
         if round == FIRST_WITH_INSTRUMENTS {
-            guides = Some(simulations);
+            guides = Some(seen.iter().map(|seen| seen.simulation.recording.clone()).collect());
         }
         let mut solution = match solve(&model, recordings, settings, &unknown, &rows, last && settings.with_errors) {
             Ok(solution) => solution,

@@ -4,6 +4,7 @@ use excavator_model::Model;
 use excavator_model::recording::Recording;
 
 use super::equation::EquationKind;
+use super::seen::Seen;
 use super::weak_rows::rows;
 use super::{RegressionError, WeakFormSettings};
 
@@ -29,7 +30,8 @@ pub fn weak_residuals(
     recording: &Recording,
     settings: &WeakFormSettings,
 ) -> Result<Vec<WeakResidual>, RegressionError> {
-    let (rows, _) = rows(model, &[recording], settings, &[], false, None)?;
+    let seen = [Seen::of(model, recording, None)?];
+    let rows = rows(model, &[recording], settings, &[], false, &seen)?;
     let (half_width, _) = settings.widths(model, &[recording]);
     // Integral of the test function (1 - x²)^4 over [-1, 1].
     const BUMP_AREA: f64 = 256.0 / 315.0;

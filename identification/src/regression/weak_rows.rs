@@ -5,14 +5,13 @@ use excavator_model::effects::{Corner, Site};
 use excavator_model::equations::System;
 use excavator_model::machine::Linkage;
 use excavator_model::recording::{Recording, noise_level, standard_deviation};
-use excavator_model::simulation::undistorted;
 use nalgebra::DVector;
 
 use super::equation::{EquationKind, equations};
-use super::simulated::simulated;
+use super::seen::Seen;
 use super::weak_row::{SensorNoise, weak_row};
 use super::window::{Window, windows};
-use super::{Observation, RegressionError, WeakFormSettings, observe, observe_guided};
+use super::{Observation, RegressionError, WeakFormSettings, observe};
 
 /// One row, divided by what sensor noise puts into its residual.
 pub(super) struct Row {
@@ -26,16 +25,15 @@ pub(super) struct Row {
     pub instruments: DVector<f64>,
 }
 
-/// The rows of `recordings`, and the recordings as `model` would have produced them. Noise is taken off what is measured against
-/// `guides`, or against these where there are none.
+/// The rows of `recordings`, which the model sees as `seen`.
 pub(super) fn rows(
     model: &Model,
     recordings: &[&Recording],
     settings: &WeakFormSettings,
     unknown: &[usize],
     with_instruments: bool,
-    guides: Option<&[Recording]>,
-) -> Result<(Vec<Row>, Vec<Recording>), RegressionError> {
+    seen: &[Seen],
+) -> Result<Vec<Row>, RegressionError> {
     let system = System::new(model);
     let linkages: Vec<Linkage> = model.machine.cylinders.iter().map(|cylinder| cylinder.linkage).collect();
     let (half_width, step) = settings.widths(model, recordings);
@@ -43,14 +41,9 @@ pub(super) fn rows(
         .map(|cylinder| model.has_corner(Corner::EndStop, Site::Cylinder(cylinder)))
         .collect();
     let mut rows = Vec::new();
-    let mut simulations = Vec::new();
-    for (number, recording) in recordings.iter().enumerate() {
-        let noise = sensor_noise(recording, model)?;
-        let truth = undistorted(model, recording);
-        let simulation = simulated(model, recording, &truth)?;
-        let guide = guides.and_then(|guides| guides.get(number)).unwrap_or(&simulation.recording);
-        let observation = observe_guided(model, &truth, guide)?;
-        let measured = equations(&system, &observation, &simulation.effect_states, unknown);
+    for (number, (recording, seen)) in recordings.iter().zip(seen).enumerate() {
+        let Seen { noise, observation, simulation } = seen;
+        let measured = equations(&system, observation, &simulation.effect_states, unknown);
         let instruments = if with_instruments {
             let observation = observe(model, &simulation.recording)?;
             let equations = equations(&system, &observation, &simulation.effect_states, unknown);
@@ -60,7 +53,7 @@ pub(super) fn rows(
         };
         for window in windows(&recording.time, recording.sample_interval(), half_width, step) {
             for (index, equation) in measured.iter().enumerate() {
-                if !moves(equation.kind, &window, &observation, settings.velocity_guard) {
+                if !moves(equation.kind, &window, observation, settings.velocity_guard) {
                     continue;
                 }
                 if let EquationKind::Motion(cylinder) = equation.kind {
@@ -72,8 +65,8 @@ pub(super) fn rows(
                     }
                 }
                 let row =
-                    |equation, observation| weak_row(equation, &window, observation, &noise, &linkages, unknown.len());
-                let Some(row_measured) = row(equation, &observation) else { continue };
+                    |equation, observation| weak_row(equation, &window, observation, noise, &linkages, unknown.len());
+                let Some(row_measured) = row(equation, observation) else { continue };
                 let instruments = match &instruments {
                     None => row_measured.regressors.clone(),
                     Some((observation, equations)) => match row(&equations[index], observation) {
@@ -94,9 +87,8 @@ pub(super) fn rows(
                 });
             }
         }
-        simulations.push(simulation.recording);
     }
-    Ok((rows, simulations))
+    Ok(rows)
 }
 
 /// Whether the piston of an equation of motion is known to move throughout a window: near standstill the sign of its velocity is noise.

@@ -6,6 +6,7 @@ use excavator_model::{Model, ModelError, addition_name, site_name};
 
 use super::starts::{half_open, starts};
 use crate::fit::{Fit, FitError, FitSettings, Prediction, fit_predicted, predict};
+use crate::regression::Ground;
 
 /// An effect at a place.
 #[derive(Debug, Clone)]
@@ -70,7 +71,7 @@ pub(crate) fn fit_addition(
     recordings: &[&Recording],
     settings: &FitSettings,
 ) -> Result<Fit, AdditionError> {
-    let start = best_start(model, addition, recordings, settings)?;
+    let start = best_start(model, addition, recordings, None, settings)?;
     Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
 }
 
@@ -82,7 +83,7 @@ pub(super) struct PromisingStart {
     pub promise: Prediction,
 }
 
-/// The start of an addition whose first step promises most.
+/// The start of an addition whose first step promises most. `ground` is what the model without it sees, if that is known.
 ///
 /// # Errors
 /// [`AdditionError`].
@@ -90,10 +91,11 @@ pub(super) fn best_start(
     model: &Model,
     addition: &Addition,
     recordings: &[&Recording],
+    ground: Option<&Ground>,
     settings: &FitSettings,
 ) -> Result<PromisingStart, AdditionError> {
     let extended = model.with_effect(&addition.physics, addition.site)?;
-    most_promising(starts(&extended, recordings), recordings, settings)
+    most_promising(starts(&extended, recordings, ground), recordings, settings)
 }
 
 /// Of some starts of one addition, and of those that its window could also have, the one whose first step promises most.

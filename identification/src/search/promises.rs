@@ -43,7 +43,7 @@ struct Vanished {
 }
 
 /// Foretells what each of the `wanted` additions to `base` brings; `None` for one that vanishes nowhere, of which a simulation of its own
-/// has to tell. `None` where the model cannot be simulated on these recordings.
+/// has to tell. `None` where that holds for all, or the model cannot be simulated on these recordings.
 pub(super) fn promises(
     base: &Model,
     wanted: &[Addition],
@@ -66,6 +66,9 @@ pub(super) fn promises(
         further.extend(one.coefficients.iter().map(|coefficient| next + coefficient));
         next += one.effect.parameters.len();
         joint.effects.push(one.effect.clone());
+    }
+    if further.is_empty() {
+        return None;
     }
     let linearised = Linearised::new(&joint, &own, &further, recordings, settings).ok()?;
     let mut first = 0;

@@ -10,9 +10,9 @@ use std::time::Instant;
 use excavator_model::site_name;
 use rayon::prelude::*;
 
-use super::addition::{Addition, AdditionError, PromisingStart, best_start, most_promising};
+use super::addition::{Addition, AdditionError};
 use super::pool::Unpromising;
-use super::promises::{Promised, promises};
+use super::promises::Promised;
 use super::starts::can_be_transient;
 use super::track::{Track, few_steps};
 use super::{Effort, Trial};
@@ -75,9 +75,9 @@ enum Outcome {
 impl Screening<'_> {
     /// A few steps of every addition, the best first. `advance` is told each name when it is done.
     pub fn run(&self, mut wanted: Vec<Addition>, advance: &(dyn Fn(&str, f64) + Sync)) -> Screened {
-        let hard = Track::hard(self);
+        let hard = Track::hard(self.base, self.identification, self.effort);
         // A transient effect acts in a window of a whole recording.
-        let whole = Track::whole(self);
+        let whole = Track::whole(self.base, self.identification);
         let machine = &self.base.fit.model.machine;
         let needs_all = |one: &Addition| can_be_transient(&*one.physics, machine, one.site);
         let (done, total) = (AtomicUsize::new(0), wanted.len().max(1) as f64);
@@ -85,8 +85,9 @@ impl Screening<'_> {
         wanted.sort_by_key(|addition| !needs_all(addition));
         let of_whole = wanted.iter().take_while(|one| needs_all(one)).count();
         let track = |number: usize| hard.as_ref().filter(|_| number >= of_whole).unwrap_or(&whole);
-        let mut promised = self.promised(&wanted[..of_whole], track(0));
-        promised.extend(self.promised(&wanted[of_whole..], track(of_whole)));
+        let settings = &self.effort.fit;
+        let mut promised = whole.promised(&wanted[..of_whole], settings);
+        promised.extend(track(of_whole).promised(&wanted[of_whole..], settings));
         let outcomes: Vec<(String, Outcome)> = wanted
             .into_par_iter()
             .zip(promised)
@@ -138,21 +139,13 @@ impl Screening<'_> {
             .collect()
     }
 
-    /// What one simulation of the model without additions promises of each.
-    fn promised(&self, wanted: &[Addition], track: &Track) -> Vec<Option<Promised>> {
-        let recordings: Vec<_> = track.recordings.iter().collect();
-        promises(&track.base.model, wanted, &recordings, &self.effort.fit)
-            .unwrap_or_else(|| wanted.iter().map(|_| None).collect())
-    }
-
     /// A few steps from the start that promises most.
     fn screened(
         &self,
         addition: Addition,
-        track: &Track,
+        track: &Track<'_>,
         promised: Option<Promised>,
     ) -> Result<Outcome, AdditionError> {
-        let recordings: Vec<_> = track.recordings.iter().collect();
         let base = &track.base.model;
         let name = addition.name(base);
         let unpromising = |promised_improvement: f64| {
@@ -164,38 +157,17 @@ impl Screening<'_> {
         if let Some(promised) = promised.as_ref().filter(|own| own.is_straight && own.improvement < least) {
             return unpromising(promised.improvement);
         }
-        let start = self.start(&addition, track, promised)?;
+        let start = track.start(&addition, promised, least, self.effort)?;
         let promised_improvement = track.base.loss() - start.promise.loss_after;
         // Only from a start next to the base can the promise of one step be trusted.
-        let is_trusted = (start.promise.loss_before - track.start_loss).abs() < self.effort.trusted_distance;
+        let is_trusted =
+            (start.promise.loss_before - track.start_loss(&self.effort.fit)).abs() < self.effort.trusted_distance;
         if is_trusted && promised_improvement < least {
             return unpromising(promised_improvement);
         }
-        let fit = fit_predicted(&start.model, start.promise, &recordings, &few_steps(self.effort))?;
+        let fit = fit_predicted(&start.model, start.promise, &track.recordings(), &few_steps(self.effort))?;
         let improvement = track.base.loss() - fit.loss();
         Ok(Outcome::Screened(Box::new(Screen { addition, name, fit, improvement })))
-    }
-
-    /// The most promising start: of those that were promised where the promise is borne out, else of all.
-    fn start(
-        &self,
-        addition: &Addition,
-        track: &Track,
-        promised: Option<Promised>,
-    ) -> Result<PromisingStart, AdditionError> {
-        let recordings: Vec<_> = track.recordings.iter().collect();
-        let settings = &self.effort.fit;
-        let all = || best_start(&track.base.model, addition, &recordings, settings);
-        let Some(Promised { improvement, starts, .. }) = promised else { return all() };
-        if improvement < self.least_improvement / 4.0 {
-            return all();
-        }
-        let first = starts.into_iter().take(self.effort.promised_starts).map(|start| start.model).collect();
-        let Ok(start) = most_promising(first, &recordings, settings) else { return all() };
-        if track.base.loss() - start.promise.loss_after >= self.effort.borne_out * improvement {
-            return Ok(start);
-        }
-        Ok(all().ok().filter(|other| other.promise.loss_after < start.promise.loss_after).unwrap_or(start))
     }
 
     fn trial(&self, screen: Screen) -> Result<Trial, AdditionError> {

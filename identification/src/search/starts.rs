@@ -6,21 +6,26 @@ use excavator_model::machine::Machine;
 use excavator_model::recording::Recording;
 
 use super::worst_stretch::worst_stretches;
-use crate::regression::{WeakFormSettings, weak_form};
+use crate::regression::{Ground, WeakFormSettings, weak_form, weak_form_on};
 
 /// The model with the last effect's parameters at each combination of their start values, each also as a regression on
 /// the equations improves it: that finds linear coefficients without a search, however far they are from any start.
-/// Regressed starts come first.
-pub(super) fn starts(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
+/// Regressed starts come first. `ground` is what the model without its last effect sees of the recordings, if that is known.
+pub(super) fn starts(model: &Model, recordings: &[&Recording], ground: Option<&Ground>) -> Vec<Model> {
     let plain = plain_starts(model, recordings);
-    let time_scale = model.machine.size().time();
-    // Thinned to this rate a regression still sees what starts a fit, in half the time.
-    let thinned: Vec<Recording> =
-        recordings.iter().map(|recording| thinned_to(recording, START_RATE / time_scale)).collect();
+    let sees_the_same = model.effects.last().is_some_and(|last| Ground::holds_for(&*last.physics));
+    let ground = ground.filter(|_| sees_the_same);
+    let thinned = if ground.is_some() { Vec::new() } else { thinned(model, recordings) };
     let thinned: Vec<&Recording> = thinned.iter().collect();
     let quick =
         WeakFormSettings { rounds: 1, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
-    let regressed = |start: &Model| Some(within_bounds(weak_form(start, &thinned, &quick).ok()?.model));
+    let regressed = |start: &Model| {
+        let regression = match ground {
+            Some(ground) => weak_form_on(ground, start, &quick),
+            None => weak_form(start, &thinned, &quick),
+        };
+        Some(within_bounds(regression.ok()?.model))
+    };
     let last = model.effects.last();
     if last.is_some_and(|last| can_be_transient(&*last.physics, &model.machine, last.site)) {
         // There are many windows, and how strong something is follows from when it is.
@@ -59,9 +64,17 @@ fn with_shape_of(start: &Model, mut model: Model) -> Model {
 /// Samples per second of the regressions that give starts, on a machine of the reference size. At 170 Hz the start of a contact that lasts seconds is lost.
 const START_RATE: f64 = 250.0;
 
-fn thinned_to(recording: &Recording, rate: f64) -> Recording {
-    let stride = (1.0 / (recording.sample_interval() * rate)).round();
-    recording.thinned(if stride.is_finite() { (stride as usize).max(1) } else { 1 })
+/// Thinned to this rate a regression still sees what starts a fit, in half the time.
+fn thinned(model: &Model, recordings: &[&Recording]) -> Vec<Recording> {
+    let rate = START_RATE / model.machine.size().time();
+    let stride = |recording: &Recording| (1.0 / (recording.sample_interval() * rate)).round();
+    let whole = |stride: f64| if stride.is_finite() { (stride as usize).max(1) } else { 1 };
+    recordings.iter().map(|recording| recording.thinned(whole(stride(recording)))).collect()
+}
+
+/// What `model` sees of recordings that have been thinned for [`starts`]; `None` where it cannot be simulated.
+pub(super) fn ground(model: &Model, recordings: &[&Recording]) -> Option<Ground> {
+    Ground::new(model, thinned(model, recordings)).ok()
 }
 
 /// Unknown parameters moved to the nearest possible value.

@@ -2,10 +2,14 @@
 
 use std::time::Instant;
 
-use super::addition::{AdditionError, additions, best_start, structural_additions};
+use rayon::prelude::*;
+
+use super::addition::{AdditionError, additions, structural_additions};
 use super::pool::{Move, Pool};
 use super::progress::Milestones;
+use super::promises::Promised;
 use super::screening::{Screen, Screened, Screening};
+use super::track::Track;
 use super::transient::evaluate_in_windows_of;
 use super::{Addition, Effort, Trial};
 use crate::decision::{Policy, log_error_ratio};
@@ -187,12 +191,8 @@ impl Stepwise<'_> {
             }
             let base = self.trial_without(number, addition, pool);
             let Some(base) = base else { continue };
-            for (rival, _) in rivals {
-                self.milestones.tell(&rival.name(&base.fit.model), 0.5);
-                if let Ok(Some(exchanged)) = self.added(&base, rival, f64::INFINITY, pool) {
-                    pool.put(exchanged);
-                }
-            }
+            let rivals = rivals.into_iter().map(|(rival, _)| rival).collect();
+            self.put_added(&base, rivals, f64::INFINITY, pool);
         }
     }
 
@@ -200,22 +200,28 @@ impl Stepwise<'_> {
         self.without(number, addition, pool).map(|without| pool.trials[without].clone())
     }
 
-    /// A trial with one more addition, fitted to the end; none where its first step promises a loss above `worst`.
-    fn added(
-        &self,
-        base: &Trial,
-        addition: Addition,
-        worst: f64,
-        pool: &Pool<'_>,
-    ) -> Result<Option<Trial>, AdditionError> {
-        let begin = Instant::now();
-        let settings = &self.effort.fit;
-        let start = best_start(&base.fit.model, &addition, pool.identification(), settings)?;
-        if start.promise.loss_after > worst {
-            return Ok(None);
-        }
-        let fit = fit_predicted(&start.model, start.promise, pool.identification(), settings)?;
-        base.extended(addition, fit, pool.validation(), settings, begin).map(Some)
+    /// Puts trials with one more addition each, fitted to the end, into the pool; none where a first step promises a loss above `worst`.
+    fn put_added(&self, base: &Trial, wanted: Vec<Addition>, worst: f64, pool: &mut Pool<'_>) {
+        let (identification, validation, effort) = (pool.identification(), pool.validation(), self.effort);
+        let track = Track::whole(base, identification);
+        let promised = track.promised(&wanted, &effort.fit);
+        let least = self.policy.least_improvement / 4.0;
+        let added = |(addition, promised): (Addition, Option<Promised>)| {
+            let begin = Instant::now();
+            self.milestones.tell(&addition.name(&base.fit.model), 0.5);
+            let is_worse = |own: &&Promised| own.is_straight && base.fit.loss() - own.improvement > worst;
+            if promised.as_ref().is_some_and(|own| is_worse(&own)) {
+                return None;
+            }
+            let start = track.start(&addition, promised, least, effort).ok()?;
+            if start.promise.loss_after > worst {
+                return None;
+            }
+            let fit = fit_predicted(&start.model, start.promise, identification, &effort.fit).ok()?;
+            base.extended(addition, fit, validation, &effort.fit, begin).ok()
+        };
+        let trials: Vec<Trial> = wanted.into_par_iter().zip(promised).filter_map(added).collect();
+        trials.into_iter().for_each(|trial| pool.put(trial));
     }
 
     /// Puts structural effects in the place of each effect, at its site; of the given model, at every site.
@@ -234,15 +240,10 @@ impl Stepwise<'_> {
     }
 
     fn structural_beside(&self, base: &Trial, in_place_of: Option<&Addition>, worst: f64, pool: &mut Pool<'_>) {
-        for addition in structural_additions(&base.fit.model) {
-            if in_place_of.is_some_and(|replaced| replaced.site != addition.site) {
-                continue;
-            }
-            self.milestones.tell("how the machine is built", 0.5);
-            if let Ok(Some(trial)) = self.added(base, addition, worst, pool) {
-                pool.put(trial);
-            }
-        }
+        self.milestones.tell("how the machine is built", 0.5);
+        let mut wanted = structural_additions(&base.fit.model);
+        wanted.retain(|addition| in_place_of.is_none_or(|replaced| replaced.site == addition.site));
+        self.put_added(base, wanted, worst, pool);
     }
 
     /// Fits what is missing on the way from the given model to the favoured hypothesis, one effect after the other.

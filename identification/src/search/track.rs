@@ -1,47 +1,104 @@
 //! The recordings that candidates are screened on.
 
+use std::sync::OnceLock;
+
 use excavator_model::recording::Recording;
 
-use super::Effort;
+use super::addition::{Addition, AdditionError, PromisingStart, best_start, most_promising};
 use super::hard_stretches::hard_stretches;
-use super::screening::Screening;
+use super::promises::{Promised, promises};
+use super::starts::ground;
+use super::{Effort, Trial};
 use crate::fit::{Fit, FitSettings, fit, predict};
+use crate::regression::Ground;
 
-/// Recordings, or parts of them, and the model without additions on them.
-pub(super) struct Track {
-    /// The recordings, or parts of them.
-    pub recordings: Vec<Recording>,
+/// Recordings, or parts of them, and a model on them that something is added to.
+pub(super) struct Track<'a> {
+    whole: &'a [&'a Recording],
+    /// In place of them.
+    parts: Option<Vec<Recording>>,
     /// The model without additions, fitted to them.
     pub base: Fit,
-    /// Loss of that where its segments start as measured.
-    pub start_loss: f64,
+    start_loss: OnceLock<f64>,
+    ground: OnceLock<Option<Ground>>,
 }
 
-impl Track {
+impl<'a> Track<'a> {
     /// All that is fitted.
-    pub fn whole(screening: &Screening<'_>) -> Self {
-        let recordings: Vec<Recording> = screening.identification.iter().map(|&one| one.clone()).collect();
-        Track::of(recordings, screening.base.fit.clone(), &screening.effort.fit)
+    pub fn whole(base: &Trial, recordings: &'a [&'a Recording]) -> Self {
+        Track {
+            whole: recordings,
+            parts: None,
+            base: base.fit.clone(),
+            start_loss: OnceLock::new(),
+            ground: OnceLock::new(),
+        }
     }
 
     /// The stretches in which the model without additions fails most; `None` where there is little to choose from, or the
     /// model cannot be fitted to them.
-    pub fn hard(screening: &Screening<'_>) -> Option<Self> {
-        let effort = screening.effort;
-        let (base, duration) =
-            (&screening.base.fit, effort.fit.segment_duration_for(&screening.base.fit.model.machine.size()));
-        let recordings = hard_stretches(base, screening.identification, duration, effort.screening_share)?;
+    pub fn hard(base: &Trial, recordings: &'a [&'a Recording], effort: &Effort) -> Option<Self> {
+        let duration = effort.fit.segment_duration_for(&base.fit.model.machine.size());
+        let parts = hard_stretches(&base.fit, recordings, duration, effort.screening_share)?;
         // As many steps as the candidates get: an improvement that comes from fewer readings is none of theirs.
-        let base = fit(&base.model, &recordings.iter().collect::<Vec<_>>(), &few_steps(effort)).ok()?;
-        Some(Track::of(recordings, base, &effort.fit))
+        let base = fit(&base.fit.model, &parts.iter().collect::<Vec<_>>(), &few_steps(effort)).ok()?;
+        Some(Track {
+            whole: recordings,
+            parts: Some(parts),
+            base,
+            start_loss: OnceLock::new(),
+            ground: OnceLock::new(),
+        })
     }
 
-    fn of(recordings: Vec<Recording>, base: Fit, settings: &FitSettings) -> Self {
-        let borrowed: Vec<&Recording> = recordings.iter().collect();
+    /// The recordings, or parts of them.
+    pub fn recordings(&self) -> Vec<&Recording> {
+        match &self.parts {
+            Some(parts) => parts.iter().collect(),
+            None => self.whole.to_vec(),
+        }
+    }
+
+    /// Loss of the model without additions where its segments start as measured.
+    pub fn start_loss(&self, settings: &FitSettings) -> f64 {
         // A model that cannot be simulated from its measured starts is judged where its fit has brought it.
-        let start_loss =
-            predict(&base.model, &borrowed, settings).map_or_else(|_| base.loss(), |promise| promise.loss_before);
-        Track { recordings, base, start_loss }
+        let simulated = || predict(&self.base.model, &self.recordings(), settings);
+        *self.start_loss.get_or_init(|| simulated().map_or_else(|_| self.base.loss(), |promise| promise.loss_before))
+    }
+
+    /// What one simulation of the model without additions promises of each.
+    pub fn promised(&self, wanted: &[Addition], settings: &FitSettings) -> Vec<Option<Promised>> {
+        promises(&self.base.model, wanted, &self.recordings(), settings)
+            .unwrap_or_else(|| wanted.iter().map(|_| None).collect())
+    }
+
+    /// The most promising start of an addition: of those that were `promised` where the promise is borne out, else of all. One that
+    /// promised less than `least` has to be tried everywhere.
+    ///
+    /// # Errors
+    /// [`AdditionError`].
+    pub fn start(
+        &self,
+        addition: &Addition,
+        promised: Option<Promised>,
+        least: f64,
+        effort: &Effort,
+    ) -> Result<PromisingStart, AdditionError> {
+        let (recordings, settings) = (self.recordings(), &effort.fit);
+        let all = || best_start(&self.base.model, addition, &recordings, self.ground(), settings);
+        let Some(Promised { improvement, starts, .. }) = promised.filter(|own| own.improvement >= least) else {
+            return all();
+        };
+        let first = starts.into_iter().take(effort.promised_starts).map(|start| start.model).collect();
+        let Ok(start) = most_promising(first, &recordings, settings) else { return all() };
+        if self.base.loss() - start.promise.loss_after >= effort.borne_out * improvement {
+            return Ok(start);
+        }
+        Ok(all().ok().filter(|other| other.promise.loss_after < start.promise.loss_after).unwrap_or(start))
+    }
+
+    fn ground(&self) -> Option<&Ground> {
+        self.ground.get_or_init(|| ground(&self.base.model, &self.recordings())).as_ref()
     }
 }
 

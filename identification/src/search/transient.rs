@@ -26,8 +26,8 @@ pub(super) fn evaluate_on_others(
     };
     let (mut without, _) = in_windows_of(model, known);
     without.effects.pop();
-    let start =
-        best_start(&without, &Addition { physics: added.physics.clone(), site: added.site }, recordings, settings)?;
+    let addition = Addition { physics: added.physics.clone(), site: added.site };
+    let start = best_start(&without, &addition, recordings, None, settings)?;
     Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
 }
 

@@ -1,0 +1,56 @@
+//! What a regression sees of a recording before it asks for parameters.
+
+use excavator_model::Model;
+use excavator_model::effects::Effect;
+use excavator_model::recording::Recording;
+use excavator_model::simulation::undistorted;
+
+use super::simulated::{Simulated, simulated};
+use super::weak_row::SensorNoise;
+use super::weak_rows::sensor_noise;
+use super::{Observation, RegressionError, observe_guided};
+
+/// One recording as a model sees it.
+pub(crate) struct Seen {
+    pub(super) noise: SensorNoise,
+    pub(super) observation: Observation,
+    pub(super) simulation: Simulated,
+}
+
+impl Seen {
+    /// Noise is taken off what is measured against `guide`, or where there is none against what the model simulates.
+    ///
+    /// # Errors
+    /// [`RegressionError`] when inputs or initial states are missing.
+    pub(super) fn of(model: &Model, recording: &Recording, guide: Option<&Recording>) -> Result<Self, RegressionError> {
+        let noise = sensor_noise(recording, model)?;
+        let truth = undistorted(model, recording);
+        let simulation = simulated(model, recording, &truth)?;
+        let observation = observe_guided(model, &truth, guide.unwrap_or(&simulation.recording))?;
+        Ok(Seen { noise, observation, simulation })
+    }
+}
+
+/// Recordings as one model sees them, for first regressions of models that have one more effect.
+pub(crate) struct Ground {
+    /// The recordings.
+    pub recordings: Vec<Recording>,
+    pub(super) seen: Vec<Seen>,
+}
+
+impl Ground {
+    /// The recordings as `model` sees them.
+    ///
+    /// # Errors
+    /// [`RegressionError`] when inputs or initial states are missing.
+    pub fn new(model: &Model, recordings: Vec<Recording>) -> Result<Self, RegressionError> {
+        let seen = recordings.iter().map(|recording| Seen::of(model, recording, None)).collect::<Result<_, _>>()?;
+        Ok(Ground { recordings, seen })
+    }
+
+    /// Whether a model with this effect besides sees the same: one that changes what instruments or the input mean, or that has states of
+    /// its own, does not.
+    pub fn holds_for(effect: &dyn Effect) -> bool {
+        effect.states() == 0 && !effect.reads_course() && (effect.has_power() || effect.adjusts_others())
+    }
+}
