@@ -90,38 +90,29 @@ pub(super) fn promises(
     Some(each.collect())
 }
 
-/// The start to which a step of the coefficients leads, which are in these `columns`. One that the step would have where it cannot be stays
-/// at the nearest possible value.
+/// The start to which a step of the coefficients leads, which are in these `columns`: of those of them with which none becomes less than it
+/// can be, in the best choice.
 fn promised_start(linearised: &Linearised, vanished: Vanished, columns: &[usize], own: &[usize]) -> PromisedStart {
     let Vanished { start: mut model, mut effect, coefficients, .. } = vanished;
-    let mut free: Vec<usize> = (0..coefficients.len()).collect();
+    let promise_of = |chosen: Vec<usize>| {
+        let promise = linearised.promise(&chosen.iter().map(|&number| columns[number]).collect::<Vec<_>>())?;
+        let least = chosen.iter().map(|&number| effect.parameters[coefficients[number]].card.minimum);
+        let is_possible = least.zip(&promise.values).all(|(least, value)| *value >= least);
+        is_possible.then_some((chosen, promise))
+    };
+    let promises = choices(coefficients.len()).into_iter().filter_map(promise_of);
+    let best = promises.min_by(|a, b| a.1.loss.total_cmp(&b.1.loss));
     let mut loss = linearised.loss_before;
-    while !free.is_empty() {
-        let chosen: Vec<usize> = free.iter().map(|&number| columns[number]).collect();
-        let Some(promise) = linearised.promise(&chosen) else { break };
-        let is_possible = |number: usize, value: f64| {
-            let card = &effect.parameters[coefficients[number]].card;
-            (card.minimum..=card.maximum).contains(&value)
-        };
-        let possible: Vec<usize> = free
-            .iter()
-            .zip(&promise.values)
-            .filter(|(number, value)| is_possible(**number, **value))
-            .map(|(n, _)| *n)
-            .collect();
-        if possible.len() == free.len() {
-            for (&number, value) in free.iter().zip(&promise.values) {
-                effect.parameters[coefficients[number]].value = *value;
-            }
-            let mut values = model.parameter_values();
-            for (&index, value) in own.iter().zip(&promise.own) {
-                values[index] = *value;
-            }
-            model.set_parameter_values(&values);
-            loss = promise.loss;
-            break;
+    if let Some((chosen, promise)) = best {
+        loss = promise.loss;
+        let mut values = model.parameter_values();
+        for (&index, value) in own.iter().zip(&promise.own) {
+            values[index] = *value;
         }
-        free = possible;
+        model.set_parameter_values(&values);
+        for (number, value) in chosen.into_iter().zip(promise.values) {
+            effect.parameters[coefficients[number]].value = value;
+        }
     }
     if let Some(last) = model.effects.last_mut() {
         for (parameter, promised) in last.parameters.iter_mut().zip(effect.parameters) {
@@ -129,6 +120,18 @@ fn promised_start(linearised: &Linearised, vanished: Vanished, columns: &[usize]
         }
     }
     PromisedStart { model: within_bounds(model), loss }
+}
+
+/// Most coefficients of which every choice is tried: a valve leaks past four edges.
+const MOST_CHOSEN_FROM: usize = 4;
+
+/// Choices of some of so many coefficients: every one, or of many all of them and each alone.
+fn choices(count: usize) -> Vec<Vec<usize>> {
+    if count > MOST_CHOSEN_FROM {
+        return std::iter::once((0..count).collect()).chain((0..count).map(|number| vec![number])).collect();
+    }
+    let chosen = |choice: usize| (0..count).filter(|number| choice >> number & 1 == 1).collect();
+    (1..1 << count).map(chosen).collect()
 }
 
 /// Where it is tried whether an effect vanishes: the beginnings of all segments.
@@ -204,5 +207,57 @@ impl Probes {
                     .zip(before)
                     .all(|(now, before)| (now - before).abs() <= SAME * before.abs().max(f64::MIN_POSITIVE))
             })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use excavator_model::document::built_in;
+    use excavator_model::simulation::{Tolerances, simulate_from_rest};
+
+    use super::*;
+
+    /// A recording of the arm with a pump line that leaks.
+    fn leaking(coefficient: f64) -> Recording {
+        let model = built_in("zx30u-arm").unwrap();
+        let (physics, site) = model.parse_addition("pump_leakage").unwrap().remove(0);
+        let mut truth = model.with_effect(&physics, site).unwrap();
+        truth.effects.last_mut().unwrap().parameters[0].value = coefficient;
+        let time: Vec<f64> = (0..4000).map(|index| f64::from(index) * 4e-3).collect();
+        let mut recording = Recording::unmeasured("leaking", time, &["arm"]);
+        recording.tank_pressure.fill(3e5);
+        recording.pump_flow.fill(3.8e-4);
+        recording.cylinders[0].orifice_area = recording.time.iter().map(|t| 4e-5 * (3.1 * t).sin()).collect();
+        simulate_from_rest(&truth, &recording, &[0.1], Tolerances::default()).unwrap()
+    }
+
+    fn wanted(model: &Model, names: &[&str]) -> Vec<Addition> {
+        let addition = |name: &&str| {
+            let (physics, site) = model.parse_addition(name).unwrap().remove(0);
+            Addition { physics, site }
+        };
+        names.iter().map(addition).collect()
+    }
+
+    #[test]
+    fn one_simulation_tells_what_is_missing_and_how_large_it_is() {
+        let (model, recording) = (built_in("zx30u-arm").unwrap(), leaking(2e-12));
+        let names = ["pump_leakage", "hose_loss", "valve_dead_zone", "valve_lag"];
+        let promised = promises(&model, &wanted(&model, &names), &[&recording], &FitSettings::default()).unwrap();
+        let [Some(leakage), Some(hose), Some(dead_zone), lag] = &promised[..] else { unreachable!() };
+        assert!(leakage.is_straight && hose.is_straight && !dead_zone.is_straight);
+        assert!(lag.is_none(), "a lag has a state of its own");
+        let best = |one: &Promised| one.improvement;
+        assert!(best(leakage) > 2.0 * best(hose).max(best(dead_zone)), "{} {}", best(leakage), best(hose));
+        let found = leakage.starts[0].model.effects.last().unwrap().parameters[0].value;
+        assert!((found / 2e-12 - 1.0).abs() < 0.1, "{found:e}");
+    }
+
+    #[test]
+    fn every_choice_of_a_few_coefficients_is_tried() {
+        assert_eq!(choices(2), [vec![0], vec![1], vec![0, 1]]);
+        assert_eq!(choices(4).len(), 15);
+        assert_eq!(choices(6).len(), 7, "all of them, and each alone");
     }
 }
