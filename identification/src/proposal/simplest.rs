@@ -3,10 +3,24 @@
 use crate::decision::{Reason, Verdict};
 use crate::search::Trial;
 
+/// Log error ratio by which a law may be worse than one with more parameters and still be preferred, 1 % of the squared error. A threshold of
+/// nearly nothing may be better by a hundredth of that in every block of time, and then no test takes the two for equal.
+const NEGLIGIBLE: f64 = 0.01;
+
 /// The verdict with the simplest hypothesis of its set first, and those away that predict no better with more parameters: a coefficient
 /// that may be zero, a threshold where nothing is. Of equally simple ones those come first that never put energy into the machine.
 pub(super) fn simplest_first(mut verdict: Verdict, trials: &[Trial], dissipates: &dyn Fn(&Trial) -> bool) -> Verdict {
     let complexity = |number: &usize| trials.get(*number).map_or(usize::MAX, Trial::added_parameters);
+    let (own, error) = (complexity(&verdict.best), verdict.standings[verdict.best].log_error_ratio);
+    let is_as_good = |number: &usize| {
+        let standing = &verdict.standings[*number];
+        standing.is_admissible
+            && (1..own).contains(&complexity(number))
+            && standing.log_error_ratio - error < NEGLIGIBLE
+    };
+    let as_good: Vec<usize> =
+        (0..verdict.standings.len()).filter(is_as_good).filter(|number| !verdict.set.contains(number)).collect();
+    verdict.set.extend(as_good);
     let Some(fewest) = verdict.set.iter().map(complexity).min() else { return verdict };
     verdict.set.retain(|number| complexity(number) == fewest);
     let order = |number: &usize| {
