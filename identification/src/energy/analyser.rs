@@ -10,7 +10,7 @@ use excavator_model::{Model, SignalError};
 use rayon::prelude::*;
 
 use super::analysis::{EnergyAnalysis, WindowPoint};
-use super::block::{Block, measured_books, simulated_books};
+use super::block::{Block, books_of, measured, simulated_books};
 use super::cycle::{Cycles, period};
 use super::judgement::Judge;
 use super::noise::{NoiseStudy, study_noise};
@@ -271,9 +271,10 @@ impl<'m> Analyser<'m> {
         let done = waiting
             .into_par_iter()
             .map(|block| {
-                let books = measured_books(system, &parameters, &block, settings)?;
-                let noise =
-                    if block.with_noise { Some(study_noise(system, &block, &books, places, settings)?) } else { None };
+                let entries = measured(system, &block, settings)?;
+                let books = books_of(system, &parameters, &entries);
+                let study = || study_noise(system, &block, &entries, &books, places, settings);
+                let noise = block.with_noise.then(study).transpose()?;
                 let windows = windows(system.model(), &books, places, block.own, settings);
                 Ok(Done { block, books, windows, noise })
             })

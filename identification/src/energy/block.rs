@@ -66,7 +66,7 @@ pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySett
             Ok((displacement, signals))
         })
         .collect::<Result<Vec<_>, SignalError>>()?;
-    let mut entries = Entries::new(system, signals.clone());
+    let mut entries = Entries::new(system, signals);
     let (mut state, mut inputs) = (vec![0.0; layout.len], Inputs::zero(model.machine.cylinders.len()));
     let (mut motion, mut pressure) = (Parabola::default(), Parabola::default());
     for sample in block.entries() {
@@ -75,7 +75,7 @@ pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySett
         {
             continue;
         }
-        signals.between(sample, 0.0, &mut inputs);
+        entries.signals.between(sample, 0.0, &mut inputs);
         for (number, (cylinder, (displacement, measured))) in model.machine.cylinders.iter().zip(&sources).enumerate() {
             let joint = cylinder.linkage.joint(motion.value(displacement));
             let velocity = match measured.velocity[sample] {
@@ -165,9 +165,9 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
     let truth = undistorted(model, simulated);
     let signals = InputSignals::from_recording(model, &block.recording)?;
     let (mut state, mut inputs) = (vec![0.0; layout.len], Inputs::zero(model.machine.cylinders.len()));
-    let mut entries = Entries::new(system, signals.clone());
+    let mut entries = Entries::new(system, signals);
     for sample in block.entries() {
-        signals.between(sample, 0.0, &mut inputs);
+        entries.signals.between(sample, 0.0, &mut inputs);
         for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
             let own = truth.cylinder(&cylinder.name)?;
             let joint = cylinder.linkage.joint(own.displacement[sample]);

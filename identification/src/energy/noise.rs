@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
-use super::block::{Block, books_of, measured, measured_books};
+use super::block::{Block, Entries, books_of, measured_books};
 use super::windows::windows;
 use super::{Books, EnergySettings, Place};
 
@@ -49,6 +49,7 @@ const WIDER: f64 = 1.4;
 pub(super) fn study_noise(
     system: &System<'_>,
     block: &Block,
+    entries: &Entries,
     books: &Books,
     places: &[Place],
     settings: &EnergySettings,
@@ -74,13 +75,12 @@ pub(super) fn study_noise(
         .filter_map(|(index, (_, parameter))| Some((index, parameter.standard_error?)))
         .filter(|(_, error)| error.is_finite() && *error > 0.0)
         .collect();
-    let entries = measured(system, block, settings)?;
     let mut moved: Vec<Vec<Vec<f64>>> = errors
         .into_par_iter()
         .map(|(index, error)| {
             let mut values = parameters.clone();
             values[index] += error;
-            residuals_of(&books_of(system, &values, &entries))
+            residuals_of(&books_of(system, &values, entries))
         })
         .collect();
     // A valve's step makes a kink in a pressure, and what a parabola cuts off a kink grows in proportion to its width: the

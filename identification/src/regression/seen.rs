@@ -51,6 +51,6 @@ impl Ground {
     /// Whether a model with this effect besides sees the same: one that changes what instruments or the input mean, or that has states of
     /// its own, does not.
     pub fn holds_for(effect: &dyn Effect) -> bool {
-        effect.states() == 0 && !effect.reads_course() && (effect.has_power() || effect.adjusts_others())
+        effect.states() == 0 && !effect.reads_course() && !effect.is_an_instruments()
     }
 }

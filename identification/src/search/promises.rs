@@ -56,7 +56,9 @@ pub(super) fn promises(
         .map(|addition| {
             let extended = base.with_effect(&addition.physics, addition.site).ok()?;
             let starts = plain_starts(&extended, recordings).into_iter();
-            starts.map(|start| probes.vanished(start)).collect::<Option<Vec<_>>>()
+            let vanished: Vec<Vanished> = starts.map(|start| probes.vanished(start)).collect::<Option<_>>()?;
+            // Where no window is known in which it may act, nothing is foretold either.
+            (!vanished.is_empty()).then_some(vanished)
         })
         .collect();
     let own = base.unknown_parameters();
@@ -252,6 +254,16 @@ mod tests {
         assert!(best(leakage) > 2.0 * best(hose).max(best(dead_zone)), "{} {}", best(leakage), best(hose));
         let found = leakage.starts[0].model.effects.last().unwrap().parameters[0].value;
         assert!((found / 2e-12 - 1.0).abs() < 0.1, "{found:e}");
+    }
+
+    #[test]
+    fn of_a_contact_that_nobody_can_place_nothing_is_foretold() {
+        let (model, mut recording) = (built_in("zx30u-arm").unwrap(), leaking(2e-12));
+        recording.cylinders[0].cap_pressure.fill(f64::NAN);
+        recording.cylinders[0].rod_pressure.fill(f64::NAN);
+        let wanted = wanted(&model, &["external_contact", "pump_leakage"]);
+        let promised = promises(&model, &wanted, &[&recording], &FitSettings::default()).unwrap();
+        assert!(promised[0].is_none() && promised[1].is_some());
     }
 
     #[test]

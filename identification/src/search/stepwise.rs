@@ -192,7 +192,7 @@ impl Stepwise<'_> {
             let base = self.trial_without(number, addition, pool);
             let Some(base) = base else { continue };
             let rivals = rivals.into_iter().map(|(rival, _)| rival).collect();
-            self.put_added(&base, rivals, f64::INFINITY, pool);
+            self.put_added(&base, rivals, f64::INFINITY, None, pool);
         }
     }
 
@@ -201,16 +201,17 @@ impl Stepwise<'_> {
     }
 
     /// Puts trials with one more addition each, fitted to the end, into the pool; none where a first step promises a loss above `worst`.
-    fn put_added(&self, base: &Trial, wanted: Vec<Addition>, worst: f64, pool: &mut Pool<'_>) {
+    /// Whoever watches is told `what` is tried, or the name of each.
+    fn put_added(&self, base: &Trial, wanted: Vec<Addition>, worst: f64, what: Option<&str>, pool: &mut Pool<'_>) {
         let (identification, validation, effort) = (pool.identification(), pool.validation(), self.effort);
         let track = Track::whole(base, identification);
         let promised = track.promised(&wanted, &effort.fit);
         let least = self.policy.least_improvement / 4.0;
         let added = |(addition, promised): (Addition, Option<Promised>)| {
             let begin = Instant::now();
-            self.milestones.tell(&addition.name(&base.fit.model), 0.5);
-            let is_worse = |own: &&Promised| own.is_straight && base.fit.loss() - own.improvement > worst;
-            if promised.as_ref().is_some_and(|own| is_worse(&own)) {
+            self.milestones.tell(what.unwrap_or(&addition.name(&base.fit.model)), 0.5);
+            let is_worse = |own: &Promised| own.is_straight && base.fit.loss() - own.improvement > worst;
+            if promised.as_ref().is_some_and(is_worse) {
                 return None;
             }
             let start = track.start(&addition, promised, least, effort).ok()?;
@@ -240,10 +241,9 @@ impl Stepwise<'_> {
     }
 
     fn structural_beside(&self, base: &Trial, in_place_of: Option<&Addition>, worst: f64, pool: &mut Pool<'_>) {
-        self.milestones.tell("how the machine is built", 0.5);
         let mut wanted = structural_additions(&base.fit.model);
         wanted.retain(|addition| in_place_of.is_none_or(|replaced| replaced.site == addition.site));
-        self.put_added(base, wanted, worst, pool);
+        self.put_added(base, wanted, worst, Some("how the machine is built"), pool);
     }
 
     /// Fits what is missing on the way from the given model to the favoured hypothesis, one effect after the other.

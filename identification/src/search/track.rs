@@ -26,13 +26,11 @@ pub(super) struct Track<'a> {
 impl<'a> Track<'a> {
     /// All that is fitted.
     pub fn whole(base: &Trial, recordings: &'a [&'a Recording]) -> Self {
-        Track {
-            whole: recordings,
-            parts: None,
-            base: base.fit.clone(),
-            start_loss: OnceLock::new(),
-            ground: OnceLock::new(),
-        }
+        Track::new(recordings, None, base.fit.clone())
+    }
+
+    fn new(whole: &'a [&'a Recording], parts: Option<Vec<Recording>>, base: Fit) -> Self {
+        Track { whole, parts, base, start_loss: OnceLock::new(), ground: OnceLock::new() }
     }
 
     /// The stretches in which the model without additions fails most; `None` where there is little to choose from, or the
@@ -42,13 +40,7 @@ impl<'a> Track<'a> {
         let parts = hard_stretches(&base.fit, recordings, duration, effort.screening_share)?;
         // As many steps as the candidates get: an improvement that comes from fewer readings is none of theirs.
         let base = fit(&base.fit.model, &parts.iter().collect::<Vec<_>>(), &few_steps(effort)).ok()?;
-        Some(Track {
-            whole: recordings,
-            parts: Some(parts),
-            base,
-            start_loss: OnceLock::new(),
-            ground: OnceLock::new(),
-        })
+        Some(Track::new(recordings, Some(parts), base))
     }
 
     /// The recordings, or parts of them.

@@ -100,7 +100,7 @@ pub trait Physics: Send + Sync {
         false
     }
 
-    /// Whether it has a say in what other effects see: through [`Physics::spool`], [`Physics::opening`] or [`Physics::adjust`], which are
+    /// Whether it changes what other effects see: through [`Physics::spool`], [`Physics::opening`] or [`Physics::adjust`], which are
     /// asked of such effects only. The parameters of all others act on their own rows alone, which makes their derivatives cheap.
     fn adjusts_others(&self) -> bool {
         false
@@ -244,6 +244,13 @@ hooks! {
             site: Site, parameters: &[T], states: &[T], now: &Situation<T>, rows: &mut Rows<T>);
         fn remember(site: Site, parameters: &[T], states: &[T], now: &Situation<T>, rates: &mut [T]);
         fn begin(site: Site, parameters: &[T], now: &Situation<T>, states: &mut [T]);
+    }
+}
+
+impl dyn Effect + '_ {
+    /// Whether it changes nothing but what instruments report.
+    pub fn is_an_instruments(&self) -> bool {
+        !(self.has_power() || self.has_memory() || self.adjusts_others() || self.reads_course())
     }
 }
 

@@ -18,7 +18,9 @@ pub struct Accountant<'m, 's, T> {
     system: &'s System<'m>,
     workspace: Workspace<'m, T>,
     rates: Vec<T>,
-    /// What each effect alone adds to the rows.
+    /// What all effects add to the rows.
+    totals: Rows<T>,
+    /// What each effect alone adds to them.
     alone: Vec<Rows<T>>,
 }
 
@@ -30,6 +32,7 @@ impl<'m, 's, T: Number> Accountant<'m, 's, T> {
             system,
             workspace: system.workspace(),
             rates: vec![T::from(0.0); layout.len],
+            totals: Rows::zero(layout.joints),
             alone: vec![Rows::zero(layout.joints); system.model().effects.len()],
         }
     }
@@ -38,13 +41,13 @@ impl<'m, 's, T: Number> Accountant<'m, 's, T> {
     pub fn ledger(&mut self, parameters: &[T], state: &[T], inputs: &Inputs<T>) -> Ledger<T> {
         // The rates are evaluated for the situation, which may hold flows of the valve, and for the mass matrix.
         self.system.rates(&mut self.workspace, parameters, state, inputs, &mut self.rates);
-        let totals = self.workspace.rows.clone();
+        std::mem::swap(&mut self.totals, &mut self.workspace.rows);
         for (number, alone) in self.alone.iter_mut().enumerate() {
             self.workspace.rows.clear();
             self.system.contribute_one(number, &mut self.workspace, parameters, state);
             std::mem::swap(alone, &mut self.workspace.rows);
         }
-        self.workspace.rows = totals;
+        std::mem::swap(&mut self.totals, &mut self.workspace.rows);
         let Accountant { system, workspace, alone, .. } = self;
         let mut account = Account { system, parameters, state, workspace, alone };
         account.ledger(inputs)

@@ -1,6 +1,6 @@
 //! Derivatives of the rates by parameters that reach no further than their effect's own rows.
 //!
-//! Most effects add to the rows of the equations and have no say in what others see. What such a parameter changes follows from its effect
+//! Most effects add to the rows of the equations and leave what others see as it is. What such a parameter changes follows from its effect
 //! alone, with all else held: a fraction of an evaluation of the whole model.
 
 use nalgebra::DMatrix;
@@ -23,16 +23,16 @@ pub enum Reach {
 impl System<'_> {
     /// How far the parameter with this index reaches.
     pub fn reach(&self, parameter: usize) -> Reach {
-        let owner = self.parameter_ranges().iter().position(|&(first, last)| (first..last).contains(&parameter));
-        let Some(effect) = owner.map(|number| &self.model().effects[number].physics) else { return Reach::Others };
+        let Some(owner) = self.owner(parameter) else { return Reach::Others };
+        let effect = &self.model().effects[owner].physics;
         let feeds_others = self.reads_metering_flows() && effect.card().acts_on == ActsOn::Valve;
         let is_imposed = self.layout().rod_forces.is_some();
         if effect.adjusts_others() || effect.reads_course() || feeds_others || is_imposed {
             Reach::Others
-        } else if effect.has_power() || effect.has_memory() {
-            Reach::OwnRows
-        } else {
+        } else if effect.is_an_instruments() {
             Reach::Instruments
+        } else {
+            Reach::OwnRows
         }
     }
 }
@@ -60,11 +60,9 @@ struct Pass {
 impl<'m> OwnRows<'m> {
     /// For parameters given by their index in the model and the column that they have in the result.
     pub fn new(system: &System<'m>, wanted: &[(usize, usize)]) -> Self {
-        let owner = |parameter: usize| {
-            system.parameter_ranges().iter().position(|&(first, last)| (first..last).contains(&parameter))
-        };
         let passes = wanted.chunks(DIRECTIONS).map(|parameters| {
-            let mut effects: Vec<usize> = parameters.iter().filter_map(|&(parameter, _)| owner(parameter)).collect();
+            let mut effects: Vec<usize> =
+                parameters.iter().filter_map(|&(parameter, _)| system.owner(parameter)).collect();
             effects.dedup();
             Pass { parameters: parameters.to_vec(), effects }
         });

@@ -13,7 +13,7 @@ pub struct System<'m> {
     model: &'m Model,
     layout: Layout,
     parameter_ranges: Vec<(usize, usize)>,
-    /// Effects that have a say in what others see.
+    /// Effects that change what others see.
     adjusting: Vec<usize>,
     /// Effects that look at how the input changes.
     readers_of_course: Vec<usize>,
@@ -91,6 +91,11 @@ impl<'m> System<'m> {
     /// Whether an effect needs the metering flows.
     pub(super) fn reads_metering_flows(&self) -> bool {
         self.reads_metering_flows
+    }
+
+    /// Number of the effect that has the parameter with this index.
+    pub(super) fn owner(&self, parameter: usize) -> Option<usize> {
+        self.parameter_ranges.iter().position(|&(first, last)| (first..last).contains(&parameter))
     }
 
     /// Index range of each effect's parameters in the model's parameter vector.
