@@ -126,6 +126,18 @@ pub enum BagError {
         /// The topics that exist.
         existing: Vec<String>,
     },
+    /// The bag has several machines, each in a namespace.
+    #[error(
+        "{}: there is a machine in each of the namespaces {}; say which with --namespace",
+        shown(path),
+        namespaces.iter().map(|namespace| printable(namespace)).collect::<Vec<_>>().join(", ")
+    )]
+    SeveralMachines {
+        /// The bag.
+        path: PathBuf,
+        /// The namespaces.
+        namespaces: Vec<String>,
+    },
     /// The topic exists, but no message of it could be read.
     #[error("{}: topic {} has no readable message{}", shown(path), printable(topic), because(damage))]
     NoMessages {

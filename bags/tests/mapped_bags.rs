@@ -6,7 +6,7 @@ mod support;
 
 use std::path::PathBuf;
 
-use excavator_bags::map::{MapError, TopicMap, read_mapped, read_recording_or_mapped};
+use excavator_bags::map::{MapError, Origin, TopicMap, read_mapped, read_recording_or_mapped};
 use excavator_bags::{BagError, BagWriter, ReadReport, TopicToWrite, WriteOptions, cdr};
 use excavator_model::recording::Recording;
 use excavator_msgs::Header;
@@ -159,9 +159,9 @@ fn the_clock_is_the_fastest_topic_or_the_one_asked_for() {
 #[test]
 fn a_map_beside_the_bag_is_found() {
     let bag = Bag::new();
-    assert!(matches!(read_recording_or_mapped(&bag.path(), None), Err(BagError::NoTopic { .. })));
+    assert!(matches!(read_recording_or_mapped(&bag.path(), Origin::default()), Err(BagError::NoTopic { .. })));
     std::fs::write(bag.path().join("map.toml"), source("arm.displacement", "/position", "data", "")).unwrap();
-    assert_eq!(read_recording_or_mapped(&bag.path(), None).unwrap().0.len(), 101);
+    assert_eq!(read_recording_or_mapped(&bag.path(), Origin::default()).unwrap().0.len(), 101);
 }
 
 #[test]
@@ -220,6 +220,6 @@ fn types_that_nobody_defines_come_from_msg_files() {
     std::fs::write(folder.join("valve_msgs/msg/Spool.msg"), "float64 area # m2\n").unwrap();
     let map = folder.join("spool.toml");
     std::fs::write(&map, format!("definitions = [\"valve_msgs/msg/Spool.msg\"]\n{signals}")).unwrap();
-    let (recording, _) = read_recording_or_mapped(&other, Some(&map)).unwrap();
+    let (recording, _) = read_recording_or_mapped(&other, Origin { map: Some(&map), ..Origin::default() }).unwrap();
     assert_eq!(recording.cylinders[0].orifice_area, [1e-5]);
 }

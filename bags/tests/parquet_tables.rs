@@ -7,7 +7,7 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::map::{guess, read_recording_or_mapped};
+use excavator_bags::map::{Origin, guess, read_recording_or_mapped};
 use excavator_bags::table::{Column, Table, TableFormat, Values, parse_date};
 use support::Numbers;
 
@@ -38,8 +38,10 @@ fn numbers(column: &Column) -> Vec<f64> {
 #[test]
 fn a_parquet_table_is_the_recording_that_its_csv_is() {
     let map = sample("arm-swing.csv.map.toml");
-    let (csv, _) = read_recording_or_mapped(&sample("arm-swing.csv"), None).unwrap();
-    let (parquet, report) = read_recording_or_mapped(&sample("parquet/arm-swing.parquet"), Some(&map)).unwrap();
+    let (csv, _) = read_recording_or_mapped(&sample("arm-swing.csv"), Origin::default()).unwrap();
+    let (parquet, report) =
+        read_recording_or_mapped(&sample("parquet/arm-swing.parquet"), Origin { map: Some(&map), ..Origin::default() })
+            .unwrap();
     assert_eq!(report.problems(), Vec::<String>::new());
     assert_eq!(parquet.len(), 501);
     support::assert_equal(&parquet, &csv);

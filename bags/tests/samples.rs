@@ -6,7 +6,7 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::map::read_recording_or_mapped;
+use excavator_bags::map::{Origin, read_recording_or_mapped};
 use excavator_model::recording::Recording;
 
 fn sample(name: &str) -> PathBuf {
@@ -14,7 +14,7 @@ fn sample(name: &str) -> PathBuf {
 }
 
 fn read(name: &str) -> Recording {
-    let (recording, report) = read_recording_or_mapped(&sample(name), None).unwrap();
+    let (recording, report) = read_recording_or_mapped(&sample(name), Origin::default()).unwrap();
     assert_eq!(report.problems(), Vec::<String>::new(), "{name}");
     recording.validate().unwrap();
     recording

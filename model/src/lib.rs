@@ -21,6 +21,8 @@ pub mod recording;
 pub mod scalar;
 pub mod simulation;
 pub mod template;
+mod urdf;
 
 pub use errors::{ModelError, SignalError};
 pub use model::{HistoryEntry, Model, ModelEffect, Parameter, addition_name, site_name, site_named};
+pub use urdf::urdf;

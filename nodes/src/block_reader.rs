@@ -21,6 +21,7 @@ pub fn needs_a_map(path: &Path, map: Option<&Path>) -> bool {
 /// Those of [`read_recording_in_blocks`].
 pub fn read_beside<T>(
     path: &Path,
+    namespace: Option<&str>,
     samples: usize,
     waiting: usize,
     mut choose: impl FnMut(Recording) -> (Option<Recording>, ControlFlow<()>) + Send,
@@ -29,10 +30,11 @@ pub fn read_beside<T>(
     if !path.exists() {
         return Err(BagError::DoesNotExist { path: path.to_path_buf() });
     }
+    let topics = Topics::in_bag(path, namespace)?;
     let (sender, blocks) = sync_channel(waiting);
     std::thread::scope(|scope| {
         let reader = scope.spawn(move || {
-            read_recording_in_blocks(path, &Topics::default(), samples, |block| {
+            read_recording_in_blocks(path, &topics, samples, |block| {
                 let (wanted, goes_on) = choose(block);
                 // The other side may have ended; it says why.
                 let has_ended = wanted.is_some_and(|wanted| sender.send(wanted).is_err());

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::mpsc::Receiver;
 
 use excavator_bags::ReadReport;
-use excavator_bags::map::read_recording_or_mapped;
+use excavator_bags::map::{Origin, read_recording_or_mapped};
 use excavator_identification::regression::RegressionError;
 use excavator_identification::selection::{Chosen, Selection, SelectionSettings, joined};
 use excavator_model::Model;
@@ -31,12 +31,12 @@ const WAITING: usize = 1;
 /// [`VerbError::Bag`] where there is no recording, [`VerbError::Part`], and [`VerbError::Regression`] where a long one lacks inputs.
 pub fn recording_or_stretches(
     path: &Path,
-    map: Option<&Path>,
+    origin: Origin<'_>,
     model: &Model,
 ) -> Result<(Recording, ReadReport, Option<Chosen>), VerbError> {
     let (whole, part) = Part::split(path)?;
-    if !whole.exists() || needs_a_map(&whole, map) {
-        let (recording, report) = read_recording_or_mapped(&whole, map)?;
+    if !whole.exists() || needs_a_map(&whole, origin.map) {
+        let (recording, report) = read_recording_or_mapped(&whole, origin)?;
         let recording = in_part(recording, part, path)?;
         if !is_long(recording.len(), recording.recorded_time(), model) {
             return Ok((recording, report, None));
@@ -45,7 +45,7 @@ pub fn recording_or_stretches(
         selection.offer(&recording)?;
         return Ok(of_stretches(selection.finish(&path.display().to_string()), report));
     }
-    in_blocks(path, &whole, part, model)
+    in_blocks(path, (&whole, origin.namespace), part, model)
 }
 
 fn in_part(recording: Recording, part: Option<Part>, path: &Path) -> Result<Recording, VerbError> {
@@ -62,7 +62,7 @@ fn is_long(samples: usize, duration: f64, model: &Model) -> bool {
 /// A bag of our own topics, one block after the other: the next is read while one is looked at.
 fn in_blocks(
     path: &Path,
-    whole: &Path,
+    (whole, namespace): (&Path, Option<&str>),
     part: Option<Part>,
     model: &Model,
 ) -> Result<(Recording, ReadReport, Option<Chosen>), VerbError> {
@@ -77,7 +77,7 @@ fn in_blocks(
         };
         (wanted, if is_last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     };
-    let (report, outcome) = read_beside(whole, BLOCK, WAITING, choose, |blocks| taken(blocks, path, model))?;
+    let (report, outcome) = read_beside(whole, namespace, BLOCK, WAITING, choose, |blocks| taken(blocks, path, model))?;
     match outcome? {
         Taken::Whole(recording) if recording.is_empty() => match part {
             Some(part) => Err(part.is_beyond(end, path)),

@@ -70,7 +70,7 @@ fn catalogue_files(folder: &Path) -> Result<Vec<PathBuf>, VerbError> {
 /// and tables are read through `map`, or the map that lies beside them. `BAG@20..40` is the part from 20 s to 40 s.
 pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording, VerbError> {
     let (whole, part) = Part::split(path)?;
-    let (mut recording, report) = read_recording_or_mapped(&whole, map.map.as_deref())?;
+    let (mut recording, report) = read_recording_or_mapped(&whole, map.origin())?;
     if let Some(part) = part {
         recording = part.of(&recording, path)?;
     }
@@ -83,7 +83,7 @@ pub fn telling_recording(path: &Path, extent: Extent, map: &Mapping, model: &Mod
     if extent.whole {
         return recording(path, map, model);
     }
-    let (recording, report, chosen) = recording_or_stretches(path, map.map.as_deref(), model)?;
+    let (recording, report, chosen) = recording_or_stretches(path, map.origin(), model)?;
     if let Some(chosen) = &chosen {
         complain(&format!("{}: {}", path.display(), choice(&recording, chosen)));
     }

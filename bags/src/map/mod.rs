@@ -59,6 +59,6 @@ pub use leave_out::LeaveOut;
 pub use named::NamedColumn;
 pub use pieces::read_pieces;
 pub use quantity::Quantity;
-pub use read_mapped::{read_mapped, read_recording_or_mapped, read_signals};
+pub use read_mapped::{Origin, read_mapped, read_recording_or_mapped, read_signals};
 pub use signal::{SignalKind, SignalName};
 pub use unit::{Dimension, Unit};

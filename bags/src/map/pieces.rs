@@ -58,7 +58,7 @@ pub fn read_pieces(
         let own = if number == 0 { None } else { map_of(path, map)? };
         let mut map = own.or_else(|| of_first.clone());
         add_joins(path, map.as_mut(), joins)?;
-        let (recording, report, dating) = read_with(path, map.as_ref())?;
+        let (recording, report, dating) = read_with(path, map.as_ref(), None)?;
         pieces.push(Piece { path: path.clone(), recording, report, is_dated: dating == Dating::Dated });
     }
     if pieces.iter().all(|piece| piece.is_dated) {

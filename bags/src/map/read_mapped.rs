@@ -41,14 +41,22 @@ pub(super) fn read_dated(path: &Path, map: &TopicMap) -> Result<(Recording, Read
     Ok((recording, report, dating))
 }
 
-/// Reads the data at `path` with the given map, else with the one beside it (see [`TopicMap::beside`]), else as a bag of
-/// our own topics.
+/// How signals are found in data.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Origin<'o> {
+    /// File of a map; without, the map beside the data counts, if there is one (see [`TopicMap::beside`]).
+    pub map: Option<&'o Path>,
+    /// Namespace of the machine in a bag of our own topics; without, see [`Topics::in_bag`].
+    pub namespace: Option<&'o str>,
+}
+
+/// Reads the data at `path` with a map, or without any as a bag of our own topics.
 ///
 /// # Errors
-/// All of [`read_mapped`] and [`read_recording`](crate::read_recording); [`BagError::BadTable`] for a table without map.
-pub fn read_recording_or_mapped(path: &Path, map: Option<&Path>) -> Result<(Recording, ReadReport), BagError> {
-    let map = map_of(path, map)?;
-    read_with(path, map.as_ref()).map(|(recording, report, _)| (recording, report))
+/// All of [`read_mapped`], [`Topics::in_bag`] and [`read_recording`](crate::read_recording); [`BagError::BadTable`] for a table without map.
+pub fn read_recording_or_mapped(path: &Path, origin: Origin<'_>) -> Result<(Recording, ReadReport), BagError> {
+    let map = map_of(path, origin.map)?;
+    read_with(path, map.as_ref(), origin.namespace).map(|(recording, report, _)| (recording, report))
 }
 
 /// Looks at the signals of the data at `path`, read as by [`read_recording_or_mapped`]; a bag of our own topics in blocks, so that its length
@@ -56,14 +64,14 @@ pub fn read_recording_or_mapped(path: &Path, map: Option<&Path>) -> Result<(Reco
 ///
 /// # Errors
 /// As [`read_recording_or_mapped`].
-pub fn read_signals(path: &Path, map: Option<&Path>) -> Result<(SignalsInfo, ReadReport), BagError> {
-    let map = map_of(path, map)?;
+pub fn read_signals(path: &Path, origin: Origin<'_>) -> Result<(SignalsInfo, ReadReport), BagError> {
+    let map = map_of(path, origin.map)?;
     if map.is_some() || Table::is_table(path) {
-        let (recording, report, _) = read_with(path, map.as_ref())?;
+        let (recording, report, _) = read_with(path, map.as_ref(), origin.namespace)?;
         return Ok((SignalsInfo::of(&recording), report));
     }
     let mut tally = SignalsTally::default();
-    let report = read_recording_in_blocks(path, &Topics::default(), BLOCK, |block| {
+    let report = read_recording_in_blocks(path, &Topics::in_bag(path, origin.namespace)?, BLOCK, |block| {
         tally.add(&block);
         ControlFlow::Continue(())
     })?;
@@ -82,7 +90,11 @@ pub(super) fn map_of(data: &Path, map: Option<&Path>) -> Result<Option<TopicMap>
 }
 
 /// Reads data with this map, or without any as a bag of our own topics.
-pub(super) fn read_with(path: &Path, map: Option<&TopicMap>) -> Result<(Recording, ReadReport, Dating), BagError> {
+pub(super) fn read_with(
+    path: &Path,
+    map: Option<&TopicMap>,
+    namespace: Option<&str>,
+) -> Result<(Recording, ReadReport, Dating), BagError> {
     match map {
         Some(map) => read_dated(path, map),
         None if Table::is_table(path) => Err(BagError::BadTable {
@@ -92,7 +104,7 @@ pub(super) fn read_with(path: &Path, map: Option<&TopicMap>) -> Result<(Recordin
                 .to_string(),
         }),
         None => {
-            let (recording, report) = read_recording(path, &Topics::default())?;
+            let (recording, report) = read_recording(path, &Topics::in_bag(path, namespace)?)?;
             let is_dated = recording.start_nanoseconds as f64 / 1e9 > EPOCH_SECONDS;
             Ok((recording, report, if is_dated { Dating::Dated } else { Dating::Undated(0) }))
         }

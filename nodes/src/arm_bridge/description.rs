@@ -15,6 +15,9 @@ pub(super) struct Description {
     /// States per second, Hz.
     #[serde(default = "default_rate")]
     pub rate: f64,
+    /// Which machine this is, for `hardware_id` of its diagnostics: a serial number, as a rule.
+    #[serde(default)]
+    pub hardware: String,
     /// Sources of datagrams.
     #[serde(default)]
     pub udp: Vec<Udp>,

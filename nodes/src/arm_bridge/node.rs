@@ -27,13 +27,19 @@ const ACQUAINTANCE: Duration = Duration::from_secs(1);
 pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     let file =
         Parameter::new("description", Value::String(String::new()), "file (.toml) that says where signals come from");
-    let supervisor = Supervisor::start("arm_bridge", ros, vec![file.read_only()])?;
+    let managed = Parameter::new(
+        "managed",
+        Value::Boolean(false),
+        "wait to be configured and activated, as a lifecycle node; nothing is published until then",
+    );
+    let supervisor = Supervisor::start("arm_bridge", ros, vec![file.read_only(), managed.read_only()])?;
     let path = supervisor.parameters.text("description");
     if path.is_empty() {
         let reason = "no signals: give the file that describes them with -p description:=FILE.toml".to_string();
         return Err(RosError::Parameter(reason).into());
     }
     let description = Description::read(Path::new(&path)).map_err(RosError::Parameter)?;
+    supervisor.diagnostics.set_hardware(&description.hardware);
     let mut treatments = description.treatments();
     let refused = Refused::default();
     let mut first = 0;
@@ -52,12 +58,17 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     for (index, source) in description.topics.iter().enumerate() {
         subscribe(&supervisor, source, first + index, &signals)?;
     }
-    let echoes = description.topics.iter().any(|source| source.topic == "/joint_states");
+    let identity = supervisor.link.identity();
+    let own_joints = identity.resolve("joint_states")?;
+    let echoes =
+        description.topics.iter().any(|source| identity.resolve(&source.topic).is_ok_and(|topic| topic == own_joints));
+    let lifecycle = supervisor.lifecycle()?;
     let publisher = Publisher {
         rate: description.rate,
         signals: &signals,
-        states: supervisor.link.publish("/arm/state", TopicQos::reliable(50))?,
-        joints: (!echoes).then(|| supervisor.link.publish("/joint_states", TopicQos::reliable(10))).transpose()?,
+        states: supervisor.link.publish("arm/state", TopicQos::reliable(50))?,
+        joints: (!echoes).then(|| supervisor.link.publish("joint_states", TopicQos::reliable(10))).transpose()?,
+        lifecycle: &lifecycle,
         clock: &supervisor.clock,
         diagnostics: &supervisor.diagnostics,
         refused: &refused,
@@ -96,7 +107,7 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
 /// What is published once, as fast as it can be, needs somebody there before it starts.
 fn wait_for_a_reader(supervisor: &Supervisor, stop: &AtomicBool) {
     supervisor.diagnostics.tell("signals", Health::Ok, "waiting for a reader of /arm/state", &[]);
-    while !stop.load(Ordering::Relaxed) && !supervisor.link.has_readers("/arm/state") {
+    while !stop.load(Ordering::Relaxed) && !supervisor.link.has_readers("arm/state") {
         std::thread::sleep(GLANCE);
     }
     std::thread::sleep(ACQUAINTANCE);

@@ -9,7 +9,7 @@ use excavator_msgs::{ArmState, Header, Time};
 
 use super::can::Counts;
 use super::signals::{Fault, Signals};
-use crate::ros::{Diagnostics, Health, Outlet, Pace, PublishError, RosClock};
+use crate::ros::{Diagnostics, Health, Lifecycle, Outlet, Pace, PublishError, RosClock};
 
 /// Time between two words to diagnostics.
 const REPORT: Duration = Duration::from_millis(200);
@@ -44,6 +44,7 @@ pub(super) struct Publisher<'p> {
     pub states: Outlet<ArmState>,
     /// `None` where the bridge itself reads `/joint_states` and must not answer itself.
     pub joints: Option<Outlet<JointState>>,
+    pub lifecycle: &'p Lifecycle,
     pub clock: &'p RosClock,
     pub diagnostics: &'p Diagnostics,
     pub refused: &'p Refused,
@@ -101,6 +102,9 @@ impl Publisher<'_> {
             signals.state(stamp, moment)
         };
         let joints_every = ((self.rate / JOINT_STATES_RATE).round() as u64).max(1);
+        if !self.lifecycle.is_active() {
+            return faults;
+        }
         if let Some(joints) = &self.joints
             && round.is_multiple_of(joints_every)
         {

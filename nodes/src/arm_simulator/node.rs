@@ -3,8 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use excavator_model::Model;
 use excavator_model::document::to_text;
+use excavator_model::{Model, urdf};
 use excavator_msgs::common::{Clock, JointState, Text};
 use excavator_msgs::{ArmState, Header, Time};
 
@@ -16,8 +16,8 @@ use super::valve_limits;
 use crate::command_gate::{Desk, Valve};
 use crate::error::VerbError;
 use crate::ros::{
-    Diagnostics, Health, Latched, Logger, Outlet, Pace, Parameters, RosArguments, RosError, Supervisor, TopicQos,
-    system_nanoseconds,
+    Diagnostics, Health, Latched, Lifecycle, Logger, Outlet, Pace, Parameters, RosArguments, RosError, Supervisor,
+    TopicQos, system_nanoseconds,
 };
 use crate::sources;
 
@@ -38,26 +38,31 @@ const MOST_MISSED: u64 = 10_000;
 pub fn run(arguments: &RosArguments) -> Result<(), VerbError> {
     let supervisor = Supervisor::start("arm_simulator", arguments, parameters())?;
     let model = sources::model_named(&supervisor.parameters.text("model"))?;
+    supervisor.diagnostics.set_hardware(&model.machine.name);
     let not_measured = supervisor.parameters.texts("not_measured");
     if let Some(unknown) = not_measured.iter().find(|name| !SIGNALS.contains(&name.as_str())) {
         let reason = format!("not_measured: \"{unknown}\" is none of {}", SIGNALS.join(", "));
         return Err(RosError::Parameter(reason).into());
     }
     let outlets = Outlets {
-        state: supervisor.link.publish("/arm/state", TopicQos::reliable(50))?,
-        joints: supervisor.link.publish("/joint_states", TopicQos::reliable(10))?,
-        model: supervisor.link.publish_latched("/arm/model", TopicQos::latched())?,
+        state: supervisor.link.publish("arm/state", TopicQos::reliable(50))?,
+        joints: supervisor.link.publish("joint_states", TopicQos::reliable(10))?,
+        model: supervisor.link.publish_latched("arm/model", TopicQos::latched())?,
+        description: supervisor.link.publish_latched("robot_description", TopicQos::latched())?,
         clock: has_own_clock(&supervisor.parameters)
             .then(|| supervisor.link.publish("/clock", TopicQos::reliable(10)))
             .transpose()?,
     };
     // The machine before its commands: a model that cannot be set up must not answer to anybody.
     let machine = MachineProcess::start(&setup(&model, &supervisor)?)?;
-    let desk = Desk::open(&supervisor, valves(&model), "/arm/state")?;
+    let desk = Desk::open(&supervisor, valves(&model), "arm/state")?;
     // What is published now reaches everybody who comes later.
     let _ = outlets.model.publish(Text { data: to_text(&model)? });
+    let _ = outlets.description.publish(Text { data: urdf(&model) });
     let stop = supervisor.stop_flag();
+    let lifecycle = supervisor.lifecycle()?;
     let simulation = Simulation {
+        lifecycle: &lifecycle,
         model: &model,
         parameters: &supervisor.parameters,
         diagnostics: &supervisor.diagnostics,
@@ -85,6 +90,7 @@ struct Outlets {
     state: Outlet<ArmState>,
     joints: Outlet<JointState>,
     model: Latched<Text>,
+    description: Latched<Text>,
     clock: Option<Outlet<Clock>>,
 }
 
@@ -121,6 +127,7 @@ fn seconds(value: f64) -> Duration {
 }
 
 struct Simulation<'r> {
+    lifecycle: &'r Lifecycle,
     model: &'r Model,
     parameters: &'r Parameters,
     diagnostics: &'r Diagnostics,
@@ -150,14 +157,16 @@ impl Simulation<'_> {
         let mut reported = Instant::now();
         let mut counts = Counts::default();
         let mut wanted = Vec::new();
-        let mut samples = 1;
+        let (mut samples, mut is_shut) = (1, false);
         let every = |target: f64| ((rate / target).round() as u64).max(1);
         let (joints_every, clock_every) = (every(JOINT_STATES_RATE), every(CLOCK_RATE));
         self.logger.info(format!("{} at {rate} Hz, speed {speed}", self.model.machine.name));
         for sample in 0_u64.. {
             let stopping = self.stop.load(Ordering::Relaxed);
-            if stopping {
-                self.desk.close();
+            let is_active = self.lifecycle.is_active();
+            if (stopping || !is_active) != is_shut {
+                is_shut = !is_shut;
+                self.desk.shut(is_shut);
             }
             self.desk.look(&mut wanted);
             let answer = machine.go_on(&wanted, samples, settings.command_timeout, settings.oil_temperature)?;
@@ -178,11 +187,11 @@ impl Simulation<'_> {
                 let _ = outlet.publish(Clock { clock: stamp });
             }
             let joints = (sample % joints_every == 0).then(|| joint_state(&state, answer.joint_rates));
-            if sensors.measure(&mut state, &settings.quality) {
+            if is_active && sensors.measure(&mut state, &settings.quality) {
                 // Refusals are counted by the outlet and reported below.
                 let _ = self.outlets.state.publish(state);
             }
-            if let Some(joints) = joints {
+            if let Some(joints) = joints.filter(|_| is_active) {
                 let _ = self.outlets.joints.publish(joints);
             }
             if reported.elapsed() >= REPORT {
@@ -211,7 +220,9 @@ impl Simulation<'_> {
             ("jumps of the clock", clock.jumps.to_string()),
             ("times set up again", counts.failures.to_string()),
         ];
-        let (health, message) = if counts.failures > 0 {
+        let (health, message) = if !self.lifecycle.is_active() {
+            (Health::Ok, "not active")
+        } else if counts.failures > 0 {
             (Health::Warning, "the machine was set up again")
         } else {
             (Health::Ok, "running")

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand, ValueEnum};
+use excavator_bags::map::Origin;
 use excavator_identification::gate::OVERRULABLE;
 
 use super::numbers::{positive, profile_duration, stroke_margin};
@@ -29,6 +30,9 @@ pub struct Mapping {
     /// in the bag's folder or FILE.map.toml beside the file is used, if there is one.
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
+    /// Namespace of the machine, for a bag of our own topics that has several.
+    #[arg(long, value_name = "NAMESPACE", conflicts_with = "map")]
+    pub namespace: Option<String>,
     /// Use a recording although this check refuses it; the refusal says its name. Repeat it for several.
     #[arg(long, value_name = "CHECK", value_parser = PossibleValuesParser::new(OVERRULABLE), hide_possible_values = true)]
     pub accept: Vec<String>,
@@ -36,6 +40,13 @@ pub struct Mapping {
     /// through. Repeat it: all must hold.
     #[arg(long = "where", value_name = "CONDITION")]
     pub conditions: Vec<String>,
+}
+
+impl Mapping {
+    /// Where signals are found.
+    pub fn origin(&self) -> Origin<'_> {
+        Origin { map: self.map.as_deref(), namespace: self.namespace.as_deref() }
+    }
 }
 
 #[derive(Debug, Default, Clone, Copy, Args)]
@@ -339,6 +350,8 @@ pub enum ModelVerb {
     Check(ModelCheckArguments),
     /// Take flow gains, dead zone and play of a valve from a static test: a table of flow against input.
     Valve(ValveTestArguments),
+    /// Print the robot description (URDF) of a model's machine, for RViz and robot_state_publisher.
+    Urdf(ModelChoice),
     /// Print the JSON schema of the model file, for editors that complete and check TOML.
     Schema(OwnEffects),
     /// Print the reference page of the model file: every table, key, unit and default.
@@ -364,6 +377,9 @@ pub struct InfoArguments {
     /// Topic map (TOML); without, the map.toml in the bag's folder or FILE.map.toml beside the file, if there is one.
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
+    /// Namespace of the machine, for a bag of our own topics that has several.
+    #[arg(long, value_name = "NAMESPACE", conflicts_with = "map")]
+    pub namespace: Option<String>,
     #[command(flatten)]
     pub json: Json,
     #[command(flatten)]

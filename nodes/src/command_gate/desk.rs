@@ -18,7 +18,7 @@ use super::writer::{AllowList, Writer};
 use crate::ros::{Diagnostics, Health, Logger, Parameters, Peers, RosError, Supervisor, TopicQos, system_nanoseconds};
 
 /// Topic of the stop, before remapping.
-const STOP_TOPIC: &str = "/arm/stop";
+const STOP_TOPIC: &str = "arm/stop";
 /// Writers whose names are remembered; the rest are looked up for each message.
 const MOST_WRITERS: usize = 64;
 /// Time after which a writer that discovery did not know is looked up again.
@@ -95,9 +95,9 @@ impl Desk {
         wanted.extend(gate.wanted());
     }
 
-    /// Closes every valve, for the end of the program.
-    pub fn close(&self) {
-        self.gate().close(Instant::now());
+    /// Closes every valve and follows nobody, or, not `shut`, follows commands again.
+    pub fn shut(&self, shut: bool) {
+        self.gate().shut(shut, Instant::now());
     }
 
     fn take(&self, command: &OrificeCommand, source: usize, writer: [u8; 16], now: Instant) {
@@ -177,7 +177,11 @@ impl Desk {
             let gate = self.gate();
             (gate.status(now), gate.stop.by(now))
         };
-        let accepted = self.report_lock().accepted();
+        let (accepted, refused) = {
+            let report = self.report_lock();
+            (report.accepted(), report.recent_refusal(now).is_some())
+        };
+        let commanded = status.iter().any(|valve| valve.owner.is_some());
         let mut values = Vec::new();
         let mut closed = None;
         for valve in &status {
@@ -196,6 +200,9 @@ impl Desk {
         let (health, message) = match (stopped, closed) {
             (Some(by), _) => (Health::Warning, format!("stopped by {by}")),
             (None, Some(closed)) => closed,
+            (None, None) if refused && !commanded => {
+                (Health::Warning, "commands come, and none is followed; \"refusal\" says why".to_string())
+            }
             (None, None) if accepted == 0 => (Health::Ok, "no command yet, valves are closed".to_string()),
             (None, None) => (Health::Ok, "following commands".to_string()),
         };

@@ -78,6 +78,8 @@ pub(super) struct Gate {
     sources: Vec<Source>,
     allowed: AllowList,
     settings: Settings,
+    /// Whether nobody is followed: the node waits to be activated, or ends.
+    shut: bool,
     /// The stop.
     pub stop: Stop,
 }
@@ -95,7 +97,7 @@ impl Gate {
     ) -> Self {
         let closed = neutral_at_start.then(|| Closed { because: "this node has just started".to_string(), at: now });
         let slots = vec![Slot { closed, ..Slot::default() }; valves.len()];
-        Gate { valves, slots, sources, allowed, settings, stop: Stop::default() }
+        Gate { valves, slots, sources, allowed, settings, shut: false, stop: Stop::default() }
     }
 
     /// Changes what may change.
@@ -114,6 +116,9 @@ impl Gate {
         }
         stamp::check(order.command.header.stamp, clocks, self.settings.stamps)?;
         let areas = content::check(order.command, &self.valves)?;
+        if self.shut {
+            return Err(Refusal::NotActive);
+        }
         if let Some(by) = self.stop.by(now) {
             return Err(Refusal::Stopped { by });
         }
@@ -180,9 +185,12 @@ impl Gate {
         })
     }
 
-    /// Closes every valve for good measure, at the end of a program.
-    pub fn close(&mut self, now: Instant) {
-        self.slots.iter_mut().for_each(|slot| slot.close(now, || "this node is ending".to_string()));
+    /// Closes every valve and follows nobody, or, not `shut`, follows commands again.
+    pub fn shut(&mut self, shut: bool, now: Instant) {
+        if shut {
+            self.slots.iter_mut().for_each(|slot| slot.close(now, || "this node was not active".to_string()));
+        }
+        self.shut = shut;
     }
 
     /// Who commands what.

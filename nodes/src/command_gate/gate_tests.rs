@@ -176,10 +176,14 @@ fn a_refused_command_does_not_renew_the_lease() {
 }
 
 #[test]
-fn a_program_that_ends_leaves_closed_valves() {
+fn a_node_that_is_not_active_leaves_closed_valves_and_follows_nobody() {
     let mut bench = Bench::new();
     assert_eq!(bench.sends(1, 0, &[("arm", 5e-5)]), Ok(()));
-    bench.gate.close(bench.now);
+    bench.gate.shut(true, bench.now);
     assert_eq!(bench.areas(), [0.0, 0.0]);
+    assert_eq!(bench.sends(1, 0, &[("arm", 5e-5)]), Err("not active"));
+    bench.gate.shut(false, bench.now);
     assert_eq!(bench.sends(1, 0, &[("arm", 5e-5)]), Err("neutral first"));
+    assert_eq!(bench.sends(1, 0, &[("arm", 0.0)]), Ok(()));
+    assert_eq!(bench.sends(1, 0, &[("arm", 5e-5)]), Ok(()));
 }

@@ -22,7 +22,7 @@ pub(crate) fn parameters() -> Vec<Parameter> {
         flag("accept_unstamped", false, "follow commands whose stamp is empty; their age is unknown"),
         texts(
             "command_sources",
-            &["operator:0:/arm/orifice_command"],
+            &["operator:0:arm/orifice_command"],
             "topics that commands come on, NAME:PRIORITY:TOPIC; a higher priority takes a valve over",
         ),
         texts(

@@ -70,6 +70,9 @@ pub(crate) enum Refusal {
         /// What may be commanded, m².
         maximum: f64,
     },
+    /// The node waits to be activated, or ends.
+    #[error("this node is not active")]
+    NotActive,
     /// The machine is stopped.
     #[error("the machine is stopped by {by}")]
     Stopped {
@@ -107,6 +110,7 @@ impl Refusal {
             | Refusal::Twice { .. }
             | Refusal::NotANumber { .. } => "malformed",
             Refusal::OutOfRange { .. } => "beyond the limit",
+            Refusal::NotActive => "not active",
             Refusal::Stopped { .. } => "stopped",
             Refusal::Owned { .. } => "owned by another writer",
             Refusal::NeutralFirst { .. } => "neutral first",

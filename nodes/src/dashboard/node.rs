@@ -35,11 +35,11 @@ pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), Ver
     let board = Arc::new(Board::default());
     let of = || Arc::clone(&board);
     let (states, commands, energies, parts) = (of(), of(), of(), of());
-    supervisor.link.subscribe("/arm/state", newest(50), move |state: ArmState, _| states.take_state(state))?;
-    supervisor.link.subscribe("/arm/orifice_command", newest(10), move |command: OrificeCommand, _| {
+    supervisor.link.subscribe("arm/state", newest(50), move |state: ArmState, _| states.take_state(state))?;
+    supervisor.link.subscribe("arm/orifice_command", newest(10), move |command: OrificeCommand, _| {
         commands.take_command(command);
     })?;
-    supervisor.link.subscribe("/arm/energy", newest(50), move |energy: EnergyState, _| energies.take_energy(energy))?;
+    supervisor.link.subscribe("arm/energy", newest(50), move |energy: EnergyState, _| energies.take_energy(energy))?;
     supervisor.link.subscribe("/diagnostics", newest(10), move |array: DiagnosticArray, _| parts.take_health(array))?;
     let stop = supervisor.stop_flag();
     let hosts = Hosts::new(arguments.allow_host.iter().cloned());

@@ -63,13 +63,13 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     let supervisor = Supervisor::start("energy_monitor", ros, parameters())?;
     let name = supervisor.parameters.text("model");
     let model = if name.is_empty() { None } else { Some(sources::model_named(&name)?) };
-    let outlet = supervisor.link.publish("/arm/energy", TopicQos::reliable(50))?;
+    let outlet = supervisor.link.publish("arm/energy", TopicQos::reliable(50))?;
     let (door, incoming) = inbox();
     let states = door.clone();
-    supervisor.link.subscribe("/arm/state", TopicQos::reliable(1000), move |state: ArmState, _| states.state(state))?;
+    supervisor.link.subscribe("arm/state", TopicQos::reliable(1000), move |state: ArmState, _| states.state(state))?;
     let counts = door.counts();
     if model.is_none() {
-        supervisor.link.subscribe("/arm/model", TopicQos::latched(), move |text: Text, _| door.model(text.data))?;
+        supervisor.link.subscribe("arm/model", TopicQos::latched(), move |text: Text, _| door.model(text.data))?;
     }
     let stop = supervisor.stop_flag();
     let desk = Desk {
@@ -111,6 +111,7 @@ impl Desk<'_> {
                 },
             };
             self.logger.info(format!("following {}", current.machine.name));
+            self.diagnostics.set_hardware(&current.machine.name);
             model = self.follow(&current);
         }
     }

@@ -48,7 +48,7 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     let library = Library::new(&given.text("model_folder"), &given.text("bag_folder")).map_err(RosError::Parameter)?;
     let time_limit = Duration::try_from_secs_f64(given.double("time_limit")).unwrap_or(GLANCE);
     let model = match given.flag("publish_result") {
-        true => Some(supervisor.link.publish_latched("/arm/model", TopicQos::latched())?),
+        true => Some(supervisor.link.publish_latched("arm/model", TopicQos::latched())?),
         false => None,
     };
     let queue = Arc::new(Queue::default());

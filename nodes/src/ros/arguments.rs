@@ -68,6 +68,12 @@ pub struct RosArguments {
     pub log_to_console: bool,
     /// `--disable-rosout-logs` turns it off.
     pub log_to_rosout: bool,
+    /// `--disable-external-lib-logs` turns it off.
+    pub log_to_file: bool,
+    /// `--log-file-name`: how the name of the log file begins.
+    pub log_file_name: Option<String>,
+    /// Arguments that have no effect, in words.
+    pub ignored: Vec<String>,
 }
 
 impl Default for RosArguments {
@@ -80,6 +86,9 @@ impl Default for RosArguments {
             log_level: Level::Info,
             log_to_console: true,
             log_to_rosout: true,
+            log_to_file: true,
+            log_file_name: None,
+            ignored: Vec::new(),
         }
     }
 }
@@ -116,14 +125,16 @@ impl RosArguments {
             "--params-file" => self.parameter_files.push(PathBuf::from(next()?)),
             "--log-level" => self.log_level = level(next()?)?,
             "-e" | "--enclave" => self.enclave = Some(next()?.clone()),
-            "--log-config-file" | "--log-file-name" => {
-                next()?;
+            "--log-file-name" => self.log_file_name = Some(next()?.clone()),
+            "--log-config-file" => {
+                self.ignored.push(format!("{flag} {} has no effect: there is no other logger", next()?))
             }
             "--disable-stdout-logs" => self.log_to_console = false,
             "--disable-rosout-logs" => self.log_to_rosout = false,
             "--enable-stdout-logs" => self.log_to_console = true,
             "--enable-rosout-logs" => self.log_to_rosout = true,
-            "--enable-external-lib-logs" | "--disable-external-lib-logs" => {}
+            "--disable-external-lib-logs" => self.log_to_file = false,
+            "--enable-external-lib-logs" => self.log_to_file = true,
             // Early ROS 2 had `name:=value` without -r.
             rule if rule.contains(":=") && !rule.starts_with('-') => self.remaps.push(remap(rule)?),
             other => return Err(RosError::Arguments(format!("unknown argument {other}"))),

@@ -1,7 +1,7 @@
 //! ROS time: the system's clock, or `/clock`.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicI64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use excavator_msgs::Time;
@@ -9,46 +9,61 @@ use excavator_msgs::common::Clock;
 
 use super::{Link, RosError, TopicQos};
 
-/// No `/clock` has come yet.
-const NOTHING: i64 = i64::MIN;
-
 /// ROS time; clones share it.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct RosClock {
-    simulated: Option<Arc<AtomicI64>>,
+    shared: Arc<Shared>,
+}
+
+#[derive(Default)]
+struct Shared {
+    /// Whether `/clock` counts.
+    follows: AtomicBool,
+    /// Whether `/clock` is subscribed.
+    listens: AtomicBool,
+    /// The newest time of `/clock`, ns.
+    simulated: AtomicI64,
 }
 
 impl RosClock {
     /// The system's clock.
     pub fn system() -> Self {
-        RosClock { simulated: None }
+        RosClock::default()
     }
 
-    /// The clock of a node: `/clock` where `use_sim_time` is set. The library's own subscription asks for another type
-    /// than rosgraph_msgs/Clock, so this one is ours.
+    /// The clock of a node: `/clock` where `use_sim_time` is set.
     ///
     /// # Errors
     /// [`RosError::Endpoint`].
     pub fn of(link: &Link, use_sim_time: bool) -> Result<Self, RosError> {
-        if !use_sim_time {
-            return Ok(RosClock::system());
+        let clock = RosClock::system();
+        clock.follow(link, use_sim_time)?;
+        Ok(clock)
+    }
+
+    /// Changes over to `/clock`, or back to the system's clock. The library's own subscription asks for another type than
+    /// rosgraph_msgs/Clock, so this one is ours.
+    ///
+    /// # Errors
+    /// [`RosError::Endpoint`]; the clock stays what it was.
+    pub(super) fn follow(&self, link: &Link, use_sim_time: bool) -> Result<(), RosError> {
+        if use_sim_time && !self.shared.listens.load(Ordering::Relaxed) {
+            let newest = Arc::clone(&self.shared);
+            link.subscribe("/clock", TopicQos::best_effort(1), move |clock: Clock, _| {
+                newest.simulated.store(clock.clock.nanoseconds(), Ordering::Relaxed);
+            })?;
+            self.shared.listens.store(true, Ordering::Relaxed);
         }
-        let simulated = Arc::new(AtomicI64::new(NOTHING));
-        let newest = Arc::clone(&simulated);
-        link.subscribe("/clock", TopicQos::best_effort(1), move |clock: Clock, _| {
-            newest.store(clock.clock.nanoseconds(), Ordering::Relaxed);
-        })?;
-        Ok(RosClock { simulated: Some(simulated) })
+        self.shared.follows.store(use_sim_time, Ordering::Relaxed);
+        Ok(())
     }
 
     /// Now, ns since the epoch; zero before the first `/clock`.
     pub fn nanoseconds(&self) -> i64 {
-        match &self.simulated {
-            Some(simulated) => match simulated.load(Ordering::Relaxed) {
-                NOTHING => 0,
-                now => now,
-            },
-            None => system_nanoseconds(),
+        if self.shared.follows.load(Ordering::Relaxed) {
+            self.shared.simulated.load(Ordering::Relaxed)
+        } else {
+            system_nanoseconds()
         }
     }
 

@@ -40,6 +40,8 @@ pub struct Diagnostics {
 
 struct Shared {
     node: String,
+    /// What the parts belong to: the machine, or nothing yet.
+    hardware: Mutex<String>,
     parts: Mutex<BTreeMap<String, Part>>,
     changed: Notify,
 }
@@ -52,7 +54,8 @@ impl Diagnostics {
     pub fn new(link: &Link, clock: &RosClock) -> Result<Self, RosError> {
         let outlet: Outlet<DiagnosticArray> = link.publish("/diagnostics", TopicQos::reliable(10))?;
         let node = link.identity().full_name().trim_start_matches('/').to_string();
-        let shared = Arc::new(Shared { node, parts: Mutex::default(), changed: Notify::new() });
+        let shared =
+            Arc::new(Shared { node, hardware: Mutex::default(), parts: Mutex::default(), changed: Notify::new() });
         let diagnostics = Diagnostics { shared };
         let publishing = diagnostics.clone();
         let clock = clock.clone();
@@ -66,6 +69,11 @@ impl Diagnostics {
             }
         });
         Ok(diagnostics)
+    }
+
+    /// Says which machine the parts are of, as REP 107 wants it.
+    pub fn set_hardware(&self, name: &str) {
+        name.clone_into(&mut self.shared.hardware.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
     /// Tells how a part is. A new level or message is published at once, new values with the next message.
@@ -82,6 +90,7 @@ impl Diagnostics {
     }
 
     fn statuses(&self) -> Vec<DiagnosticStatus> {
+        let hardware = self.shared.hardware.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let parts = self.shared.parts.lock().unwrap_or_else(PoisonError::into_inner);
         parts
             .iter()
@@ -89,7 +98,7 @@ impl Diagnostics {
                 level: part.health as u8,
                 name: format!("{}: {name}", self.shared.node),
                 message: part.message.clone(),
-                hardware_id: String::new(),
+                hardware_id: hardware.clone(),
                 values: part
                     .values
                     .iter()

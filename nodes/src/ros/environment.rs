@@ -73,20 +73,38 @@ impl Environment {
         };
         let range = match value("ROS_AUTOMATIC_DISCOVERY_RANGE").map(|text| text.to_ascii_uppercase()).as_deref() {
             None | Some("SUBNET" | "SYSTEM_DEFAULT") => DiscoveryRange::Subnet,
-            // Discovery cannot be switched off; on this machine only is the nearest that there is.
-            Some("LOCALHOST" | "OFF") => DiscoveryRange::Localhost,
+            Some("LOCALHOST") => DiscoveryRange::Localhost,
+            Some("OFF") => {
+                return Err(RosError::Environment {
+                    variable: "ROS_AUTOMATIC_DISCOVERY_RANGE",
+                    value: "OFF".to_string(),
+                    problem: "not possible: discovery cannot be switched off here; LOCALHOST keeps it on this machine"
+                        .to_string(),
+                });
+            }
             Some(other) => {
                 return Err(RosError::Environment {
                     variable: "ROS_AUTOMATIC_DISCOVERY_RANGE",
                     value: other.to_string(),
-                    problem: "none of SUBNET, LOCALHOST, OFF, SYSTEM_DEFAULT".to_string(),
+                    problem: "none of SUBNET, LOCALHOST, SYSTEM_DEFAULT".to_string(),
                 });
             }
         };
         let localhost_only = value("ROS_LOCALHOST_ONLY").is_some_and(|text| text == "1");
         let range = if localhost_only { DiscoveryRange::Localhost } else { range };
-        let cyclone = value("RMW_IMPLEMENTATION").is_some_and(|name| name.contains("cyclone"));
-        let mapping = if cyclone { Mapping::Cyclone } else { Mapping::Enhanced };
+        let mapping = match value("RMW_IMPLEMENTATION").as_deref() {
+            Some("rmw_cyclonedds_cpp") => Mapping::Cyclone,
+            None | Some("rmw_fastrtps_cpp" | "rmw_fastrtps_dynamic_cpp" | "rmw_connextdds") => Mapping::Enhanced,
+            Some(other) => {
+                return Err(RosError::Environment {
+                    variable: "RMW_IMPLEMENTATION",
+                    value: other.to_string(),
+                    problem: "a middleware that these nodes cannot talk to; they speak DDS, as rmw_fastrtps_cpp, \
+                              rmw_cyclonedds_cpp and rmw_connextdds do"
+                        .to_string(),
+                });
+            }
+        };
         let largest_sample = match value("EXCAVATOR_LARGEST_SAMPLE") {
             None => LARGEST_SAMPLE,
             Some(text) => text.trim().parse().ok().filter(|bytes| *bytes <= 1 << 30).ok_or(RosError::Environment {
@@ -95,8 +113,14 @@ impl Environment {
                 problem: "not a number of bytes up to 1073741824".to_string(),
             })?,
         };
-        let chosen = choose(lookup, enclave)?;
-        let (security, warnings) = (chosen.security, chosen.warnings);
+        let chosen = choose(&lookup, enclave)?;
+        let (security, mut warnings) = (chosen.security, chosen.warnings);
+        if let Some(peers) = value("ROS_STATIC_PEERS") {
+            warnings.push(format!("ROS_STATIC_PEERS={peers} is not followed: peers are found by multicast alone"));
+        }
+        if let (Some(enclave), Security::Off) = (enclave, &security) {
+            warnings.push(format!("--enclave {enclave} has no effect: DDS Security is off (ROS_SECURITY_ENABLE)"));
+        }
         Ok(Environment { domain, range, mapping, largest_sample, security, warnings })
     }
 
@@ -139,9 +163,18 @@ mod tests {
     fn nonsense_is_refused() {
         assert!(of(&[("ROS_DOMAIN_ID", "233")]).is_err());
         assert!(of(&[("ROS_DOMAIN_ID", "x")]).is_err());
+        assert!(of(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "off")]).is_err());
+        assert!(of(&[("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")]).is_err());
         assert!(of(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "moon")]).is_err());
         assert!(of(&[("EXCAVATOR_LARGEST_SAMPLE", "-1")]).is_err());
         assert!(of(&[("ROS_SECURITY_ENABLE", "yes")]).is_err());
+    }
+
+    #[test]
+    fn what_is_not_followed_is_told() {
+        assert_eq!(of(&[("ROS_STATIC_PEERS", "10.0.0.7")]).unwrap().warnings.len(), 1);
+        let without_security = Environment::from_lookup(|_| None, Some("/left/arm")).unwrap();
+        assert_eq!(without_security.warnings.len(), 1);
     }
 
     #[test]

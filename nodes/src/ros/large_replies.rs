@@ -18,9 +18,9 @@ use rustdds::{DomainParticipant, RTPSEntity, Timestamp, WriteOptionsBuilder};
 use serde::Serialize;
 
 use super::connection::Connection;
-use super::parameter_services::SERVICE_DEPTH;
 use super::raw::{RawAdapter, RawBytes};
 use super::rtps::{Packet, entity, parameter, sequence_number};
+use super::services::SERVICE_DEPTH;
 use super::{Mapping, PublishError, TopicQos};
 
 /// Content up to which a reply is left to the library: with all headers it fits into the 1452 bytes that RustDDS allows

@@ -1,9 +1,10 @@
-//! The log of a node: standard error and `/rosout`.
+//! The log of a node: standard error, `/rosout` and a file.
 
 use excavator_msgs::Time;
 use excavator_msgs::common::Log;
 
 use super::clock::system_nanoseconds;
+use super::log_file::LogFile;
 use super::{Level, Link, Outlet, RosArguments, RosError, TopicQos};
 use crate::terminal::complain;
 
@@ -17,6 +18,7 @@ pub struct Logger {
     least: Level,
     console: bool,
     rosout: Option<Outlet<Log>>,
+    file: Option<LogFile>,
 }
 
 impl Logger {
@@ -27,7 +29,15 @@ impl Logger {
     pub fn new(link: &Link, arguments: &RosArguments) -> Result<Self, RosError> {
         let rosout = arguments.log_to_rosout.then(|| link.publish("/rosout", ROSOUT)).transpose()?;
         let name = link.identity().full_name().trim_start_matches('/').replace('/', ".");
-        Ok(Logger { name, least: arguments.log_level, console: arguments.log_to_console, rosout })
+        let mut logger =
+            Logger { name, least: arguments.log_level, console: arguments.log_to_console, rosout, file: None };
+        if arguments.log_to_file {
+            match LogFile::open(arguments.log_file_name.as_deref().unwrap_or(link.identity().name())) {
+                Ok(file) => logger.file = Some(file),
+                Err(reason) => logger.warn(format!("there is no log file: {reason}")),
+            }
+        }
+        Ok(logger)
     }
 
     /// Says something that people may want to follow.
@@ -50,9 +60,13 @@ impl Logger {
             return;
         }
         let stamp = Time::from_nanoseconds(system_nanoseconds()).unwrap_or_default();
+        let word = format!("{level:?}").to_uppercase();
+        let line = format!("[{word}] [{}.{:09}] [{}]: {message}", stamp.sec, stamp.nanosec, self.name);
         if self.console {
-            let word = format!("{level:?}").to_uppercase();
-            complain(&format!("[{word}] [{}.{:09}] [{}]: {message}", stamp.sec, stamp.nanosec, self.name));
+            complain(&line);
+        }
+        if let Some(file) = &self.file {
+            file.add(&line);
         }
         if let Some(rosout) = &self.rosout {
             let log = Log {

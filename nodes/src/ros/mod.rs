@@ -7,12 +7,14 @@
 //!
 //! # Names
 //!
+//! All but those of `/diagnostics`, `/rosout`, `/parameter_events` and `/clock` are relative to the node's namespace.
+//!
 //! | command | node | topics |
 //! |---|---|---|
-//! | `excavator node arm-simulator` | `/arm_simulator` | publishes `/arm/state`, `/joint_states`, `/arm/model`, `/diagnostics`; takes `/arm/orifice_command` |
-//! | `excavator node energy-monitor` | `/energy_monitor` | takes `/arm/state`, `/arm/model`; publishes `/arm/energy`, `/diagnostics` |
-//! | `excavator node arm-bridge` | `/arm_bridge` | publishes `/arm/state`, `/joint_states`, `/diagnostics` |
-//! | `excavator node identification` | `/identification` | action `/identification/run`; publishes `/diagnostics`, `/arm/model` on demand |
+//! | `excavator node arm-simulator` | `/arm_simulator` | publishes `arm/state`, `joint_states`, `arm/model`, `robot_description`; takes `arm/orifice_command`, `arm/stop` |
+//! | `excavator node energy-monitor` | `/energy_monitor` | takes `arm/state`, `arm/model`; publishes `arm/energy` |
+//! | `excavator node arm-bridge` | `/arm_bridge` | publishes `arm/state`, `joint_states` |
+//! | `excavator node identification` | `/identification` | action `/identification/run`; publishes `arm/model` on demand |
 //! | `excavator record` | `/bag_recorder` | takes what it is told to |
 //! | `excavator play` | `/bag_player` | publishes what the bag has, commands and `/clock` on demand |
 //!
@@ -33,7 +35,9 @@ mod health;
 mod inlet;
 mod large_replies;
 mod latched;
+mod lifecycle;
 mod link;
+mod log_file;
 mod logger;
 mod memory;
 mod middleware_log;
@@ -52,6 +56,7 @@ pub(crate) mod raw;
 mod reminder;
 mod rtps;
 mod security;
+mod services;
 mod signals;
 mod supervisor;
 mod threads;
@@ -67,16 +72,17 @@ pub use error::RosError;
 pub use inlet::Received;
 pub(crate) use large_replies::LargeReplies;
 pub use latched::Latched;
+pub use lifecycle::Lifecycle;
 pub use link::Link;
 pub use logger::Logger;
 pub use names::{NodeIdentity, Remap};
 pub use outlet::{Outlet, PublishError};
 pub use pace::Pace;
 pub use parameter::{Kind, Parameter, Range, Value};
-pub(crate) use parameter_services::{service_mapping, service_qos};
 pub use parameters::Parameters;
 pub(crate) use peers::Peers;
 pub use qos::TopicQos;
 pub use security::Security;
+pub(crate) use services::{service_mapping, service_qos};
 pub use signals::{Signals, end_with_this_process};
 pub use supervisor::Supervisor;

@@ -28,10 +28,11 @@ impl NodeIdentity {
     /// [`RosError::Name`] for a name that ROS does not allow.
     pub fn new(default_name: &str, remaps: &[Remap]) -> Result<Self, RosError> {
         let for_us = |rule: &&Remap| rule.node.as_deref().is_none_or(|node| node == default_name);
-        let last = |special: &str| remaps.iter().filter(for_us).rfind(|rule| rule.from == special);
-        let name = last("__node").map_or(default_name, |rule| rule.to.as_str()).to_string();
+        let last = |special: &[&str]| remaps.iter().filter(for_us).rfind(|rule| special.contains(&rule.from.as_str()));
+        // rcl takes both words.
+        let name = last(&["__node", "__name"]).map_or(default_name, |rule| rule.to.as_str()).to_string();
         check_token(&name, &name)?;
-        let namespace = last("__ns").map_or("/", |rule| rule.to.as_str());
+        let namespace = last(&["__ns"]).map_or("/", |rule| rule.to.as_str());
         let namespace = if namespace.starts_with('/') { namespace.to_string() } else { format!("/{namespace}") };
         if namespace != "/" {
             check_full(&namespace)?;
@@ -124,6 +125,7 @@ mod tests {
         let identity = identity.unwrap();
         assert_eq!(identity.full_name(), "/pit/left");
         assert_eq!(identity.resolve("/arm/state").unwrap(), "/arm/state");
+        assert_eq!(NodeIdentity::new("a", &[rule(None, "__name", "b")]).unwrap().name(), "b");
         assert_eq!(identity.resolve("arm/state").unwrap(), "/pit/arm/state");
         assert_eq!(identity.resolve("~/status").unwrap(), "/pit/left/status");
     }

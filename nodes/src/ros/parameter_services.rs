@@ -2,29 +2,17 @@
 //!
 //! The library has them too, but bound to the service mapping of Fast DDS, without descriptions and without ranges.
 
-use std::collections::HashSet;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
-
 use excavator_msgs::Time;
-use futures::StreamExt;
-use futures::future::BoxFuture;
 use ros2_client::parameters::raw;
 use ros2_client::rcl_interfaces::{
     DescribeParametersRequest, DescribeParametersResponse, GetParameterTypesRequest, GetParameterTypesResponse,
     GetParametersRequest, GetParametersResponse, ListParametersRequest, ListParametersResponse, ListParametersResult,
     SetParametersAtomicallyResponse, SetParametersRequest, SetParametersResponse,
 };
-use ros2_client::{Gid, Message, Name, QosProfile, ServiceMapping, ServiceTypeName};
-use rustdds::DomainParticipant;
 use serde::{Deserialize, Serialize};
 
-use super::connection::{Closed, Connection, Endpoint, Install, Task};
-use super::large_replies::{LargeReplies, readers_of, reply_topic};
-use super::{Link, Mapping, Outlet, Parameter, Parameters, Range, RosClock, RosError, TopicQos, Value};
-
-/// Requests that wait: rmw_qos_profile_services_default.
-pub(super) const SERVICE_DEPTH: u32 = 10;
+use super::services::{Service, offer_services};
+use super::{Link, Outlet, Parameter, Parameters, Range, RosClock, RosError, TopicQos, Value};
 
 /// `rcl_interfaces/msg/ParameterEvent`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -48,22 +36,26 @@ pub(super) fn offer(link: &Link, parameters: &Parameters, clock: &RosClock) -> R
     let events = link.publish("/parameter_events", TopicQos::reliable(1000))?;
     let node = link.identity().full_name();
     let desk = Desk { node, parameters: parameters.clone(), events, clock: clock.clone() };
-    let mapping = link.environment().mapping;
-    link.add(Arc::new(Services { desk: Arc::new(desk), mapping, tasks: Mutex::default() }))
+    offer_services(link, desk, |opening| {
+        opening.serve(&GET, Desk::get)?;
+        opening.serve(&TYPES, Desk::types)?;
+        opening.serve(&LIST, Desk::list)?;
+        opening.serve(&DESCRIBE, Desk::describe)?;
+        opening.serve(&SET, Desk::set)?;
+        opening.serve(&SET_TOGETHER, Desk::set_together)
+    })
 }
 
-/// The library's word for a mapping.
-pub(crate) fn service_mapping(mapping: Mapping) -> ServiceMapping {
-    match mapping {
-        Mapping::Cyclone => ServiceMapping::Cyclone,
-        Mapping::Enhanced => ServiceMapping::Enhanced,
-    }
+const fn service(name: &'static str, kind: &'static str) -> Service {
+    Service { name, package: "rcl_interfaces", kind }
 }
 
-/// Quality of service of requests and replies.
-pub(crate) fn service_qos() -> QosProfile {
-    QosProfile::publisher_default().history(ros2_client::qos::History::KeepLast { depth: SERVICE_DEPTH as usize })
-}
+const GET: Service = service("get_parameters", "GetParameters");
+const TYPES: Service = service("get_parameter_types", "GetParameterTypes");
+const LIST: Service = service("list_parameters", "ListParameters");
+const DESCRIBE: Service = service("describe_parameters", "DescribeParameters");
+const SET: Service = service("set_parameters", "SetParameters");
+const SET_TOGETHER: Service = service("set_parameters_atomically", "SetParametersAtomically");
 
 /// Answers requests.
 struct Desk {
@@ -71,111 +63,6 @@ struct Desk {
     parameters: Parameters,
     events: Outlet<ParameterEvent>,
     clock: RosClock,
-}
-
-struct Services {
-    desk: Arc<Desk>,
-    mapping: Mapping,
-    tasks: Mutex<Vec<Task>>,
-}
-
-impl Endpoint for Services {
-    fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError> {
-        let mut opening = Opening { services: &self, connection, counters: Vec::new() };
-        opening.serve("get_parameters", "GetParameters", Desk::get)?;
-        opening.serve("get_parameter_types", "GetParameterTypes", Desk::types)?;
-        opening.serve("list_parameters", "ListParameters", Desk::list)?;
-        opening.serve("describe_parameters", "DescribeParameters", Desk::describe)?;
-        opening.serve("set_parameters", "SetParameters", Desk::set)?;
-        opening.serve("set_parameters_atomically", "SetParametersAtomically", Desk::set_together)?;
-        let counters = opening.counters;
-        Ok(Box::new(move |runtime| {
-            let tasks = counters.into_iter().map(|counter| runtime.spawn(counter)).collect();
-            *self.tasks.lock().unwrap_or_else(PoisonError::into_inner) = tasks;
-        }))
-    }
-
-    fn close(&self) -> Closed {
-        Closed::tasks(std::mem::take(&mut *self.tasks.lock().unwrap_or_else(PoisonError::into_inner)))
-    }
-}
-
-/// Services that are being created; at each counter somebody will answer one kind of request.
-struct Opening<'o> {
-    services: &'o Services,
-    connection: &'o mut Connection,
-    counters: Vec<BoxFuture<'static, ()>>,
-}
-
-impl Opening<'_> {
-    fn serve<Q, A>(&mut self, service: &str, type_name: &str, answer: fn(&Desk, Q) -> A) -> Result<(), RosError>
-    where
-        Q: Message + Clone + Send + Sync + 'static,
-        A: Message + Send + Sync + 'static,
-    {
-        let failed = |reason: String| RosError::Endpoint { what: service.to_string(), reason };
-        let name = Name::new(&self.services.desk.node, service).map_err(|error| failed(error.to_string()))?;
-        let service_type = ServiceTypeName::new("rcl_interfaces", type_name);
-        let server = self
-            .connection
-            .node()
-            .create_server::<Q, A>(
-                service_mapping(self.services.mapping),
-                &name,
-                &service_type,
-                service_qos(),
-                service_qos(),
-            )
-            .map_err(|error| failed(error.to_string()))?;
-        let desk = Arc::clone(&self.services.desk);
-        let full_name = format!("{}/{service}", desk.node);
-        let dds_type = format!("rcl_interfaces::srv::dds_::{type_name}");
-        let large =
-            LargeReplies::open(self.connection, self.services.mapping, &full_name, &dds_type).map_err(failed)?;
-        let reply_topic = reply_topic(&full_name);
-        let mut clients = Clients { participant: self.connection.participant(), reply_topic, known: HashSet::new() };
-        self.counters.push(Box::pin(async move {
-            let mut requests = server.receive_request_stream();
-            while let Some(request) = requests.next().await {
-                // A request that cannot be decoded has nobody to be answered.
-                if let Ok((id, request)) = request {
-                    clients.wait_for(id.writer_gid).await;
-                    let answer = answer(&desk, request);
-                    // Whoever asks hears nothing when an answer cannot be sent, and asks again.
-                    if large.send(id, &answer).is_none() {
-                        let _ = server.async_send_response(id, answer).await;
-                    }
-                }
-            }
-        }));
-        Ok(())
-    }
-}
-
-/// Longest wait for a client's reader; rmw_fastrtps_cpp waits as long.
-const READER: Duration = Duration::from_millis(100);
-/// Time from the discovery of a reader until our writer sends to it.
-const MATCHING: Duration = Duration::from_millis(10);
-
-/// Clients whose reader of our replies is known to be there. A client may ask before we have discovered its reader, and a
-/// reply that is sent then is lost.
-struct Clients {
-    participant: DomainParticipant,
-    reply_topic: String,
-    known: HashSet<Gid>,
-}
-
-impl Clients {
-    async fn wait_for(&mut self, client: Gid) {
-        if !self.known.insert(client) {
-            return;
-        }
-        let start = Instant::now();
-        while start.elapsed() < READER && readers_of(client, &self.reply_topic, &self.participant).is_empty() {
-            tokio::time::sleep(MATCHING / 2).await;
-        }
-        tokio::time::sleep(MATCHING).await;
-    }
 }
 
 impl Desk {

@@ -30,8 +30,7 @@ impl Parameters {
         let mut all: BTreeMap<&'static str, Parameter> =
             parameters.into_iter().map(|parameter| (parameter.name, parameter)).collect();
         let sim_time = "take the time from /clock instead of the system's clock";
-        all.entry("use_sim_time")
-            .or_insert_with(|| Parameter::new("use_sim_time", Value::Boolean(false), sim_time).read_only());
+        all.entry("use_sim_time").or_insert_with(|| Parameter::new("use_sim_time", Value::Boolean(false), sim_time));
         let mut warnings = Vec::new();
         for (name, value) in overrides {
             match all.get_mut(name.as_str()) {

@@ -14,8 +14,8 @@ use super::middleware_log::{complaints, count_complaints};
 use super::parameter_file::read_for;
 use super::parameter_services::offer;
 use super::{
-    Diagnostics, Environment, Health, Link, Logger, NodeIdentity, Parameter, Parameters, RosArguments, RosClock,
-    RosError, Signals,
+    Diagnostics, Environment, Health, Lifecycle, Link, Logger, NodeIdentity, Parameter, Parameters, RosArguments,
+    RosClock, RosError, Signals,
 };
 
 /// Pace of the supervision: a dead thread or a returned peer is found within this time.
@@ -99,7 +99,7 @@ impl Supervisor {
         let given = arguments.parameters.iter().filter(|given| for_us(&given.node));
         overrides.extend(given.map(|given| (given.name.clone(), given.value.clone())));
         let (parameters, mut warnings) = Parameters::declare(declared, &overrides)?;
-        warnings.extend(environment.warnings.iter().cloned());
+        warnings.extend(environment.warnings.iter().chain(&arguments.ignored).cloned());
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(1)
             .thread_name("link")
@@ -119,6 +119,14 @@ impl Supervisor {
         warnings.into_iter().for_each(|warning| logger.warn(warning));
         let stop = Arc::new(AtomicBool::new(false));
         Ok(Supervisor { link, parameters, clock, diagnostics, logger, signals, stop, watch_memory, _runtime: runtime })
+    }
+
+    /// The states of a node whose parameter `managed` says whether somebody manages it.
+    ///
+    /// # Errors
+    /// [`RosError::Endpoint`].
+    pub fn lifecycle(&self) -> Result<Lifecycle, RosError> {
+        Lifecycle::start(&self.link, self.parameters.flag("managed"), &self.logger, self.stop_flag())
     }
 
     /// The flag that ends the process: set by a signal, or by a node that has finished its work.
@@ -141,6 +149,9 @@ impl Supervisor {
                     return;
                 }
                 None => {}
+            }
+            if let Err(error) = self.clock.follow(&self.link, self.parameters.flag("use_sim_time")) {
+                self.logger.error(error.to_string());
             }
             let seen = match &mut watch {
                 Some(watch) => watch.look(),

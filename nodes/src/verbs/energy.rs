@@ -55,7 +55,7 @@ fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAna
         Ok::<_, EnergyError>(analyser)
     };
     let all = |block| (Some(block), ControlFlow::Continue(()));
-    let (report, analysis) = read_beside(bag, BLOCK, WAITING, all, work)?;
+    let (report, analysis) = read_beside(bag, mapping.origin().namespace, BLOCK, WAITING, all, work)?;
     for problem in report.problems() {
         terminal::complain(&format!("{}: {problem}", bag.display()));
     }

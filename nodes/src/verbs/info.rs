@@ -4,7 +4,7 @@ use std::path::Path;
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{Attribute, Cell, CellAlignment, Table};
-use excavator_bags::map::{TopicMap, read_signals};
+use excavator_bags::map::{Origin, TopicMap, read_signals};
 use excavator_bags::table::Table as DataTable;
 use excavator_bags::{BagError, BagInfo, ColumnInfo, SignalsInfo, TableInfo, Timing, info};
 use serde_json::{Value, json};
@@ -25,9 +25,10 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     if DataTable::is_table(path) && arguments.map.is_none() && TopicMap::beside(path).is_none() {
         return table_without_map(arguments);
     }
+    let origin = Origin { map: arguments.map.as_deref(), namespace: arguments.namespace.as_deref() };
     // Two ways through the bag, one for each processor.
     let (bag, signals) = std::thread::scope(|scope| {
-        let signals = scope.spawn(|| read_signals(path, arguments.map.as_deref()));
+        let signals = scope.spawn(|| read_signals(path, origin));
         let bag = (!DataTable::is_table(path)).then(|| info(path)).transpose();
         (bag, signals.join())
     });

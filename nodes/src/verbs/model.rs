@@ -6,7 +6,7 @@ use std::path::Path;
 use excavator_model::check::{Oddity, Oscillation, Trial, oddities, oscillations, trial};
 use excavator_model::document::{reference, schema};
 use excavator_model::machine::{Cylinder, Drive, Supply};
-use excavator_model::{Model, addition_name, site_name};
+use excavator_model::{Model, addition_name, site_name, urdf};
 use serde_json::{Value, json};
 
 use super::{new_model, print, valve_test};
@@ -21,6 +21,10 @@ pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {
         ModelVerb::New(arguments) => new_model::run(arguments),
         ModelVerb::Check(arguments) => check(arguments),
         ModelVerb::Valve(arguments) => valve_test::run(arguments),
+        ModelVerb::Urdf(choice) => {
+            print(urdf(&sources::model(choice)?).trim_end());
+            Ok(())
+        }
         ModelVerb::Schema(own) => {
             print(&serde_json::to_string_pretty(&schema(&sources::catalogue(own)?))?);
             Ok(())

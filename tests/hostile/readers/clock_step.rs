@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use excavator_bags::map::read_recording_or_mapped;
+use excavator_bags::map::{Origin, read_recording_or_mapped};
 use excavator_bags::{Topics, WriteOptions, write_recording};
 use excavator_model::recording::Recording;
 
@@ -18,7 +18,7 @@ fn simulated(folder: &Path) -> Recording {
     std::fs::write(folder.join("profile.toml"), profile).unwrap();
     let done = run(folder, &["simulate", "--model", "servo-bench", "--input", "profile.toml", "-o", "plain"], 60.0);
     assert_eq!(done.status, Some(0), "{done:?}");
-    let mut recording = read_recording_or_mapped(&folder.join("plain"), None).unwrap().0;
+    let mut recording = read_recording_or_mapped(&folder.join("plain"), Origin::default()).unwrap().0;
     // Sensors are noisy, or intervals would have no width.
     let mut seed = 1_u64;
     let mut noise = |size: f64| {

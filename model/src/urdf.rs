@@ -1,0 +1,172 @@
+//! The robot description of a machine: what RViz and robot_state_publisher draw, as URDF.
+//!
+//! x forwards, z up. A link hangs straight down at angle zero and rises forwards: joints turn about -y. A joint has the name of its
+//! cylinder with `_joint` behind it, as `joint_states` has it. Distances between joints are the model's where it knows them. Where it
+//! does not (the last link, both links of a machine whose dynamics need no lengths), a link is as long as the longer arm of the linkage
+//! that drives it, and its width is drawn to look right; nothing is computed from either.
+
+use std::fmt::Write;
+
+use crate::Model;
+use crate::machine::{Cylinder, Linkage, Mechanism, Supply};
+
+/// Pressure that limits of forces are computed from, Pa: what relief valves of mobile machines are set to.
+const RELIEF_PRESSURE: f64 = 25e6;
+/// Largest joint rate where no pump says how fast a machine is, rad/s or m/s.
+const USUAL_RATE: f64 = 1.0;
+/// Length of a link whose machine has no lengths at all, m.
+const NO_LENGTH: f64 = 1.0;
+/// Width of a link, of its length.
+const SLENDERNESS: f64 = 0.1;
+/// Height of the first joint above the ground, m.
+const JOINT_HEIGHT: f64 = 0.7;
+
+/// The description of a model's machine.
+pub fn urdf(model: &Model) -> String {
+    let machine = &model.machine;
+    let mut writer = Writer { text: String::new(), model };
+    let _ = write!(
+        writer.text,
+        "<?xml version=\"1.0\"?>\n<!-- Made from the model: excavator model urdf -->\n<robot name=\"{}\">\n  \
+         <material name=\"orange\"><color rgba=\"0.9 0.4 0.1 1\"/></material>\n  \
+         <material name=\"grey\"><color rgba=\"0.4 0.4 0.4 1\"/></material>\n",
+        escaped(&machine.name)
+    );
+    writer.link("base_link", "grey", [-0.6, 0.0, 0.35], [1.8, 1.5, 0.7]);
+    match &machine.mechanism {
+        Mechanism::SingleLink { base_angle } => writer.held_link(*base_angle),
+        Mechanism::TwoLink | Mechanism::PlanarChain { .. } => writer.chain(),
+        Mechanism::LinearLoad => writer.slide(),
+        Mechanism::Rotor => writer.rotor(),
+    }
+    writer.text.push_str("</robot>\n");
+    writer.text
+}
+
+struct Writer<'m> {
+    text: String,
+    model: &'m Model,
+}
+
+impl Writer<'_> {
+    /// One link that turns, on a link that is held.
+    fn held_link(&mut self, base_angle: f64) {
+        let Some(cylinder) = self.model.machine.cylinders.first() else { return };
+        let held = match cylinder.linkage {
+            Linkage::Triangle { foot_arm, .. } => foot_arm,
+            Linkage::Direct | Linkage::Gear { .. } => NO_LENGTH,
+        };
+        let _ = write!(
+            self.text,
+            "\n  <joint name=\"held_joint\" type=\"fixed\">\n    <parent link=\"base_link\"/>\n    <child link=\"held\"/>\n    \
+             <origin xyz=\"0.4 0 {JOINT_HEIGHT}\" rpy=\"0 {} 0\"/>\n  </joint>\n",
+            -base_angle
+        );
+        self.hanging("held", "grey", held);
+        self.joint(0, "revolute", "held", [0.0, 0.0, -held], "0 -1 0");
+        self.hanging(&cylinder.name, "orange", drawn_length(&cylinder.linkage));
+    }
+
+    /// Links one after the other; a swing first where there is one.
+    fn chain(&mut self) {
+        let machine = &self.model.machine;
+        let chain = machine.mechanism.chain();
+        let (mut parent, mut origin) = ("base_link".to_string(), [0.4, 0.0, JOINT_HEIGHT]);
+        for (number, cylinder) in machine.cylinders.iter().enumerate() {
+            if let Some(swing) = chain.and_then(|chain| chain.swing.filter(|_| chain.is_swing(number))) {
+                self.joint(number, "continuous", &parent, [0.0, 0.0, JOINT_HEIGHT / 2.0], "0 0 1");
+                self.link(&cylinder.name, "grey", [-0.6, 0.0, JOINT_HEIGHT], [1.6, 1.4, JOINT_HEIGHT]);
+                origin = [swing.boom_foot, 0.0, JOINT_HEIGHT / 2.0];
+            } else {
+                let known = chain.map_or(0.0, |chain| chain.length(number));
+                let length = if known > 0.0 { known } else { drawn_length(&cylinder.linkage) };
+                self.joint(number, "revolute", &parent, origin, "0 -1 0");
+                self.hanging(&cylinder.name, "orange", length);
+                origin = [0.0, 0.0, -length];
+            }
+            parent.clone_from(&cylinder.name);
+        }
+    }
+
+    /// Every load on its own rail, beside each other.
+    fn slide(&mut self) {
+        for (number, cylinder) in self.model.machine.cylinders.iter().enumerate() {
+            self.joint(number, "prismatic", "base_link", [0.5, number as f64, JOINT_HEIGHT], "1 0 0");
+            self.link(&cylinder.name, "orange", [0.0; 3], [0.3; 3]);
+        }
+    }
+
+    fn rotor(&mut self) {
+        for (number, cylinder) in self.model.machine.cylinders.iter().enumerate() {
+            self.joint(number, "continuous", "base_link", [0.5, number as f64, JOINT_HEIGHT], "0 1 0");
+            self.link(&cylinder.name, "orange", [0.0; 3], [0.6, 0.2, 0.1]);
+        }
+    }
+
+    /// A link that hangs down from its joint.
+    fn hanging(&mut self, name: &str, colour: &str, length: f64) {
+        let width = SLENDERNESS * length;
+        self.link(name, colour, [0.0, 0.0, -length / 2.0], [width, width, length]);
+    }
+
+    fn link(&mut self, name: &str, colour: &str, centre: [f64; 3], size: [f64; 3]) {
+        let (name, centre, size) = (escaped(name), triple(centre), triple(size));
+        let shape = format!("      <origin xyz=\"{centre}\"/>\n      <geometry><box size=\"{size}\"/></geometry>\n");
+        let _ = write!(
+            self.text,
+            "\n  <link name=\"{name}\">\n    <visual>\n{shape}      <material name=\"{colour}\"/>\n    </visual>\n    \
+             <collision>\n{shape}    </collision>\n  </link>\n"
+        );
+    }
+
+    /// The joint of a cylinder, between a link and that of its own name.
+    fn joint(&mut self, number: usize, kind: &str, parent: &str, origin: [f64; 3], axis: &str) {
+        let cylinder = &self.model.machine.cylinders[number];
+        let (name, parent) = (escaped(&cylinder.name), escaped(parent));
+        let _ = write!(
+            self.text,
+            "\n  <joint name=\"{name}_joint\" type=\"{kind}\">\n    <parent link=\"{parent}\"/>\n    <child link=\"{name}\"/>\n    \
+             <origin xyz=\"{}\"/>\n    <axis xyz=\"{axis}\"/>\n{}  </joint>\n",
+            triple(origin),
+            self.limit(cylinder, kind != "continuous")
+        );
+    }
+
+    /// How far a joint reaches, the force of its cylinder at the longest lever, and its speed at the shortest with all of the pump's flow.
+    fn limit(&self, cylinder: &Cylinder, has_ends: bool) -> String {
+        let joints = cylinder.ends.map(|displacement| cylinder.linkage.joint(displacement));
+        let levers =
+            joints.map(|joint| cylinder.linkage.lever(joint).abs()).into_iter().filter(|lever| lever.is_finite());
+        let (shortest, longest) =
+            levers.fold((f64::INFINITY, 0.0_f64), |(low, high), lever| (low.min(lever), high.max(lever)));
+        let middle = cylinder.linkage.lever(cylinder.linkage.joint(0.0)).abs();
+        let (shortest, longest) = (shortest.min(middle), longest.max(middle));
+        let effort = cylinder.chambers.map_or(0.0, |chambers| RELIEF_PRESSURE * chambers.cap_area * longest);
+        let rate = match (self.model.machine.supply, cylinder.chambers) {
+            (Supply::PumpLine(line), Some(chambers)) => line.flow / chambers.rod_area.min(chambers.cap_area) / shortest,
+            _ => USUAL_RATE,
+        };
+        let reach = if has_ends {
+            let (low, high) = (joints[0].min(joints[1]), joints[0].max(joints[1]));
+            format!("lower=\"{low:.5}\" upper=\"{high:.5}\" ")
+        } else {
+            String::new()
+        };
+        format!("    <limit {reach}effort=\"{effort:.0}\" velocity=\"{rate:.3}\"/>\n")
+    }
+}
+
+fn drawn_length(linkage: &Linkage) -> f64 {
+    match *linkage {
+        Linkage::Triangle { foot_arm, rod_arm, .. } => foot_arm.max(rod_arm),
+        Linkage::Direct | Linkage::Gear { .. } => NO_LENGTH,
+    }
+}
+
+fn triple(values: [f64; 3]) -> String {
+    values.map(|value| format!("{value:.4}").trim_end_matches('0').trim_end_matches('.').to_string()).join(" ")
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

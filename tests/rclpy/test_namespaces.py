@@ -1,0 +1,108 @@
+"""Two machines on one network, each in a namespace: commanded apart, watched apart, recorded together, read apart."""
+
+import json
+import subprocess
+
+import pytest
+from excavator_msgs.msg import ArmState, EnergyState, OrificeCommand
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+from support.simulator import RENEWAL, STATE_QOS, command, cylinder, neutral, stamped
+
+pytestmark = pytest.mark.middleware
+
+RATE = 200.0
+SIDES = ("left", "right")
+AREA = 5e-5
+TOPICS = ["arm/state", "arm/orifice_command", "arm/energy"]
+
+
+class Machine:
+    """A simulator and its monitor in a namespace, seen from outside."""
+
+    def __init__(self, ros, excavator, side, displacement):
+        words = ["--ros-args", "-r", f"__ns:=/{side}"]
+        start = ["-p", f"rate:={RATE}", "-p", "command_timeout:=1.0", "-p", f"start_displacement:=[{displacement}]"]
+        self.simulator = ros.start(excavator, "node", "arm-simulator", *words, *start)
+        self.monitor = ros.start(excavator, "node", "energy-monitor", *words)
+        self.states = ros.listen(ArmState, f"/{side}/arm/state", STATE_QOS)
+        self.energies = ros.listen(EnergyState, f"/{side}/arm/energy", STATE_QOS)
+        self.commands = ros.publisher(OrificeCommand, f"/{side}/arm/orifice_command")
+        ros.spin_until(lambda: self.states and self.energies, f"states and energies of {side}")
+
+    @property
+    def area(self):
+        return cylinder(self.states[-1]).orifice_area
+
+
+@pytest.fixture(scope="module")
+def machines(ros, excavator):
+    return {side: Machine(ros, excavator, side, number / 20) for number, side in enumerate(SIDES)}
+
+
+def drive(ros, machine, area, condition, what):
+    """Commands one machine until something holds."""
+    machine.commands.publish(stamped(neutral(["arm"])))
+    timer = ros.node.create_timer(RENEWAL, lambda: machine.commands.publish(stamped(command(arm=area))))
+    try:
+        ros.spin_until(condition, what)
+    finally:
+        ros.node.destroy_timer(timer)
+
+
+def test_a_command_moves_the_machine_of_its_namespace_alone(ros, machines):
+    left, right = machines.values()
+    before = len(right.states)
+    drive(ros, left, AREA, lambda: left.area == pytest.approx(AREA), "the left valve to open")
+    ros.spin_until(lambda: len(right.states) > before + 50, "states of the right machine")
+    assert all(cylinder(state).orifice_area == 0.0 for state in right.states[before:])
+
+
+def test_nothing_is_left_outside_the_namespaces(ros, machines):
+    names = {name for name, _ in ros.node.get_topic_names_and_types()}
+    assert not {name for name in names if name.startswith("/arm/")} and "/joint_states" not in names
+    for side in SIDES:
+        assert {f"/{side}/{topic}" for topic in (*TOPICS, "arm/model", "joint_states")} <= names
+    services = {name for name, _ in ros.node.get_service_names_and_types()}
+    assert {f"/{side}/arm_simulator/get_parameters" for side in SIDES} <= services
+
+
+def test_joint_states_and_description_agree(ros, machines):
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+
+    joints = ros.listen(JointState, "/left/joint_states")
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    descriptions = ros.listen(String, "/left/robot_description", latched)
+    ros.spin_until(lambda: joints and descriptions, "joint states and the robot description")
+    assert all(f'<joint name="{name}"' in descriptions[0].data for name in joints[0].name)
+
+
+def test_both_are_recorded_together_and_read_apart(ros, machines, excavator, tmp_path):
+    bag = tmp_path / "both"
+    topics = [f"/{side}/{topic}" for side in SIDES for topic in TOPICS]
+    recorder = ros.start(excavator, "record", "-o", bag, *topics)
+    for topic in topics:
+        listeners = 2 if not topic.endswith("command") else 3  # this test, and the simulator's own
+        ros.spin_until(lambda t=topic, n=listeners: ros.node.count_subscribers(t) >= n - 1, f"the recorder on {topic}")
+    left, right = machines.values()
+    begin = [len(machine.states) for machine in (left, right)]
+
+    def is_enough():
+        return all(len(m.states) > first + 200 for m, first in zip((left, right), begin, strict=True))
+
+    drive(ros, left, AREA, is_enough, "a second of both machines")
+    assert recorder.interrupt() == 0, recorder.output()
+
+    def info(*words):
+        return subprocess.run([excavator, "info", bag, *words], capture_output=True, text=True)
+
+    whole = info()
+    assert "say which with --namespace" in whole.stdout and "/left, /right" in whole.stdout, whole.stdout
+    for side, moved in (("left", True), ("right", False)):
+        result = tmp_path / f"{side}.json"
+        assert info("--namespace", side, "--json", result).returncode == 0
+        measured = {one["name"]: one for one in json.loads(result.read_text())["signals"]["measured"]}
+        opening = measured["arm.orifice_area"]
+        assert (opening["most"] > 0.5 * AREA) == moved, opening
+    words = ["energy", "--model", "zx30u-arm", "--bag", bag]
+    assert "--namespace" in subprocess.run([excavator, *words], capture_output=True, text=True).stderr
