@@ -27,8 +27,8 @@ use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use excavator::ros::{RosArguments, Supervisor, TopicQos};
 use excavator_msgs::{ArmState, EnergyState};
+use excavator_ros::{RosArguments, Supervisor, TopicQos};
 
 /// Left out at the beginning, in which peers find each other, s.
 const SETTLING: f64 = 3.0;
@@ -132,12 +132,12 @@ fn main() {
     let states: Arc<Mutex<Vec<Times>>> = Arc::default();
     let energies: Arc<Mutex<Vec<Times>>> = Arc::default();
     let kept = Arc::clone(&states);
-    let take = move |state: ArmState, received: excavator::ros::Received| {
+    let take = move |state: ArmState, received: excavator_ros::Received| {
         kept.lock().unwrap().push((state.header.stamp.nanoseconds(), received.published.unwrap(), now()));
     };
     supervisor.link.subscribe("/arm/state", TopicQos::reliable(1000), take).unwrap();
     let kept = Arc::clone(&energies);
-    let take = move |energy: EnergyState, received: excavator::ros::Received| {
+    let take = move |energy: EnergyState, received: excavator_ros::Received| {
         kept.lock().unwrap().push((energy.header.stamp.nanoseconds(), received.published.unwrap(), now()));
     };
     supervisor.link.subscribe("/arm/energy", TopicQos::reliable(1000), take).unwrap();

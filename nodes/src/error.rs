@@ -16,7 +16,7 @@ use excavator_model::formula::FormulaError;
 use excavator_model::simulation::{ProfileError, RunError};
 use excavator_model::{ModelError, SignalError};
 
-use crate::ros::RosError;
+use excavator_ros::RosError;
 
 /// Why a verb failed.
 #[derive(Debug, thiserror::Error)]

@@ -12,6 +12,7 @@ mod diagnosis_file;
 mod energy_monitor;
 mod error;
 mod identification_node;
+mod joint_controller;
 mod long_recording;
 mod output;
 mod outputs;
@@ -19,7 +20,6 @@ mod play;
 mod profile_file;
 mod record;
 mod recording_part;
-pub mod ros;
 mod sources;
 mod terminal;
 mod up;
@@ -35,9 +35,9 @@ use clap::Parser;
 /// Runs the command line of this process.
 pub fn run_command_line() -> ExitCode {
     let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
-    let outcome = ros::RosArguments::parse(&all).map_err(error::VerbError::from).and_then(|(ros, words)| {
+    let outcome = excavator_ros::RosArguments::parse(&all).map_err(error::VerbError::from).and_then(|(ros, words)| {
         let arguments = cli::Arguments::try_parse_from(words).unwrap_or_else(|refusal| refuse(&refusal));
-        verbs::run(arguments.verb, &ros, ros::ros_words(&all))?;
+        verbs::run(arguments.verb, &ros, excavator_ros::ros_words(&all))?;
         verbs::all_was_printed()
     });
     match outcome {

@@ -11,7 +11,7 @@ use nix::unistd::Pid;
 
 use crate::cli::UpArguments;
 use crate::error::VerbError;
-use crate::ros::{Environment, RosArguments, Signals, end_with_this_process};
+use excavator_ros::{Environment, RosArguments, Signals, end_with_this_process};
 
 /// Time that a part has to end in good order.
 const FAREWELL: Duration = Duration::from_secs(10);

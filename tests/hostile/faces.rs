@@ -5,8 +5,8 @@ use std::net::{SocketAddr, TcpStream};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use excavator::ros::TopicQos;
 use excavator_msgs::OrificeCommand;
+use excavator_ros::TopicQos;
 
 use crate::fault::Fault;
 use crate::inside::{command_of_now, inside, node_of_the_test, peak_memory, until};

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use excavator::ros::{RosArguments, Supervisor};
 use excavator_msgs::{Header, OrificeCommand, Time};
+use excavator_ros::{RosArguments, Supervisor};
 use nix::sched::{CloneFlags, setns};
 
 use crate::live::Network;

@@ -4,9 +4,9 @@ use std::net::TcpStream;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use excavator::ros::TopicQos;
 use excavator_msgs::common::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use excavator_msgs::{ArmState, CylinderState, Header};
+use excavator_ros::TopicQos;
 
 use crate::faces::{answer, page};
 use crate::fault::Fault;

@@ -8,7 +8,7 @@ use super::can::{Database, Device, Log, Wanted};
 use super::description::{Can, LogPace};
 use super::publisher::{Publisher, Refused, lock};
 use super::signals::{Signals, Treatment};
-use crate::ros::Logger;
+use excavator_ros::Logger;
 
 /// Longest sleep between two looks at the stop flag.
 const GLANCE: Duration = Duration::from_millis(20);

@@ -13,7 +13,7 @@ use super::publisher::{Publisher, Refused, lock};
 use super::signals::Signals;
 use super::udp_source::UdpSource;
 use crate::error::VerbError;
-use crate::ros::{Health, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
+use excavator_ros::{Health, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
 /// Longest time until a listening thread sees that the node ends.
 const GLANCE: Duration = Duration::from_millis(100);

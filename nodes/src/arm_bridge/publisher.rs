@@ -9,7 +9,7 @@ use excavator_msgs::{ArmState, Header, Time};
 
 use super::can::Counts;
 use super::signals::{Fault, Signals};
-use crate::ros::{Diagnostics, Health, Lifecycle, Outlet, Pace, PublishError, RosClock};
+use excavator_ros::{Diagnostics, Health, Lifecycle, Outlet, Pace, PublishError, RosClock};
 
 /// Time between two words to diagnostics.
 const REPORT: Duration = Duration::from_millis(200);

@@ -11,7 +11,7 @@ use super::description::Udp;
 use super::publisher::{Refused, lock};
 use super::sequence::{Sequence, Verdict};
 use super::signals::Signals;
-use crate::ros::RosError;
+use excavator_ros::RosError;
 
 /// Longest time until the thread sees that the node ends.
 const GLANCE: Duration = Duration::from_millis(100);

@@ -1,7 +1,7 @@
 //! Parameters of the simulator.
 
 use crate::command_gate::parameters as gate_parameters;
-use crate::ros::{Parameter, Value};
+use excavator_ros::{Parameter, Value};
 
 /// All of them, with units, ranges and defaults.
 pub(super) fn parameters() -> Vec<Parameter> {

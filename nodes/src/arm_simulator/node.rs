@@ -15,11 +15,11 @@ use super::stamps::Stamps;
 use super::valve_limits;
 use crate::command_gate::{Desk, Valve};
 use crate::error::VerbError;
-use crate::ros::{
+use crate::sources;
+use excavator_ros::{
     Diagnostics, Health, Latched, Lifecycle, Logger, Outlet, Pace, Parameters, RosArguments, RosError, Supervisor,
     TopicQos, system_nanoseconds,
 };
-use crate::sources;
 
 /// Rate of `/joint_states`, Hz: what RViz and robot_state_publisher need.
 const JOINT_STATES_RATE: f64 = 50.0;

@@ -5,17 +5,19 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 
 use super::numbers::{not_negative, positive};
-use crate::ros::{Remap, RosError};
+use excavator_ros::{Remap, RosError};
 
 /// Live ROS 2 nodes. Each takes --ros-args (-r FROM:=TO, -r __node:=NAME, -r __ns:=NAMESPACE, -p NAME:=VALUE,
 /// --params-file FILE, --log-level LEVEL).
 #[derive(Debug, Subcommand)]
 pub enum NodeVerb {
-    /// A model as a machine: takes /arm/orifice_command, publishes /arm/state and /joint_states.
+    /// A model as a machine: takes arm/orifice_command, publishes arm/state and joint_states.
     ArmSimulator,
-    /// Instruments of other makers as /arm/state: datagrams and topics, by a description (-p description:=FILE.toml).
+    /// Instruments of other makers as arm/state: datagrams and topics, by a description (-p description:=FILE.toml).
     ArmBridge,
-    /// The energy balance of the machine, state by state: takes /arm/state, publishes /arm/energy.
+    /// Joint commands of ros2_control as openings of valves: takes robot_joint_commands, publishes robot_joint_states.
+    JointController,
+    /// The energy balance of the machine, state by state: takes arm/state, publishes arm/energy.
     EnergyMonitor,
     /// The action /identification/run: identifies a model from bags, with feedback, cancellable.
     Identification,

@@ -15,7 +15,9 @@ use super::slew::Wanted;
 use super::source::Source;
 use super::stamp::StampLimits;
 use super::writer::{AllowList, Writer};
-use crate::ros::{Diagnostics, Health, Logger, Parameters, Peers, RosError, Supervisor, TopicQos, system_nanoseconds};
+use excavator_ros::{
+    Diagnostics, Health, Logger, Parameters, Peers, RosError, Supervisor, TopicQos, system_nanoseconds,
+};
 
 /// Topic of the stop, before remapping.
 const STOP_TOPIC: &str = "arm/stop";

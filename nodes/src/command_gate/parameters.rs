@@ -1,6 +1,6 @@
 //! Parameters of the gate, for every node that drives valves.
 
-use crate::ros::{Parameter, Value};
+use excavator_ros::{Parameter, Value};
 
 /// All of them, with units, ranges and defaults.
 pub(crate) fn parameters() -> Vec<Parameter> {

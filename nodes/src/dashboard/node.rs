@@ -11,8 +11,8 @@ use excavator_msgs::{ArmState, EnergyState, OrificeCommand};
 use super::{Board, Hosts, serve};
 use crate::cli::DashboardArguments;
 use crate::error::VerbError;
-use crate::ros::{Health, RosArguments, Supervisor, TopicQos};
 use crate::verbs::print;
+use excavator_ros::{Health, RosArguments, Supervisor, TopicQos};
 
 /// Time between two frames: 25 per second.
 const FRAME: Duration = Duration::from_millis(40);

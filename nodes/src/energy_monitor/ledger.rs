@@ -8,7 +8,7 @@ use excavator_identification::energy::{EnergySettings, MissingPower, analyse, mi
 use excavator_model::Model;
 use excavator_msgs::ArmState;
 
-use crate::ros::{Diagnostics, Health};
+use excavator_ros::{Diagnostics, Health};
 
 /// States per second that no machine sends, Hz. A clock that goes to and fro would fill memory without end.
 const FASTEST: f64 = 4000.0;

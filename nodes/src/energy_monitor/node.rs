@@ -18,10 +18,10 @@ use super::incoming::{Counts, Inbox, Incoming, inbox};
 use super::ledger::{Ledger, Tally, judge_windows};
 use crate::arm_state::sample;
 use crate::error::VerbError;
-use crate::ros::{
+use crate::sources;
+use excavator_ros::{
     Diagnostics, Health, Logger, Outlet, Parameter, Parameters, RosArguments, Supervisor, TopicQos, Value,
 };
-use crate::sources;
 
 /// Time without a state after which what is waiting is given with the windows that there are.
 const IDLE: Duration = Duration::from_millis(500);

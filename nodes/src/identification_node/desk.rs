@@ -15,7 +15,7 @@ use super::node::out_of_time;
 use super::queue::{Job, MOST_WAITING, Queue};
 use super::refusals::Refusals;
 use super::types::{Feedback, Goal, GoalId, GoalInfo, Outcome};
-use crate::ros::{Diagnostics, Health, Latched, Logger, Supervisor};
+use excavator_ros::{Diagnostics, Health, Latched, Logger, Supervisor};
 
 /// Questions for results that may wait: a few for each goal. Who asks once more than that asks again later.
 const MOST_QUESTIONS: usize = 256;

@@ -13,7 +13,7 @@ use super::server::IdentifyAction;
 use super::types::{Feedback, Outcome};
 use super::work::{Bounds, Ended, identify};
 use crate::error::VerbError;
-use crate::ros::{Health, Logger, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
+use excavator_ros::{Health, Logger, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
 /// Longest time until the worker sees that the node ends.
 const GLANCE: Duration = Duration::from_millis(200);

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::printable::printable;
-use crate::ros::Logger;
+use excavator_ros::Logger;
 
 /// Least time between two lines.
 const LEAST: Duration = Duration::from_secs(2);

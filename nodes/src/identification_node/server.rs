@@ -15,8 +15,8 @@ use ros2_client::{ActionTypeName, Name};
 use super::desk::Desk;
 use super::goals::CancelAnswer;
 use super::types::{Feedback, Goal, GoalId, GoalInfo, Outcome};
-use crate::ros::connection::{Closed, Connection, Endpoint, Install, Task};
-use crate::ros::{LargeReplies, Mapping, RosError, service_mapping, service_qos, system_nanoseconds};
+use excavator_ros::connection::{Closed, Connection, Endpoint, Install, Task};
+use excavator_ros::{LargeReplies, Mapping, RosError, service_mapping, service_qos, system_nanoseconds};
 
 /// Pace of looking for requests. Nobody waits for identification in milliseconds.
 const LOOK: Duration = Duration::from_millis(10);

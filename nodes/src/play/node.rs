@@ -16,8 +16,8 @@ use super::keys::Keys;
 use super::schedule::Schedule;
 use crate::cli::PlayArguments;
 use crate::error::VerbError;
-use crate::ros::raw::RawOutlet;
-use crate::ros::{Health, Outlet, PublishError, RosArguments, Supervisor, TopicQos};
+use excavator_ros::raw::RawOutlet;
+use excavator_ros::{Health, Outlet, PublishError, RosArguments, Supervisor, TopicQos};
 
 /// Longest sleep between two looks at pause and stop.
 const GLANCE: Duration = Duration::from_millis(20);

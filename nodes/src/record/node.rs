@@ -13,8 +13,8 @@ use super::selection::Selection;
 use super::writing::{Order, Outcome, write};
 use crate::cli::RecordArguments;
 use crate::error::VerbError;
-use crate::ros::raw::RawInlet;
-use crate::ros::{Health, RosArguments, Supervisor};
+use excavator_ros::raw::RawInlet;
+use excavator_ros::{Health, RosArguments, Supervisor};
 
 /// Time between two looks for new topics.
 const LOOK: Duration = Duration::from_millis(200);

@@ -7,7 +7,7 @@ use rustdds::discovery::DiscoveredWriterData;
 use rustdds::policy;
 use rustdds::{QosPolicies, QosPolicyBuilder};
 
-use crate::ros::dds_names::{ros_topic, ros_type};
+use excavator_ros::dds_names::{ros_topic, ros_type};
 
 /// Messages that wait in the middleware for the recorder: seconds at 1 kHz.
 const DEPTH: i32 = 5000;

@@ -2,7 +2,7 @@
 
 use regex::Regex;
 
-use crate::ros::RosError;
+use excavator_ros::RosError;
 
 /// Which topics are recorded.
 #[derive(Debug)]

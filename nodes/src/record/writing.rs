@@ -7,7 +7,7 @@ use excavator_bags::{BagError, BagWriter, GoneFile, Qos, TopicId, TopicToWrite};
 use excavator_msgs::definitions;
 
 use super::losses::Losses;
-use crate::ros::raw::RawSample;
+use excavator_ros::raw::RawSample;
 
 /// Time between two flushes: what a killed recorder loses at most, with room for the flush itself.
 const FLUSH: Duration = Duration::from_millis(500);

@@ -24,8 +24,8 @@ use std::sync::OnceLock;
 
 use crate::cli::Verb;
 use crate::error::VerbError;
-use crate::ros::RosArguments;
 use crate::terminal;
+use excavator_ros::RosArguments;
 
 /// Runs a verb; `ros` is what stood after --ros-args, `ros_words` the same in words.
 pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), VerbError> {

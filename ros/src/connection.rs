@@ -13,14 +13,14 @@ use super::threads::Threads;
 use super::{Environment, NodeIdentity, RosError, Security};
 
 /// Something that runs as long as an endpoint is open.
-pub(crate) type Task = tokio::task::JoinHandle<()>;
+pub type Task = tokio::task::JoinHandle<()>;
 
 /// Puts what was created on a new connection into its place. Creating may hang, this must not.
-pub(crate) type Install = Box<dyn FnOnce(&Handle) + Send>;
+pub type Install = Box<dyn FnOnce(&Handle) + Send>;
 
 /// What is left of an endpoint that was closed.
 #[derive(Default)]
-pub(crate) struct Closed {
+pub struct Closed {
     /// To be ended.
     pub tasks: Vec<Task>,
     /// To be dropped, which may hang.
@@ -50,7 +50,7 @@ impl Extend<Closed> for Closed {
 }
 
 /// Something that exists on a connection and is opened again on the next one.
-pub(crate) trait Endpoint: Send + Sync {
+pub trait Endpoint: Send + Sync {
     /// Creates the endpoint on a new connection. It is not in use before it is installed: a connection may turn out to be
     /// dead while the next one is there already.
     fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError>;
@@ -65,7 +65,7 @@ pub(crate) trait Endpoint: Send + Sync {
 }
 
 /// One participant with its node.
-pub(crate) struct Connection {
+pub struct Connection {
     // Dropped in this order: the node says good-bye through the context.
     node: Node,
     context: Context,
@@ -100,11 +100,13 @@ impl Connection {
         (self, opened)
     }
 
-    pub(crate) fn node(&mut self) -> &mut Node {
+    /// The node, for what it creates.
+    pub fn node(&mut self) -> &mut Node {
         &mut self.node
     }
 
-    pub(crate) fn participant(&self) -> DomainParticipant {
+    /// The participant; a handle that shares it.
+    pub fn participant(&self) -> DomainParticipant {
         self.context.domain_participant()
     }
 
@@ -118,7 +120,11 @@ impl Connection {
         self.guard.clone()
     }
 
-    pub(crate) fn create_topic(&self, dds_name: &str, dds_type: &str, qos: &QosPolicies) -> Result<Topic, String> {
+    /// A topic by its name and type in DDS.
+    ///
+    /// # Errors
+    /// The middleware's words.
+    pub fn create_topic(&self, dds_name: &str, dds_type: &str, qos: &QosPolicies) -> Result<Topic, String> {
         self.participant()
             .create_topic(dds_name.to_string(), dds_type.to_string(), qos, TopicKind::NoKey)
             .map_err(|error| error.to_string())

@@ -76,7 +76,7 @@ impl SerializerAdapter<RawBytes> for RawAdapter {
 
 /// A message as it came.
 #[derive(Debug, Clone)]
-pub(crate) struct RawSample {
+pub struct RawSample {
     /// Content with encapsulation.
     pub data: Bytes,
     /// When it came, ns since the epoch, system's clock.
@@ -92,7 +92,7 @@ pub(crate) struct RawSample {
 type Callback = Box<dyn FnMut(RawSample) + Send>;
 
 /// A reader of one topic of any type.
-pub(crate) struct RawInlet {
+pub struct RawInlet {
     /// Name and type as they are in DDS.
     topic: String,
     type_name: String,
@@ -173,7 +173,7 @@ fn nanoseconds(time: Timestamp) -> Option<u64> {
 }
 
 /// A writer of one topic of any type.
-pub(crate) struct RawOutlet {
+pub struct RawOutlet {
     topic: String,
     type_name: String,
     qos: QosPolicies,

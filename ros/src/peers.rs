@@ -42,7 +42,7 @@ type NodesByWriter = BTreeMap<[u8; 16], String>;
 
 /// The nodes behind the writers of the graph; clones share them.
 #[derive(Clone)]
-pub(crate) struct Peers {
+pub struct Peers {
     link: Link,
     nodes: Arc<Mutex<BTreeMap<[u8; 16], NodesByWriter>>>,
 }

@@ -87,9 +87,9 @@ mod tests {
         let environment = |range| Environment {
             domain: 3,
             range,
-            mapping: super::super::Mapping::Enhanced,
+            mapping: crate::Mapping::Enhanced,
             largest_sample: 1 << 20,
-            security: super::super::Security::Off,
+            security: crate::Security::Off,
             warnings: Vec::new(),
         };
         let here = everybody(&environment(DiscoveryRange::Localhost));

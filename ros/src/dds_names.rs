@@ -1,23 +1,23 @@
 //! How names of ROS 2 appear in DDS (design article "Topic and Service name mapping to DDS").
 
 /// DDS topic of a ROS topic: `/arm/state` is `rt/arm/state`.
-pub(crate) fn dds_topic(full_name: &str) -> String {
+pub fn dds_topic(full_name: &str) -> String {
     format!("rt{full_name}")
 }
 
 /// ROS topic of a DDS topic; `None` for services, actions' parts and what is not of ROS.
-pub(crate) fn ros_topic(dds_topic: &str) -> Option<&str> {
+pub fn ros_topic(dds_topic: &str) -> Option<&str> {
     dds_topic.strip_prefix("rt").filter(|name| name.starts_with('/'))
 }
 
 /// DDS type of a ROS type: `std_msgs/msg/String` is `std_msgs::msg::dds_::String_`.
-pub(crate) fn dds_type(ros_type: &str) -> String {
+pub fn dds_type(ros_type: &str) -> String {
     let (package, name) = ros_type.rsplit_once('/').unwrap_or(("", ros_type));
     format!("{}::dds_::{name}_", package.replace('/', "::"))
 }
 
 /// ROS type of a DDS type; `None` for what is not of ROS.
-pub(crate) fn ros_type(dds_type: &str) -> Option<String> {
+pub fn ros_type(dds_type: &str) -> Option<String> {
     let (package, name) = dds_type.rsplit_once("::dds_::")?;
     Some(format!("{}/{}", package.replace("::", "/"), name.strip_suffix('_')?))
 }

@@ -43,7 +43,8 @@ impl TopicQos {
         TopicQos { depth, reliable: false, transient_local: false, lifespan: None, room: UNACKNOWLEDGED }
     }
 
-    pub(crate) fn to_dds(self) -> QosPolicies {
+    /// As policies of DDS.
+    pub fn to_dds(self) -> QosPolicies {
         // No waiting: a writer that waits for a slow reader would stop its control loop.
         let reliability = if self.reliable {
             Reliability::Reliable { max_blocking_time: Duration::ZERO }

@@ -51,7 +51,8 @@ impl Link {
         &self.shared.environment
     }
 
-    pub(crate) fn runtime(&self) -> &Handle {
+    /// What tasks of the link run on.
+    pub fn runtime(&self) -> &Handle {
         &self.shared.runtime
     }
 
@@ -104,7 +105,7 @@ impl Link {
     ///
     /// # Errors
     /// [`RosError::Endpoint`]: it cannot be opened, and not later either.
-    pub(crate) fn add(&self, endpoint: Arc<dyn Endpoint>) -> Result<(), RosError> {
+    pub fn add(&self, endpoint: Arc<dyn Endpoint>) -> Result<(), RosError> {
         let mut state = self.lock();
         if let Some(connection) = state.connection.take() {
             let opening = Arc::clone(&endpoint);
@@ -125,7 +126,7 @@ impl Link {
     }
 
     /// Closes all endpoints for good, with what their callbacks hold. Must not be called from the runtime.
-    pub(crate) fn forget_endpoints(&self) {
+    pub fn forget_endpoints(&self) {
         let (endpoints, closed) = {
             let mut state = self.lock();
             let endpoints = std::mem::take(&mut state.endpoints);
@@ -137,7 +138,7 @@ impl Link {
     }
 
     /// The participant of the connection, `None` while there is none.
-    pub(crate) fn participant(&self) -> Option<DomainParticipant> {
+    pub fn participant(&self) -> Option<DomainParticipant> {
         self.lock().connection.as_ref().map(Connection::participant)
     }
 
@@ -152,7 +153,7 @@ impl Link {
     }
 
     /// Whether somebody on the graph reads a topic.
-    pub(crate) fn has_readers(&self, name: &str) -> bool {
+    pub fn has_readers(&self, name: &str) -> bool {
         let (Some(participant), Ok(name)) = (self.participant(), self.shared.identity.resolve(name)) else {
             return false;
         };

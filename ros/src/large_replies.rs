@@ -30,7 +30,7 @@ const SMALL: usize = 1200;
 const OLD_RELATED_SAMPLE_IDENTITY: u16 = 0x800f;
 
 /// The way of long replies of one service.
-pub(crate) struct LargeReplies {
+pub struct LargeReplies {
     participant: DomainParticipant,
     topic: String,
     mapping: Mapping,

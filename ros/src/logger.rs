@@ -6,7 +6,7 @@ use excavator_msgs::common::Log;
 use super::clock::system_nanoseconds;
 use super::log_file::LogFile;
 use super::{Level, Link, Outlet, RosArguments, RosError, TopicQos};
-use crate::terminal::complain;
+use excavator_bags::printable;
 
 /// Log lines that late joiners of `/rosout` get, and for how long, s: as rcl has it.
 const ROSOUT: TopicQos = TopicQos { depth: 1000, lifespan: Some(10), ..TopicQos::latched() };
@@ -63,7 +63,7 @@ impl Logger {
         let word = format!("{level:?}").to_uppercase();
         let line = format!("[{word}] [{}.{:09}] [{}]: {message}", stamp.sec, stamp.nanosec, self.name);
         if self.console {
-            complain(&line);
+            eprintln!("{}", printable(&line));
         }
         if let Some(file) = &self.file {
             file.add(&line);

@@ -144,7 +144,7 @@ impl RosArguments {
 }
 
 /// The words of a command line from `--ros-args` on, to be handed to another node.
-pub(crate) fn ros_words(arguments: &[String]) -> &[String] {
+pub fn ros_words(arguments: &[String]) -> &[String] {
     let start = arguments.iter().position(|word| word == "--ros-args").unwrap_or(arguments.len());
     &arguments[start..]
 }

@@ -75,7 +75,7 @@ impl RosClock {
 }
 
 /// The system's clock, ns since the epoch.
-pub(crate) fn system_nanoseconds() -> i64 {
+pub fn system_nanoseconds() -> i64 {
     SystemTime::now()
         .duration_since(UNIX_EPOCH)
         .ok()

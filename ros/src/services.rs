@@ -20,7 +20,7 @@ use super::{Link, Mapping, RosError};
 pub(super) const SERVICE_DEPTH: u32 = 10;
 
 /// The library's word for a mapping.
-pub(crate) fn service_mapping(mapping: Mapping) -> ServiceMapping {
+pub fn service_mapping(mapping: Mapping) -> ServiceMapping {
     match mapping {
         Mapping::Cyclone => ServiceMapping::Cyclone,
         Mapping::Enhanced => ServiceMapping::Enhanced,
@@ -28,7 +28,7 @@ pub(crate) fn service_mapping(mapping: Mapping) -> ServiceMapping {
 }
 
 /// Quality of service of requests and replies.
-pub(crate) fn service_qos() -> QosProfile {
+pub fn service_qos() -> QosProfile {
     QosProfile::publisher_default().history(ros2_client::qos::History::KeepLast { depth: SERVICE_DEPTH as usize })
 }
 
