@@ -3,8 +3,8 @@
 //! Two faults of the middleware end communication silently, and a third lets it grow without bound ([`super::memory`]). A peer whose lease expired is never matched again, since
 //! its announcements look like duplicates; and its threads end when a system call is interrupted (SIGSTOP and SIGCONT, a
 //! frozen container, suspend to disk). The remedy for all is a new participant. Building one disturbs every other
-//! peer, so it is done only on proof: a dead thread, or a lost peer that is back. Since our own participant cannot see
-//! that a lost peer is back, a second one without any endpoint, the scout, looks out for it.
+//! peer, so it is done only on proof: a dead thread, or a lost peer that is back and had something to do with us. Since our
+//! own participant cannot see that a lost peer is back, a second one without any endpoint, the scout, looks out for it.
 
 use std::collections::BTreeSet;
 use std::net::Ipv4Addr;
@@ -13,6 +13,7 @@ use rustdds::{DomainParticipant, DomainParticipantStatusEvent, LostReason, RTPSE
 
 use super::Environment;
 use super::connection::participant;
+use super::dds_names::dds_topic;
 use super::memory::Memory;
 use super::networks::networks;
 use super::patience::{BUILDING, let_go, within};
@@ -65,6 +66,8 @@ pub(super) struct Watch {
     participant: DomainParticipant,
     threads: Threads,
     present: BTreeSet<Prefix>,
+    /// Those that have read or written what is ours. The others, such as the daemon of the command line, may come and go.
+    partners: BTreeSet<Prefix>,
     lost: BTreeSet<Prefix>,
     scout: Option<Scout>,
     networks: BTreeSet<(String, Ipv4Addr)>,
@@ -79,6 +82,7 @@ impl Watch {
             participant,
             threads,
             present: BTreeSet::new(),
+            partners: BTreeSet::new(),
             lost: BTreeSet::new(),
             scout: None,
             networks: addresses(),
@@ -96,8 +100,8 @@ impl Watch {
         self.lost.len()
     }
 
-    /// Looks.
-    pub fn look(&mut self) -> Observations {
+    /// Looks. `ours` says whose topics and services are of this node.
+    pub fn look(&mut self, ours: &Ours) -> Observations {
         let died = self.threads.died().map(Fault::ThreadsDied);
         let grown = self.memory.as_mut().and_then(Memory::grown);
         let grown = grown.map(|(before, now)| Fault::MemoryGrown { before, now });
@@ -105,6 +109,7 @@ impl Watch {
         if seen.fault.is_some() {
             return seen;
         }
+        self.note_partners(ours);
         let mut newly_lost = false;
         // Our own announcements come back to us, and stop coming when the network is down.
         let own = prefix_of(self.participant.guid().prefix.as_ref());
@@ -130,7 +135,9 @@ impl Watch {
                     match reason {
                         LostReason::Disposed => {
                             self.lost.remove(&prefix);
+                            self.partners.remove(&prefix);
                         }
+                        LostReason::Timeout { .. } if !self.partners.contains(&prefix) => {}
                         LostReason::Timeout { .. } => {
                             newly_lost |= self.lost.insert(prefix);
                             seen.notes.push(format!("peer {id:?} is out of reach"));
@@ -157,6 +164,25 @@ impl Watch {
             seen.fault = new.map(|(name, address)| Fault::NewNetwork(format!("{name} ({address})")));
         }
         seen
+    }
+
+    /// Peers of which an endpoint was discovered that has to do with ours.
+    fn note_partners(&mut self, ours: &Ours) {
+        if self.present.is_subset(&self.partners) {
+            return;
+        }
+        let readers = self.participant.discovered_readers();
+        let reading = readers.iter().map(|reader| {
+            let data = &reader.subscription_topic_data;
+            (reader.reader_proxy.remote_reader_guid, ours.is_read_by(data.topic_name()))
+        });
+        let writers = self.participant.discovered_writers();
+        let writing = writers.iter().map(|writer| {
+            let data = &writer.publication_topic_data;
+            (writer.writer_proxy.remote_writer_guid, ours.is_written_by(&data.topic_name))
+        });
+        let with_us = reading.chain(writing).filter(|(_, has_to_do)| *has_to_do);
+        self.partners.extend(with_us.map(|(guid, _)| prefix_of(guid.prefix.as_ref())));
     }
 
     fn send_scout(&mut self, newly_lost: bool, seen: &mut Observations) {
@@ -199,6 +225,35 @@ impl Drop for Watch {
     }
 }
 
+/// What a node has on its graph, by names of DDS.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Ours {
+    /// Topics.
+    topics: BTreeSet<String>,
+    /// How topics of our own services begin, after `rq` or `rr`.
+    services: String,
+}
+
+impl Ours {
+    /// Of the node with this full name and these topics.
+    pub fn new(node: &str, topics: impl IntoIterator<Item = String>) -> Self {
+        Ours { topics: topics.into_iter().map(|topic| dds_topic(&topic)).collect(), services: format!("{node}/") }
+    }
+
+    fn is_read_by(&self, topic: &str) -> bool {
+        self.topics.contains(topic) || self.is_service(topic)
+    }
+
+    /// Every node writes its log and its parameter events where all others do: that has nothing to do with us.
+    fn is_written_by(&self, topic: &str) -> bool {
+        !matches!(topic, "rt/rosout" | "rt/parameter_events") && self.is_read_by(topic)
+    }
+
+    fn is_service(&self, topic: &str) -> bool {
+        ["rq", "rr"].iter().any(|kind| topic.strip_prefix(kind).is_some_and(|name| name.starts_with(&self.services)))
+    }
+}
+
 /// A participant without endpoints.
 struct Scout {
     participant: DomainParticipant,
@@ -228,6 +283,16 @@ fn addresses() -> BTreeSet<(String, Ipv4Addr)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_peer_has_to_do_with_us_by_what_it_reads_and_writes() {
+        let ours = Ours::new("/pit/simulator", ["/pit/arm/state".to_string(), "/rosout".to_string()]);
+        assert!(ours.is_read_by("rt/pit/arm/state") && ours.is_written_by("rt/pit/arm/state"));
+        assert!(ours.is_read_by("rt/rosout") && !ours.is_written_by("rt/rosout"));
+        assert!(ours.is_read_by("rr/pit/simulator/get_parametersReply"));
+        assert!(ours.is_written_by("rq/pit/simulator/get_parametersRequest"));
+        assert!(!ours.is_read_by("rq/_ros2cli_daemon/get_parametersRequest") && !ours.is_read_by("ros_discovery_info"));
+    }
 
     #[test]
     fn a_fault_says_what_happened() {

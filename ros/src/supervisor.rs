@@ -9,7 +9,7 @@ use tokio::runtime::Runtime;
 
 use super::dds_names::{dds_topic, dds_type};
 use super::guard::GuardError;
-use super::health::Watch;
+use super::health::{Ours, Watch};
 use super::middleware_log::{complaints, count_complaints};
 use super::parameter_file::read_for;
 use super::parameter_services::offer;
@@ -154,7 +154,7 @@ impl Supervisor {
                 self.logger.error(error.to_string());
             }
             let seen = match &mut watch {
-                Some(watch) => watch.look(),
+                Some(watch) => watch.look(&self.ours()),
                 None => super::health::Observations::default(),
             };
             seen.notes.into_iter().for_each(|note| self.logger.warn(note));
@@ -187,6 +187,11 @@ impl Supervisor {
     fn watch(&self) -> Option<Watch> {
         let (participant, threads) = self.link.alive()?;
         Some(Watch::new(self.link.environment().clone(), participant, threads, self.watch_memory))
+    }
+
+    /// What this node has on the graph.
+    fn ours(&self) -> Ours {
+        Ours::new(&self.link.identity().full_name(), self.link.interfaces().into_iter().map(|(topic, _)| topic))
     }
 
     fn tell_link(&self, watch: Option<&Watch>, rebuilds: u32) {

@@ -7,13 +7,18 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from support.simulator import Simulator, command, cylinder, seconds
+from support.simulator import Simulator, cylinder, seconds
+
+pytestmark = pytest.mark.middleware
 
 READER = Path(__file__).parent / "support" / "counting_reader.py"
+BYSTANDER = READER.with_name("bystander.py")
 RATE = 1000.0
 # Longer than the writer's window of 8192 unacknowledged samples lasts, and than the 10 s after which a silent
 # participant of Cyclone DDS counts as gone.
 LONG_STOP = 12.0
+# s; a writer that waits for a reader that is gone stands still for its lease of 10 s. A busy machine makes gaps, too.
+STALL = 3.0
 
 
 @contextmanager
@@ -44,10 +49,11 @@ def test_a_stopped_reader_neither_stops_the_others_nor_is_it_forgotten(ros, simu
         states = simulator.watch(LONG_STOP)
         before = read()
     stamps = [seconds(state.header.stamp) - start for state in states]
-    assert len(stamps) == pytest.approx(RATE * LONG_STOP, rel=0.1)
-    assert max(later - earlier for earlier, later in zip(stamps, stamps[1:])) < 0.5
+    # a writer that waits 0.1 s for each sample has 10 in a second
+    assert len(stamps) > 0.5 * RATE * LONG_STOP
+    assert max(later - earlier for earlier, later in zip(stamps, stamps[1:])) < STALL
     # more than what waited in its queue
-    ros.spin_until(lambda: read() > before + 1000, "the reader to go on", 30.0)
+    ros.spin_until(lambda: read() > before + 1000, "the reader to go on")
     reader.interrupt()
 
 
@@ -55,13 +61,9 @@ def test_a_stopped_simulator_goes_on(ros, simulator):
     with stopped(simulator.process):
         simulator.watch(1.0)
     before = len(simulator.states)
-    ros.spin_until(lambda: len(simulator.states) > before + 500, "states after the interruption", 30.0)
+    ros.spin_until(lambda: len(simulator.states) > before + 500, "states after the interruption")
     # it hears, too
-    ros.spin_until(
-        lambda: simulator.open(arm=2e-5) or cylinder(simulator.last).orifice_area == pytest.approx(2e-5),
-        "the simulator to follow a command",
-        10.0,
-    )
+    simulator.open_until(arm=2e-5)
     stamps = [seconds(state.header.stamp) for state in simulator.states]
     assert stamps == sorted(stamps)
 
@@ -69,7 +71,7 @@ def test_a_stopped_simulator_goes_on(ros, simulator):
 def test_a_simulator_that_was_stopped_with_an_open_valve_closes_it(ros, simulator):
     """The lease runs on the steady clock and has run out in the meantime; a command that still waited in the socket
     holds for one more 0.1 s, since it arrives only then."""
-    simulator.hold(0.3, arm=5e-5)
+    simulator.open_until(arm=5e-5)
     with stopped(simulator.process):
         simulator.watch(1.0)
         resumed = time.time()
@@ -78,9 +80,22 @@ def test_a_simulator_that_was_stopped_with_an_open_valve_closes_it(ros, simulato
         # a state that was measured before the stop and sent after it tells nothing of the time since
         return [state for state in simulator.states if seconds(state.header.stamp) > resumed]
 
-    ros.spin_until(
-        lambda: since() and cylinder(simulator.last).orifice_area == 0.0, "the valve to close", 10.0
-    )
+    ros.spin_until(lambda: since() and cylinder(simulator.last).orifice_area == 0.0, "the valve to close")
     # The simulator's own time: a millisecond per state, whatever share of the processor it gets.
     still_open = sum(cylinder(state).orifice_area != 0.0 for state in since())
     assert still_open < 0.5 * RATE
+
+
+def test_a_bystander_that_is_lost_and_comes_back_disturbs_nobody(ros, simulator):
+    """A daemon that was starved of its processor: nobody builds a link anew for it."""
+    bystander = ros.start_python(BYSTANDER)
+    ros.spin_until(lambda: "here" in bystander.output() and "bystander" in ros.node.get_node_names(), "the bystander")
+    with stopped(bystander):
+        ros.spin_until(lambda: "bystander" not in ros.node.get_node_names(), "its lease to run out", 90.0)
+    before = bystander.output().count("here")
+    ros.spin_until(lambda: bystander.output().count("here") > before, "its return")
+    # longer than a lost partner's return takes to be found
+    stamps = [seconds(state.header.stamp) for state in simulator.next(round(8 * RATE))]
+    assert max(later - earlier for earlier, later in zip(stamps, stamps[1:])) < STALL
+    assert "anew" not in simulator.process.output()
+    bystander.interrupt()
