@@ -1,57 +1,61 @@
 """Fixtures of the tests that check the live nodes through rclpy.
 
-With ROS 2 sourced (and excavator_msgs built) the tests use its rclpy. Without, `standin/` takes its place: the used
-part of rclpy over Eclipse Cyclone DDS. The header of the run says which of the two it was.
+They use rclpy of ROS 2, or `standin/` in its place: the used part of rclpy over Eclipse Cyclone DDS. `support/choice.py`
+says which one; the header of the run names it.
 """
 
-import importlib.util
 import os
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-
-
-def _rclpy_is_installed():
-    # a folder named rclpy on the path is found too, but as a namespace without an origin
-    spec = importlib.util.find_spec("rclpy")
-    return spec is not None and spec.origin is not None
-
-
-USES_STANDIN = not _rclpy_is_installed()
-if USES_STANDIN:
-    sys.path.insert(0, str(HERE / "standin"))
-    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(HERE / "standin"), os.environ.get("PYTHONPATH")]))
 sys.path.insert(0, str(HERE))
 
 import pytest  # noqa: E402
-from support import loopback  # noqa: E402
+from support import choice, loopback  # noqa: E402
 
+try:
+    RCLPY = choice.choose()
+except ValueError as error:
+    raise pytest.UsageError(str(error)) from None
+
+USES_STANDIN = RCLPY == choice.STANDIN
 if USES_STANDIN:
+    sys.path.insert(0, str(HERE / "standin"))
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(HERE / "standin"), os.environ.get("PYTHONPATH")]))
+
+MISSING = None
+if choice.is_here(RCLPY):
+    MISSING = loopback.prepare(for_standin=USES_STANDIN)
     try:
-        MISSING = loopback.prepare()
-        import rclpy  # noqa: F401  makes std_msgs and its like importable
+        import rclpy  # noqa: F401  the stand-in makes std_msgs and its like importable
     except ImportError as error:
-        MISSING = f"neither rclpy nor PyPI's cyclonedds can be imported ({error})"
-else:
-    MISSING = None
+        MISSING = f"{RCLPY} cannot be imported ({error})"
+
+# Tests with this mark run on every rclpy, the others on the first only.
+MIDDLEWARE = "middleware: what differs between middlewares: discovery, profiles, services, actions, outages"
 
 
-def pytest_report_header(config):
+def pytest_configure(config):
+    if not choice.is_here(RCLPY):
+        choice.start_anew(RCLPY, config)
+    config.addinivalue_line("markers", MIDDLEWARE)
+    # not ours: lark, with which ROS 2 reads interface files, and rclpy of Kilted with itself
+    config.addinivalue_line("filterwarnings", "ignore:module 'sre_:DeprecationWarning:lark")
+    config.addinivalue_line("filterwarnings", "ignore:Deprecated in favor of:DeprecationWarning:rclpy")
+
+
+def pytest_report_header():
     if MISSING:
         return f"rclpy: none, all tests skip: {MISSING}"
     from rclpy.utilities import get_rmw_implementation_identifier
     from support.binary import binary_or_reason
 
     found, reason = binary_or_reason()
-    which = (
-        "stand-in over Eclipse Cyclone DDS, no ROS 2 here"
-        if USES_STANDIN
-        else f"of ROS 2 ({importlib.util.find_spec('rclpy').origin})"
-    )
+    which = "stand-in over Eclipse Cyclone DDS, no ROS 2" if USES_STANDIN else f"{RCLPY} ({Path(rclpy.__file__).parent})"
     return [
         f"rclpy: {which}; middleware {get_rmw_implementation_identifier()}",
-        f"network: {loopback.summary() if USES_STANDIN else 'as the environment says'}",
+        f"network: {loopback.summary()}",
         f"excavator: {found or reason}",
     ]
 

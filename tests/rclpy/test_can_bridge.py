@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 from excavator_msgs.msg import ArmState
+from support.session import LONGEST_WAIT
 from support.simulator import STATE_QOS, cylinder
 
 cantools = pytest.importorskip("cantools", reason="PyPI's cantools is not installed")
@@ -85,7 +86,7 @@ def test_every_number_is_that_of_an_independent_decoder(ros, excavator, tmp_path
     bag = tmp_path / "bag"
     recorder = ros.start(excavator, "record", "/arm/state", "-o", bag)
     bridge = ros.start(excavator, "node", "arm-bridge", "--ros-args", "-p", f"description:={path}")
-    assert bridge.wait(30.0) == 0, bridge.output()
+    assert bridge.wait(LONGEST_WAIT) == 0, bridge.output()
     assert recorder.interrupt() == 0, recorder.output()
     with AnyReader([bag]) as reader:
         states = [reader.deserialize(data, connection.msgtype) for connection, _, data in reader.messages()]
@@ -147,6 +148,6 @@ def test_a_log_is_a_bus_in_real_time_and_what_ends_is_not_measured(ros, excavato
 def test_mistakes_are_said_in_one_line(ros, excavator, tmp_path, old, new, word):
     path = description(tmp_path, lambda text: text.replace(old, new, 1))
     bridge = ros.start(excavator, "node", "arm-bridge", "--ros-args", "-p", f"description:={path}")
-    assert bridge.wait(15.0) == 1
+    assert bridge.wait(LONGEST_WAIT) == 1
     (line,) = [line for line in bridge.output().splitlines() if line.startswith("excavator: ")]
     assert word in line

@@ -9,6 +9,8 @@ from action_msgs.srv import CancelGoal
 from excavator_msgs.action import Identify
 from rcl_interfaces.srv import ListParameters
 
+pytestmark = pytest.mark.middleware
+
 PROFILE = """
 rate = {rate}
 [[profiles]]
@@ -111,7 +113,7 @@ def test_what_cannot_be_done_is_refused_or_fails_with_a_reason(ros, action, goal
     handle = ros.result(action.send_goal_async(goal), "the answer to a goal")
     if not handle.accepted:
         return
-    answer = ros.result(handle.get_result_async(), "the result", 30.0)
+    answer = ros.result(handle.get_result_async(), "the result")
     assert answer.status == GoalStatus.STATUS_ABORTED
     assert not answer.result.success and not answer.result.model
     assert word in answer.result.message
@@ -123,12 +125,12 @@ def test_files_outside_the_folder_are_not_there(ros, action, bags, name):
     messages = set()
     for bag in (name, absolute):
         handle = accepted(ros, action, Identify.Goal(model="zx30u-arm", bags=[bag]))
-        answer = ros.result(handle.get_result_async(), "the result", 30.0)
+        answer = ros.result(handle.get_result_async(), "the result")
         assert answer.status == GoalStatus.STATUS_ABORTED
         messages.add(answer.result.message.replace(bag, "NAME"))
     assert len(messages) == 1 and "bag_folder" in messages.pop()
     handle = accepted(ros, action, Identify.Goal(model=name, bags=["short"]))
-    answer = ros.result(handle.get_result_async(), "the result", 30.0)
+    answer = ros.result(handle.get_result_async(), "the result")
     assert answer.status == GoalStatus.STATUS_ABORTED and "model_folder" in answer.result.message
 
 
@@ -138,7 +140,7 @@ def test_cancel_ends_the_work(ros, action, bags):
     answer = ros.result(handle.cancel_goal_async(), "the answer to a cancel request")
     assert answer.return_code == CancelGoal.Response.ERROR_NONE
     assert [bytes(goal.goal_id.uuid) for goal in answer.goals_canceling] == [bytes(handle.goal_id.uuid)]
-    answer = ros.result(result, "the result of a cancelled goal", 15.0)
+    answer = ros.result(result, "the result of a cancelled goal")
     assert answer.status == GoalStatus.STATUS_CANCELED
     assert not answer.result.success and not answer.result.model
 
@@ -164,11 +166,11 @@ def test_the_work_does_not_block_other_traffic(ros, action, bags):
         for _ in range(10):
             if result.done():
                 break
-            reply = ros.result(client.call_async(ListParameters.Request()), "a reply of the node at work", 2.0)
+            reply = ros.result(client.call_async(ListParameters.Request()), "a reply of the node at work", 5.0)
             assert reply.result.names
             replies += 1
             ros.spin_for(0.1)
     finally:
         ros.result(handle.cancel_goal_async(), "the answer to a cancel request")
     assert replies, "the work was done before the first question"
-    ros.result(result, "the end", 30.0)
+    ros.result(result, "the end")

@@ -8,6 +8,7 @@ from excavator_msgs.msg import ArmState
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
+from support.session import LONGEST_WAIT
 from support.simulator import STATE_QOS, Simulator, cylinder
 
 rosbags_rosbag2 = pytest.importorskip("rosbags.rosbag2", reason="PyPI's rosbags is not installed")
@@ -63,9 +64,9 @@ def recorded(ros, excavator, tmp_path_factory):
             lambda topic=topic, readers=readers: ros.node.count_subscribers(topic) >= readers,
             f"the recorder on {topic}",
         )
-    simulator.watch(0.3)
+    simulator.next(75)
     states = simulator.hold(0.8, arm=1e-4) + simulator.hold(0.8, arm=-1e-4)
-    simulator.watch(0.3)
+    simulator.next(75)
     assert recorder.interrupt() == 0, recorder.output()
     assert simulator.process.interrupt() == 0
     return bag, states
@@ -136,8 +137,9 @@ def played(ros, excavator, recorded):
     player = ros.start(excavator, "play", bag, "--delay", "3", "--remap", "/arm/state:=/again/state")
     ros.spin_until(lambda: ros.node.count_publishers("/again/state") == 1, "the player")
     ros.spin_until(lambda: not player.running(), "the end of the bag")
-    ros.spin_for(0.3)
     assert player.wait(1.0) == 0, player.output()
+    for heard, wanted in ((states, expected["/arm/state"]), (joints, expected["/joint_states"])):
+        ros.spin_until(lambda: heard and key(heard[-1]) == key(wanted[-1]), "the last message of the bag")  # noqa: B023
     ros.release(mark)
     return states, joints, expected["/arm/state"], expected["/joint_states"]
 
@@ -168,7 +170,7 @@ def test_a_latched_topic_is_latched_again(ros, excavator, recorded):
     ros.spin_until(lambda: states, "the player")
     models = ros.listen(String, "/arm/model", LATCHED)  # after the model was played
     try:
-        ros.spin_until(lambda: models, "the model", 5.0)
+        ros.spin_until(lambda: models, "the model")
         assert "zx30u-arm" in models[0].data
     finally:
         player.interrupt()
@@ -176,6 +178,7 @@ def test_a_latched_topic_is_latched_again(ros, excavator, recorded):
 
 def test_twice_as_fast_takes_half_the_time(ros, excavator, recorded):
     bag, _ = recorded
+    last_in_bag = key(read(bag)["/arm/state"][-1])
     received = []
 
     def take(state):
@@ -184,13 +187,14 @@ def test_twice_as_fast_takes_half_the_time(ros, excavator, recorded):
     subscription = ros.node.create_subscription(ArmState, "/arm/state", take, STATE_QOS)
     try:
         player = ros.start(excavator, "play", bag, "--rate", "2", "--delay", "2", "--topics", "/arm/state")
-        ros.spin_until(lambda: received and not player.running(), "the end of the bag")
-        ros.spin_for(0.3)
+        ros.spin_until(lambda: received and key(received[-1][1]) == last_in_bag, "the last state of the bag")
+        ros.spin_until(lambda: not player.running(), "the end of the bag")
     finally:
         ros.node.destroy_subscription(subscription)
     (begin, first), (end, last) = received[0], received[-1]
     recorded_time = (key(last)[0] - key(first)[0]) + (key(last)[1] - key(first)[1]) * 1e-9
-    assert end - begin == pytest.approx(recorded_time / 2, rel=0.15)
+    # a busy machine may be late with the last one
+    assert 0.4 * recorded_time < end - begin < 0.75 * recorded_time
 
 
 def test_played_commands_move_the_simulator(ros, excavator, recorded):
@@ -200,7 +204,8 @@ def test_played_commands_move_the_simulator(ros, excavator, recorded):
     player = ros.start(excavator, "play", bag, "--topics", "/arm/orifice_command", "--delay", "1.5")
     before = len(simulator.states)
     ros.spin_until(lambda: not player.running(), "the end of the bag")
-    simulator.watch(0.3)
+    ros.spin_until(lambda: cylinder(simulator.last).orifice_area == pytest.approx(-1e-4), "the last command")
+    simulator.next(75)
     areas = [cylinder(state).orifice_area for state in simulator.states[before:]]
     assert max(areas) == pytest.approx(1e-4) and min(areas) == pytest.approx(-1e-4)
     assert travel(simulator.states[before:]) == pytest.approx(travel(read(bag)["/arm/state"]), rel=0.2)
@@ -214,6 +219,6 @@ def test_played_commands_move_the_simulator(ros, excavator, recorded):
 def test_mistakes_are_said_in_one_line(ros, excavator, recorded, arguments):
     bag, _ = recorded
     process = ros.start(excavator, *(argument.format(bag=bag) for argument in arguments))
-    assert process.wait(10.0) in (1, 2)
+    assert process.wait(LONGEST_WAIT) in (1, 2)
     output = process.output()
     assert output.strip() and "panicked" not in output

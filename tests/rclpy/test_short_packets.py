@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.middleware
+
 HERE = Path(__file__).parent
 NETWORK = """
 ip link set lo mtu 1500 && ip link set lo up && ip link set lo multicast on && ip route add 224.0.0.0/4 dev lo \

@@ -5,6 +5,8 @@ import time
 
 import pytest
 
+pytestmark = pytest.mark.middleware
+
 
 @pytest.fixture(autouse=True)
 def _standin_only(uses_standin):

@@ -16,6 +16,7 @@ use super::valve_limits;
 use crate::arm_state::arm_state;
 use crate::command_gate::{Slew, Wanted};
 use crate::error::VerbError;
+use excavator_ros::system_nanoseconds;
 
 /// Longest time that the machine goes on after its node has gone, on the wall: several times what a valve takes to close.
 const LONGEST_ALONE: Duration = Duration::from_secs(60);
@@ -124,6 +125,7 @@ impl Machine<'_, '_> {
         let state = arm_state(&self.plant.sample(), self.model, oil_temperature);
         Answer {
             state,
+            sampled_at: system_nanoseconds(),
             joint_rates: self.plant.joint_rates(),
             closed: self.slew.are_closed(),
             limited: self.slew.limited(),

@@ -65,6 +65,8 @@ pub(super) struct Order {
 pub(super) struct Answer {
     /// The state, as perfect instruments see it; stamped by the node.
     pub state: ArmState,
+    /// When it was so by the system's clock, ns since the epoch. A node that was stopped in between reads it later.
+    pub sampled_at: i64,
     /// Joint rates, rad/s or m/s.
     pub joint_rates: Vec<f64>,
     /// Whether every valve is closed.

@@ -18,7 +18,7 @@ use crate::error::VerbError;
 use crate::sources;
 use excavator_ros::{
     Diagnostics, Health, Latched, Lifecycle, Logger, Outlet, Pace, Parameters, RosArguments, RosError, Supervisor,
-    TopicQos, system_nanoseconds,
+    TopicQos,
 };
 
 /// Rate of `/joint_states`, Hz: what RViz and robot_state_publisher need.
@@ -176,7 +176,7 @@ impl Simulation<'_> {
             }
             counts.limited = answer.limited;
             let mut state = answer.state;
-            let stamp = clock.stamp();
+            let stamp = clock.stamp(answer.sampled_at);
             state.header.stamp = stamp;
             if self.outlets.clock.is_some() {
                 self.desk.set_simulated_time(stamp.nanoseconds());
@@ -292,14 +292,15 @@ impl SampleClock {
         self.stamps.skip(samples);
     }
 
-    fn stamp(&mut self) -> Time {
+    /// Stamp of a sample that was taken when the system's clock showed `clock` (ns).
+    fn stamp(&mut self, clock: i64) -> Time {
         let nanoseconds = match &mut self.simulated {
             Some(time) => {
                 *time += self.period;
                 *time
             }
             None => {
-                let (stamp, jumped) = self.stamps.stamp(system_nanoseconds());
+                let (stamp, jumped) = self.stamps.stamp(clock);
                 self.jumps += u64::from(jumped);
                 stamp
             }

@@ -1,7 +1,7 @@
-"""Cyclone DDS on the loopback interface, so that the tests neither need nor disturb a network.
+"""DDS on the loopback interface, so that the tests neither need nor disturb a network.
 
 DDS finds peers by multicast. Many machines have it switched off on loopback; root may switch it on. Without it RustDDS
-and Cyclone DDS still find each other by asking each other's well-known ports, but it takes seconds instead of 0.1 s.
+and its peers still find each other by asking each other's well-known ports, but it takes seconds instead of 0.1 s.
 """
 
 import fcntl
@@ -33,7 +33,7 @@ def _switch_multicast_on():
     return bool(_flags() & _IFF_MULTICAST)
 
 
-def prepare():
+def prepare(for_standin):
     """Sets the environment of this process and its children; returns why the tests cannot run, or None."""
     global _multicast
     try:
@@ -41,8 +41,9 @@ def prepare():
     except OSError as error:
         return f"no loopback interface 'lo': {error}"
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    os.environ["RMW_IMPLEMENTATION"] = "rmw_cyclonedds_cpp"
-    os.environ.setdefault("CYCLONEDDS_URI", _configuration(_multicast))
+    if for_standin:
+        os.environ["RMW_IMPLEMENTATION"] = "rmw_cyclonedds_cpp"
+        os.environ.setdefault("CYCLONEDDS_URI", _configuration(_multicast))
     return None
 
 
@@ -65,7 +66,9 @@ def _configuration(multicast):
 
 
 def summary():
-    return "loopback with multicast" if _multicast else "loopback without multicast, peers are found by unicast"
+    reach = os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"]
+    multicast = "with multicast" if _multicast else "without multicast, peers are found by unicast"
+    return f"ROS_AUTOMATIC_DISCOVERY_RANGE={reach}, loopback {multicast}"
 
 
 def free_domain():

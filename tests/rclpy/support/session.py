@@ -13,8 +13,8 @@ from rclpy.utilities import get_rmw_implementation_identifier
 from .loopback import free_domain
 from .process import Process
 
-# Discovery takes 0.1 s with multicast, up to 7 s without; a busy machine gets the rest.
-LONGEST_DISCOVERY = 20.0
+# s; what is waited for comes within 0.1 s as a rule, discovery without multicast within 7 s; a busy machine gets the rest.
+LONGEST_WAIT = 30.0
 
 
 class Session:
@@ -70,7 +70,7 @@ class Session:
         while (left := end - time.monotonic()) > 0:
             self._executor.spin_once(timeout_sec=left)
 
-    def spin_until(self, condition, what, timeout=LONGEST_DISCOVERY):
+    def spin_until(self, condition, what, timeout=LONGEST_WAIT):
         """Runs callbacks until the condition holds; `what` says in words what was waited for."""
         end = time.monotonic() + timeout
         while not condition():
@@ -117,12 +117,12 @@ class Session:
         self.spin_until(client.service_is_ready, f"the service {name}")
         return client
 
-    def result(self, future, what, timeout=10.0):
+    def result(self, future, what, timeout=LONGEST_WAIT):
         """What a future becomes, spinning until then."""
         self.spin_until(future.done, what, timeout)
         return future.result()
 
-    def call(self, srv_type, name, request, timeout=10.0, attempts=3):
+    def call(self, srv_type, name, request, timeout=LONGEST_WAIT, attempts=3):
         """The reply to a new client. A server that has not seen the client's reader yet may answer in vain, so the
         client asks again, within the whole time-out; whoever wants to see that fault asks once."""
         mark = self.mark()

@@ -2,6 +2,7 @@
 
 import math
 import time
+from contextlib import contextmanager
 
 from excavator_msgs.msg import ArmState, OrificeCommand
 from rclpy.qos import QoSProfile
@@ -48,17 +49,19 @@ def neutral(names):
 class Simulator:
     """An `arm-simulator` that runs, with its states and a publisher of commands."""
 
-    def __init__(self, ros, excavator, *, rate=250.0, command_timeout=COMMAND_TIMEOUT, arguments=()):
-        """`command_timeout=None` leaves the node its own."""
+    def __init__(self, ros, excavator, *, rate=250.0, command_timeout=COMMAND_TIMEOUT, under="/arm", arguments=()):
+        """`command_timeout=None` leaves the node its own. `under`: where its topics are, beside another simulator."""
         self._ros = ros
         self.rate = rate
         parameters = ["-p", f"rate:={rate}"]
         if command_timeout is not None:
             parameters += ["-p", f"command_timeout:={command_timeout}"]
-        self.process = ros.start(excavator, "node", "arm-simulator", "--ros-args", *parameters, *arguments)
-        self.states = ros.listen(ArmState, "/arm/state", STATE_QOS)
-        ros.spin_until(lambda: self.states, "the first /arm/state")
-        self._commands = ros.publisher(OrificeCommand, "/arm/orifice_command")
+        names = [f"/arm/{topic}:={under}/{topic}" for topic in ("state", "orifice_command")] if under != "/arm" else []
+        remaps = [word for name in names for word in ("-r", name)]
+        self.process = ros.start(excavator, "node", "arm-simulator", "--ros-args", *parameters, *remaps, *arguments)
+        self.states = ros.listen(ArmState, f"{under}/state", STATE_QOS)
+        ros.spin_until(lambda: self.states, f"the first {under}/state")
+        self._commands = ros.publisher(OrificeCommand, f"{under}/orifice_command")
 
     @property
     def last(self):
@@ -73,24 +76,49 @@ class Simulator:
         self.send(neutral(areas))
         self.send(command(**areas))
 
+    def open_until(self, **areas):
+        """Commands the areas until the valves are as open."""
+
+        def is_open():
+            return all(math.isclose(cylinder(self.last, name).orifice_area, areas[name]) for name in areas)
+
+        with self.holding(**areas):
+            self._ros.spin_until(is_open, f"valves to open {areas} m2")
+
     def hold(self, duration, **areas):
         """Commands the areas, renewed in time, and returns the states of that time."""
         before = len(self.states)
-        timer = self._ros.node.create_timer(RENEWAL, lambda: self.send(command(**areas)))
-        try:
+        with self.holding(**areas):
+            self._ros.spin_for(duration)
+        return self.states[before:]
+
+    @contextmanager
+    def holding(self, **areas):
+        """Commands the areas, renewed in time, while the caller spins. When a renewal came too late, it opens again."""
+
+        def renew():
             if all(cylinder(self.last, name).orifice_area == 0.0 for name in areas):
                 self.open(**areas)
             else:
                 self.send(command(**areas))
-            self._ros.spin_for(duration)
+
+        renew()
+        timer = self._ros.node.create_timer(RENEWAL, renew)
+        try:
+            yield
         finally:
             self._ros.node.destroy_timer(timer)
-        return self.states[before:]
 
     def watch(self, duration):
         """The states of the next seconds."""
         before = len(self.states)
         self._ros.spin_for(duration)
+        return self.states[before:]
+
+    def next(self, count):
+        """The next states, whenever they come."""
+        before = len(self.states)
+        self._ros.spin_until(lambda: len(self.states) >= before + count, f"{count} states")
         return self.states[before:]
 
     def settle(self):

@@ -138,10 +138,10 @@ fn catalogue_of(given: &[String], hidden: &str, wanted: usize) -> Result<Catalog
     let catalogue = Catalogue::of(effects);
     let formulas: String = (0..missing)
         .map(|number| {
-            let place = -0.25 + 0.5 * number as f64 / missing as f64;
+            let place = -0.4 + 0.8 * number as f64 / missing as f64;
             format!(
                 "[[formula]]\nname = \"friction_at_{number}\"\nacts_on = \"piston_force\"\n\
-                 formula = \"-F*sign(v)*exp(-((s - {place:.4})/0.01)^2)\"\n\
+                 formula = \"-F*sign(v)*exp(-((s/stroke - {place:.4})/0.02)^2)\"\n\
                  parameters.F = {{ unit = \"N\", minimum = 0.0, maximum = 1e5, start = [100.0], meaning = \"friction there\" }}\n"
             )
         })

@@ -17,6 +17,8 @@ use crate::verbs::Program;
 const SECONDS: f64 = 20.0;
 /// Time in which nodes find each other, s.
 const START: f64 = 5.0;
+/// Half width of the monitor's window as it comes, ns.
+const HALF_WIDTH: u64 = 10_000_000;
 /// A domain that no robot is likely to be in.
 const DOMAIN: &str = "87";
 
@@ -33,7 +35,7 @@ pub fn live(program: &Program<'_>) -> Result<Group, String> {
         name: "Live nodes".into(),
         what: format!(
             "Simulator, energy monitor and recorder are processes on one computer; {SECONDS:.0} s. Latency is that from the arrival of a \
-             state at the recorder to that of its energies."
+             state at the recorder to that of the energies that it sets off."
         ),
         result: "share of a core, latency, losses".into(),
         runs,
@@ -145,9 +147,20 @@ impl Traffic {
             let span = stamps.last().zip(stamps.first()).map_or(0, |(last, first)| last - first);
             missing += ((span as f64 * 1e-9 * rate).round() as usize + 1).saturating_sub(stamps.len());
         }
+        // Energies belong to a moment in the middle of the monitor's window; the state that completes the window sets them off.
+        let mut by_stamp: HashMap<&str, Vec<(u64, u64)>> = HashMap::new();
+        for ((machine, stamp), &arrived) in &states {
+            by_stamp.entry(machine).or_default().push((*stamp, arrived));
+        }
+        by_stamp.values_mut().for_each(|states| states.sort_unstable());
         let mut latencies: Vec<f64> = energies
             .iter()
-            .filter_map(|(key, &arrived)| states.get(key).map(|&state| (arrived as f64 - state as f64) * 1e-9))
+            .filter_map(|((machine, stamp), &arrived)| {
+                let states = by_stamp.get(machine.as_str())?;
+                let last = states.partition_point(|(other, _)| *other < stamp + HALF_WIDTH);
+                let (_, set_off) = states.get(last)?;
+                Some((arrived as f64 - *set_off as f64) * 1e-9)
+            })
             .collect();
         latencies.sort_by(f64::total_cmp);
         // What was under way when the recorder began and ended is no loss.

@@ -12,14 +12,25 @@ Every group ran in one go on one machine, ours and others alike. `ratio` is the 
 are the shortest of several runs; a verb is a process of its own, with its start. Memory is the largest resident set.
 ";
 
+const FLAME: &str = "
+![Flame graph of a diagnosis: most of the time is spent in the integrator, most of that in the rates of the equations](pictures/diagnose-flame.svg)
+
+Where the time of a diagnosis with two effects goes: three quarters are fits by output error, and nearly all of a fit is the integration of the
+states with their sensitivities. Half of that is the linearisation, a third the rates. What a round of the search does beside fits
+(promises, starts, screening, the weak form) takes a tenth.
+";
+
 /// The page in Markdown, with the parts in this order.
 pub fn page(figures: &Figures, order: &[&str]) -> String {
     let mut text = String::from(HEAD);
     let _ = writeln!(text, "\nMachine: {}, {} threads.", figures.processor, figures.threads);
-    for part in order.iter().filter_map(|name| figures.parts.get(*name)) {
+    for (name, part) in order.iter().filter_map(|name| Some((*name, figures.parts.get(*name)?))) {
         for group in &part.groups {
             text += &group_text(group);
             let _ = writeln!(text, "\nMeasured on {}.", part.date);
+        }
+        if name == "diagnose" {
+            text += FLAME;
         }
     }
     text

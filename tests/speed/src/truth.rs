@@ -27,7 +27,7 @@ pub fn truth() -> Result<Model, String> {
     Ok(model)
 }
 
-/// Largest distance of identified parameters from the truth, as a share; bulk modulus, damping and gains.
+/// Largest distance of identified parameters from the truth, as a share of their 95 % margins: inertia, damping, bulk modulus, gains.
 ///
 /// # Errors
 /// In words, where the result has not these parameters.
@@ -35,8 +35,8 @@ pub fn largest_error(identified: &serde_json::Value) -> Result<f64, String> {
     let model = truth()?;
     let parameters = identified["parameters"].as_array().ok_or("no parameters in the result")?;
     let error = |name: &str| {
-        let found = parameters.iter().find(|entry| entry["name"] == name)?["value"].as_f64()?;
-        Some((found / model.value_of(name)? - 1.0).abs())
+        let found = parameters.iter().find(|entry| entry["name"] == name)?;
+        Some((found["value"].as_f64()? - model.value_of(name)?).abs() / found["margin_95"].as_f64()?)
     };
     FACTORS.iter().try_fold(0.0, |most: f64, (name, _)| {
         error(name).map(|error| most.max(error)).ok_or_else(|| format!("{name} was not identified"))

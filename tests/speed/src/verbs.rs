@@ -57,7 +57,7 @@ pub fn long_recording(program: &Program<'_>, seconds: f64, rate: f64) -> Result<
     let (cost, result) = program.json("energy", &on_bag)?;
     runs.push(run_of("energy", &cost, residual_of(&result)));
     let (cost, result) = program.json("identify", &on_bag)?;
-    runs.push(run_of("identify", &cost, format!("largest error {:.1} %", 100.0 * largest_error(&result)?)));
+    runs.push(run_of("identify", &cost, format!("largest error {:.1} of its 95 % margin", largest_error(&result)?)));
     let (cost, result) = program.json("compare", &on_bag)?;
     runs.push(run_of("compare", &cost, format!("NMSE of displacement {:.2e}", nmse_of(&result))));
     let halves = [format!("{text}@0..{:.0}", 0.7 * seconds), format!("{text}@{:.0}..{seconds:.0}", 0.7 * seconds)];
@@ -128,27 +128,22 @@ fn run_of(name: &str, cost: &Cost, result: String) -> Run {
 /// The verdict and the candidates that it names, as in "found: valve_lag".
 fn verdict_of(result: &Value) -> String {
     let verdict = result["verdict"].as_str().unwrap_or("no verdict");
-    let first = result["candidates"].as_array().and_then(|candidates| candidates.first());
-    match (verdict, first.and_then(|candidate| candidate["effect"].as_str())) {
-        ("missing_effect", Some(effect)) => {
-            let with: Vec<&str> = first
-                .and_then(|candidate| candidate["with"].as_array())
-                .into_iter()
-                .flatten()
-                .filter_map(|other| other["effect"].as_str())
-                .collect();
-            format!("found: {}", std::iter::once(effect).chain(with).collect::<Vec<_>>().join("+"))
-        }
-        _ => format!("found: {verdict}"),
-    }
+    let names = |list: &str| -> Vec<String> {
+        let effects = result[list].as_array().into_iter().flatten().filter_map(|one| one["effect"].as_str());
+        effects.map(str::to_string).collect()
+    };
+    let (together, candidates) = (names("together"), names("candidates"));
+    let found = if together.is_empty() { candidates.into_iter().take(1).collect() } else { together };
+    let is_found = verdict == "missing_effect" && !found.is_empty();
+    format!("found: {}", if is_found { found.join("+") } else { verdict.to_string() })
 }
 
-/// What the ledger does not account for, as a share of what was supplied.
+/// What the ledger does not account for, as a share of what was dissipated: what was supplied may come back.
 fn residual_of(result: &Value) -> String {
     let arm = &result["energy"]["cylinders"]["arm"];
-    match (arm["residual"].as_f64(), arm["supplied"].as_f64()) {
-        (Some(residual), Some(supplied)) => {
-            format!("residual {:+.2} % of the energy supplied", 100.0 * residual / supplied)
+    match (arm["residual"].as_f64(), arm["dissipation"].as_f64()) {
+        (Some(residual), Some(dissipated)) => {
+            format!("residual {:.1} % of the energy dissipated", 100.0 * (residual / dissipated).abs())
         }
         _ => "no ledger".into(),
     }

@@ -18,11 +18,9 @@ __all__ = [
     "create_node",
     "get_default_context",
     "init",
-    "ok",
     "shutdown",
     "spin",
     "spin_once",
-    "spin_until_future_complete",
     "try_shutdown",
 ]
 
@@ -39,10 +37,6 @@ def shutdown(*, context=None):
 
 def try_shutdown(*, context=None):
     (context or get_default_context()).try_shutdown()
-
-
-def ok(*, context=None):
-    return (context or get_default_context()).ok()
 
 
 def create_node(node_name, *, context=None, namespace=None, enable_rosout=True, start_parameter_services=True):
@@ -83,7 +77,3 @@ def spin_once(node, *, executor=None, timeout_sec=None):
 
 def spin(node, executor=None):
     _with_node(node, executor, lambda executor: executor.spin())
-
-
-def spin_until_future_complete(node, future, executor=None, timeout_sec=None):
-    _with_node(node, executor, lambda executor: executor.spin_until_future_complete(future, timeout_sec))

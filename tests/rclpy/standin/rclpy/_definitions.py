@@ -16,6 +16,7 @@ PACKAGE_FOLDERS = {
     "excavator_msgs": REPOSITORY / "msgs",
     "rcl_interfaces": STANDIN / "interfaces" / "rcl_interfaces",
     "action_msgs": STANDIN / "interfaces" / "action_msgs",
+    "lifecycle_msgs": STANDIN / "interfaces" / "lifecycle_msgs",
 }
 
 store = get_typestore(Stores.ROS2_JAZZY)
@@ -53,7 +54,7 @@ def _register(text, name):
 
 
 def _parts(path, count):
-    parts = [part.strip("\n") for part in path.read_text().split("\n---\n")]
+    parts = [part.strip("\n") for part in f"\n{path.read_text()}".split("\n---\n")]
     if len(parts) != count:
         raise ImportError(f"{path} has {len(parts)} parts between '---', expected {count}")
     return parts

@@ -2,7 +2,6 @@
 
 import itertools
 import threading
-import time
 
 from ._entity import Reader, Writer
 from ._names import REPLY_PREFIX, REQUEST_PREFIX
@@ -40,14 +39,6 @@ class Client:
             return bool(readers and writers)
         return any(mark.get("serviceid") in services for mark in writers)
 
-    def wait_for_service(self, timeout_sec=None):
-        end = None if timeout_sec is None else time.monotonic() + timeout_sec
-        while self.context.ok() and not self.service_is_ready():
-            if end is not None and time.monotonic() >= end:
-                return False
-            time.sleep(0.01)
-        return self.service_is_ready()
-
     def call_async(self, request):
         if not isinstance(request, self.srv_type.Request):
             raise TypeError()
@@ -58,14 +49,6 @@ class Client:
         future.add_done_callback(self.remove_pending_request)
         self._writer.dds.write(self._writer.codec.encode((self._id, number), request))
         return future
-
-    def call(self, request, timeout_sec=None):
-        finished = threading.Event()
-        future = self.call_async(request)
-        future.add_done_callback(lambda _: finished.set())
-        if not finished.wait(timeout_sec):
-            self.remove_pending_request(future)
-        return future.result()
 
     def remove_pending_request(self, future):
         with self._lock:

@@ -55,10 +55,3 @@ class Context:
     def try_shutdown(self):
         if self.ok():
             self.shutdown()
-
-    def __enter__(self):
-        self.init()
-        return self
-
-    def __exit__(self, *_):
-        self.try_shutdown()

@@ -74,16 +74,6 @@ class SingleThreadedExecutor:
             self._wait(left)
         raise ExternalShutdownException()
 
-    def spin_until_future_complete(self, future, timeout_sec=None):
-        endless = timeout_sec is None or timeout_sec < 0
-        end = float("inf") if endless else time.monotonic() + timeout_sec
-        future.add_done_callback(lambda _: self.wake())
-        while self._context.ok() and not future.done():
-            left = end - time.monotonic()
-            if left <= 0:
-                return
-            self.spin_once(None if endless else left)
-
     def _execute_one(self):
         for node in list(self._nodes):
             for timer in list(node._timers):

@@ -9,16 +9,9 @@ class Timer:
         self.callback = callback
         self._period = period_sec
         self._next = time.monotonic() + period_sec
-        self._cancelled = False
-
-    def cancel(self):
-        self._cancelled = True
-
-    def is_canceled(self):
-        return self._cancelled
 
     def _seconds_left(self):
-        return float("inf") if self._cancelled else self._next - time.monotonic()
+        return self._next - time.monotonic()
 
     def _execute_if_due(self):
         if self._seconds_left() > 0:

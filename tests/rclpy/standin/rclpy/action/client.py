@@ -1,6 +1,5 @@
 """Action client: three services and two topics under NAME/_action/."""
 
-import time
 import uuid
 import weakref
 
@@ -86,14 +85,6 @@ class ActionClient:
         return all(client.service_is_ready() for client in clients) and all(
             topic.get_publisher_count() > 0 for topic in topics
         )
-
-    def wait_for_server(self, timeout_sec=None):
-        end = None if timeout_sec is None else time.monotonic() + timeout_sec
-        while self._node.context.ok() and not self.server_is_ready():
-            if end is not None and time.monotonic() >= end:
-                return False
-            time.sleep(0.01)
-        return self.server_is_ready()
 
     def send_goal_async(self, goal, feedback_callback=None, goal_uuid=None):
         if not isinstance(goal, self._action_type.Goal):
