@@ -94,7 +94,7 @@ fn power(row: Row, site: Site, value: f64, now: &Situation<'_, f64>) -> f64 {
 }
 
 /// Everything twice as far, as fast and as strong.
-fn twice<'m>(now: &Situation<'m, f64>) -> Situation<'m, f64> {
+pub(super) fn twice<'m>(now: &Situation<'m, f64>) -> Situation<'m, f64> {
     let mut twice = now.clone();
     for piston in &mut twice.pistons {
         for value in [

@@ -4,6 +4,7 @@
 //! (`shortlist`), fitted like effects of the catalogue, and judged by the same decision. Where no law holds, the curve itself is one
 //! (`curve`), and says so.
 
+mod bounded;
 mod curve;
 mod grammar;
 mod guess;

@@ -7,6 +7,7 @@ use excavator_model::formula::{FormulaText, Law};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, site_name};
 
+use super::bounded::{bounded, turns_round};
 use super::curve::table_law;
 use super::grammar::{COEFFICIENT, law_text};
 use super::promise::MOST_TERMS;
@@ -55,8 +56,8 @@ pub fn propose(
             if explained { ProposalVerdict::Law } else { ProposalVerdict::NoLaw }
         }
     };
-    let dissipates = |trial: &Trial| laws_dissipate(trial, identification);
-    let verdict = simplest_first(pool.verdict(policy), &pool.trials, &dissipates);
+    let is_possible = |trial: &Trial| laws_dissipate(trial, identification) && !turns_round(trial, identification);
+    let verdict = simplest_first(pool.verdict(policy), &pool.trials, &is_possible);
     proposals(kind, pool, verdict, survey, identification, validation)
 }
 
@@ -105,6 +106,7 @@ impl Trials<'_> {
                 let laws = additions(&several, pool);
                 try_laws(pool, base, laws, self.effort, self.policy, &progress);
             }
+            self.bounded(pool);
             let verdict = pool.verdict(self.policy);
             let ratio = |number: usize| verdict.standings[number].log_error_ratio;
             let is_promising = verdict.best != 0 && ratio(verdict.best) < LARGEST_REST * ratio(0);
@@ -114,6 +116,16 @@ impl Trials<'_> {
             base = verdict.best;
         }
         Ok(survey)
+    }
+
+    /// Beside each favoured law that would turn an opening round, the one that closes instead.
+    fn bounded(&self, pool: &mut Pool<'_>) {
+        let progress = |what: &str, _: f64| (self.progress)(what, 0.9);
+        for number in pool.verdict(self.policy).set {
+            if let Some((base, law)) = bounded(pool, number, self.identification) {
+                try_laws(pool, base, vec![law], self.effort, self.policy, &progress);
+            }
+        }
     }
 
     /// The curve of what is left, so that the error falls where nobody understands it yet.

@@ -8,8 +8,9 @@ use crate::search::Trial;
 const NEGLIGIBLE: f64 = 0.01;
 
 /// The verdict with the simplest hypothesis of its set first, and those away that predict no better with more parameters: a coefficient
-/// that may be zero, a threshold where nothing is. Of equally simple ones those come first that never put energy into the machine.
-pub(super) fn simplest_first(mut verdict: Verdict, trials: &[Trial], dissipates: &dyn Fn(&Trial) -> bool) -> Verdict {
+/// that may be zero, a threshold where nothing is. Of equally simple ones those come first that are possible beyond what was recorded: they
+/// never put energy into the machine and turn no opening round.
+pub(super) fn simplest_first(mut verdict: Verdict, trials: &[Trial], is_possible: &dyn Fn(&Trial) -> bool) -> Verdict {
     let complexity = |number: &usize| trials.get(*number).map_or(usize::MAX, Trial::added_parameters);
     let (own, error) = (complexity(&verdict.best), verdict.standings[verdict.best].log_error_ratio);
     let is_as_good = |number: &usize| {
@@ -24,8 +25,8 @@ pub(super) fn simplest_first(mut verdict: Verdict, trials: &[Trial], dissipates:
     let Some(fewest) = verdict.set.iter().map(complexity).min() else { return verdict };
     verdict.set.retain(|number| complexity(number) == fewest);
     let order = |number: &usize| {
-        let puts_energy_in = trials.get(*number).is_some_and(|trial| !dissipates(trial));
-        (puts_energy_in, verdict.standings[*number].log_error_ratio)
+        let is_impossible = trials.get(*number).is_some_and(|trial| !is_possible(trial));
+        (is_impossible, verdict.standings[*number].log_error_ratio)
     };
     let mut ordered: Vec<(usize, (bool, f64))> = verdict.set.iter().map(|number| (*number, order(number))).collect();
     ordered.sort_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));

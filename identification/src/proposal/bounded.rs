@@ -1,0 +1,88 @@
+//! Laws that would turn an opening round beyond what was recorded.
+
+use std::sync::Arc;
+
+use excavator_model::effects::Site;
+use excavator_model::formula::{FormulaText, Law};
+use excavator_model::recording::Recording;
+
+use super::merits::{law_of, twice};
+use crate::regression::situations_along;
+use crate::search::{Addition, Pool, Trial};
+
+/// A law whose opening would have the wrong sign where everything is twice as strong as recorded, in the form that closes instead, with
+/// the number of the trial that it was added to. `None` where there is no such law.
+///
+/// What reduces an opening in proportion to a pressure or a speed closes it at some size of that, and a product goes on: the valve would
+/// meter to the other side. The recording cannot tell, because it ends before.
+pub(super) fn bounded(pool: &Pool<'_>, number: usize, recordings: &[&Recording]) -> Option<(usize, Addition)> {
+    let trial = pool.trials.get(number)?;
+    let (addition, before) = trial.additions.split_last()?;
+    if !turns_round(trial, recordings) {
+        return None;
+    }
+    let law = Law::read(&closing(addition.physics.formula()?)).ok()?;
+    let base = pool.trials.iter().position(|other| other.additions == before)?;
+    Some((base, Addition { physics: Arc::new(law), site: addition.site }))
+}
+
+/// Whether the last law of a trial gives an opening another sign where everything is twice as strong as recorded.
+pub(super) fn turns_round(trial: &Trial, recordings: &[&Recording]) -> bool {
+    let Some(effect) = trial.additions.last().and_then(|addition| trial.effect(addition)) else { return false };
+    let Some(law) = law_of(effect).filter(|law| law.row().is_an_opening()) else { return false };
+    let Site::Cylinder(cylinder) = effect.site else { return false };
+    let parameters: Vec<f64> = effect.parameters.iter().map(|parameter| parameter.value).collect();
+    let along = recordings.iter().map(|recording| situations_along(&trial.fit.model, recording));
+    along.flatten().flatten().any(|now| {
+        let now = twice(&now);
+        law.value(effect.site, &parameters, &[], &now) * now.pistons[cylinder].opening < 0.0
+    })
+}
+
+/// The law that closes where the given one would turn round.
+fn closing(text: &FormulaText) -> FormulaText {
+    let formula = match text.formula.strip_prefix("u - k*u*") {
+        Some(rest) if !has_sum(rest) => format!("u*max(1 - k*{rest}, 0)"),
+        _ => format!("if(u > 0, max({0}, 0), min({0}, 0))", text.formula),
+    };
+    let name = format!("closing_{}", text.name).chars().take(LONGEST_NAME).collect();
+    FormulaText { name, formula, ..text.clone() }
+}
+
+/// Whether there is a sum outside all brackets.
+fn has_sum(formula: &str) -> bool {
+    let mut depth = 0;
+    formula.chars().any(|letter| {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            _ => {}
+        }
+        depth == 0 && matches!(letter, '+' | '-')
+    })
+}
+
+/// Longest name of a formula effect.
+const LONGEST_NAME: usize = 60;
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_opening_closes_instead_of_turning_round() {
+        let of = |formula: &str| {
+            let text = serde_json::json!({ "name": "own", "acts_on": "opening", "formula": formula });
+            closing(&serde_json::from_value(text).unwrap()).formula
+        };
+        assert_eq!(
+            of("u - k*u*if(u > 0, p_pump - p_cap, p_pump - p_rod)"),
+            "u*max(1 - k*if(u > 0, p_pump - p_cap, p_pump - p_rod), 0)"
+        );
+        assert_eq!(
+            of("u - k*u*p_cap + k_2*u^3"),
+            "if(u > 0, max(u - k*u*p_cap + k_2*u^3, 0), min(u - k*u*p_cap + k_2*u^3, 0))"
+        );
+    }
+}
