@@ -6,11 +6,14 @@ use excavator_model::effects::Site;
 use excavator_model::formula::{FormulaText, Law};
 use excavator_model::recording::Recording;
 
-use super::merits::{law_of, twice};
+use super::merits::{law_of, times};
 use crate::regression::situations_along;
 use crate::search::{Addition, Pool, Trial};
 
-/// A law whose opening would have the wrong sign where everything is twice as strong as recorded, in the form that closes instead, with
+/// How much stronger than recorded a law is looked at: valves of mobile machines see 25 MPa, and recordings of light work have two or three.
+const STRONGEST: f64 = 10.0;
+
+/// A law whose opening would have the wrong sign where everything is [`STRONGEST`] times as strong as recorded, in the form that closes instead, with
 /// the number of the trial that it was added to. `None` where there is no such law.
 ///
 /// What reduces an opening in proportion to a pressure or a speed closes it at some size of that, and a product goes on: the valve would
@@ -26,7 +29,7 @@ pub(super) fn bounded(pool: &Pool<'_>, number: usize, recordings: &[&Recording])
     Some((base, Addition { physics: Arc::new(law), site: addition.site }))
 }
 
-/// Whether the last law of a trial gives an opening another sign where everything is twice as strong as recorded.
+/// Whether the last law of a trial gives an opening another sign where everything is [`STRONGEST`] times as strong as recorded.
 pub(super) fn turns_round(trial: &Trial, recordings: &[&Recording]) -> bool {
     let Some(effect) = trial.additions.last().and_then(|addition| trial.effect(addition)) else { return false };
     let Some(law) = law_of(effect).filter(|law| law.row().is_an_opening()) else { return false };
@@ -34,7 +37,7 @@ pub(super) fn turns_round(trial: &Trial, recordings: &[&Recording]) -> bool {
     let parameters: Vec<f64> = effect.parameters.iter().map(|parameter| parameter.value).collect();
     let along = recordings.iter().map(|recording| situations_along(&trial.fit.model, recording));
     along.flatten().flatten().any(|now| {
-        let now = twice(&now);
+        let now = times(STRONGEST, &now);
         law.value(effect.site, &parameters, &[], &now) * now.pistons[cylinder].opening < 0.0
     })
 }

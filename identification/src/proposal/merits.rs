@@ -45,7 +45,7 @@ pub(super) fn merits(law: &Law, effect: &ModelEffect, situations: &[Situation<'_
         }
     }
     let steep = extreme.filter(|(value, ..)| *value > 0.0).and_then(|(value, now, states)| {
-        let power = (change(law, effect.site, &parameters, states, &twice(now)).abs() / value).log2();
+        let power = (change(law, effect.site, &parameters, states, &times(2.0, now)).abs() / value).log2();
         (power.is_finite() && power > STEEP).then_some(power)
     });
     let unsure = effect.parameters.iter().filter(|parameter| {
@@ -93,10 +93,10 @@ fn power(row: Row, site: Site, value: f64, now: &Situation<'_, f64>) -> f64 {
     if power.is_finite() { power } else { 0.0 }
 }
 
-/// Everything twice as far, as fast and as strong.
-pub(super) fn twice<'m>(now: &Situation<'m, f64>) -> Situation<'m, f64> {
-    let mut twice = now.clone();
-    for piston in &mut twice.pistons {
+/// Everything so many times as far, as fast and as strong.
+pub(super) fn times<'m>(factor: f64, now: &Situation<'m, f64>) -> Situation<'m, f64> {
+    let mut stronger = now.clone();
+    for piston in &mut stronger.pistons {
         for value in [
             &mut piston.displacement,
             &mut piston.velocity,
@@ -105,12 +105,12 @@ pub(super) fn twice<'m>(now: &Situation<'m, f64>) -> Situation<'m, f64> {
             &mut piston.rod_pressure,
             &mut piston.opening,
         ] {
-            *value *= 2.0;
+            *value *= factor;
         }
     }
-    twice.pump_pressure *= 2.0;
-    twice.tank_pressure *= 2.0;
-    twice
+    stronger.pump_pressure *= factor;
+    stronger.tank_pressure *= factor;
+    stronger
 }
 
 /// The law of an effect that was read from a formula.
