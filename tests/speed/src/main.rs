@@ -59,12 +59,13 @@ struct Measure {
 /// A part and what measures it.
 type Measured = (&'static str, fn(&Program<'_>, &Peers) -> Result<Vec<Group>, String>);
 
-const COSTS: [Measured; 6] = [
+const COSTS: [Measured; 7] = [
     ("reading", |program, peers| Ok(vec![reading::reading(&recordings::long(program.folder, 300.0, 1000.0)?, peers)?])),
     ("simulation", |_, peers| simulation::simulation(peers)),
     ("identification", |_, peers| Ok(vec![identification::identification(peers)?])),
     ("diagnose", |program, _| Ok(vec![verbs::diagnoses(program)?])),
     ("hour", |program, _| Ok(vec![verbs::long_recording(program, 3600.0, 1000.0)?])),
+    ("week", |program, _| Ok(vec![verbs::week(program)?])),
     ("live", |program, _| Ok(vec![live::live(program)?])),
 ];
 

@@ -62,6 +62,22 @@ pub fn long(folder: &Path, seconds: f64, rate: f64) -> Result<PathBuf, String> {
     Ok(path)
 }
 
+/// So many hours at a rate in Hz, each with the motions of the first, as a bag.
+///
+/// # Errors
+/// In words, where the machine cannot be simulated or the bag not written.
+pub fn hours(folder: &Path, number: usize, rate: f64) -> Result<PathBuf, String> {
+    let path = folder.join(format!("{number}h-{rate:.0}Hz"));
+    let hour = recorded(3600.0, rate)?;
+    let mut all = hour.clone();
+    for (column, first) in all.columns_mut().into_iter().zip(hour.clone().columns_mut()) {
+        *column = first.repeat(number);
+    }
+    all.time = (0..number * hour.len()).map(|index| index as f64 / rate).collect();
+    write_recording(&path, &all, &Topics::default(), &WriteOptions::default()).map_err(|error| error.to_string())?;
+    Ok(path)
+}
+
 /// The recording of [`long`].
 ///
 /// # Errors

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::clock::{Cost, cost_of};
 use crate::figures::{Group, Run};
-use crate::recordings::{Pair, blind_pair, long};
+use crate::recordings::{Pair, blind_pair, hours, long};
 use crate::truth::largest_error;
 
 /// The program under test and where it writes.
@@ -48,14 +48,30 @@ pub fn diagnoses(program: &Program<'_>) -> Result<Group, String> {
 /// # Errors
 /// In words, where the recording cannot be made or the program fails.
 pub fn long_recording(program: &Program<'_>, seconds: f64, rate: f64) -> Result<Group, String> {
-    let bag = long(program.folder, seconds, rate)?;
+    every_verb(program, &long(program.folder, seconds, rate)?, seconds, rate)
+}
+
+/// Every offline verb on a week at 100 Hz.
+///
+/// # Errors
+/// As [`long_recording`].
+pub fn week(program: &Program<'_>) -> Result<Group, String> {
+    const HOURS: usize = 7 * 24;
+    every_verb(program, &hours(program.folder, HOURS, 100.0)?, 3600.0 * HOURS as f64, 100.0)
+}
+
+fn every_verb(program: &Program<'_>, bag: &Path, seconds: f64, rate: f64) -> Result<Group, String> {
     let text = bag.display().to_string();
     let mut runs = Vec::new();
     let (cost, result) = program.json("info", std::slice::from_ref(&text))?;
     runs.push(run_of("info", &cost, format!("{} messages", result["message_count"])));
     let on_bag = ["--model", "zx30u-arm", "--bag", &text].map(String::from);
-    let (cost, result) = program.json("energy", &on_bag)?;
-    runs.push(run_of("energy", &cost, residual_of(&result)));
+    if rate < LEAST_RATE_OF_ENERGY {
+        runs.push(Run::missing("energy", "wants 200 samples per second for its slopes"));
+    } else {
+        let (cost, result) = program.json("energy", &on_bag)?;
+        runs.push(run_of("energy", &cost, residual_of(&result)));
+    }
     let (cost, result) = program.json("identify", &on_bag)?;
     runs.push(run_of("identify", &cost, format!("largest error {:.1} of its 95 % margin", largest_error(&result)?)));
     let (cost, result) = program.json("compare", &on_bag)?;
@@ -78,6 +94,9 @@ pub fn long_recording(program: &Program<'_>, seconds: f64, rate: f64) -> Result<
         runs,
     })
 }
+
+/// Samples per second that slopes over 20 ms need.
+const LEAST_RATE_OF_ENERGY: f64 = 200.0;
 
 /// "1 h", "10 min", "20 s".
 pub fn length_of(seconds: f64) -> String {
