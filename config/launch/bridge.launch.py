@@ -7,15 +7,16 @@
 `excavator` is looked for in the ROS package, then on the PATH, unless `program` says where it is.
 """
 
-import subprocess
+import sys
 from pathlib import Path
 
-from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, EmitEvent, ExecuteProcess, LogInfo, OpaqueFunction
-from launch.events import Shutdown
-from launch.substitutions import LaunchConfiguration
-from launch_ros.actions import Node
+from launch.actions import OpaqueFunction
+
+# launch reads this file by its path, so its folder is not searched
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from excavator_parts import declared, links, node, recorder, value  # noqa: E402
 
 ARGUMENTS = {
     "program": ("", "the program, if it is neither in the ROS package nor on the PATH"),
@@ -25,46 +26,6 @@ ARGUMENTS = {
     "model": ("", "model of the machine, built-in or file; empty: the one on arm/model"),
     "record": ("", "bag to record everything into; empty: none"),
 }
-END = [EmitEvent(event=Shutdown(reason="a part has ended"))]
-
-
-def value(context, name):
-    return LaunchConfiguration(name).perform(context)
-
-
-def program(context):
-    """Where `excavator` is."""
-    if value(context, "program"):
-        return value(context, "program")
-    try:
-        return str(Path(get_package_prefix("excavator")) / "lib" / "excavator" / "excavator")
-    except PackageNotFoundError:
-        return "excavator"
-
-
-def node(context, kind, parameters):
-    command = [program(context), "node", kind, "--ros-args"]
-    for name, setting in parameters.items():
-        command += ["-p", f"{name}:={setting}"]
-    if value(context, "namespace"):
-        command += ["-r", f"__ns:=/{value(context, 'namespace').strip('/')}"]
-    return ExecuteProcess(cmd=command, name=kind, output="screen", sigterm_timeout="10", on_exit=END)
-
-
-def robot_description(context):
-    """Publishes the links of the model's machine; without robot_state_publisher, which not every ROS 2 has, a word about it."""
-    package = "robot_state_publisher"
-    try:
-        get_package_prefix(package)
-    except PackageNotFoundError:
-        return LogInfo(msg=f"{package} is not installed: no robot description is published")
-    words = [program(context), "model", "urdf", "--model", value(context, "model")]
-    urdf = subprocess.run(words, capture_output=True, text=True, check=False)
-    if urdf.returncode != 0:
-        raise RuntimeError(urdf.stderr.strip())
-    parameters = [{"robot_description": urdf.stdout}]
-    namespace = value(context, "namespace")
-    return Node(package=package, executable=package, namespace=namespace, parameters=parameters, on_exit=END)
 
 
 def start(context):
@@ -74,17 +35,9 @@ def start(context):
     if value(context, "energy") == "true":
         actions.append(node(context, "energy-monitor", {"model": model} if model else {}))
     if model:
-        actions.append(robot_description(context))
-    if value(context, "record"):
-        words = [program(context), "record", "--all", "-o", value(context, "record")]
-        recorder = ExecuteProcess(cmd=words, name="recorder", output="screen", sigterm_timeout="10", on_exit=END)
-        actions.append(recorder)
-    return actions
+        actions.append(links(context))
+    return actions + recorder(context)
 
 
 def generate_launch_description():
-    declared = [
-        DeclareLaunchArgument(name, default_value=default, description=description)
-        for name, (default, description) in ARGUMENTS.items()
-    ]
-    return LaunchDescription([*declared, OpaqueFunction(function=start)])
+    return LaunchDescription([*declared(ARGUMENTS), OpaqueFunction(function=start)])

@@ -6,15 +6,16 @@
 When one of them ends, all end. `excavator` is looked for in the ROS package, then on the PATH, unless `program` says where it is.
 """
 
-import subprocess
+import sys
 from pathlib import Path
 
-from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, EmitEvent, ExecuteProcess, LogInfo, OpaqueFunction
-from launch.events import Shutdown
-from launch.substitutions import LaunchConfiguration
-from launch_ros.actions import Node
+from launch.actions import OpaqueFunction
+
+# launch reads this file by its path, so its folder is not searched
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from excavator_parts import declared, links, node, of_ros, recorder, value  # noqa: E402
 
 CONFIG = Path(__file__).resolve().parents[1]
 
@@ -33,46 +34,6 @@ ARGUMENTS = {
 }
 SIMULATOR_PARAMETERS = ("model", "rate", "seed", "pressure_noise", "displacement_noise")
 NUMBERS = ("rate", "seed", "pressure_noise", "displacement_noise")
-END = [EmitEvent(event=Shutdown(reason="a part has ended"))]
-
-
-def value(context, name):
-    return LaunchConfiguration(name).perform(context)
-
-
-def program(context):
-    """Where `excavator` is."""
-    if value(context, "program"):
-        return value(context, "program")
-    try:
-        return str(Path(get_package_prefix("excavator")) / "lib" / "excavator" / "excavator")
-    except PackageNotFoundError:
-        return "excavator"
-
-
-def is_installed(package):
-    try:
-        get_package_prefix(package)
-    except PackageNotFoundError:
-        return False
-    return True
-
-
-def node(context, kind, parameters):
-    command = [program(context), "node", kind, "--ros-args"]
-    for name, setting in parameters.items():
-        command += ["-p", f"{name}:={setting}"]
-    if value(context, "namespace"):
-        command += ["-r", f"__ns:=/{value(context, 'namespace').strip('/')}"]
-    return ExecuteProcess(cmd=command, name=kind, output="screen", sigterm_timeout="10", on_exit=END)
-
-
-def of_ros(context, package, **words):
-    """A node of ROS's own, where its package is installed; else a word about it."""
-    if not is_installed(package):
-        return LogInfo(msg=f"{package} is not installed and is not started")
-    namespace = value(context, "namespace")
-    return Node(package=package, executable=package, namespace=namespace, on_exit=END, **words)
 
 
 def start(context):
@@ -86,23 +47,11 @@ def start(context):
     if value(context, "energy") == "true":
         actions.append(node(context, "energy-monitor", {}))
     if value(context, "description") == "true":
-        words = [program(context), "model", "urdf", "--model", value(context, "model")]
-        urdf = subprocess.run(words, capture_output=True, text=True, check=False)
-        if urdf.returncode != 0:
-            raise RuntimeError(urdf.stderr.strip())
-        actions.append(of_ros(context, "robot_state_publisher", parameters=[{"robot_description": urdf.stdout}]))
+        actions.append(links(context))
     if value(context, "rviz") == "true":
         actions.append(of_ros(context, "rviz2", arguments=["-d", str(CONFIG / "layouts" / "arm.rviz")]))
-    if value(context, "record"):
-        words = [program(context), "record", "--all", "-o", value(context, "record")]
-        recorder = ExecuteProcess(cmd=words, name="recorder", output="screen", sigterm_timeout="10", on_exit=END)
-        actions.append(recorder)
-    return actions
+    return actions + recorder(context)
 
 
 def generate_launch_description():
-    declared = [
-        DeclareLaunchArgument(name, default_value=default, description=description)
-        for name, (default, description) in ARGUMENTS.items()
-    ]
-    return LaunchDescription([*declared, OpaqueFunction(function=start)])
+    return LaunchDescription([*declared(ARGUMENTS), OpaqueFunction(function=start)])

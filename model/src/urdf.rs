@@ -36,8 +36,8 @@ pub fn urdf(model: &Model) -> String {
     match &machine.mechanism {
         Mechanism::SingleLink { base_angle } => writer.held_link(*base_angle),
         Mechanism::TwoLink | Mechanism::PlanarChain { .. } => writer.chain(),
-        Mechanism::LinearLoad => writer.slide(),
-        Mechanism::Rotor => writer.rotor(),
+        Mechanism::LinearLoad => writer.beside_each_other("prismatic", "1 0 0", [0.3; 3]),
+        Mechanism::Rotor => writer.beside_each_other("continuous", "0 1 0", [0.6, 0.2, 0.1]),
     }
     writer.text.push_str("</robot>\n");
     writer.text
@@ -88,18 +88,11 @@ impl Writer<'_> {
         }
     }
 
-    /// Every load on its own rail, beside each other.
-    fn slide(&mut self) {
+    /// Every load on an axis of its own, beside each other.
+    fn beside_each_other(&mut self, kind: &str, axis: &str, size: [f64; 3]) {
         for (number, cylinder) in self.model.machine.cylinders.iter().enumerate() {
-            self.joint(number, "prismatic", "base_link", [0.5, number as f64, JOINT_HEIGHT], "1 0 0");
-            self.link(&cylinder.name, "orange", [0.0; 3], [0.3; 3]);
-        }
-    }
-
-    fn rotor(&mut self) {
-        for (number, cylinder) in self.model.machine.cylinders.iter().enumerate() {
-            self.joint(number, "continuous", "base_link", [0.5, number as f64, JOINT_HEIGHT], "0 1 0");
-            self.link(&cylinder.name, "orange", [0.0; 3], [0.6, 0.2, 0.1]);
+            self.joint(number, kind, "base_link", [0.5, number as f64, JOINT_HEIGHT], axis);
+            self.link(&cylinder.name, "orange", [0.0; 3], size);
         }
     }
 
@@ -134,20 +127,18 @@ impl Writer<'_> {
 
     /// How far a joint reaches, the force of its cylinder at the longest lever, and its speed at the shortest with all of the pump's flow.
     fn limit(&self, cylinder: &Cylinder, has_ends: bool) -> String {
-        let joints = cylinder.ends.map(|displacement| cylinder.linkage.joint(displacement));
-        let levers =
-            joints.map(|joint| cylinder.linkage.lever(joint).abs()).into_iter().filter(|lever| lever.is_finite());
+        let [retracted, extended] = cylinder.ends;
+        let joints = [retracted, 0.0, extended].map(|displacement| cylinder.linkage.joint(displacement));
+        let levers = joints.map(|joint| cylinder.linkage.lever(joint).abs());
         let (shortest, longest) =
-            levers.fold((f64::INFINITY, 0.0_f64), |(low, high), lever| (low.min(lever), high.max(lever)));
-        let middle = cylinder.linkage.lever(cylinder.linkage.joint(0.0)).abs();
-        let (shortest, longest) = (shortest.min(middle), longest.max(middle));
+            levers.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), lever| (low.min(*lever), high.max(*lever)));
         let effort = cylinder.chambers.map_or(0.0, |chambers| RELIEF_PRESSURE * chambers.cap_area * longest);
         let rate = match (self.model.machine.supply, cylinder.chambers) {
             (Supply::PumpLine(line), Some(chambers)) => line.flow / chambers.rod_area.min(chambers.cap_area) / shortest,
             _ => USUAL_RATE,
         };
         let reach = if has_ends {
-            let (low, high) = (joints[0].min(joints[1]), joints[0].max(joints[1]));
+            let (low, high) = (joints[0].min(joints[2]), joints[0].max(joints[2]));
             format!("lower=\"{low:.5}\" upper=\"{high:.5}\" ")
         } else {
             String::new()

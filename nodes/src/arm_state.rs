@@ -2,6 +2,7 @@
 
 use excavator_model::Model;
 use excavator_model::recording::{CylinderSample, Sample};
+use excavator_msgs::common::JointState;
 use excavator_msgs::{ArmState, CylinderState, Header, Time};
 
 /// The state in the order of the model's cylinders; what the message does not have is not measured.
@@ -56,6 +57,22 @@ pub(crate) fn arm_state(sample: &Sample, model: &Model, oil_temperature: f64) ->
         tank_pressure: sample.tank_pressure,
         pump_flow: sample.pump_flow,
         oil_temperature,
+    }
+}
+
+/// The name that the joint of a cylinder has in joint states and robot descriptions.
+pub(crate) fn joint_name(cylinder: &str) -> String {
+    format!("{cylinder}_joint")
+}
+
+/// The joints of a state; `rates` in rad/s or m/s, or none.
+pub(crate) fn joint_state(state: &ArmState, rates: Vec<f64>) -> JointState {
+    JointState {
+        header: Header { stamp: state.header.stamp, frame_id: String::new() },
+        name: state.cylinders.iter().map(|cylinder| joint_name(&cylinder.name)).collect(),
+        position: state.cylinders.iter().map(|cylinder| cylinder.joint_angle).collect(),
+        velocity: rates,
+        effort: Vec::new(),
     }
 }
 

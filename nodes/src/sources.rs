@@ -13,6 +13,7 @@ use excavator_model::formula::Condition;
 use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::input_holes;
+use excavator_ros::{Parameter, Value};
 
 use crate::cli::{self, Extent, Mapping};
 use crate::error::VerbError;
@@ -23,6 +24,12 @@ use crate::terminal::complain;
 /// A model by its built-in name or file, with the effects of its user.
 pub fn model(choice: &cli::ModelChoice) -> Result<Model, VerbError> {
     model_with(&choice.model, &catalogue(&choice.own)?)
+}
+
+/// The parameter by which a node gets its model, where it does not take the one that is published.
+pub fn model_parameter() -> Parameter {
+    let meaning = "built-in model or model file (.toml); empty: the model on arm/model";
+    Parameter::new("model", Value::String(String::new()), meaning).read_only()
 }
 
 /// The same with the effects of the program and of its own file.

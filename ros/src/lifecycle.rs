@@ -10,7 +10,7 @@ use ros2_client::Message;
 use serde::{Deserialize, Serialize};
 
 use super::services::{Opening, Service, offer_services};
-use super::{Link, Logger, Outlet, RosError, TopicQos, system_nanoseconds};
+use super::{Link, Logger, Outlet, Parameter, RosError, TopicQos, Value, system_nanoseconds};
 
 /// `lifecycle_msgs/msg/State`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -125,6 +125,12 @@ pub struct Lifecycle {
 }
 
 impl Lifecycle {
+    /// The parameter that says whether somebody manages a node.
+    pub fn parameter() -> Parameter {
+        let meaning = "wait to be configured and activated, as a lifecycle node; nothing is published and nobody followed until then";
+        Parameter::new("managed", Value::Boolean(false), meaning).read_only()
+    }
+
     /// Of a node that works from the start, or, `managed`, when it is told to. A managed node that is shut down sets `stop`.
     ///
     /// # Errors

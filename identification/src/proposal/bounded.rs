@@ -1,13 +1,14 @@
-//! Laws that would turn an opening round beyond what was recorded.
+//! Laws that would reverse an opening beyond what was recorded.
 
 use std::sync::Arc;
 
 use excavator_model::effects::Site;
+use excavator_model::equations::Situation;
 use excavator_model::formula::{FormulaText, Law};
 use excavator_model::recording::Recording;
 
 use super::merits::{law_of, times};
-use crate::regression::situations_along;
+use super::proposals::situations_of;
 use crate::search::{Addition, Pool, Trial};
 
 /// How much stronger than recorded a law is looked at: valves of mobile machines see 25 MPa, and recordings of light work have two or three.
@@ -21,7 +22,7 @@ const STRONGEST: f64 = 10.0;
 pub(super) fn bounded(pool: &Pool<'_>, number: usize, recordings: &[&Recording]) -> Option<(usize, Addition)> {
     let trial = pool.trials.get(number)?;
     let (addition, before) = trial.additions.split_last()?;
-    if !turns_round(trial, recordings) {
+    if !reverses_an_opening(trial, &situations_of(trial, recordings)) {
         return None;
     }
     let law = Law::read(&closing(addition.physics.formula()?)).ok()?;
@@ -30,19 +31,18 @@ pub(super) fn bounded(pool: &Pool<'_>, number: usize, recordings: &[&Recording])
 }
 
 /// Whether the last law of a trial gives an opening another sign where everything is [`STRONGEST`] times as strong as recorded.
-pub(super) fn turns_round(trial: &Trial, recordings: &[&Recording]) -> bool {
+pub(super) fn reverses_an_opening(trial: &Trial, situations: &[Situation<'_, f64>]) -> bool {
     let Some(effect) = trial.additions.last().and_then(|addition| trial.effect(addition)) else { return false };
     let Some(law) = law_of(effect).filter(|law| law.row().is_an_opening()) else { return false };
     let Site::Cylinder(cylinder) = effect.site else { return false };
     let parameters: Vec<f64> = effect.parameters.iter().map(|parameter| parameter.value).collect();
-    let along = recordings.iter().map(|recording| situations_along(&trial.fit.model, recording));
-    along.flatten().flatten().any(|now| {
-        let now = times(STRONGEST, &now);
+    situations.iter().any(|now| {
+        let now = times(STRONGEST, now);
         law.value(effect.site, &parameters, &[], &now) * now.pistons[cylinder].opening < 0.0
     })
 }
 
-/// The law that closes where the given one would turn round.
+/// The law that closes where the given one would reverse the opening.
 fn closing(text: &FormulaText) -> FormulaText {
     let formula = match text.formula.strip_prefix("u - k*u*") {
         Some(rest) if !has_sum(rest) => format!("u*max(1 - k*{rest}, 0)"),

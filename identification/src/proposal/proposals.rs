@@ -1,5 +1,6 @@
 //! What comes of a search for laws.
 
+use excavator_model::equations::Situation;
 use excavator_model::formula::FormulaText;
 use excavator_model::recording::Recording;
 use excavator_model::{ModelEffect, site_name};
@@ -193,12 +194,15 @@ fn of_trial(
 }
 
 /// Whether no new law of a trial puts energy into the machine along the recordings.
-pub(super) fn laws_dissipate(trial: &Trial, recordings: &[&Recording]) -> bool {
-    let along = recordings.iter().map(|recording| situations_along(&trial.fit.model, recording));
-    let situations: Vec<_> = along.flatten().flatten().collect();
+pub(super) fn laws_dissipate(trial: &Trial, situations: &[Situation<'_, f64>]) -> bool {
     let laws = trial.additions.iter().filter_map(|addition| trial.effect(addition));
     let mut laws = laws.filter_map(|effect| Some((law_of(effect)?, effect)));
-    laws.all(|(law, effect)| merits(&law, effect, &situations).dissipates)
+    laws.all(|(law, effect)| merits(&law, effect, situations).dissipates)
+}
+
+/// What the fitted model of a trial sees along the recordings; nothing of one that it cannot be simulated on.
+pub(super) fn situations_of<'t>(trial: &'t Trial, recordings: &[&Recording]) -> Vec<Situation<'t, f64>> {
+    recordings.iter().flat_map(|recording| situations_along(&trial.fit.model, recording)).flatten().collect()
 }
 
 /// A formula that starts where the fit has ended.

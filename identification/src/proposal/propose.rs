@@ -7,11 +7,11 @@ use excavator_model::formula::{FormulaText, Law};
 use excavator_model::recording::Recording;
 use excavator_model::{Model, site_name};
 
-use super::bounded::{bounded, turns_round};
+use super::bounded::{bounded, reverses_an_opening};
 use super::curve::table_law;
 use super::grammar::{COEFFICIENT, law_text};
 use super::promise::MOST_TERMS;
-use super::proposals::{ProposalVerdict, Proposals, is_new, laws_dissipate, proposals};
+use super::proposals::{ProposalVerdict, Proposals, is_new, laws_dissipate, proposals, situations_of};
 use super::screening::screen;
 use super::shortlist::{Candidate, Shortlist};
 use super::simplest::simplest_first;
@@ -56,7 +56,10 @@ pub fn propose(
             if explained { ProposalVerdict::Law } else { ProposalVerdict::NoLaw }
         }
     };
-    let is_possible = |trial: &Trial| laws_dissipate(trial, identification) && !turns_round(trial, identification);
+    let is_possible = |trial: &Trial| {
+        let situations = situations_of(trial, identification);
+        laws_dissipate(trial, &situations) && !reverses_an_opening(trial, &situations)
+    };
     let verdict = simplest_first(pool.verdict(policy), &pool.trials, &is_possible);
     proposals(kind, pool, verdict, survey, identification, validation)
 }
@@ -118,7 +121,7 @@ impl Trials<'_> {
         Ok(survey)
     }
 
-    /// Beside each favoured law that would turn an opening round, the one that closes instead.
+    /// Beside each favoured law that would reverse an opening, the one that closes instead.
     fn bounded(&self, pool: &mut Pool<'_>) {
         let progress = |what: &str, _: f64| (self.progress)(what, 0.9);
         for number in pool.verdict(self.policy).set {

@@ -9,7 +9,7 @@ const NEGLIGIBLE: f64 = 0.01;
 
 /// The verdict with the simplest hypothesis of its set first, and those away that predict no better with more parameters: a coefficient
 /// that may be zero, a threshold where nothing is. Of equally simple ones those come first that are possible beyond what was recorded: they
-/// never put energy into the machine and turn no opening round.
+/// never put energy into the machine and reverse no opening.
 pub(super) fn simplest_first(mut verdict: Verdict, trials: &[Trial], is_possible: &dyn Fn(&Trial) -> bool) -> Verdict {
     let complexity = |number: &usize| trials.get(*number).map_or(usize::MAX, Trial::added_parameters);
     let (own, error) = (complexity(&verdict.best), verdict.standings[verdict.best].log_error_ratio);

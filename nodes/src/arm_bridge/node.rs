@@ -13,7 +13,7 @@ use super::publisher::{Publisher, Refused, lock};
 use super::signals::Signals;
 use super::udp_source::UdpSource;
 use crate::error::VerbError;
-use excavator_ros::{Health, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
+use excavator_ros::{Health, Lifecycle, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
 /// Longest time until a listening thread sees that the node ends.
 const GLANCE: Duration = Duration::from_millis(100);
@@ -27,12 +27,7 @@ const ACQUAINTANCE: Duration = Duration::from_secs(1);
 pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     let file =
         Parameter::new("description", Value::String(String::new()), "file (.toml) that says where signals come from");
-    let managed = Parameter::new(
-        "managed",
-        Value::Boolean(false),
-        "wait to be configured and activated, as a lifecycle node; nothing is published until then",
-    );
-    let supervisor = Supervisor::start("arm_bridge", ros, vec![file.read_only(), managed.read_only()])?;
+    let supervisor = Supervisor::start("arm_bridge", ros, vec![file.read_only(), Lifecycle::parameter()])?;
     let path = supervisor.parameters.text("description");
     if path.is_empty() {
         let reason = "no signals: give the file that describes them with -p description:=FILE.toml".to_string();

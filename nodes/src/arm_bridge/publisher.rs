@@ -5,10 +5,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use excavator_msgs::common::JointState;
-use excavator_msgs::{ArmState, Header, Time};
+use excavator_msgs::{ArmState, Time};
 
 use super::can::Counts;
 use super::signals::{Fault, Signals};
+use crate::arm_state::joint_state;
 use excavator_ros::{Diagnostics, Health, Lifecycle, Outlet, Pace, PublishError, RosClock};
 
 /// Time between two words to diagnostics.
@@ -109,7 +110,7 @@ impl Publisher<'_> {
             && round.is_multiple_of(joints_every)
         {
             // The next one comes within a fiftieth of a second.
-            let _ = joints.publish(joint_state(&state));
+            let _ = joints.publish(joint_state(&state, Vec::new()));
         }
         send(&self.states, state);
         faults
@@ -148,15 +149,5 @@ impl Publisher<'_> {
             names => (Health::Warning, format!("not measured: {}", names.join(", "))),
         };
         self.diagnostics.tell("signals", health, message, &values);
-    }
-}
-
-fn joint_state(state: &ArmState) -> JointState {
-    JointState {
-        header: Header { stamp: state.header.stamp, frame_id: String::new() },
-        name: state.cylinders.iter().map(|cylinder| format!("{}_joint", cylinder.name)).collect(),
-        position: state.cylinders.iter().map(|cylinder| cylinder.joint_angle).collect(),
-        velocity: Vec::new(),
-        effort: Vec::new(),
     }
 }

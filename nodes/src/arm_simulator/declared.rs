@@ -1,7 +1,7 @@
 //! Parameters of the simulator.
 
 use crate::command_gate::parameters as gate_parameters;
-use excavator_ros::{Parameter, Value};
+use excavator_ros::{Lifecycle, Parameter, Value};
 
 /// All of them, with units, ranges and defaults.
 pub(super) fn parameters() -> Vec<Parameter> {
@@ -9,12 +9,7 @@ pub(super) fn parameters() -> Vec<Parameter> {
     let none = || Value::StringArray(Vec::new());
     let own = vec![
         Parameter::new("model", Value::String("zx30u-arm".into()), "built-in model or model file (.toml)").read_only(),
-        Parameter::new(
-            "managed",
-            Value::Boolean(false),
-            "wait to be configured and activated, as a lifecycle node; commands are refused until then",
-        )
-        .read_only(),
+        Lifecycle::parameter(),
         double("rate", 1000.0, "samples per simulated second [Hz]").within(1.0, 5000.0).read_only(),
         double("speed", 1.0, "simulated seconds per second; /clock is published unless it is 1")
             .within(0.01, 10.0)

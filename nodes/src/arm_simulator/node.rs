@@ -6,13 +6,14 @@ use std::time::{Duration, Instant};
 use excavator_model::document::to_text;
 use excavator_model::{Model, urdf};
 use excavator_msgs::common::{Clock, JointState, Text};
-use excavator_msgs::{ArmState, Header, Time};
+use excavator_msgs::{ArmState, Time};
 
 use super::declared::parameters;
 use super::machine_process::{MachineProcess, Setup};
 use super::sensors::{Instrument, Quality, SIGNALS, Sensors};
 use super::stamps::Stamps;
 use super::valve_limits;
+use crate::arm_state::joint_state;
 use crate::command_gate::{Desk, Valve};
 use crate::error::VerbError;
 use crate::sources;
@@ -306,15 +307,5 @@ impl SampleClock {
             }
         };
         Time::from_nanoseconds(nanoseconds).unwrap_or_default()
-    }
-}
-
-fn joint_state(state: &ArmState, rates: Vec<f64>) -> JointState {
-    JointState {
-        header: Header { stamp: state.header.stamp, frame_id: String::new() },
-        name: state.cylinders.iter().map(|cylinder| format!("{}_joint", cylinder.name)).collect(),
-        position: state.cylinders.iter().map(|cylinder| cylinder.joint_angle).collect(),
-        velocity: rates,
-        effort: Vec::new(),
     }
 }

@@ -153,35 +153,32 @@ impl Desk {
         self.follow_parameters();
         let now = Instant::now();
         self.tell_other_machines(now);
-        let (lines, recent, refused, mut counts) = {
+        let (lines, recent, accepted, refused, mut counts) = {
             let mut report = self.report_lock();
             let (refused, kinds) = report.refused();
-            let mut counts = vec![("accepted commands".to_string(), report.accepted().to_string())];
+            let accepted = report.accepted();
+            let mut counts = vec![("accepted commands".to_string(), accepted.to_string())];
             counts.push(("refused commands".to_string(), refused.to_string()));
             counts.extend(kinds.map(|(kind, count)| (format!("refused: {kind}"), count.to_string())));
             let recent = report.recent_refusal(now).map(str::to_string);
-            (report.take_lines(), recent, refused, counts)
+            (report.take_lines(), recent, accepted, refused, counts)
         };
         lines.into_iter().for_each(|line| self.logger.warn(line));
         counts.push(("steps limited in rate".to_string(), limited.to_string()));
         let values: Vec<(&str, String)> = counts.iter().map(|(name, value)| (name.as_str(), value.clone())).collect();
+        self.tell_owners(now, accepted, recent.is_some());
         match recent {
             Some(text) => self.diagnostics.tell("refusal", Health::Warning, text, &values),
             None if refused == 0 => self.diagnostics.tell("refusal", Health::Ok, "no command was refused", &values),
             None => self.diagnostics.tell("refusal", Health::Ok, "no command was refused lately", &values),
         }
-        self.tell_owners(now);
     }
 
     /// Who commands what.
-    fn tell_owners(&self, now: Instant) {
+    fn tell_owners(&self, now: Instant, accepted: u64, refused: bool) {
         let (status, stopped) = {
             let gate = self.gate();
             (gate.status(now), gate.stop.by(now))
-        };
-        let (accepted, refused) = {
-            let report = self.report_lock();
-            (report.accepted(), report.recent_refusal(now).is_some())
         };
         let commanded = status.iter().any(|valve| valve.owner.is_some());
         let mut values = Vec::new();

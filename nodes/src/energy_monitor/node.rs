@@ -33,12 +33,7 @@ const SILENT: Duration = Duration::from_secs(2);
 fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     vec![
-        Parameter::new(
-            "model",
-            Value::String(String::new()),
-            "built-in model or model file (.toml); empty: the model on /arm/model",
-        )
-        .read_only(),
+        sources::model_parameter(),
         double("half_width", 0.01, "half width of the window of derivatives, which is also their delay [s]")
             .within(0.001, 0.5)
             .read_only(),

@@ -12,6 +12,7 @@ use excavator_msgs::common::{JointState, Text};
 use excavator_msgs::{ArmState, Header, OrificeCommand};
 
 use super::law::{Gains, JointLaw, Wanted};
+use crate::arm_state::joint_name;
 use crate::error::VerbError;
 use crate::sources;
 use excavator_ros::{
@@ -25,12 +26,7 @@ const REPORT: Duration = Duration::from_millis(500);
 fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     vec![
-        Parameter::new(
-            "model",
-            Value::String(String::new()),
-            "built-in model or model file (.toml); empty: the model on arm/model",
-        )
-        .read_only(),
+        sources::model_parameter(),
         double("rate", 100.0, "commands per second [Hz]; several within the time for which one holds, 0.1 s")
             .within(20.0, 1000.0)
             .read_only(),
@@ -206,7 +202,7 @@ impl Controller<'_> {
         for (name, law) in machine.names.iter().zip(&mut machine.laws) {
             let Some(measured) = state.cylinders.iter().find(|cylinder| cylinder.name == *name) else { continue };
             let Some(law) = law else { continue };
-            let joint = format!("{name}_joint");
+            let joint = joint_name(name);
             let idle = Wanted { position: f64::NAN, rate: f64::NAN };
             let asked = wanted.get(&joint).copied().filter(|_| is_commanded);
             let (area, rate) = law.step(asked.unwrap_or(idle), gains, measured.joint_angle, time);

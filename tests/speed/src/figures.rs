@@ -42,7 +42,7 @@ pub struct Group {
 pub struct Run {
     /// What ran.
     pub name: String,
-    /// Wall time, s; the shortest of the repetitions. `None` where it did not run: `result` has the reason.
+    /// Wall time, s; the shortest of the repetitions. `None` where it did not run, with the reason in `result`, and where time is no cost.
     pub seconds: Option<f64>,
     /// Time of processors, s, of a run in a process of its own.
     pub processor_seconds: Option<f64>,
@@ -64,9 +64,9 @@ impl Run {
         }
     }
 
-    /// A run that could not be done.
-    pub fn missing(name: impl Into<String>, reason: impl Into<String>) -> Self {
-        Run { name: name.into(), seconds: None, processor_seconds: None, peak_megabytes: None, result: reason.into() }
+    /// What has no time: a run that could not be done, or one whose length was chosen.
+    pub fn untimed(name: impl Into<String>, result: impl Into<String>) -> Self {
+        Run { name: name.into(), seconds: None, processor_seconds: None, peak_megabytes: None, result: result.into() }
     }
 }
 

@@ -30,12 +30,12 @@ impl Peers {
     /// Runs one of the functions of `peers.py` with an order; only its work is timed, not the start of Python.
     pub fn run(&self, name: &str, function: &str, order: &serde_json::Value) -> Run {
         let Some(python) = &self.python else {
-            return Run::missing(name, "not measured: no --python was given");
+            return Run::untimed(name, "not measured: no --python was given");
         };
         match ask(python, function, order) {
             Ok(Answer::Done { seconds, result }) => Run::timed(name, seconds, result),
-            Ok(Answer::Missing { missing }) => Run::missing(name, format!("not measured: {missing}")),
-            Err(reason) => Run::missing(name, format!("failed: {reason}")),
+            Ok(Answer::Missing { missing }) => Run::untimed(name, format!("not measured: {missing}")),
+            Err(reason) => Run::untimed(name, format!("failed: {reason}")),
         }
     }
 }

@@ -10,6 +10,7 @@ use excavator_model::simulation::{Profile, Segment, Tolerances, simulate_from_re
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use crate::common;
 use crate::truth::truth;
 
 /// Seed of the blind machines.
@@ -93,7 +94,7 @@ pub fn recorded(seconds: f64, rate: f64) -> Result<Recording, String> {
     recording.tank_pressure.fill(0.0);
     let mut recording =
         simulate_from_rest(&model, &recording, &[0.0], Tolerances::default()).map_err(|error| error.to_string())?;
-    add_noise(&mut recording, &mut generator);
+    add_noise(&mut recording, &mut common::Random(MANOEUVRE));
     Ok(recording)
 }
 
@@ -124,9 +125,7 @@ fn segments(seconds: f64, generator: &mut ChaCha8Rng) -> Vec<Segment> {
     segments
 }
 
-fn add_noise(recording: &mut Recording, generator: &mut ChaCha8Rng) {
-    // Sum of twelve uniform numbers: near enough to a normal one for noise.
-    let mut normal = || (0..12).map(|_| generator.random::<f64>()).sum::<f64>() - 6.0;
+fn add_noise(recording: &mut Recording, random: &mut common::Random) {
     let [displacement, pressure, area] = NOISE;
     let pump = std::iter::once((&mut recording.pump_pressure, pressure));
     let cylinders = recording.cylinders.iter_mut().flat_map(|cylinder| {
@@ -139,7 +138,7 @@ fn add_noise(recording: &mut Recording, generator: &mut ChaCha8Rng) {
     });
     for (column, deviation) in pump.chain(cylinders) {
         for value in column {
-            *value += deviation * normal();
+            *value += deviation * random.normal();
         }
     }
     for cylinder in &mut recording.cylinders {

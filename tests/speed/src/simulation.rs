@@ -141,7 +141,7 @@ fn as_exact(model: &Model, signals: &InputSignals, method: Method, error: f64, r
             Err(complaint) => reason = format!("gave up at {tolerance:e}: {complaint}"),
         }
     }
-    Run::missing(name, reason)
+    Run::untimed(name, reason)
 }
 
 /// What LSODA in Python needs: numbers of the model, inputs, start and the reference.

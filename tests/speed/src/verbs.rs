@@ -67,7 +67,7 @@ fn every_verb(program: &Program<'_>, bag: &Path, seconds: f64, rate: f64) -> Res
     runs.push(run_of("info", &cost, format!("{} messages", result["message_count"])));
     let on_bag = ["--model", "zx30u-arm", "--bag", &text].map(String::from);
     if rate < LEAST_RATE_OF_ENERGY {
-        runs.push(Run::missing("energy", "wants 200 samples per second for its slopes"));
+        runs.push(Run::untimed("energy", "wants 200 samples per second for its slopes"));
     } else {
         let (cost, result) = program.json("energy", &on_bag)?;
         runs.push(run_of("energy", &cost, residual_of(&result)));
