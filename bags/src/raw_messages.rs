@@ -145,9 +145,10 @@ impl Iterator for RawMessages {
         loop {
             let file = self.waiting.front_mut()?;
             match file.next_message() {
-                Ok(Some(message)) => {
-                    if let Some(data) = self.decompressor.decompress(message.data.clone()) {
-                        return Some(Ok(RawMessage { data, ..message }));
+                Ok(Some(mut message)) => {
+                    if let Some(data) = self.decompressor.decompress(std::mem::take(&mut message.data)) {
+                        message.data = data;
+                        return Some(Ok(message));
                     }
                 }
                 Ok(None) => self.done.extend(self.waiting.pop_front()),

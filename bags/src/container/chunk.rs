@@ -11,6 +11,10 @@ use crate::limits::{Limit, LimitError};
 /// First reservation for decompressed bytes: the size that rosbag2 and we give a chunk, and then some.
 const FIRST_RESERVATION: u64 = 1 << 20;
 
+/// A chunk that announces no more is unpacked in one step, without a buffer between, bytes. What is announced is reserved
+/// before a byte of it is seen, so it has to be little: recorders close a chunk at 1 to 4 MB plus one message.
+const LARGEST_AT_ONCE: u64 = 8 << 20;
+
 /// Why a chunk cannot be trusted.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub(super) enum ChunkFault {
@@ -104,6 +108,12 @@ pub(super) fn salvage(record: Bytes, most: u64) -> Bytes {
 ///
 /// The limit, not the end of the compressed data, is the end: some writers pad the data with zeros.
 fn inflate(compression: &str, compressed: &[u8], limit: u64) -> Result<(Vec<u8>, Option<String>), ChunkFault> {
+    if compression == "zstd"
+        && limit <= LARGEST_AT_ONCE
+        && let Ok(records) = zstd::bulk::decompress(compressed, usize::try_from(limit).unwrap_or_default())
+    {
+        return Ok((records, None));
+    }
     let mut records = Vec::with_capacity(usize::try_from(limit.min(FIRST_RESERVATION)).unwrap_or_default());
     let result = match compression {
         "zstd" => zstd::stream::read::Decoder::with_buffer(compressed)

@@ -1,12 +1,14 @@
 //! The messages of one MCAP file in the order in which they were written.
 
-use std::path::Path;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bytes::Bytes;
 use mcap::records::op;
 
-use super::chunk;
+use super::ahead::Ahead;
+use super::chunk::{self, ChunkFault};
 use super::damage::{Damage, DamageKind};
 use super::damage_list::DamageList;
 use super::fields::MessageHeader;
@@ -23,6 +25,9 @@ pub(crate) struct McapFile {
     file: RecordFile,
     registry: Registry,
     summary: Option<Summary>,
+    /// Chunks that another core unpacks, begun with the first one; `None` inside where there is nothing to gain.
+    ahead: Option<Option<Ahead>>,
+    opened: PathBuf,
     /// Whether the file ends as a closed file does, summary or not.
     closed: bool,
     chunk: Option<OpenChunk>,
@@ -72,6 +77,8 @@ impl McapFile {
             file,
             registry,
             summary,
+            ahead: None,
+            opened: path.to_path_buf(),
             closed,
             chunk: None,
             damage: DamageList::default(),
@@ -127,8 +134,7 @@ impl McapFile {
         };
         match next {
             Ok(Some((opcode, range))) => {
-                let content = chunk.records.slice(range);
-                let message = self.in_memory_record(opcode, content, chunk.offset);
+                let message = self.in_memory_record(opcode, &chunk.records, range, chunk.offset);
                 chunk.recovered += u64::from(message.is_some());
                 self.chunk = Some(chunk);
                 message
@@ -158,15 +164,22 @@ impl McapFile {
     }
 
     /// A message if the record is one; definitions are taken in, everything else is passed over.
-    fn in_memory_record(&mut self, opcode: u8, content: Bytes, offset: u64) -> Option<RawMessage> {
+    fn in_memory_record(
+        &mut self,
+        opcode: u8,
+        records: &Bytes,
+        range: Range<usize>,
+        offset: u64,
+    ) -> Option<RawMessage> {
+        let content = records.get(range.clone())?;
         let length = content.len() as u64;
         if opcode != op::MESSAGE {
-            if let Err(error) = self.registry.define(opcode, &content) {
+            if let Err(error) = self.registry.define(opcode, content) {
                 self.note(offset, length, DamageKind::BadRecord { reason: error.to_string() });
             }
             return None;
         }
-        let Some(header) = MessageHeader::parse(&content) else {
+        let Some(header) = MessageHeader::parse(content) else {
             let reason = format!("{length} bytes are no message");
             self.note(offset, length, DamageKind::BadRecord { reason });
             return None;
@@ -184,7 +197,7 @@ impl McapFile {
             sequence: header.sequence,
             log_time: header.log_time,
             publish_time: header.publish_time,
-            data: content.slice(MessageHeader::LENGTH..),
+            data: records.slice(range.start + MessageHeader::LENGTH..range.end),
         })
     }
 
@@ -228,31 +241,43 @@ impl McapFile {
             }
             op::MESSAGE | op::SCHEMA | op::CHANNEL => {
                 let content = Bytes::from(self.file.read(head.length)?);
-                return Ok(self.in_memory_record(head.opcode, content, head.offset));
+                return Ok(self.in_memory_record(head.opcode, &content, 0..content.len(), head.offset));
             }
-            op::CHUNK => {
-                let record = Bytes::from(self.file.read(head.length)?);
-                match chunk::decompress(record, self.limits.message) {
-                    Ok(records) => {
-                        self.unpacked = self.unpacked.saturating_add(records.len() as u64);
-                        if let Err(error) = self.limits.check_unpacked(self.unpacked, self.file.length()) {
-                            let left = self.file.length().saturating_sub(head.offset);
-                            self.note(head.offset, left, DamageKind::UnpacksWithoutEnd { reason: error.to_string() });
-                            self.finish();
-                            return Ok(None);
-                        }
-                        self.chunk =
-                            Some(OpenChunk { offset: head.offset, records, position: 0, cut: None, recovered: 0 });
+            op::CHUNK => match self.unpacked(head)? {
+                Ok(records) => {
+                    self.unpacked = self.unpacked.saturating_add(records.len() as u64);
+                    if let Err(error) = self.limits.check_unpacked(self.unpacked, self.file.length()) {
+                        let left = self.file.length().saturating_sub(head.offset);
+                        self.note(head.offset, left, DamageKind::UnpacksWithoutEnd { reason: error.to_string() });
+                        self.finish();
+                        return Ok(None);
                     }
-                    Err(fault) => {
-                        let kind = DamageKind::BadChunk { reason: fault.to_string() };
-                        self.note(head.offset, HEADER_LENGTH + head.length, kind);
-                    }
+                    self.chunk = Some(OpenChunk { offset: head.offset, records, position: 0, cut: None, recovered: 0 });
                 }
-            }
+                Err(fault) => {
+                    let kind = DamageKind::BadChunk { reason: fault.to_string() };
+                    self.note(head.offset, HEADER_LENGTH + head.length, kind);
+                }
+            },
             _ => self.file.skip(head.length)?,
         }
         Ok(None)
+    }
+
+    /// The records of the chunk with this head, whose content comes next in the file.
+    fn unpacked(&mut self, head: RecordHead) -> Result<Result<Bytes, ChunkFault>, BagError> {
+        let (summary, opened, limits) = (&self.summary, &self.opened, self.limits);
+        let ahead = self.ahead.get_or_insert_with(|| {
+            let offsets = &summary.as_ref()?.chunk_offsets;
+            let first = offsets.partition_point(|&offset| offset < head.offset);
+            Ahead::start(opened, offsets.get(first..)?.to_vec(), limits)
+        });
+        if let Some(records) = ahead.as_mut().and_then(|ahead| ahead.take(head)) {
+            self.file.skip(head.length)?;
+            return Ok(records);
+        }
+        let record = Bytes::from(self.file.read(head.length)?);
+        Ok(chunk::decompress(record, self.limits.message))
     }
 
     /// The file ends inside the record: takes what a cut chunk still gives, and ends.

@@ -4,6 +4,7 @@
 //! battery, so here every fault is a fact to report: the framing of records is read by hand, with seeks over what is
 //! not needed, and the index at the end of the file shows the way past a broken place.
 
+mod ahead;
 mod chunk;
 mod damage;
 mod damage_list;

@@ -1,6 +1,8 @@
 //! What is in a bag, per topic, and what it is good for.
 
+mod clock;
 mod signals;
+mod spread;
 mod table;
 mod timing;
 

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::clock::Clock;
+use super::spread::Spread;
 use crate::dynamic::{Definitions, Layout, Selector};
 use crate::raw_messages::{RawMessage, Topic};
 
@@ -11,6 +13,9 @@ const GAP_FACTOR: f64 = 1.5;
 const JITTER_SHARE: f64 = 0.95;
 
 /// How regular a topic is. Intervals are those of the stamps where the messages have them, else of the log times.
+///
+/// Medians and jitter are exact for up to 262 144 messages; beyond, they are within 0.1 % of their distance from the median
+/// of the first so many. Counts and extremes are always exact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Timing {
     /// Whether intervals are those of the stamps in the headers.
@@ -49,8 +54,13 @@ pub struct StampTiming {
 /// The times of one topic as they come.
 #[derive(Debug, Default)]
 pub(super) struct Times {
-    log: Vec<i64>,
-    stamps: Vec<i64>,
+    log: Clock,
+    stamps: Clock,
+    /// Log time minus stamp, ns.
+    delays: Spread,
+    /// Least and largest of them.
+    delay_range: Option<(i64, i64)>,
+    zero_stamps: u64,
     reader: Option<(Layout, Selector)>,
 }
 
@@ -62,82 +72,61 @@ impl Times {
             let selector = Selector::time(&layout, &"header.stamp".parse().ok()?).ok()?;
             Some((layout, selector))
         };
-        let reader = (topic.message_encoding == "cdr").then(reader).flatten();
-        Times { log: Vec::new(), stamps: Vec::new(), reader }
+        Times { reader: (topic.message_encoding == "cdr").then(reader).flatten(), ..Times::default() }
     }
 
     pub fn note(&mut self, message: &RawMessage) {
-        self.log.push(i64::try_from(message.log_time).unwrap_or(i64::MAX));
+        let log = i64::try_from(message.log_time).unwrap_or(i64::MAX);
+        self.log.note(log);
         if let Some((layout, selector)) = &self.reader
             && let Ok(Some(stamp)) = selector.read_time(layout, &message.data)
         {
-            self.stamps.push(stamp);
+            self.note_stamp(stamp, log);
         }
     }
 
+    fn note_stamp(&mut self, stamp: i64, log: i64) {
+        self.stamps.note(stamp);
+        let delay = log.saturating_sub(stamp);
+        self.delays.note(delay);
+        let (least, largest) = self.delay_range.unwrap_or((delay, delay));
+        self.delay_range = Some((least.min(delay), largest.max(delay)));
+        // A simulation may begin at zero: then the log time does as well.
+        self.zero_stamps += u64::from(stamp == 0 && log != 0);
+    }
+
     /// `None` for fewer than two messages.
-    pub fn timing(&self) -> Option<Timing> {
-        let stamps = (self.stamps.len() == self.log.len()).then(|| self.stamp_timing()).flatten();
+    pub fn timing(mut self) -> Option<Timing> {
+        let stamps = (self.stamps.count() == self.log.count()).then(|| self.stamp_timing()).flatten();
         let from_stamps = stamps.as_ref().is_some_and(|stamps| stamps.zero == 0);
-        let mut times = if from_stamps { self.stamps.clone() } else { self.log.clone() };
-        times.sort_unstable();
-        let steps: Vec<f64> = times.windows(2).map(|pair| seconds(pair[1].saturating_sub(pair[0]))).collect();
-        let median = median(&steps)?;
-        let differences: Vec<f64> = steps.iter().map(|step| (step - median).abs()).collect();
-        let (longest_at, longest) =
-            steps.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+        let log_times_backwards = self.log.backwards();
+        let clock = if from_stamps { &mut self.stamps } else { &mut self.log };
+        let intervals = clock.intervals()?;
+        let median = intervals.bins.quantile(0.5)?;
         Some(Timing {
             from_stamps,
-            median_interval: median,
-            jitter: quantile(&differences, JITTER_SHARE)?,
-            gaps: steps.iter().filter(|&&step| step > GAP_FACTOR * median).count() as u64,
-            longest_interval: longest,
-            longest_interval_at: seconds(times.get(longest_at)?.saturating_sub(*times.first()?)),
-            log_times_backwards: backwards(&self.log).0,
+            median_interval: seconds(median),
+            jitter: seconds(intervals.bins.distances_from(median).quantile(JITTER_SHARE)?),
+            gaps: intervals.bins.count(|interval| interval as f64 > GAP_FACTOR * median as f64),
+            longest_interval: seconds(intervals.longest),
+            longest_interval_at: seconds(intervals.longest_at),
+            log_times_backwards,
             stamps,
         })
     }
 
     fn stamp_timing(&self) -> Option<StampTiming> {
-        let delays: Vec<f64> =
-            self.log.iter().zip(&self.stamps).map(|(log, stamp)| seconds(log.saturating_sub(*stamp))).collect();
-        let (backwards, repeated) = backwards(&self.stamps);
+        let (least, largest) = self.delay_range?;
         Some(StampTiming {
-            // A simulation may begin at zero: then the log time does as well.
-            zero: self.stamps.iter().zip(&self.log).filter(|&(&stamp, &log)| stamp == 0 && log != 0).count() as u64,
-            backwards,
-            repeated,
-            median_delay: median(&delays)?,
-            delay_range: (
-                delays.iter().copied().fold(f64::INFINITY, f64::min),
-                delays.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-            ),
+            zero: self.zero_stamps,
+            backwards: self.stamps.backwards(),
+            repeated: self.stamps.repeated(),
+            median_delay: seconds(self.delays.bins().quantile(0.5)?),
+            delay_range: (seconds(least), seconds(largest)),
         })
     }
 }
 
-/// How many times are earlier than, and equal to, the latest before them.
-fn backwards(times: &[i64]) -> (u64, u64) {
-    let (mut earlier, mut equal, mut latest) = (0, 0, None);
-    for &time in times {
-        earlier += u64::from(latest.is_some_and(|latest| time < latest));
-        equal += u64::from(latest == Some(time));
-        latest = latest.max(Some(time));
-    }
-    (earlier, equal)
-}
-
 fn seconds(nanoseconds: i64) -> f64 {
     nanoseconds as f64 / 1e9
-}
-
-fn median(values: &[f64]) -> Option<f64> {
-    quantile(values, 0.5)
-}
-
-/// The value that this share of the values does not exceed.
-fn quantile(values: &[f64], share: f64) -> Option<f64> {
-    let mut values = values.to_vec();
-    let place = (values.len().checked_sub(1)? as f64 * share) as usize;
-    Some(*values.select_nth_unstable_by(place, f64::total_cmp).1)
 }

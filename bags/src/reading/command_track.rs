@@ -5,6 +5,7 @@ use excavator_msgs::OrificeCommand;
 
 use super::late_stamps::count_late;
 use super::report::ReadReport;
+use super::same_shape::Numbers;
 
 /// The commands of one cylinder in the order of the bag.
 #[derive(Debug)]
@@ -21,6 +22,8 @@ pub(super) struct CommandTrack {
     cylinders: Vec<CylinderCommands>,
     infinite_values: u64,
     malformed: u64,
+    /// Which cylinder each area of the last message belongs to.
+    named: Vec<usize>,
 }
 
 impl CommandTrack {
@@ -28,20 +31,37 @@ impl CommandTrack {
     pub fn push(&mut self, command: &OrificeCommand) {
         if command.names.len() != command.areas.len() {
             self.malformed += 1;
+            self.named.clear();
             return;
         }
-        let stamp = command.header.stamp.nanoseconds();
+        self.named = command.names.iter().map(|name| self.index_of(name)).collect();
+        self.push_areas(command.header.stamp.nanoseconds(), command.areas.iter().copied());
+    }
+
+    /// Adds a message that looks like the last one but for its numbers, which are the areas; `false` where that one was
+    /// none, or not to be understood: then it has to come through [`CommandTrack::push`].
+    pub fn push_numbers(&mut self, numbers: Numbers) -> bool {
+        if self.named.is_empty() {
+            return false;
+        }
+        self.push_areas(numbers.stamp(), numbers.values());
+        true
+    }
+
+    fn index_of(&mut self, name: &str) -> usize {
+        self.cylinders.iter().position(|cylinder| cylinder.name == name).unwrap_or_else(|| {
+            self.cylinders.push(CylinderCommands { name: name.to_string(), commands: Vec::new() });
+            self.cylinders.len() - 1
+        })
+    }
+
+    fn push_areas(&mut self, stamp: i64, areas: impl Iterator<Item = f64>) {
         self.stamps.push(stamp);
-        for (name, &area) in command.names.iter().zip(&command.areas) {
-            let area = if area.is_infinite() {
-                self.infinite_values += 1;
-                f64::NAN
-            } else {
-                area
-            };
-            match self.cylinders.iter_mut().find(|cylinder| cylinder.name == *name) {
-                Some(cylinder) => cylinder.commands.push((stamp, area)),
-                None => self.cylinders.push(CylinderCommands { name: name.clone(), commands: vec![(stamp, area)] }),
+        for (&index, area) in self.named.iter().zip(areas) {
+            self.infinite_values += u64::from(area.is_infinite());
+            let area = if area.is_infinite() { f64::NAN } else { area };
+            if let Some(cylinder) = self.cylinders.get_mut(index) {
+                cylinder.commands.push((stamp, area));
             }
         }
     }

@@ -1,9 +1,12 @@
 //! From a bag to a recording.
 
+mod command_decoder;
 mod command_track;
+mod content;
 mod late_stamps;
 mod read_recording;
 mod report;
+mod same_shape;
 mod state_decoder;
 mod state_table;
 mod topic_check;

@@ -7,12 +7,13 @@ use std::sync::Arc;
 use excavator_model::recording::Recording;
 use excavator_msgs::{ArmState, Message, OrificeCommand};
 
+use super::command_decoder::CommandDecoder;
 use super::command_track::CommandTrack;
 use super::report::ReadReport;
 use super::state_decoder::StateDecoder;
 use super::state_table::StateTable;
 use super::topic_check;
-use crate::cdr::{self, CdrError};
+use crate::cdr::CdrError;
 use crate::{BagError, Damage, RawMessage, RawMessages, Topic, Topics};
 
 /// Reads the bag at `path` (a rosbag2 folder or a bare `.mcap` file) as a recording.
@@ -51,7 +52,7 @@ pub fn read_recording_in_blocks(
     let mut report = ReadReport::default();
     let mut states = TopicReader::<ArmState>::new(path, &topics.state);
     let mut commands = TopicReader::<OrificeCommand>::new(path, &topics.command);
-    let mut decoder = StateDecoder::new();
+    let (mut state_decoder, mut command_decoder) = (StateDecoder::new(), CommandDecoder::default());
     let mut table = StateTable::default();
     let mut track = CommandTrack::default();
     let mut counts = TopicCounts::default();
@@ -61,21 +62,28 @@ pub fn read_recording_in_blocks(
         let message = message?;
         first_log_time.get_or_insert(message.log_time);
         counts.count(&message);
-        if message.topic.name == topics.state {
-            if let Some(state) = states.decode(&message, |bytes| decoder.decode(bytes))? {
+        if states.is_of(&message) {
+            let numbers = state_decoder.numbers(&message.data).filter(|_| states.is_checked(&message));
+            messages.check_memory(table.memory_with(0))?;
+            if numbers.is_some_and(|numbers| table.push_numbers(numbers)) {
+                states.seen += 1;
+            } else if let Some(state) = states.decode(&message, |bytes| state_decoder.decode(bytes))? {
                 messages.check_memory(table.memory_with(state.cylinders.len()))?;
                 table.push(state);
-                if table.len() >= samples {
-                    let block = blocks.make(std::mem::take(&mut table), &mut track, &mut report);
-                    if take(block).is_break() {
-                        return Ok(report);
-                    }
+            }
+            if table.len() >= samples.max(1) {
+                let block = blocks.make(std::mem::take(&mut table), &mut track, &mut report);
+                if take(block).is_break() {
+                    return Ok(report);
                 }
             }
-        } else if message.topic.name == topics.command
-            && let Some(command) = commands.decode(&message, cdr::decode::<OrificeCommand>)?
-        {
-            track.push(&command);
+        } else if commands.is_of(&message) {
+            let numbers = command_decoder.numbers(&message.data).filter(|_| commands.is_checked(&message));
+            if numbers.is_some_and(|numbers| track.push_numbers(numbers)) {
+                commands.seen += 1;
+            } else if let Some(command) = commands.decode(&message, |bytes| command_decoder.decode(bytes))? {
+                track.push(&command);
+            }
         }
     }
     counts.write_to(&mut report);
@@ -180,13 +188,23 @@ impl<'r, M: Message> TopicReader<'r, M> {
         }
     }
 
+    /// Whether the message is on the topic.
+    fn is_of(&self, message: &RawMessage) -> bool {
+        self.is_checked(message) || message.topic.name == self.topic
+    }
+
+    /// Whether it has the definition of the last message that was checked.
+    fn is_checked(&self, message: &RawMessage) -> bool {
+        self.checked.as_ref().is_some_and(|checked| Arc::ptr_eq(checked, &message.topic))
+    }
+
     /// The message, `None` if its bytes make none.
     fn decode<T>(
         &mut self,
         message: &RawMessage,
         decode: impl FnOnce(&[u8]) -> Result<T, CdrError>,
     ) -> Result<Option<T>, BagError> {
-        if !self.checked.as_ref().is_some_and(|checked| Arc::ptr_eq(checked, &message.topic)) {
+        if !self.is_checked(message) {
             topic_check::check::<M>(self.path, &message.topic)?;
             self.checked = Some(Arc::clone(&message.topic));
         }

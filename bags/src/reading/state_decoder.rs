@@ -1,22 +1,25 @@
 //! State messages decoded without a single allocation.
 //!
 //! A recording is almost only state messages. Through serde each costs a `String` per cylinder and a `Vec`, together as
-//! much as decompressing it; here one [`ArmState`] is filled again and again. Whatever this decoder does not take goes
-//! through [`cdr::decode`], which knows every error by name; a test holds the two together.
+//! much as decompressing it; here the numbers of a message that looks like the one before are read in place, and one
+//! [`ArmState`] is filled again and again for those that do not. Whatever this decoder does not take goes through
+//! [`cdr::decode`], which knows every error by name; a test holds them together.
+
+use std::ops::Range;
 
 use excavator_msgs::{ArmState, CylinderState, Header};
 
+use super::content::Content;
+use super::same_shape::{Numbers, Shape};
 use crate::cdr::{self, CdrError};
 
-/// Encapsulation of plain little-endian CDR; options in the last two bytes.
-const LITTLE_ENDIAN: [u8; 2] = [0x00, 0x01];
-/// As in [`cdr::decode`]: what is left over must be padding.
-const PADDING_LIMIT: usize = 7;
-
-/// The last decoded message.
+/// The last message that was not read in place, and its shape.
 #[derive(Debug)]
 pub(super) struct StateDecoder {
     state: ArmState,
+    shape: Shape,
+    /// Where the numbers of the last message are.
+    runs: Vec<Range<usize>>,
 }
 
 impl StateDecoder {
@@ -30,27 +33,35 @@ impl StateDecoder {
                 pump_flow: f64::NAN,
                 oil_temperature: f64::NAN,
             },
+            shape: Shape::default(),
+            runs: Vec::new(),
         }
+    }
+
+    /// The numbers of a message that looks like the last one that was decoded: those of each cylinder in the order of the
+    /// message, then those that all share. `None` for any other message.
+    pub fn numbers<'m>(&'m self, bytes: &'m [u8]) -> Option<Numbers<'m>> {
+        self.shape.numbers(bytes)
     }
 
     /// The message that the bytes stand for.
     pub fn decode(&mut self, bytes: &[u8]) -> Result<&ArmState, CdrError> {
-        if self.fill(bytes).is_none() {
+        if self.fill(bytes).is_some() {
+            self.shape.learn(bytes, &self.runs);
+        } else {
+            self.shape.forget();
             self.state = cdr::decode(bytes)?;
         }
         Ok(&self.state)
     }
 
     fn fill(&mut self, bytes: &[u8]) -> Option<()> {
-        let (encapsulation, content) = bytes.split_at_checked(4)?;
-        if !encapsulation.starts_with(&LITTLE_ENDIAN) {
-            return None;
-        }
-        let mut content = Content { bytes: content, position: 0 };
+        let mut content = Content::of(bytes)?;
+        self.runs.clear();
         let state = &mut self.state;
         state.header.stamp.sec = content.aligned::<4>().map(i32::from_le_bytes)?;
         state.header.stamp.nanosec = content.u32()?;
-        content.text_into(&mut state.header.frame_id)?;
+        set_text(&mut state.header.frame_id, content.text()?)?;
         let cylinders = usize::try_from(content.u32()?).ok()?;
         state.cylinders.truncate(cylinders);
         for index in 0..cylinders {
@@ -58,7 +69,8 @@ impl StateDecoder {
                 state.cylinders.push(CylinderState::unmeasured(""));
             }
             let cylinder = &mut state.cylinders[index];
-            content.text_into(&mut cylinder.name)?;
+            set_text(&mut cylinder.name, content.text()?)?;
+            let from = content.next_f64_at();
             cylinder.joint_angle = content.f64()?;
             cylinder.displacement = content.f64()?;
             cylinder.velocity = content.f64()?;
@@ -66,53 +78,26 @@ impl StateDecoder {
             cylinder.rod_pressure = content.f64()?;
             cylinder.orifice_area = content.f64()?;
             cylinder.rod_force = content.f64()?;
+            self.runs.push(from..content.next_f64_at());
         }
+        let from = content.next_f64_at();
         state.pump_pressure = content.f64()?;
         state.tank_pressure = content.f64()?;
         state.pump_flow = content.f64()?;
         state.oil_temperature = content.f64()?;
-        (content.bytes.len() - content.position <= PADDING_LIMIT).then_some(())
+        self.runs.push(from..content.next_f64_at());
+        content.is_at_end().then_some(())
     }
 }
 
-/// The bytes after the encapsulation, from which alignment counts, and how many of them have been read.
-struct Content<'b> {
-    bytes: &'b [u8],
-    position: usize,
-}
-
-impl<'b> Content<'b> {
-    fn take(&mut self, count: usize) -> Option<&'b [u8]> {
-        let taken = self.bytes.get(self.position..)?.get(..count)?;
-        self.position += count;
-        Some(taken)
+/// `None` for bytes that are no text.
+fn set_text(target: &mut String, text: &[u8]) -> Option<()> {
+    // Almost always it is the same name as in the message before.
+    if target.as_bytes() != text {
+        target.clear();
+        target.push_str(std::str::from_utf8(text).ok()?);
     }
-
-    /// The next `N` bytes, which begin at a multiple of `N`.
-    fn aligned<const N: usize>(&mut self) -> Option<[u8; N]> {
-        self.position = self.position.next_multiple_of(N);
-        self.take(N)?.try_into().ok()
-    }
-
-    fn u32(&mut self) -> Option<u32> {
-        self.aligned::<4>().map(u32::from_le_bytes)
-    }
-
-    fn f64(&mut self) -> Option<f64> {
-        self.aligned::<8>().map(f64::from_le_bytes)
-    }
-
-    /// Text with its length, which counts the closing zero, in front.
-    fn text_into(&mut self, target: &mut String) -> Option<()> {
-        let length = usize::try_from(self.u32()?).ok()?;
-        let (_zero, text) = self.take(length)?.split_last()?;
-        // Almost always it is the same name as in the message before.
-        if target.as_bytes() != text {
-            target.clear();
-            target.push_str(std::str::from_utf8(text).ok()?);
-        }
-        Some(())
-    }
+    Some(())
 }
 
 #[cfg(test)]
@@ -151,6 +136,62 @@ mod tests {
             assert!(decoder.fill(&bytes).is_some(), "{names:?} went the slow way");
             assert_eq!(decoder.state, expected);
             assert_eq!(cdr::decode::<ArmState>(&bytes)?, expected);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn the_numbers_of_a_message_of_the_same_shape_are_those_of_the_message() -> Result<(), CdrError> {
+        let mut decoder = StateDecoder::new();
+        for names in [&["boom", "arm"] as &[&str], &["a", "", "löffel"], &[]] {
+            let first = cdr::encode(&message(names, 1.0))?;
+            decoder.decode(&first)?;
+            let next = message(names, 50.0);
+            let bytes = cdr::encode(&next)?;
+            let numbers = decoder.numbers(&bytes).expect("the same names");
+            assert_eq!(numbers.stamp(), next.header.stamp.nanoseconds());
+            let cylinders = next.cylinders.iter().flat_map(|cylinder| {
+                [
+                    cylinder.joint_angle,
+                    cylinder.displacement,
+                    cylinder.velocity,
+                    cylinder.cap_pressure,
+                    cylinder.rod_pressure,
+                    cylinder.orifice_area,
+                    cylinder.rod_force,
+                ]
+            });
+            let shared = [next.pump_pressure, next.tank_pressure, next.pump_flow, next.oil_temperature];
+            let expected: Vec<f64> = cylinders.chain(shared).collect();
+            assert_eq!(numbers.values().collect::<Vec<_>>(), expected);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_message_that_differs_in_more_than_numbers_is_of_another_shape() -> Result<(), CdrError> {
+        let mut decoder = StateDecoder::new();
+        let good = cdr::encode(&message(&["boom", "arm"], 3.0))?;
+        assert!(decoder.numbers(&good).is_none(), "nothing was decoded yet");
+        decoder.decode(&good)?;
+        for other in [&["boom", "arm", "bucket"] as &[&str], &["boon", "arm"], &["arm", "boom"], &["boom"]] {
+            assert!(decoder.numbers(&cdr::encode(&message(other, 3.0))?).is_none(), "{other:?}");
+        }
+        for length in 0..good.len() {
+            assert!(decoder.numbers(&good[..length]).is_none(), "{length} bytes");
+        }
+        for position in 0..good.len() {
+            let mut bytes = good.clone();
+            bytes[position] ^= 0x81;
+            let Some(numbers) = decoder.numbers(&bytes).map(|numbers| numbers.values().collect::<Vec<_>>()) else {
+                continue;
+            };
+            let mut serde = StateDecoder::new();
+            serde.state = cdr::decode(&bytes)?;
+            let again = cdr::encode(&serde.state)?;
+            serde.decode(&again)?;
+            let expected: Vec<f64> = serde.numbers(&again).into_iter().flat_map(Numbers::values).collect();
+            assert_eq!(numbers, expected, "byte {position}");
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ use excavator_msgs::{ArmState, CylinderState};
 
 use super::late_stamps::{count_late, steps_back};
 use super::report::{Gap, ReadReport};
+use super::same_shape::Numbers;
 
 /// An interval longer than this many median intervals is a gap.
 const GAP_FACTOR: f64 = 1.5;
@@ -12,6 +13,12 @@ const NANOSECONDS_PER_SECOND: f64 = 1e9;
 /// Columns of a cylinder, and those that all share with the clock.
 const CYLINDER_COLUMNS: usize = 8;
 const SHARED_COLUMNS: usize = 5;
+
+/// Numbers of a cylinder in a message, and those that all share.
+const CYLINDER_NUMBERS: usize = 7;
+const SHARED_NUMBERS: usize = 4;
+/// Rows that wait to become columns. 128 of three cylinders are 26 kB, which fit into the first cache.
+const WAITING_ROWS: usize = 128;
 
 /// The state messages read so far, in the order of the bag.
 #[derive(Debug, Default)]
@@ -24,11 +31,49 @@ pub struct StateTable {
     oil_temperature: Vec<f64>,
     infinite_values: u64,
     repeated_cylinders: u64,
+    /// Numbers of the last messages, one row after the other; the cylinders of each are those of the table, in their order.
+    waiting: Vec<f64>,
+    /// Whether the cylinders of the last message are those of the table, in their order.
+    is_regular: bool,
 }
 
 impl StateTable {
+    /// Adds a message that looks like the last one but for its numbers; `false` where that one had other cylinders than the
+    /// table, or there was none: then it has to come through [`StateTable::push`].
+    pub(super) fn push_numbers(&mut self, numbers: Numbers) -> bool {
+        if !self.is_regular {
+            return false;
+        }
+        self.stamps.push(numbers.stamp());
+        self.waiting.extend(numbers.values());
+        if self.waiting.len() >= WAITING_ROWS * self.row_width() {
+            self.settle();
+        }
+        true
+    }
+
+    /// Numbers in a message with the cylinders of the table.
+    fn row_width(&self) -> usize {
+        CYLINDER_NUMBERS * self.cylinders.len() + SHARED_NUMBERS
+    }
+
+    /// Makes columns of the rows that wait.
+    fn settle(&mut self) {
+        let width = self.row_width();
+        let (waiting, infinite) = (&self.waiting, &mut self.infinite_values);
+        let shared = [&mut self.pump_pressure, &mut self.tank_pressure, &mut self.pump_flow, &mut self.oil_temperature];
+        let of_cylinders =
+            self.cylinders.iter_mut().flat_map(|cylinder| cylinder.columns_mut().into_iter().take(CYLINDER_NUMBERS));
+        for (index, column) in of_cylinders.chain(shared).enumerate() {
+            let values = waiting.chunks_exact(width).filter_map(|row| row.get(index));
+            column.extend(values.map(|&value| finite(value, infinite)));
+        }
+        self.waiting.clear();
+    }
+
     /// Adds one message.
     pub fn push(&mut self, state: &ArmState) {
+        self.settle();
         let row = self.stamps.len();
         self.stamps.push(state.header.stamp.nanoseconds());
         let infinite = &mut self.infinite_values;
@@ -39,6 +84,8 @@ impl StateTable {
         for (position, cylinder) in state.cylinders.iter().enumerate() {
             self.push_cylinder(row, position, cylinder);
         }
+        let names = state.cylinders.iter().map(|cylinder| &cylinder.name);
+        self.is_regular = names.eq(self.cylinders.iter().map(|cylinder| &cylinder.name));
     }
 
     fn push_cylinder(&mut self, row: usize, position: usize, state: &CylinderState) {
@@ -93,26 +140,17 @@ impl StateTable {
 
     /// The recording named `source`, its clock in ns since the epoch; `report` gets the counts of what had to be set right.
     pub fn into_recording(mut self, source: &str, report: &mut ReadReport) -> (Recording, Vec<i64>) {
+        self.settle();
         report.infinite_values += self.infinite_values;
         report.repeated_cylinders = self.repeated_cylinders;
-        report.reordered = count_late(&self.stamps);
-        report.notes.extend(steps_back(&self.stamps));
-        let order = rows_by_stamp(&self.stamps);
-        report.duplicates = (self.stamps.len() - order.len()) as u64;
         let samples = self.stamps.len();
         for cylinder in &mut self.cylinders {
             for column in cylinder.columns_mut() {
                 column.resize(samples, f64::NAN);
             }
         }
-        let already_in_order = order.len() == samples && report.reordered == 0;
-        if !already_in_order {
-            self.stamps = order.iter().map(|&row| self.stamps[row]).collect();
-            let shared =
-                [&mut self.pump_pressure, &mut self.tank_pressure, &mut self.pump_flow, &mut self.oil_temperature];
-            for column in shared.into_iter().chain(self.cylinders.iter_mut().flat_map(CylinderSignals::columns_mut)) {
-                *column = order.iter().map(|&row| column[row]).collect();
-            }
+        if !self.stamps.is_sorted_by(|earlier, later| earlier < later) {
+            self.sort(report);
         }
         let start = self.stamps.first().copied().unwrap_or_default();
         // Division, not multiplication by 1e-9: it gives the double nearest to the decimal number.
@@ -130,11 +168,29 @@ impl StateTable {
         report.gaps = gaps(&recording);
         (recording, self.stamps)
     }
+
+    /// Sorts the rows by stamp, and drops all but the first of each stamp.
+    fn sort(&mut self, report: &mut ReadReport) {
+        report.reordered = count_late(&self.stamps);
+        report.notes.extend(steps_back(&self.stamps));
+        let order = rows_by_stamp(&self.stamps);
+        report.duplicates = (self.stamps.len() - order.len()) as u64;
+        self.stamps = order.iter().map(|&row| self.stamps[row]).collect();
+        let shared = [&mut self.pump_pressure, &mut self.tank_pressure, &mut self.pump_flow, &mut self.oil_temperature];
+        for column in shared.into_iter().chain(self.cylinders.iter_mut().flat_map(CylinderSignals::columns_mut)) {
+            *column = order.iter().map(|&row| column[row]).collect();
+        }
+    }
 }
 
 fn push_finite(column: &mut Vec<f64>, value: f64, infinite_values: &mut u64) {
+    column.push(finite(value, infinite_values));
+}
+
+/// The value, `NaN` for an infinite one, which is counted.
+fn finite(value: f64, infinite_values: &mut u64) -> f64 {
     *infinite_values += u64::from(value.is_infinite());
-    column.push(if value.is_infinite() { f64::NAN } else { value });
+    if value.is_infinite() { f64::NAN } else { value }
 }
 
 /// Rows in the order of their stamps; of rows with equal stamps only the first.

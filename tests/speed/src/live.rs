@@ -1,9 +1,10 @@
 //! The live nodes: time of processors, latency from state to energy, and what is lost.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use excavator_bags::RawMessages;
 use nix::sys::signal::{Signal, kill};
@@ -99,14 +100,17 @@ fn scene(program: &Program<'_>, machines: usize, rate: f64) -> Result<Run, Strin
     let mut recorder = Node::start(&program.path, &words)?;
     std::thread::sleep(Duration::from_secs_f64(START));
     let used = |nodes: &[Node]| nodes.iter().filter_map(|node| processor_time(&node.files())).sum::<f64>();
+    let from = system_nanoseconds();
     let (begin, before) = (Instant::now(), [used(&simulators), used(&monitors)]);
     std::thread::sleep(Duration::from_secs_f64(SECONDS));
     let wall = begin.elapsed().as_secs_f64();
     let [simulator, monitor] = [used(&simulators) - before[0], used(&monitors) - before[1]]
         .map(|seconds| 100.0 * seconds / wall / machines as f64);
+    let window = from..system_nanoseconds();
     recorder.end();
     drop((simulators, monitors));
-    let traffic = Traffic::of(&bag, rate)?;
+    // While eight nodes find each other, a core can be away for longer than a simulator catches up with.
+    let traffic = Traffic::of(&bag, rate, &window)?;
     let [median, high] = traffic.latency_milliseconds();
     let name = format!("{machines} machine{} at {:.0} kHz", if machines == 1 { "" } else { "s" }, rate / 1e3);
     let result = format!(
@@ -129,12 +133,13 @@ struct Traffic {
 }
 
 impl Traffic {
-    fn of(bag: &Path, rate: f64) -> Result<Self, String> {
+    /// Of messages that arrived within the window, ns since the epoch.
+    fn of(bag: &Path, rate: f64, window: &Range<u64>) -> Result<Self, String> {
         let mut states: HashMap<(String, u64), u64> = HashMap::new();
         let mut energies: HashMap<(String, u64), u64> = HashMap::new();
         for message in RawMessages::open(bag).map_err(|error| error.to_string())? {
             let message = message.map_err(|error| error.to_string())?;
-            let Some(stamp) = stamp_of(&message.data) else { continue };
+            let Some(stamp) = stamp_of(&message.data).filter(|_| window.contains(&message.log_time)) else { continue };
             let Some((machine, topic)) = message.topic.name.split_once("/arm/") else { continue };
             let seen = if topic == "state" { &mut states } else { &mut energies };
             seen.insert((machine.to_string(), stamp), message.log_time);
@@ -181,6 +186,10 @@ impl Traffic {
         };
         [at(0.5), at(0.99)]
     }
+}
+
+fn system_nanoseconds() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64)
 }
 
 /// Stamp of a header at the begin of a message in little-endian CDR, ns.
