@@ -4,6 +4,10 @@
 #[derive(Debug, Default)]
 pub(crate) struct Parabola {
     first: usize,
+    /// Half width that the weights are for, s.
+    half_width: f64,
+    /// Times of the samples that the weights are for, from the centre, as parts of the half width.
+    places: Vec<f64>,
     value: Vec<f64>,
     slope: Vec<f64>,
 }
@@ -12,13 +16,14 @@ pub(crate) struct Parabola {
 const FEWEST: usize = 4;
 /// Rounding of times, s: it must not decide whether a window is symmetric.
 const ROUNDING: f64 = 1e-7;
+/// Weights are kept for samples that are nowhere further than this from those before, as part of the half width: on an even
+/// clock places differ by rounding only.
+const SAME_PLACE: f64 = 1e-9;
 
 impl Parabola {
     /// The parabola at sample `centre` through the samples within `half_width` of it. `false` where there are too few of
     /// them or the window is cut off on one side; then there are no weights.
     pub fn set(&mut self, time: &[f64], centre: usize, half_width: f64) -> bool {
-        self.value.clear();
-        self.slope.clear();
         let (at, reach) = (time[centre], half_width + ROUNDING);
         let first = centre - time[..centre].iter().rev().take_while(|&&t| at - t <= reach).count();
         let last = centre + time[centre..].iter().take_while(|&&t| t - at <= reach).count();
@@ -26,11 +31,28 @@ impl Parabola {
         // A window that is cut off ends well before its half width.
         let cut = at - time[first] < 0.6 * half_width || time[last - 1] - at < 0.6 * half_width;
         if last - first < FEWEST || cut {
+            self.places.clear();
             return false;
         }
+        let places = time[first..last].iter().map(|t| (t - at) / half_width);
+        let is_same = self.half_width == half_width
+            && self.places.len() == last - first
+            && places.clone().zip(&self.places).all(|(place, before)| (place - before).abs() <= SAME_PLACE);
+        if !is_same {
+            self.places.clear();
+            self.places.extend(places);
+            self.half_width = half_width;
+            self.weigh();
+        }
+        !self.value.is_empty()
+    }
+
+    /// Weights for the places; none where they do not determine a parabola.
+    fn weigh(&mut self) {
+        self.value.clear();
+        self.slope.clear();
         let mut s = [0.0_f64; 5];
-        for &t in &time[first..last] {
-            let x = (t - at) / half_width;
+        for x in &self.places {
             let square = x * x;
             s[0] += 1.0;
             s[1] += x;
@@ -48,14 +70,12 @@ impl Parabola {
         let corner = s[1] * s[2] - s[0] * s[3];
         let determinant = s[0] * cofactors[0] + s[1] * cofactors[1] + s[2] * cofactors[2];
         if determinant.abs() < 1e-12 {
-            return false;
+            return;
         }
-        for &t in &time[first..last] {
-            let x = (t - at) / half_width;
+        for x in &self.places {
             self.value.push((cofactors[0] + cofactors[1] * x + cofactors[2] * x * x) / determinant);
-            self.slope.push((cofactors[1] + cofactors[3] * x + corner * x * x) / determinant / half_width);
+            self.slope.push((cofactors[1] + cofactors[3] * x + corner * x * x) / determinant / self.half_width);
         }
-        true
     }
 
     /// Value of a signal; `NaN` where one of its samples is.

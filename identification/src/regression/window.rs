@@ -40,7 +40,12 @@ pub(super) fn windows(time: &[f64], interval: f64, half_width: f64, step: f64) -
             centre += skipped.floor() * step;
             continue;
         }
-        let whole = inside.len() >= 8 && inside.windows(2).all(|pair| pair[1] - pair[0] <= LARGEST_GAP * interval);
+        let largest_gap = LARGEST_GAP * interval;
+        // A gap at an end is none between two samples, but it cuts off the bump all the same.
+        let reaches_its_ends = inside.first().is_some_and(|&t| t - (centre - half_width) <= largest_gap)
+            && inside.last().is_some_and(|&t| centre + half_width - t <= largest_gap);
+        let whole =
+            inside.len() >= 8 && reaches_its_ends && inside.windows(2).all(|pair| pair[1] - pair[0] <= largest_gap);
         if whole {
             let weights = inside
                 .iter()
@@ -64,6 +69,19 @@ pub(super) fn windows(time: &[f64], interval: f64, half_width: f64, step: f64) -
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_window_ends_inside_a_gap() {
+        let interval = 1e-3;
+        let time: Vec<f64> = (0..4000).map(|k| f64::from(k) * interval + if k < 2000 { 0.0 } else { 7.3 }).collect();
+        let all = windows(&time, interval, 0.25, 0.01);
+        assert!(all.len() > 250, "{}", all.len());
+        for window in all {
+            let sum: f64 = window.weights.iter().map(|[_, slope, _]| slope).sum();
+            let size: f64 = window.weights.iter().map(|[_, slope, _]| slope.abs()).sum();
+            assert!(sum.abs() < 1e-3 * size, "at {}: slopes add up to {sum}", window.centre);
+        }
+    }
 
     #[test]
     fn a_gap_of_years_takes_no_longer_and_leaves_the_windows_as_they_are() {

@@ -111,8 +111,9 @@ impl Window {
     }
 
     fn at(&self, signal: &[f64], index: usize) -> f64 {
-        let sides = self.weights.iter().enumerate().skip(1);
-        signal[index] * self.weights[0]
-            + sides.map(|(k, weight)| weight * (signal[index - k] + signal[index + k])).sum::<f64>()
+        let before = signal[index - self.half_width()..index].iter().rev();
+        let after = &signal[index + 1..=index + self.half_width()];
+        let sides = self.weights[1..].iter().zip(before.zip(after));
+        signal[index] * self.weights[0] + sides.map(|(weight, (before, after))| weight * (before + after)).sum::<f64>()
     }
 }

@@ -16,7 +16,7 @@ pub use denoise::{denoised, denoised_towards_zero, noise_level};
 pub use error::RecordingError;
 pub use interpolation::{cubic, linear, zero_order_hold};
 pub use noise::has_noise;
-pub use pieces::{closed_gaps, longest_gap};
+pub use pieces::{closed_gaps, longest_gap, median_interval};
 pub use resolution::resolution;
 pub use sample::{CylinderSample, Sample};
 pub use slopes::slopes;
@@ -131,12 +131,7 @@ impl Recording {
     /// Median time between samples in s; `NaN` for fewer than two samples. The median, not the mean, because lost
     /// messages leave gaps that say nothing about the rate of the clock.
     pub fn sample_interval(&self) -> f64 {
-        let mut steps: Vec<f64> = self.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        if steps.is_empty() {
-            return f64::NAN;
-        }
-        let middle = steps.len() / 2;
-        *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+        median_interval(&self.time)
     }
 
     /// The signals of the cylinder with this name.

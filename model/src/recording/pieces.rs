@@ -34,6 +34,16 @@ impl Recording {
     }
 }
 
+/// Median time between samples at the times `time`, s; `NaN` for fewer than two.
+pub fn median_interval(time: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if steps.is_empty() {
+        return f64::NAN;
+    }
+    let middle = steps.len() / 2;
+    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
 /// Longest time between two samples of one piece, s, for this sample interval.
 pub fn longest_gap(interval: f64) -> f64 {
     if interval.is_finite() { LEAST.max(INTERVALS * interval) } else { LEAST }

@@ -45,7 +45,14 @@ impl Courses {
             Between::Lines => behind_lines(time, command, servo),
             Between::Held => behind_steps(time, command, servo),
         };
-        let begin = time.iter().map(|t| (-(t - time[0]) / servo.lag).exp()).collect();
+        let mut decay = Decay::of(servo.lag);
+        let mut begin = Vec::with_capacity(time.len());
+        let mut left = 1.0;
+        begin.push(left);
+        for pair in time.windows(2) {
+            left *= decay.over(pair[1] - pair[0]);
+            begin.push(left);
+        }
         Courses { settled, begin }
     }
 
@@ -128,10 +135,11 @@ fn behind_limited(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
     let mut delayed = course_of(time, command, between);
     let mut from = delayed(time[0] - delay);
     let mut state = from;
+    let mut decay_of_part = Decay::of(lag);
     let mut spool = vec![state];
     for pair in time.windows(2) {
         let step = (pair[1] - pair[0]) / PARTS as f64;
-        let decay = (-step / lag).exp();
+        let decay = decay_of_part.over(step);
         for part in 1..=PARTS {
             let to = delayed(pair[0] + step * part as f64 - delay);
             let slope = (to - from) / step;
@@ -144,19 +152,45 @@ fn behind_limited(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
     spool
 }
 
+/// Samples are even but for rounding: an exponential is computed again where the interval differs by more than this part.
+const SAME_INTERVAL: f64 = 1e-9;
+
+/// What is left of a deviation after a time.
+struct Decay {
+    lag: f64,
+    interval: f64,
+    left: f64,
+}
+
+impl Decay {
+    fn of(lag: f64) -> Self {
+        Decay { lag, interval: f64::NAN, left: f64::NAN }
+    }
+
+    /// The part that is left after `interval`, s.
+    fn over(&mut self, interval: f64) -> f64 {
+        let same = (interval - self.interval).abs() <= SAME_INTERVAL * self.interval;
+        if !same {
+            (self.interval, self.left) = (interval, (-interval / self.lag).exp());
+        }
+        self.left
+    }
+}
+
 /// Straight lines between commands behind the servo, exactly integrated.
 fn behind_lines(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
     let Servo { lag, delay, between, .. } = servo;
     let mut delayed = course_of(time, command, between);
     let mut from = delayed(time[0] - delay);
     let mut state = from;
+    let mut decay = Decay::of(lag);
     let mut spool = Vec::with_capacity(time.len());
     spool.push(state);
     for pair in time.windows(2) {
         let to = delayed(pair[1] - delay);
         let step = pair[1] - pair[0];
         let slope = (to - from) / step;
-        state = to - slope * lag + (state - from + slope * lag) * (-step / lag).exp();
+        state = to - slope * lag + (state - from + slope * lag) * decay.over(step);
         spool.push(state);
         from = to;
     }
@@ -172,6 +206,7 @@ fn behind_steps(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
         held = next;
     }
     let mut state = held;
+    let mut decay = Decay::of(lag);
     let mut spool = Vec::with_capacity(time.len());
     spool.push(state);
     for pair in time.windows(2) {
@@ -183,7 +218,8 @@ fn behind_steps(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
                 (now, held) = (at, next);
             }
         }
-        state = held + (state - held) * ((now - pair[1]) / lag).exp();
+        let left = if now == pair[0] { decay.over(pair[1] - now) } else { ((now - pair[1]) / lag).exp() };
+        state = held + (state - held) * left;
         spool.push(state);
     }
     spool

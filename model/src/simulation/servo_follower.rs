@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::servo::{Between, Courses, Servo, misfit};
+use crate::recording::median_interval;
 
 /// Time constants that are tried, in sample intervals: from faster than any sampling to a slow pilot stage.
 const LAGS: [f64; 12] = [0.5, 1.0, 2.0, 3.5, 6.0, 10.0, 17.5, 30.0, 50.0, 100.0, 200.0, 400.0];
@@ -22,7 +23,8 @@ const SHORTEST_LAG: f64 = 0.25;
 pub(super) fn servo_follower(time: &[f64], measured: &[f64], command: &[f64], noise: f64) -> Option<Vec<f64>> {
     let stride = (time.len() / SEARCH_SAMPLES).max(1);
     let thin = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
-    let interval = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
+    // The median: pauses of hours between stretches say nothing about the rate of the clock.
+    let interval = median_interval(time);
     let shortest_lag = SHORTEST_LAG * interval;
     let lines = best_servo(&thin(time), &thin(measured), &thin(command), interval)?;
     // A held command is the line between its samples half an interval later.
