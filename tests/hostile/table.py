@@ -13,10 +13,12 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "faults.md"
 GROUPS = ["Commands", "Network", "Remote goals", "Files", "Recorder", "Pages and bridges"]
-INTRODUCTION = """# Faults that were tried
+INTRODUCTION = """# Faults that the tests try
 
-Each row is a test in `tests/hostile` or `tests/rclpy`. The last column holds the figures of one run on a machine with two cores.
-`python3 tests/hostile/table.py` writes this page from the rows of the last run.
+Each row is a test in `tests/hostile` or `tests/rclpy`. The first column says what a careless user, a broken program or a stranger does. The
+last column has the figures of one run on a machine with two cores. Some faults are tried by the long tests only (`tests/run --long`).
+
+`tests/run` collects the rows and checks that this page has all of them. `python3 tests/hostile/table.py` writes the page again.
 """
 
 

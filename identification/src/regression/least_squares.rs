@@ -16,7 +16,7 @@ const MOVING_AVERAGE: usize = 43;
 
 /// Identifies the linear coefficients of `model` by ordinary least squares on first differences smoothed by a moving
 /// average of 43 samples. Kept as the baseline: noise in regressors biases it, and its standard errors assume white
-/// residuals, which they are not (`docs/methods.md` has the figures).
+/// residuals, which they are not (`docs/how-it-works.md` has the figures).
 ///
 /// # Errors
 /// [`RegressionError`].

@@ -3,7 +3,7 @@
 //! Each equation is multiplied by test functions and integrated by parts, so that no measurement is differentiated
 //! (conservation form for chambers). Residuals are linearised in the parameters, which is exact for linear coefficients
 //! and a Gauss-Newton step for shape parameters. Instruments are the same regressors on the simulated state, whose errors
-//! have nothing to do with sensor noise, so that noise in regressors does not bias the result (`docs/methods.md`).
+//! have nothing to do with sensor noise, so that noise in regressors does not bias the result (`docs/how-it-works.md`).
 
 use std::ops::ControlFlow;
 
