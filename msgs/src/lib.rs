@@ -18,6 +18,7 @@ pub mod layout;
 mod message;
 mod orifice_command;
 mod time;
+mod type_description;
 
 pub use arm_state::ArmState;
 pub use cylinder_energy::CylinderEnergy;
@@ -28,3 +29,4 @@ pub use header::Header;
 pub use message::Message;
 pub use orifice_command::OrificeCommand;
 pub use time::Time;
+pub use type_description::{FieldDescription, FieldType, IndividualTypeDescription, TypeDescription};

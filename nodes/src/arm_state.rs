@@ -4,6 +4,15 @@ use excavator_model::Model;
 use excavator_model::recording::{CylinderSample, Sample};
 use excavator_msgs::common::JointState;
 use excavator_msgs::{ArmState, CylinderState, Header, Time};
+use excavator_ros::{Parameter, Value};
+
+/// Name of [`frame_parameter`].
+pub(crate) const FRAME: &str = "frame_id";
+
+/// The frame that states are told in. Its default is the root link of the robot description that is made of a model.
+pub(crate) fn frame_parameter() -> Parameter {
+    Parameter::new(FRAME, Value::String("base_link".into()), "frame of the states in their headers").read_only()
+}
 
 /// The state in the order of the model's cylinders; what the message does not have is not measured.
 pub(crate) fn sample(state: &ArmState, model: &Model) -> Sample {

@@ -78,6 +78,7 @@ mod services;
 mod signals;
 mod supervisor;
 mod threads;
+mod type_descriptions;
 mod value_text;
 
 pub use arguments::ros_words;

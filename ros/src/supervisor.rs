@@ -12,11 +12,11 @@ use super::guard::GuardError;
 use super::health::{Ours, Watch};
 use super::middleware_log::{complaints, count_complaints};
 use super::parameter_file::read_for;
-use super::parameter_services::offer;
 use super::{
     Diagnostics, Environment, Health, Lifecycle, Link, Logger, NodeIdentity, Parameter, Parameters, RosArguments,
     RosClock, RosError, Signals,
 };
+use super::{parameter_services, type_descriptions};
 
 /// Pace of the supervision: a dead thread or a returned peer is found within this time.
 const TICK: Duration = Duration::from_millis(250);
@@ -111,7 +111,8 @@ impl Supervisor {
         let logger = Logger::new(&link, arguments)?;
         let clock = RosClock::of(&link, parameters.flag("use_sim_time"))?;
         let diagnostics = Diagnostics::new(&link, &clock)?;
-        offer(&link, &parameters, &clock)?;
+        parameter_services::offer(&link, &parameters, &clock)?;
+        type_descriptions::offer(&link)?;
         match link.guard() {
             Some(Err(GuardError::SwitchedOff)) | None | Some(Ok(_)) => {}
             Some(Err(reason)) => warnings.push(format!("packets are not checked: {reason}")),

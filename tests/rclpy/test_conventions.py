@@ -9,6 +9,7 @@ from excavator_msgs.msg import ArmState
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from rosgraph_msgs.msg import Clock
+from support.simulator import STATE_QOS
 
 SIMULATOR = ("node", "arm-simulator", "--ros-args", "-p", "rate:=50.0")
 
@@ -88,4 +89,35 @@ def test_diagnostics_say_of_which_hardware_they_are(ros, excavator):
     ros.spin_until(
         lambda: all(status.hardware_id == "zx30u-arm" for status in heard[-1].status), "the hardware of every status"
     )
+    process.interrupt()
+
+
+@pytest.mark.parametrize("words", [[], ["-p", "frame_id:=pit/base_link"]])
+def test_states_have_the_frame_of_the_root_link(ros, excavator, words):
+    states = ros.listen(ArmState, "/arm/state", STATE_QOS)
+    process = ros.start(excavator, *SIMULATOR, *words)
+    ros.spin_until(lambda: states, "a state")
+    assert states[0].header.frame_id == (words[-1].partition(":=")[2] if words else "base_link")
+    process.interrupt()
+
+
+def test_a_node_describes_the_types_of_its_topics(ros, excavator):
+    interfaces = pytest.importorskip("type_description_interfaces.srv")
+    request = interfaces.GetTypeDescription.Request
+    process = ros.start(excavator, *SIMULATOR)
+
+    def asked(**words):
+        return ros.call(interfaces.GetTypeDescription, "/arm_simulator/get_type_description", request(**words))
+
+    answer = asked(type_name="excavator_msgs/msg/ArmState", include_type_sources=True)
+    assert answer.successful, answer.failure_reason
+    fields = answer.type_description.type_description.fields
+    assert [field.name for field in fields] == list(ArmState.get_fields_and_field_types())
+    nested = {one.type_name for one in answer.type_description.referenced_type_descriptions}
+    assert nested == {f"{name}" for name in (
+        "builtin_interfaces/msg/Time", "excavator_msgs/msg/CylinderState", "std_msgs/msg/Header")}
+    assert {source.type_name for source in answer.type_sources} == nested | {"excavator_msgs/msg/ArmState"}
+    refused = asked(type_name="excavator_msgs/msg/ArmState", type_hash="RIHS01_0")
+    assert not refused.successful and "RIHS01_" in refused.failure_reason
+    assert not asked(type_name="other_msgs/msg/Thing").successful
     process.interrupt()

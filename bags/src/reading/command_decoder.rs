@@ -48,6 +48,7 @@ fn areas(bytes: &[u8]) -> Option<Range<usize>> {
 }
 
 #[cfg(test)]
+#[allow(clippy::expect_used)]
 mod tests {
     use super::*;
     use excavator_msgs::{Header, Time};

@@ -101,6 +101,7 @@ fn set_text(target: &mut String, text: &[u8]) -> Option<()> {
 }
 
 #[cfg(test)]
+#[allow(clippy::expect_used)]
 mod tests {
     use super::*;
     use excavator_msgs::Time;

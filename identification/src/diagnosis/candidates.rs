@@ -32,6 +32,8 @@ pub struct Candidate<'a> {
     pub standing: Standing,
     /// By how much the log error ratio falls from one to the other.
     pub improvement: f64,
+    /// Mean NMSE of both on the validation recordings, as in [`Diagnosis::errors`]: before, with it.
+    pub errors: [f64; 2],
     /// What it is in the verdict.
     pub part: Part,
     /// Whether it shares the first place with others.
@@ -81,6 +83,23 @@ impl Diagnosis {
     /// The hypothesis whose effects a refinement adds; the given model where there is none.
     pub fn supported(&self) -> &Trial {
         &self.trials[self.verdict.supported()]
+    }
+
+    /// Mean NMSE of the model of a trial on the validation recordings, as in [`Diagnosis::errors`].
+    pub fn error_of(&self, trial: &Trial) -> f64 {
+        self.errors.get(self.number(trial)).copied().unwrap_or(f64::NAN)
+    }
+
+    /// Numbers of the trials that people see.
+    pub(super) fn shown(&self) -> Vec<usize> {
+        let paths = [self.verdict.best, self.verdict.supported()].into_iter().flat_map(|number| self.path(number));
+        let singles = self.trials.iter().filter(|trial| trial.additions.len() == 1);
+        let mut shown: Vec<usize> = paths.chain(singles).map(|trial| self.number(trial)).collect();
+        shown.push(0);
+        shown.extend(self.verdict.set.iter().copied().chain(self.verdict.structural_alternative()));
+        shown.sort_unstable();
+        shown.dedup();
+        shown
     }
 
     /// Number of effects that were tried; none where the given model leaves nothing but noise.
@@ -198,7 +217,8 @@ impl Diagnosis {
     ) -> Candidate<'a> {
         let standing = self.verdict.standings[self.number(trial)];
         let improvement = self.verdict.standings[self.number(before)].log_error_ratio - standing.log_error_ratio;
-        Candidate { addition, trial, before, standing, improvement, part, is_tied_with_first: false }
+        let errors = [before, trial].map(|one| self.error_of(one));
+        Candidate { addition, trial, before, standing, improvement, errors, part, is_tied_with_first: false }
     }
 
     fn number(&self, trial: &Trial) -> usize {

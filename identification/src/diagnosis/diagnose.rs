@@ -2,12 +2,14 @@
 
 use excavator_model::Model;
 use excavator_model::recording::Recording;
+use rayon::prelude::*;
 
 use super::{Share, Unexplained, residual_map, unexplained};
 use crate::decision::{Kind, Policy, Scores, Verdict, decide};
 use crate::fit::FitError;
 use crate::regression::RegressionError;
 use crate::search::{AdditionError, Effort, Pool, Trial, Unpromising, search};
+use crate::validation::mean_error;
 
 /// Result of a diagnosis.
 #[derive(Debug, Clone)]
@@ -26,6 +28,9 @@ pub struct Diagnosis {
     pub map: Vec<Share>,
     /// What is left where nothing explains it.
     pub unexplained: Option<Unexplained>,
+    /// Mean NMSE of the model of each trial on the validation recordings, simulated from their starts: what a comparison of that
+    /// model shows. `NaN` for trials that are not shown and where a simulation failed.
+    pub errors: Vec<f64>,
 }
 
 /// Why there is no verdict.
@@ -88,5 +93,13 @@ pub(crate) fn diagnosis_of(
         Kind::Adequate | Kind::MissingEffect => None,
     };
     let (trials, scores, unpromising, failed) = (pool.trials, pool.scores, pool.unpromising, pool.failed);
-    Ok(Diagnosis { verdict, scores, trials, unpromising, failed, map, unexplained })
+    let errors = vec![f64::NAN; trials.len()];
+    let mut diagnosis = Diagnosis { verdict, scores, trials, unpromising, failed, map, unexplained, errors };
+    let simulated: Vec<(usize, f64)> = diagnosis
+        .shown()
+        .into_par_iter()
+        .map(|number| (number, mean_error(&diagnosis.trials[number].fit.model, validation).unwrap_or(f64::NAN)))
+        .collect();
+    simulated.into_iter().for_each(|(number, error)| diagnosis.errors[number] = error);
+    Ok(diagnosis)
 }

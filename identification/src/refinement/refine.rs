@@ -152,6 +152,13 @@ pub fn refine(
             validation.iter().map(|recording| compare(&fit.model, recording)).collect::<Result<Vec<_>, _>>()?;
         steps.push(Step { added, fit, comparisons });
     }
+    let reason = match reason {
+        Reason::Found(mut diagnosis) => {
+            with_errors_of(&mut diagnosis, &steps);
+            Reason::Found(diagnosis)
+        }
+        Reason::Named(named) => Reason::Named(named),
+    };
     let mut final_model = steps.last().map_or_else(|| model.clone(), |step| step.fit.model.clone());
     final_model.history.clone_from(&model.history);
     let recordings: Vec<String> = identification.iter().chain(validation).map(|r| r.source.clone()).collect();
@@ -186,6 +193,16 @@ fn found(model: &Model, diagnosis: Diagnosis) -> (Fits, Reason) {
         }
     }
     (fits, Reason::Found(Box::new(diagnosis)))
+}
+
+/// What is said of a diagnosis is said of the models of the steps, which are those of its trials without what is superfluous in them.
+fn with_errors_of(diagnosis: &mut Diagnosis, steps: &[Step]) {
+    let ends = [(0, steps.first()), (diagnosis.verdict.supported(), steps.last())];
+    for (number, step) in ends {
+        if let (Some(error), Some(step)) = (diagnosis.errors.get_mut(number), step) {
+            *error = step.mean_error();
+        }
+    }
 }
 
 /// Named effects, one after the other.

@@ -90,7 +90,7 @@ pub(super) fn diagnosis_sections(diagnosis: &Diagnosis, comparisons: &[Compariso
             body: unexplained_plot(&diagnosis.given().fit.model.machine, left),
         });
     }
-    sections.push(Section { anchor: "evidence", title: "Evidence".into(), body: evidence(diagnosis, comparisons) });
+    sections.push(Section { anchor: "evidence", title: "Evidence".into(), body: evidence(diagnosis) });
     sections.push(Section { anchor: "where", title: "Where the model fails".into(), body: regimes(&diagnosis.map) });
     sections
 }

@@ -1,21 +1,17 @@
 //! Which effects were tried, what each gained, and where the model fails.
 
-use excavator_model::recording::Recording;
 use maud::{Markup, html};
 
 use super::numbers::{percent, significant};
 use super::verdict_text::NONE_TRIED;
 use super::words;
 use crate::diagnosis::{Candidate, Diagnosis, Part, Share};
-use crate::fit::normalised_error;
-use crate::validation::Comparison;
 
 /// Rows of the table of regimes.
 const MOST_REGIMES: usize = 12;
 
 /// Candidates with evidence, then the others, folded away.
-pub(super) fn evidence(diagnosis: &Diagnosis, comparisons: &[Comparison]) -> Markup {
-    let recordings: Vec<&Recording> = comparisons.iter().map(|comparison| &comparison.measured).collect();
+pub(super) fn evidence(diagnosis: &Diagnosis) -> Markup {
     let (rows, rejected) = (diagnosis.candidates(), diagnosis.rejected());
     if diagnosis.tried() == 0 {
         return html! { p { (NONE_TRIED) } };
@@ -23,16 +19,16 @@ pub(super) fn evidence(diagnosis: &Diagnosis, comparisons: &[Comparison]) -> Mar
     html! {
         @if rows.is_empty() {
             p { "None of the " (rejected.len() + diagnosis.unpromising.len()) " effects that were tried lowers the error by enough to be attributed." }
-        } @else { (table(&rows, &recordings)) }
+        } @else { (table(&rows)) }
         p.note {
             "Each effect of the catalogue was added to the model, and all parameters were fitted again to the identification recordings. "
-            "Errors here are on the validation recordings, over stretches of a few seconds. The log error ratio compares squared error "
-            "with noise variance in blocks of half a second: 0 is noise alone, 0.7 twice its variance. Improvement: by how much an effect "
+            "The mean NMSE is that of the whole validation recordings, simulated from their first states, as in every comparison. The log error "
+            "ratio compares squared error, over stretches of a few seconds, with noise variance in blocks of half a second: 0 is noise alone, 0.7 twice its variance. Improvement: by how much an effect "
             "lowers it. Significance: the improvement on all recordings, in standard errors from stretch to stretch. First in: share of 500 "
             "resampled recordings in which the hypothesis is the best of all."
         }
         @if !rejected.is_empty() {
-            details { summary { "Effects without evidence (" (rejected.len()) ")" } (table(&rejected, &recordings)) }
+            details { summary { "Effects without evidence (" (rejected.len()) ")" } (table(&rejected)) }
         }
         @if !diagnosis.unpromising.is_empty() {
             details {
@@ -56,11 +52,11 @@ pub(super) fn evidence(diagnosis: &Diagnosis, comparisons: &[Comparison]) -> Mar
     }
 }
 
-fn table(rows: &[Candidate<'_>], recordings: &[&Recording]) -> Markup {
+fn table(rows: &[Candidate<'_>]) -> Markup {
     html! {
         div.wide { table.data {
             thead { tr {
-                th { "Effect" } th { "Where" } th { "Result" } th.n { "NMSE before" } th.n { "NMSE after" } th.n { "Improvement" }
+                th { "Effect" } th { "Where" } th { "Result" } th.n { "Mean NMSE before" } th.n { "Mean NMSE after" } th.n { "Improvement" }
                 th.n { "Significance" } th.n { "Improvement where fitted" } th.n { "First in" }
             } }
             tbody { @for candidate in rows {
@@ -69,8 +65,7 @@ fn table(rows: &[Candidate<'_>], recordings: &[&Recording]) -> Markup {
                     td { (words::spoken(candidate.name())) " " code.code-name { (candidate.name()) } }
                     td { (candidate.place()) }
                     td { span class={ "chip " (class) } { (candidate.result()) } }
-                    td.n { (significant(normalised_error(&candidate.before.validation, recordings), 3)) }
-                    td.n { (significant(normalised_error(&candidate.trial.validation, recordings), 3)) }
+                    @for error in candidate.errors { td.n { (significant(error, 3)) } }
                     td.n { (two_digits(candidate.improvement)) }
                     td.n { (two_digits(candidate.standing.significance)) " σ" }
                     td.n { (two_digits(candidate.standing.identification_improvement)) }

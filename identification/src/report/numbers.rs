@@ -44,6 +44,17 @@ fn plain(value: f64) -> String {
     power.map_or(mantissa.to_string(), |power| format!("{mantissa} × {power}"))
 }
 
+/// How the one number by which models are compared changes, for the end of a sentence: `falls from 0.00691 to 0.000314 (22.0 times
+/// smaller)`.
+pub(super) fn change_of_error([before, after]: [f64; 2]) -> String {
+    let (from, to) = (significant(before, 3), significant(after, 3));
+    if after < before {
+        format!("falls from {from} to {to} ({} times smaller)", ratio(before / after))
+    } else {
+        format!("goes from {from} to {to}")
+    }
+}
+
 /// A fraction in percent.
 pub(super) fn percent(fraction: f64) -> String {
     match 100.0 * fraction {

@@ -2,7 +2,7 @@
 
 use excavator_model::Model;
 
-use super::numbers::{percent, ratio, significant, with_error};
+use super::numbers::{change_of_error, percent, significant, with_error};
 use super::verdict_text::verdict_sentence;
 use super::words;
 use crate::proposal::{Guess, Proposal, ProposalVerdict, Proposals};
@@ -36,7 +36,7 @@ pub fn proposal_sentence(model: &Model, found: &Proposals) -> String {
             }
             if let Some(curve) = found.proposals.iter().find(|proposal| proposal.is_a_curve) {
                 sentences.push(format!(
-                    "A table of the curve is there to be added, {}: it lowers the error, and explains nothing.",
+                    "You can add a table of the curve, {}: it lowers the error and explains nothing.",
                     curve.text.name
                 ));
             }
@@ -91,13 +91,13 @@ pub(super) fn numbers(proposal: &Proposal) -> Vec<String> {
 }
 
 fn smaller(found: &Proposals, proposal: &Proposal) -> String {
-    let times = ratio(found.error_before / proposal.validation_error);
+    let change = change_of_error([found.error_before, proposal.validation_error]);
     let with = if proposal.beside.is_empty() {
         String::new()
     } else {
-        format!(", together with {},", words::list(&proposal.beside, "and"))
+        format!(" and {}", words::list(&proposal.beside, "and"))
     };
-    format!("It{with} makes the squared error on recordings that were not fitted {times} times smaller.")
+    format!("With it{with}, the mean NMSE on recordings that were not fitted {change}.")
 }
 
 /// In which equation and along which variable the model fails.

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::diagnosis_page::{diagnosis_sections, verdict};
 use super::error_plots::{Errors, error_plots};
 use super::named_text::refinement_sentence;
-use super::numbers::{ratio, significant};
+use super::numbers::significant;
 use super::page::{Section, page, tile};
 use super::parameter_table;
 use super::signal_tables::{Stages, recordings};
@@ -71,12 +71,9 @@ fn before_and_after(refinement: &Refinement) -> (Option<&[Comparison]>, &[Compar
 }
 
 fn tiles(stages: &Stages) -> Markup {
-    let first = stages.mean.first().copied().unwrap_or(f64::NAN);
-    let last = stages.mean.last().copied().unwrap_or(f64::NAN);
     html! {
         div.tiles {
-            @for (name, mean) in stages.names.iter().zip(&stages.mean) { (tile(&significant(*mean, 3), &format!("NMSE, {name}"))) }
-            @if stages.mean.len() > 1 { (tile(&format!("{} ×", ratio(first / last)), "less squared error, first to last")) }
+            @for (name, mean) in stages.names.iter().zip(&stages.mean) { (tile(&significant(*mean, 3), &format!("mean NMSE, {name}"))) }
         }
     }
 }

@@ -3,7 +3,7 @@
 use excavator_model::effects::Finding;
 use excavator_model::{Model, site_name};
 
-use super::numbers::{percent, ratio};
+use super::numbers::{change_of_error, percent};
 use super::plausibility_text::implausible_sentence;
 use super::words;
 use crate::decision::{Kind, Reason};
@@ -43,17 +43,16 @@ fn adequate(machine: &str, diagnosis: &Diagnosis) -> String {
     let mut text = format!("Nothing is missing in {machine} that these recordings can show.");
     for reason in &diagnosis.verdict.reasons {
         text += &match reason {
-            Reason::WithinNoise { .. } => " What is left of the error is sensor noise.".to_string(),
+            Reason::WithinNoise { .. } => " The remaining error is sensor noise.".to_string(),
             Reason::ExceptMoments { share_of_time } => format!(
                 " In {} of the time the model is off by more than that; record more of these moments to learn what happens then.",
                 percent(*share_of_time)
             ),
             Reason::SmallError { .. } => {
-                " What is left of the error is about a hundredth of each signal's own size, too small to act on.".to_string()
+                " The remaining error is about a hundredth of each signal's own size, too small to act on.".to_string()
             }
             Reason::WithinInputs { .. } => {
-                " What is left of the error is no more than the readings of the inputs cause, by their noise and by what happens between \
-                 samples."
+                " The remaining error is no more than the readings of the inputs cause, by their noise and by what happens between samples."
                     .to_string()
             }
             _ => String::new(),
@@ -88,14 +87,14 @@ fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
         (_, false) => "With the first of each",
     };
     text + &format!(
-        " {with} the squared error on recordings that were not fitted becomes {} times smaller.",
-        times_smaller(diagnosis, diagnosis.best())
+        " {with} the mean NMSE on recordings that were not fitted {}.",
+        change_with(diagnosis, diagnosis.supported())
     )
 }
 
-/// By what the squared error on the validation recordings is smaller with this hypothesis.
-fn times_smaller(diagnosis: &Diagnosis, trial: &Trial) -> String {
-    ratio((diagnosis.given().validation.loss() - trial.validation.loss()).exp())
+/// How the mean NMSE on the validation recordings changes with this hypothesis.
+fn change_with(diagnosis: &Diagnosis, trial: &Trial) -> String {
+    change_of_error([diagnosis.given(), trial].map(|one| diagnosis.error_of(one)))
 }
 
 /// Share of a residual that a variable must explain to be mentioned.
@@ -140,8 +139,8 @@ fn partly(diagnosis: &Diagnosis, selected: &[Candidate<'_>]) -> String {
     };
     let names: Vec<String> = selected.iter().map(place_of).collect();
     let (names, share) = (words::list(&names, "and"), 1.0 - after.max(0.0) / before);
-    let times = times_smaller(diagnosis, diagnosis.best());
-    let smaller = format!("the squared error on recordings that were not fitted becomes {times} times smaller");
+    let change = change_with(diagnosis, diagnosis.best());
+    let smaller = format!("the mean NMSE on recordings that were not fitted {change}");
     if share >= MOSTLY {
         format!(
             " It is mostly {names}, in a form that differs from the catalogue's: {smaller}, and {} of the misfit remains.",
@@ -162,10 +161,10 @@ fn construction(diagnosis: &Diagnosis) -> String {
     let command: Vec<String> =
         trial.additions.iter().map(|addition| format!("--add {}", addition.name(&trial.fit.model))).collect();
     format!(
-        " With {} the squared error becomes {} times smaller. A diagnosis cannot see how a machine is built: if this one has that, add it \
-         with `excavator refine {}`.",
+        " With {} the mean NMSE {}. A diagnosis cannot see how a machine is built: if this one has that, add it with `excavator refine \
+         {}`.",
         names_of(diagnosis, number),
-        times_smaller(diagnosis, trial),
+        change_with(diagnosis, trial),
         command.join(" ")
     )
 }
@@ -193,7 +192,7 @@ fn undetermined(diagnosis: &Diagnosis) -> Option<String> {
     let names = given.model.parameter_names();
     let names: Vec<&str> = undetermined.iter().filter_map(|&index| Some(names.get(index)?.as_str())).collect();
     Some(format!(
-        "These recordings say little about the model: the 95 % intervals of {} of {fitted} parameters include zero ({}).",
+        "These recordings determine few parameters: the 95 % intervals of {} of {fitted} parameters include zero ({}).",
         names.len(),
         names.join(", ")
     ))

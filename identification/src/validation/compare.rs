@@ -140,6 +140,16 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
     Ok(Comparison { measured, simulated, signals, excitation_frequency, machine: model.machine.clone() })
 }
 
+/// Mean over the recordings of the mean normalised squared error of `model`: the one number by which models are compared.
+///
+/// # Errors
+/// [`RunError`] as of [`compare`].
+pub fn mean_error(model: &Model, recordings: &[&Recording]) -> Result<f64, RunError> {
+    let errors = recordings.iter().map(|recording| Ok(compare(model, recording)?.mean_error()));
+    let errors = errors.collect::<Result<Vec<f64>, RunError>>()?;
+    Ok(errors.iter().sum::<f64>() / errors.len() as f64)
+}
+
 /// What drives a cylinder, or all of them.
 fn driving_input(model: &Model, inputs: &InputSignals, measured: &Recording, cylinder: Option<usize>) -> Vec<f64> {
     match cylinder {

@@ -6,7 +6,7 @@ mod motion_phase;
 mod phase;
 mod residual_test;
 
-pub use compare::{Comparison, SignalComparison, compare, measured_velocity};
+pub use compare::{Comparison, SignalComparison, compare, mean_error, measured_velocity};
 pub use measures::{fit_percent, normalised_mean_squared_error};
 pub use motion_phase::{MotionPhase, PhaseShare, motion_phases, phase_shares};
 pub use phase::{dominant_frequency, phase_delay_degrees};

@@ -12,6 +12,7 @@ use super::description::{Description, JointField, TopicKind, TopicSource};
 use super::publisher::{Publisher, Refused, lock};
 use super::signals::Signals;
 use super::udp_source::UdpSource;
+use crate::arm_state::{FRAME, frame_parameter};
 use crate::error::VerbError;
 use excavator_ros::{Health, Lifecycle, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
@@ -27,7 +28,8 @@ const ACQUAINTANCE: Duration = Duration::from_secs(1);
 pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     let file =
         Parameter::new("description", Value::String(String::new()), "file (.toml) that says where signals come from");
-    let supervisor = Supervisor::start("arm_bridge", ros, vec![file.read_only(), Lifecycle::parameter()])?;
+    let supervisor =
+        Supervisor::start("arm_bridge", ros, vec![file.read_only(), frame_parameter(), Lifecycle::parameter()])?;
     let path = supervisor.parameters.text("description");
     if path.is_empty() {
         let reason = "no signals: give the file that describes them with -p description:=FILE.toml".to_string();
@@ -60,6 +62,7 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     let lifecycle = supervisor.lifecycle()?;
     let publisher = Publisher {
         rate: description.rate,
+        frame: supervisor.parameters.text(FRAME),
         signals: &signals,
         states: supervisor.link.publish("arm/state", TopicQos::reliable(50))?,
         joints: (!echoes).then(|| supervisor.link.publish("joint_states", TopicQos::reliable(10))).transpose()?,

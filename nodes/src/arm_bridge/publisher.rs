@@ -41,6 +41,8 @@ pub(super) struct Refused {
 /// Publishes states.
 pub(super) struct Publisher<'p> {
     pub rate: f64,
+    /// Frame in the headers of states.
+    pub frame: String,
     pub signals: &'p Mutex<Signals>,
     pub states: Outlet<ArmState>,
     /// `None` where the bridge itself reads `/joint_states` and must not answer itself.
@@ -96,7 +98,7 @@ impl Publisher<'_> {
         moment: Instant,
         send: impl FnOnce(&Outlet<ArmState>, ArmState),
     ) -> Vec<(usize, Fault)> {
-        let (state, faults) = {
+        let (mut state, faults) = {
             let mut signals = lock(self.signals);
             let delay = i64::try_from(signals.delay().as_nanos()).unwrap_or_default();
             let stamp = Time::from_nanoseconds(nanoseconds.saturating_sub(delay)).unwrap_or_default();
@@ -112,6 +114,7 @@ impl Publisher<'_> {
             // The next one comes within a fiftieth of a second.
             let _ = joints.publish(joint_state(&state, Vec::new()));
         }
+        state.header.frame_id.clone_from(&self.frame);
         send(&self.states, state);
         faults
     }

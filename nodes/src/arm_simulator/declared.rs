@@ -1,5 +1,6 @@
 //! Parameters of the simulator.
 
+use crate::arm_state::frame_parameter;
 use crate::command_gate::parameters as gate_parameters;
 use excavator_ros::{Lifecycle, Parameter, Value};
 
@@ -10,6 +11,7 @@ pub(super) fn parameters() -> Vec<Parameter> {
     let own = vec![
         Parameter::new("model", Value::String("zx30u-arm".into()), "built-in model or model file (.toml)").read_only(),
         Lifecycle::parameter(),
+        frame_parameter(),
         double("rate", 1000.0, "samples per simulated second [Hz]").within(1.0, 5000.0).read_only(),
         double("speed", 1.0, "simulated seconds per second; /clock is published unless it is 1")
             .within(0.01, 10.0)

@@ -46,7 +46,7 @@ pub fn run() -> Result<(), VerbError> {
         }
     };
     let slew = Slew::new(&valve_limits(&model), setup.opening_time, setup.closing_time);
-    let mut machine = Machine { plant, model: &model, slew, period: setup.period, failures: Vec::new() };
+    let mut machine = Machine { plant, model: &model, slew, period: setup.period, samples: 0, failures: Vec::new() };
     send(&mut stream, &Ready { failure: String::new() }).map_err(|error| failed(error.to_string()))?;
     let alone = follow(&mut stream, &mut machine, Duration::from_secs_f64(setup.wall_period.clamp(1e-6, 100.0)));
     if let Some(at) = alone {
@@ -65,6 +65,7 @@ struct Machine<'m, 's> {
     model: &'m Model,
     slew: Slew,
     period: f64,
+    samples: u64,
     failures: Vec<String>,
 }
 
@@ -113,6 +114,7 @@ impl Machine<'_, '_> {
     }
 
     fn step(&mut self, wanted: &[Wanted]) {
+        self.samples += 1;
         self.slew.follow(wanted.iter().copied(), self.period);
         if let Err(error) = self.plant.step(self.slew.areas())
             && self.failures.len() < MOST_FAILURES
@@ -125,6 +127,7 @@ impl Machine<'_, '_> {
         let state = arm_state(&self.plant.sample(), self.model, oil_temperature);
         Answer {
             state,
+            samples: self.samples,
             sampled_at: system_nanoseconds(),
             joint_rates: self.plant.joint_rates(),
             closed: self.slew.are_closed(),

@@ -65,6 +65,8 @@ pub(super) struct Order {
 pub(super) struct Answer {
     /// The state, as perfect instruments see it; stamped by the node.
     pub state: ArmState,
+    /// Samples of the machine's time so far, also those that it went on by alone.
+    pub samples: u64,
     /// When it was so by the system's clock, ns since the epoch. A node that was stopped in between reads it later.
     pub sampled_at: i64,
     /// Joint rates, rad/s or m/s.

@@ -13,7 +13,7 @@ use super::machine_process::{MachineProcess, Setup};
 use super::sensors::{Instrument, Quality, SIGNALS, Sensors};
 use super::stamps::Stamps;
 use super::valve_limits;
-use crate::arm_state::joint_state;
+use crate::arm_state::{FRAME, joint_state};
 use crate::command_gate::{Desk, Valve};
 use crate::error::VerbError;
 use crate::sources;
@@ -149,11 +149,12 @@ impl Simulation<'_> {
     fn steps(&self, mut machine: MachineProcess) -> Result<(), VerbError> {
         let parameters = self.parameters;
         let (rate, speed) = (parameters.double("rate"), parameters.double("speed"));
-        let period = 1.0 / rate;
+        let (period, frame) = (1.0 / rate, parameters.text(FRAME));
         let seed = u64::try_from(parameters.integer("seed")).unwrap_or_default();
         let mut sensors = Sensors::new(seed, parameters.texts("not_measured"));
         let mut clock = SampleClock::new(period, self.outlets.clock.is_some());
-        let mut pace = Pace::new(rate * speed);
+        // The schedule begins with the first sample: one that takes long to come is no delay of the others.
+        let mut pace: Option<Pace> = None;
         let mut settings = Settings::read(parameters);
         let mut reported = Instant::now();
         let mut counts = Counts::default();
@@ -171,14 +172,16 @@ impl Simulation<'_> {
             }
             self.desk.look(&mut wanted);
             let answer = machine.go_on(&wanted, samples, settings.command_timeout, settings.oil_temperature)?;
+            let pace = pace.get_or_insert_with(|| Pace::new(rate * speed));
             for failure in &answer.failures {
                 counts.failures += 1;
                 self.logger.error(format!("{failure}; the machine is set up again at rest"));
             }
             counts.limited = answer.limited;
             let mut state = answer.state;
-            let stamp = clock.stamp(answer.sampled_at);
+            let stamp = clock.stamp(answer.samples, answer.sampled_at);
             state.header.stamp = stamp;
+            state.header.frame_id.clone_from(&frame);
             if self.outlets.clock.is_some() {
                 self.desk.set_simulated_time(stamp.nanoseconds());
             }
@@ -198,16 +201,14 @@ impl Simulation<'_> {
             if reported.elapsed() >= REPORT {
                 reported = Instant::now();
                 settings = Settings::read(parameters);
-                self.report(&pace, &clock, &counts);
+                self.report(pace, &clock, &counts);
             }
             if stopping && answer.closed {
                 return Ok(());
             }
             pace.wait();
             // The machine does not stand still while this program had no processor.
-            let missed = pace.take_missed().min(MOST_MISSED);
-            clock.skip(missed);
-            samples = 1 + missed;
+            samples = 1 + pace.take_missed().min(MOST_MISSED);
         }
         Ok(())
     }
@@ -270,9 +271,10 @@ impl Settings {
 
 /// Where stamps come from.
 struct SampleClock {
+    /// Time between samples, ns.
     period: i64,
-    /// Simulated time, ns, where this node is the source of time.
-    simulated: Option<i64>,
+    /// Whether this node is the source of time: then it counts from zero.
+    is_own: bool,
     stamps: Stamps,
     jumps: u64,
 }
@@ -280,31 +282,17 @@ struct SampleClock {
 impl SampleClock {
     fn new(period: f64, own: bool) -> Self {
         let period = (period * 1e9).round() as i64;
-        // Zero is "no time yet" in ROS: the first sample comes one period later.
-        SampleClock { period, simulated: own.then_some(0), stamps: Stamps::new(period), jumps: 0 }
+        SampleClock { period, is_own: own, stamps: Stamps::new(period), jumps: 0 }
     }
 
-    /// Leaves out samples that nobody published.
-    fn skip(&mut self, samples: u64) {
-        let samples = i64::try_from(samples).unwrap_or_default();
-        if let Some(time) = &mut self.simulated {
-            *time = time.saturating_add(samples.saturating_mul(self.period));
-        }
-        self.stamps.skip(samples);
-    }
-
-    /// Stamp of a sample that was taken when the system's clock showed `clock` (ns).
-    fn stamp(&mut self, clock: i64) -> Time {
-        let nanoseconds = match &mut self.simulated {
-            Some(time) => {
-                *time += self.period;
-                *time
-            }
-            None => {
-                let (stamp, jumped) = self.stamps.stamp(clock);
-                self.jumps += u64::from(jumped);
-                stamp
-            }
+    /// Stamp of the sample with this number, which was taken when the system's clock showed `clock` (ns).
+    fn stamp(&mut self, sample: u64, clock: i64) -> Time {
+        let nanoseconds = if self.is_own {
+            self.period.saturating_mul(i64::try_from(sample).unwrap_or(i64::MAX))
+        } else {
+            let (stamp, jumped) = self.stamps.stamp(sample, clock);
+            self.jumps += u64::from(jumped);
+            stamp
         };
         Time::from_nanoseconds(nanoseconds).unwrap_or_default()
     }

@@ -1,46 +1,59 @@
 //! Stamps of simulated samples.
 //!
-//! Samples are exactly one period apart, so their stamps should be too, whatever the scheduler does. They follow the
-//! system's clock slowly, as that clock itself is corrected slowly, and jump with it when it jumps.
+//! A stamp is the machine's own time: samples are exactly one period apart, and so are their stamps, whatever the scheduler
+//! does. A stamp that followed the moment at which a sample was computed would let a starved computer change the physics: the
+//! slopes of the signals would no longer fit the powers. Stamps follow the system's clock slowly, as that clock itself is
+//! corrected slowly, and jump with it when it jumps.
 
 /// Largest correction per sample, as part of the period: twice the 500 ppm at which clocks are disciplined.
 const SLEW: f64 = 1e-3;
 /// Distance at which the clock has jumped or the simulation has lost its pace, ns.
 const JUMP: i64 = 100_000_000;
+/// A clock that is ahead has jumped when it stays so for this long by its own account, ns: a sample that was computed late
+/// looks the same until the next ones come.
+const LASTING: i64 = 1_000_000_000;
 
 /// Stamps of samples `period` apart.
 pub(super) struct Stamps {
     period: i64,
-    next: Option<i64>,
+    last: Option<(u64, i64)>,
+    /// Since when the clock has been ahead by more than a jump, ns on the clock.
+    ahead_since: Option<i64>,
 }
 
 impl Stamps {
     /// Samples `period` nanoseconds apart.
     pub fn new(period: i64) -> Self {
-        Stamps { period, next: None }
+        Stamps { period, last: None, ahead_since: None }
     }
 
-    /// Leaves out `samples` samples.
-    pub fn skip(&mut self, samples: i64) {
-        if let Some(next) = &mut self.next {
-            *next = next.saturating_add(samples.saturating_mul(self.period));
-        }
-    }
-
-    /// Stamp of the sample taken when the system's clock shows `clock` (ns), and whether it is a new beginning.
-    pub fn stamp(&mut self, clock: i64) -> (i64, bool) {
-        let (stamp, jumped) = match self.next {
-            // No sample is of the future: the first ones came late, and the schedule has caught up with them since. Half
-            // steps bring the stamps back within a few samples, and they still go forward.
-            Some(expected) if (self.period..=JUMP).contains(&(expected - clock)) => (expected - self.period / 2, false),
-            Some(expected) if (clock - expected).abs() <= JUMP => {
-                let most = (self.period as f64 * SLEW) as i64;
-                (expected + (clock - expected).clamp(-most, most), false)
+    /// Stamp of the sample with this number, taken when the system's clock shows `clock` (ns), and whether it is a new beginning.
+    pub fn stamp(&mut self, sample: u64, clock: i64) -> (i64, bool) {
+        let (stamp, jumped) = match self.last {
+            None => (clock, false),
+            Some((number, stamp)) => {
+                let samples = i64::try_from(sample.saturating_sub(number)).unwrap_or(i64::MAX);
+                self.next(stamp.saturating_add(samples.saturating_mul(self.period)), samples, clock)
             }
-            known => (clock, known.is_some()),
         };
-        self.next = Some(stamp + self.period);
+        self.last = Some((sample, stamp));
         (stamp, jumped)
+    }
+
+    /// The stamp that is expected, corrected, or the clock where that has jumped.
+    fn next(&mut self, expected: i64, samples: i64, clock: i64) -> (i64, bool) {
+        let ahead = clock.saturating_sub(expected);
+        if ahead <= JUMP {
+            self.ahead_since = None;
+        }
+        let since = (ahead > JUMP).then(|| *self.ahead_since.get_or_insert(clock));
+        let has_jumped = ahead < -JUMP || since.is_some_and(|since| !(0..LASTING).contains(&(clock - since)));
+        if has_jumped {
+            self.ahead_since = None;
+            return (clock, true);
+        }
+        let most = (self.period as f64 * SLEW * samples as f64) as i64;
+        (expected.saturating_add(ahead.clamp(-most, most)), false)
     }
 }
 
@@ -48,35 +61,55 @@ impl Stamps {
 mod tests {
     use super::*;
 
+    const PERIOD: i64 = 1_000_000;
+
     #[test]
     fn jitter_of_the_scheduler_does_not_show() {
-        let mut stamps = Stamps::new(1_000_000);
-        let mut previous = stamps.stamp(0).0;
-        for sample in 1..1000_i64 {
+        let mut stamps = Stamps::new(PERIOD);
+        let mut previous = stamps.stamp(0, 0).0;
+        for sample in 1..1000_u32 {
             let jitter = if sample % 2 == 0 { 300_000 } else { 0 };
-            let (stamp, jumped) = stamps.stamp(sample * 1_000_000 + jitter);
+            let (stamp, jumped) = stamps.stamp(sample.into(), i64::from(sample) * PERIOD + jitter);
             assert!(!jumped);
-            assert!((stamp - previous - 1_000_000).abs() <= 1000);
+            assert!((stamp - previous - PERIOD).abs() <= 1000);
             previous = stamp;
         }
     }
 
+    /// A core is away for 300 ms: one sample comes late, the next one has to make up for the others.
     #[test]
-    fn a_late_beginning_does_not_put_later_stamps_into_the_future() {
-        let mut stamps = Stamps::new(4_000_000);
-        // The first sample is taken 20 ms late, the next ones at once, until the schedule is met.
-        let clocks = (0..100_i64).map(|sample| (sample * 4_000_000).max(20_000_000 + sample * 1000));
-        let ahead: Vec<(i64, i64)> = clocks.map(|clock| (stamps.stamp(clock).0, clock)).collect();
-        assert!(ahead.windows(2).all(|pair| pair[1].0 > pair[0].0));
-        assert!(ahead[20..].iter().all(|(stamp, clock)| stamp - clock <= 4_000_000), "{ahead:?}");
+    fn a_starved_computer_does_not_change_the_time_between_samples() {
+        let mut stamps = Stamps::new(PERIOD);
+        let before = (0..500_i64).map(|sample| (sample, sample));
+        let late = [(500_i64, 800_i64)].into_iter();
+        let after = (801..1500_i64).map(|sample| (sample, sample));
+        let mut previous: Option<(i64, i64)> = None;
+        for (sample, milliseconds) in before.chain(late).chain(after) {
+            let (stamp, jumped) = stamps.stamp(sample.unsigned_abs(), milliseconds * PERIOD);
+            assert!(!jumped);
+            if let Some((number, before)) = previous {
+                let interval = (sample - number) * PERIOD;
+                assert!((stamp - before - interval).abs() <= interval / 1000, "at sample {sample}");
+            }
+            previous = Some((sample, stamp));
+        }
     }
 
     #[test]
     fn a_drifting_clock_is_followed_and_a_jump_is_told() {
-        let mut stamps = Stamps::new(1_000_000);
+        let mut stamps = Stamps::new(PERIOD);
         let drifting = |sample: i64| sample * 1_000_500;
-        let last = (0..10_000).map(|sample| stamps.stamp(drifting(sample)).0).last();
+        let last = (0..10_000_i64).map(|sample| stamps.stamp(sample.unsigned_abs(), drifting(sample)).0).last();
         assert!(last.is_some_and(|stamp| (stamp - drifting(9_999)).abs() < 2_000));
-        assert_eq!(stamps.stamp(-5_000_000_000), (-5_000_000_000, true));
+        assert_eq!(stamps.stamp(10_000, -5_000_000_000), (-5_000_000_000, true));
+    }
+
+    #[test]
+    fn a_clock_set_forward_is_followed_after_a_second() {
+        let mut stamps = Stamps::new(PERIOD);
+        stamps.stamp(0, 0);
+        let hour = 3_600_000_000_000;
+        let jump = (1..3000_u32).find(|&sample| stamps.stamp(sample.into(), hour + i64::from(sample) * PERIOD).1);
+        assert_eq!(jump, Some(1001));
     }
 }

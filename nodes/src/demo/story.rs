@@ -60,7 +60,7 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
         })?;
     drop(progress);
     if let Some(diagnosis) = refinement.diagnosis() {
-        print(&candidate_table(diagnosis, &validation_only).to_string());
+        print(&candidate_table(diagnosis).to_string());
         print(&format!("\n3  {}", verdict_sentence(&model, diagnosis)));
     }
     print("\n4  Added, refitted, simulated again on the recording that was never fitted:");

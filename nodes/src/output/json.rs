@@ -3,13 +3,12 @@
 use std::path::Path;
 
 use excavator_identification::diagnosis::{Candidate, Diagnosis, Share, Unexplained};
-use excavator_identification::fit::{normalised_error, nuisances_shown};
+use excavator_identification::fit::nuisances_shown;
 use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
 use excavator_identification::validation::{Comparison, Correlation, PhaseShare};
 use excavator_identification::value_marks::value_mark;
 use excavator_model::effects::Site;
-use excavator_model::recording::Recording;
 use excavator_model::{Model, site_name};
 use serde_json::{Map, Value, json};
 
@@ -132,15 +131,15 @@ fn own_parameters(model: &Model, name: &str, site: Site) -> Vec<Value> {
 
 /// One candidate. `found` is the favoured model: where the candidate is a part of it its parameters are those beside the others, which
 /// one alone had to stand in for.
-fn candidate_json(candidate: &Candidate<'_>, validation: &[&Recording], found: &Model) -> Value {
+fn candidate_json(candidate: &Candidate<'_>, found: &Model) -> Value {
     let (alone, site) = (&candidate.trial.fit.model, candidate.addition.site);
     let model = Some(found).filter(|model| model.has(candidate.name(), site)).unwrap_or(alone);
     let standing = candidate.standing;
     json!({
         "effect": candidate.name(),
         "cylinder": candidate.place(),
-        "validation_error_before": finite(normalised_error(&candidate.before.validation, validation)),
-        "validation_error_after": finite(normalised_error(&candidate.trial.validation, validation)),
+        "validation_error_before": finite(candidate.errors[0]),
+        "validation_error_after": finite(candidate.errors[1]),
         "evidence": finite(candidate.improvement),
         "significance": finite(standing.significance),
         "set_p_value": standing.set_p_value.map(finite),
@@ -166,11 +165,11 @@ fn nuisances_json(given: &Model, fitted: &Model) -> Vec<Value> {
 }
 
 /// Result of `diagnose` for the model `given`.
-pub fn diagnosis_json(given: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) -> Value {
+pub fn diagnosis_json(given: &Model, diagnosis: &Diagnosis) -> Value {
     let found = &diagnosis.best().fit.model;
     let supported = &diagnosis.supported().fit.model;
     let listed = |list: &[Candidate<'_>]| -> Vec<Value> {
-        list.iter().map(|candidate| candidate_json(candidate, validation, found)).collect()
+        list.iter().map(|candidate| candidate_json(candidate, found)).collect()
     };
     // A structural alternative is no candidate: a verdict does not name it.
     let is_candidate = |one: &Candidate<'_>| one.addition.physics.card().family.is_candidate();
@@ -181,7 +180,7 @@ pub fn diagnosis_json(given: &Model, diagnosis: &Diagnosis, validation: &[&Recor
         Some(json!({
             "effect": structural.physics.card().name,
             "cylinder": site_name(&trial.fit.model.machine, structural.site),
-            "validation_error_after": finite(normalised_error(&trial.validation, validation)),
+            "validation_error_after": finite(diagnosis.error_of(trial)),
             "parameters": own_parameters(&trial.fit.model, &structural.physics.card().name, structural.site),
         }))
     });
@@ -189,6 +188,10 @@ pub fn diagnosis_json(given: &Model, diagnosis: &Diagnosis, validation: &[&Recor
     json!({
         "verdict": diagnosis.verdict.kind.name(),
         "reasons": diagnosis.verdict.reasons,
+        "validation_error": {
+            "before": finite(diagnosis.error_of(given_trial)),
+            "after": finite(diagnosis.error_of(diagnosis.supported())),
+        },
         "candidates": listed(&candidates),
         "rejected": listed(&diagnosis.rejected()),
         "together": together_json(diagnosis),

@@ -4,7 +4,6 @@ use comfy_table::{Cell, ContentArrangement, Table};
 use excavator_identification::proposal::{Finding, Guess, Proposal, ProposalVerdict, Proposals};
 use excavator_identification::report::{law_remarks, law_result};
 use excavator_model::Model;
-use excavator_model::recording::Recording;
 use serde_json::{Value, json};
 
 use super::json::{diagnosis_json, finite, unexplained_json};
@@ -52,7 +51,7 @@ fn findings(findings: &[Finding]) -> Vec<Value> {
 }
 
 /// Result of `propose`.
-pub fn proposal_json(model: &Model, found: &Proposals, validation: &[&Recording]) -> Value {
+pub fn proposal_json(model: &Model, found: &Proposals) -> Value {
     let is_law = found.kind == ProposalVerdict::Law;
     let first = found.proposals.first().map(|first| first.trial);
     let proposal = |one: &Proposal| {
@@ -84,7 +83,7 @@ pub fn proposal_json(model: &Model, found: &Proposals, validation: &[&Recording]
             "remarks": law_remarks(one),
         })
     };
-    let of_catalogue = diagnosis_json(model, &found.diagnosis, validation);
+    let of_catalogue = diagnosis_json(model, &found.diagnosis);
     json!({
         "verdict": found.kind.name(),
         "proposals": found.proposals.iter().map(proposal).collect::<Vec<_>>(),

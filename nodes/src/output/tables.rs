@@ -3,13 +3,10 @@
 use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
 use comfy_table::{Attribute, Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 use excavator_identification::diagnosis::Diagnosis;
-use excavator_identification::fit::normalised_error;
 use excavator_identification::refinement::Refinement;
-use excavator_identification::search::Trial;
 use excavator_identification::validation::{Comparison, Correlation, MotionPhase, SignalComparison};
 use excavator_identification::value_marks::{remedies, value_mark};
 use excavator_model::Model;
-use excavator_model::recording::Recording;
 
 /// A number with four significant digits, short.
 pub fn number(value: f64) -> String {
@@ -134,16 +131,15 @@ fn correlation(found: Option<Correlation>) -> String {
 }
 
 /// Effects with what they improve on the validation recordings: those of the verdict, others with evidence, the rest.
-pub fn candidate_table(diagnosis: &Diagnosis, validation: &[&Recording]) -> Table {
+pub fn candidate_table(diagnosis: &Diagnosis) -> Table {
     let mut table =
-        table(&["effect", "at", "error before", "error after", "improvement", "significance", "first in", "verdict"]);
+        table(&["effect", "at", "NMSE before", "after", "improvement", "significance", "first in", "verdict"]);
     for candidate in diagnosis.candidates().iter().chain(&diagnosis.rejected()) {
-        let error = |trial: &Trial| right(number(normalised_error(&trial.validation, validation)));
         table.add_row([
             Cell::new(candidate.name()),
             Cell::new(candidate.place()),
-            error(candidate.before),
-            error(candidate.trial),
+            right(number(candidate.errors[0])),
+            right(number(candidate.errors[1])),
             right(format!("{:.2}", candidate.improvement)),
             right(format!("{:.1}", candidate.standing.significance)),
             right(format!("{:.0} %", 100.0 * candidate.standing.is_first)),

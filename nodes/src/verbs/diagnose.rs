@@ -37,7 +37,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     let diagnosis = diagnose(&model, &identification, &validation, &settings, &|what, done| progress.tell(what, done))?;
     drop(progress);
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&model, &diagnosis, &validation);
+        show(&model, &diagnosis);
     }
     let guess = guess(&diagnosis, &identification, &validation);
     if arguments.json.json.as_deref() != Some(Path::new("-"))
@@ -65,7 +65,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         outputs::write(path, &diagnosis_page(&model, &diagnosis, &comparisons, &missing), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        let mut value = diagnosis_json(&model, &diagnosis, &validation);
+        let mut value = diagnosis_json(&model, &diagnosis);
         value["first_guess"] = guess.as_ref().map_or(serde_json::Value::Null, guess_json);
         let sentences = |found: &[MissingPower]| found.iter().map(missing_power_json).collect::<Vec<_>>();
         value["missing_power"] = missing
@@ -98,12 +98,12 @@ fn ledgers(model: &Model, recordings: &[&Recording]) -> Vec<(String, Vec<Missing
 const LEAST_SHARE: f64 = 0.05;
 
 /// Prints a diagnosis for people.
-pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
+pub fn show(model: &Model, diagnosis: &Diagnosis) {
     print(&verdict_sentence(model, diagnosis));
     if diagnosis.tried() == 0 {
         print(NONE_TRIED);
     } else {
-        print(&candidate_table(diagnosis, validation).to_string());
+        print(&candidate_table(diagnosis).to_string());
     }
     if !diagnosis.unpromising.is_empty() {
         let same =
@@ -123,7 +123,7 @@ pub fn show(model: &Model, diagnosis: &Diagnosis, validation: &[&Recording]) {
         print(&format!("{name} could not be tried: {error}"));
     }
     if diagnosis.map.is_empty() {
-        print("Where the fitted model fails cannot be told: no equation of it has all its signals measured.");
+        print("Where the fitted model fails cannot be located: no equation has all its signals measured.");
         return;
     }
     print("Where the fitted model fails (share of the squared residual, in units of sensor noise):");

@@ -44,7 +44,7 @@ pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
         outputs::write(path, &proposal_page(&model, &found), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &proposal_json(&model, &found, &validation), arguments.overwriting)?;
+        write_json(path, &proposal_json(&model, &found), arguments.overwriting)?;
     }
     Ok(())
 }

@@ -14,7 +14,7 @@ from .loopback import free_domain
 from .process import Process
 
 # s; what is waited for comes within 0.1 s as a rule, discovery without multicast within 7 s; a busy machine gets the rest.
-LONGEST_WAIT = 30.0
+LONGEST_WAIT = 90.0
 
 
 class Session:
