@@ -81,7 +81,13 @@ fn observe_against(
         let measured_velocity = signals.velocity.iter().any(|v| v.is_finite());
         let half_width = (SLOPE_HALF_WIDTH * model.machine.size().time())
             .max(SLOPE_HALF_WIDTH_SAMPLES * recording.sample_interval());
-        let (smooth_displacement, slope) = parabolas(&recording.time, &displacement, half_width);
+        let (mut smooth_displacement, mut slope) = (Vec::new(), Vec::new());
+        // What lies beyond a pause is no neighbour.
+        for piece in recording.pieces() {
+            let (values, slopes) = parabolas(&recording.time[piece.clone()], &displacement[piece], half_width);
+            smooth_displacement.extend(values);
+            slope.extend(slopes);
+        }
         cylinders.push(CylinderObservation {
             joint,
             smooth_displacement,
