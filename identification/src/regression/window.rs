@@ -24,10 +24,6 @@ pub(super) struct Window {
 /// A gap in the clock longer than this many median intervals inside a window spoils its quadrature.
 const LARGEST_GAP: f64 = 4.0;
 
-/// Median intervals without a sample at an end of a window that spoil it. Less than one is as it should be; with four the inertia of a
-/// recording with one gap came out by two of its 95 % margins wrong.
-const LARGEST_CUT: f64 = 1.5;
-
 /// Windows of half width `half_width` every `step` s along `time`, without those across gaps.
 pub(super) fn windows(time: &[f64], interval: f64, half_width: f64, step: f64) -> Vec<Window> {
     let mut windows = Vec::new();
@@ -44,10 +40,14 @@ pub(super) fn windows(time: &[f64], interval: f64, half_width: f64, step: f64) -
             centre += skipped.floor() * step;
             continue;
         }
-        let (largest_gap, largest_cut) = (LARGEST_GAP * interval, LARGEST_CUT * interval);
-        // A gap at an end is none between two samples, but it cuts off the bump all the same.
-        let reaches_its_ends = inside.first().is_some_and(|&t| t - (centre - half_width) <= largest_cut)
-            && inside.last().is_some_and(|&t| centre + half_width - t <= largest_cut);
+        let largest_gap = LARGEST_GAP * interval;
+        // A gap at an end is none between two samples inside, but it cuts off the bump all the same. At the ends of the recording a
+        // window begins or ends with a sample.
+        let is_near = |before: usize, after: usize| match (time.get(before), time.get(after)) {
+            (Some(before), Some(after)) => after - before <= largest_gap,
+            _ => true,
+        };
+        let reaches_its_ends = is_near(first.wrapping_sub(1), first) && is_near(last.wrapping_sub(1), last);
         let whole =
             inside.len() >= 8 && reaches_its_ends && inside.windows(2).all(|pair| pair[1] - pair[0] <= largest_gap);
         if whole {
