@@ -20,9 +20,11 @@ mod play;
 mod profile_file;
 mod record;
 mod recording_part;
+mod saved_diagnosis;
 mod sources;
 mod terminal;
 mod up;
+mod verbosity;
 mod verbs;
 
 #[doc(hidden)]
@@ -37,6 +39,7 @@ pub fn run_command_line() -> ExitCode {
     let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let outcome = excavator_ros::RosArguments::parse(&all).map_err(error::VerbError::from).and_then(|(ros, words)| {
         let arguments = cli::Arguments::try_parse_from(words).unwrap_or_else(|refusal| refuse(&refusal));
+        arguments.verbosity().choose();
         verbs::run(arguments.verb, &ros, excavator_ros::ros_words(&all))?;
         verbs::all_was_printed()
     });

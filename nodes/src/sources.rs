@@ -19,7 +19,7 @@ use crate::cli::{self, Extent, Mapping};
 use crate::error::VerbError;
 use crate::long_recording::recording_or_stretches;
 use crate::recording_part::Part;
-use crate::terminal::complain;
+use crate::terminal::remark;
 
 /// A model by its built-in name or file, with the effects of its user.
 pub fn model(choice: &cli::ModelChoice) -> Result<Model, VerbError> {
@@ -92,7 +92,7 @@ pub fn telling_recording(path: &Path, extent: Extent, map: &Mapping, model: &Mod
     }
     let (recording, report, chosen) = recording_or_stretches(path, map.origin(), model)?;
     if let Some(chosen) = &chosen {
-        complain(&format!("{}: {}", path.display(), choice(&recording, chosen)));
+        remark(&format!("{}: {}", path.display(), choice(&recording, chosen)));
     }
     checked(path, recording, &report, map, model)
 }
@@ -121,14 +121,14 @@ fn checked(
 ) -> Result<Recording, VerbError> {
     leave_pump_pressure_out(model, &mut recording, &report.left_out);
     for problem in report.problems() {
-        complain(&format!("{}: {problem}", path.display()));
+        remark(&format!("{}: {problem}", path.display()));
     }
     for overruled in gate::check(model, &recording, &map.accept)? {
-        complain(&format!("accepted: {overruled}"));
+        remark(&format!("accepted: {overruled}"));
     }
     let holes = input_holes(model, &recording);
     if holes.count > 0 {
-        complain(&format!(
+        remark(&format!(
             "{}: an input is missing for up to {:.2} s, {} time(s); these {:.2} s are left out",
             path.display(),
             holes.longest,
@@ -137,8 +137,8 @@ fn checked(
         ));
         recording = recording.at(&holes.known);
     }
-    for remark in gate::remarks(model, &recording) {
-        complain(&format!("{}: {remark}", path.display()));
+    for found in gate::remarks(model, &recording) {
+        remark(&format!("{}: {found}", path.display()));
     }
     let kept = map.conditions.iter().map(|text| (text, true));
     for (text, keeps) in kept.chain(report.left_out_where.iter().map(|text| (text, false))) {
@@ -146,7 +146,7 @@ fn checked(
             .map_err(|error| VerbError::Condition { text: text.clone(), error: Box::new(error) })?;
         let left_out = leave_out(model, &mut recording, &condition, keeps);
         let holds = if keeps { "where not" } else { "where" };
-        complain(&format!("{}: {:.0} % of the time is left out, {holds} {text}", path.display(), 100.0 * left_out));
+        remark(&format!("{}: {:.0} % of the time is left out, {holds} {text}", path.display(), 100.0 * left_out));
     }
     Ok(recording)
 }
@@ -226,7 +226,7 @@ pub fn fitted_and_judging(
     let validation = telling_recordings(&paths.validation, paths.extent, &paths.mapping, model)?;
     let (fitted, judging): (Vec<_>, Vec<_>) = (identification.iter().collect(), validation.iter().collect());
     for shared in gate::shared_readings(&fitted, &judging) {
-        complain(&shared.to_string());
+        remark(&shared.to_string());
     }
     Ok((identification, validation))
 }

@@ -4,8 +4,12 @@
 //! text leaves the program, and not at each of the places that put a name into a sentence.
 
 use std::borrow::Cow;
+use std::io::IsTerminal;
 
 pub use excavator_bags::printable;
+
+use crate::output::filled;
+use crate::verbosity::Verbosity;
 
 /// What our own text has besides printable characters: ends of lines, and headings of tables in bold. A name that has them
 /// can be bold or begin a line, and no more.
@@ -28,9 +32,25 @@ pub fn text(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// A line on standard error.
+/// A line on standard error: why something failed.
 pub fn complain(line: &str) {
     eprintln!("{}", printable(line));
+}
+
+/// A line on standard error that is worth knowing, unless nothing is to be said.
+pub fn remark(line: &str) {
+    if Verbosity::chosen() > Verbosity::Quiet {
+        let width = std::io::stderr().is_terminal().then(|| width().unwrap_or(80));
+        eprintln!("{}", filled(&printable(line), width));
+    }
+}
+
+/// Columns of the terminal; `None` where standard output is none.
+pub fn width() -> Option<usize> {
+    // The library of the tables asks the terminal, once for a table.
+    let mut table = comfy_table::Table::new();
+    table.set_content_arrangement(comfy_table::ContentArrangement::Dynamic);
+    table.width().map(usize::from)
 }
 
 #[cfg(test)]

@@ -2,4 +2,4 @@
 
 mod refine;
 
-pub use refine::{Additions, Reason, RefineError, Refinement, Step, refine};
+pub use refine::{Additions, Reason, RefineError, Refinement, Step, refine, refinement_of};

@@ -136,8 +136,6 @@ pub fn refine(
     if validation.is_empty() {
         return Err(DiagnosisError::NoValidation.into());
     }
-    let given =
-        validation.iter().map(|recording| compare(model, recording)).collect::<Result<_, _>>().unwrap_or_default();
     let (fits, reason) = match additions {
         Additions::Auto => found(model, diagnose(model, identification, validation, settings, progress)?),
         Additions::AutoWithLaws => {
@@ -145,6 +143,36 @@ pub fn refine(
         }
         Additions::Named(named) => as_named(model, named, identification, validation, settings, progress)?,
     };
+    with_fits(model, fits, reason, identification, validation, settings, when)
+}
+
+/// The refinement that a diagnosis of `model` on these recordings leads to, without another search.
+///
+/// # Errors
+/// [`RefineError`].
+pub fn refinement_of(
+    model: &Model,
+    diagnosis: &Diagnosis,
+    identification: &[&Recording],
+    validation: &[&Recording],
+    settings: &DiagnosisSettings,
+    when: &str,
+) -> Result<Refinement, RefineError> {
+    let (fits, reason) = found(model, diagnosis.clone());
+    with_fits(model, fits, reason, identification, validation, settings, when)
+}
+
+fn with_fits(
+    model: &Model,
+    fits: Fits,
+    reason: Reason,
+    identification: &[&Recording],
+    validation: &[&Recording],
+    settings: &DiagnosisSettings,
+    when: &str,
+) -> Result<Refinement, RefineError> {
+    let given =
+        validation.iter().map(|recording| compare(model, recording)).collect::<Result<_, _>>().unwrap_or_default();
     let mut steps: Vec<Step> = Vec::new();
     for (added, fit) in fits {
         let fit = simplified(model, &fit, identification, &settings.effort.fit)?;

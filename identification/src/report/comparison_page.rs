@@ -3,22 +3,28 @@
 use excavator_model::Model;
 use maud::{Markup, html};
 
+use super::comparison_text::comparison_sentence;
 use super::error_plots::{Errors, error_plots};
 use super::numbers::significant;
 use super::page::{Section, page, tile};
 use super::time_plots::{MODEL, hint, time_plots};
 use super::{parameter_table, signal_tables};
-use crate::validation::Comparison;
+use crate::validation::{Baselines, Comparison};
 
 /// A page that shows how far `model` is from recordings: measures, every signal over time, and every signal's error
 /// against command, speed, pressure and position.
-pub fn comparison_page(model: &Model, comparisons: &[Comparison]) -> String {
+///
+/// `baselines` are those of the comparisons, in their order.
+pub fn comparison_page(model: &Model, comparisons: &[Comparison], baselines: &[Baselines]) -> String {
     let mean = comparisons.iter().map(Comparison::mean_error).sum::<f64>() / comparisons.len() as f64;
     let duration: f64 = comparisons.iter().map(|comparison| comparison.measured.duration()).sum();
     let lead = html! {
         p.about { (model.machine.description) }
+        @for (comparison, baselines) in comparisons.iter().zip(baselines) {
+            p.verdict { (comparison_sentence(comparison, baselines)) }
+        }
         div.tiles {
-            (tile(&significant(mean, 3), "NMSE, mean over signals"))
+            (tile(&significant(mean, 3), "mean NMSE"))
             (tile(&comparisons.len().to_string(), if comparisons.len() == 1 { "recording" } else { "recordings" }))
             (tile(&format!("{duration:.1} s"), "duration"))
             (tile(&model.effects.len().to_string(), "effects in the model"))

@@ -1,11 +1,14 @@
 //! How far a model is from a measurement.
 
+mod arx;
+mod baselines;
 mod compare;
 mod measures;
 mod motion_phase;
 mod phase;
 mod residual_test;
 
+pub use baselines::{Baseline, Baselines};
 pub use compare::{Comparison, SignalComparison, compare, mean_error, measured_velocity};
 pub use measures::{fit_percent, normalised_mean_squared_error};
 pub use motion_phase::{MotionPhase, PhaseShare, motion_phases, phase_shares};

@@ -7,6 +7,8 @@ mod offline;
 
 use clap::{Parser, Subcommand};
 
+use crate::verbosity::Verbosity;
+
 pub use live::*;
 pub use new_model::*;
 pub use offline::*;
@@ -21,11 +23,28 @@ pub use offline::*;
 pub struct Arguments {
     #[command(subcommand)]
     pub verb: Verb,
+    /// Show the technical detail behind the result as well.
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+    /// Print errors only.
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+}
+
+impl Arguments {
+    /// How much the program says.
+    pub fn verbosity(&self) -> Verbosity {
+        match (self.quiet, self.verbose) {
+            (true, _) => Verbosity::Quiet,
+            (_, true) => Verbosity::Verbose,
+            _ => Verbosity::Normal,
+        }
+    }
 }
 
 #[derive(Debug, Subcommand)]
 pub enum Verb {
-    /// The whole story on a made-up machine with a hidden effect; ends with a report to open.
+    /// The whole story on a simulated machine with a hidden effect; ends with a report to open.
     Demo(DemoArguments),
     /// Simulate a model with the input of a recording or with a command profile, into a bag.
     Simulate(SimulateArguments),

@@ -24,7 +24,7 @@ pub struct Overwriting {
     pub force: bool,
 }
 
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Default, Clone, Args)]
 pub struct Mapping {
     /// Topic map (TOML): which field of which topic, or which column of a table, is which signal. Without, the map.toml
     /// in the bag's folder or FILE.map.toml beside the file is used, if there is one.
@@ -214,14 +214,6 @@ impl Recordings {
     pub fn bags(&self) -> impl Iterator<Item = &PathBuf> {
         self.identification.iter().chain(&self.validation)
     }
-
-    /// The same choice for another command, as words to paste.
-    pub fn words(&self) -> String {
-        let paths = |bags: &[PathBuf]| bags.iter().map(|bag| bag.display().to_string()).collect::<Vec<_>>().join(" ");
-        let map = self.mapping.map.as_ref().map_or(String::new(), |map| format!(" --map {}", map.display()));
-        let whole = if self.extent.whole { " --whole" } else { "" };
-        format!("--identification {} --validation {}{map}{whole}", paths(&self.identification), paths(&self.validation))
-    }
 }
 
 #[derive(Debug, Args)]
@@ -233,6 +225,9 @@ pub struct DiagnoseArguments {
     /// Write a page with the evidence.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
+    /// Save the diagnosis with its fitted models, for `refine --diagnosis FILE`.
+    #[arg(long, value_name = "FILE")]
+    pub save: Option<PathBuf>,
     /// Write what the verdict was decided from: errors of every hypothesis in every block of time, as JSON.
     #[arg(long, value_name = "FILE")]
     pub scores: Option<PathBuf>,
@@ -261,19 +256,33 @@ pub struct ProposeArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(group(clap::ArgGroup::new("what").required(true).args(["add", "auto"])))]
+#[command(group(clap::ArgGroup::new("what").required(true).args(["add", "auto", "diagnosis"])))]
 pub struct RefineArguments {
+    /// Add what this diagnosis found (`diagnose --save FILE`), without a search: model and recordings are those of the diagnosis.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["model", "catalogue", "identification", "report"])]
+    pub diagnosis: Option<PathBuf>,
+    /// Model: built-in name or TOML file.
+    #[arg(long, required_unless_present = "diagnosis")]
+    pub model: Option<String>,
     #[command(flatten)]
-    pub model: ModelChoice,
+    pub own: OwnEffects,
+    /// Recordings that parameters are fitted to; `BAG@20..40` is the part of one from 20 s to 40 s.
+    #[arg(long, required_unless_present = "diagnosis", num_args = 1.., value_name = "BAG")]
+    pub identification: Vec<PathBuf>,
+    /// Recordings that evidence is taken from; never fitted.
+    #[arg(long, required_unless_present = "diagnosis", num_args = 1.., value_name = "BAG")]
+    pub validation: Vec<PathBuf>,
     #[command(flatten)]
-    pub recordings: Recordings,
+    pub mapping: Mapping,
+    #[command(flatten)]
+    pub extent: Extent,
     /// Effects to add, one after the other: EFFECT, EFFECT@CYLINDER, EFFECT@pump or EFFECT@machine.
     #[arg(long, num_args = 1.., value_name = "EFFECT[@PLACE]")]
     pub add: Vec<String>,
-    /// Add what the diagnosis finds, until nothing more is gained.
+    /// Add what a diagnosis finds, until nothing improves.
     #[arg(long)]
     pub auto: bool,
-    /// With --auto: where nothing of the catalogue explains the recordings, add the best proposed law.
+    /// With --auto: add the best proposed law if no effect of the catalogue explains the recordings.
     #[arg(long, requires = "auto")]
     pub propose: bool,
     /// Model file to write.
@@ -288,12 +297,29 @@ pub struct RefineArguments {
     pub overwriting: Overwriting,
 }
 
+impl RefineArguments {
+    /// The model that was named.
+    pub fn model_choice(&self) -> ModelChoice {
+        ModelChoice { model: self.model.clone().unwrap_or_default(), own: self.own.clone() }
+    }
+
+    /// The recordings that were named.
+    pub fn recordings(&self) -> Recordings {
+        Recordings {
+            identification: self.identification.clone(),
+            validation: self.validation.clone(),
+            mapping: self.mapping.clone(),
+            extent: self.extent,
+        }
+    }
+}
+
 #[derive(Debug, Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).multiple(true).args(["between", "parameter", "diagnosis"])))]
 pub struct DesignArguments {
     #[command(flatten)]
     pub model: ModelChoice,
-    /// Effects to be told apart, with commas: EFFECT, EFFECT@CYLINDER, EFFECT@pump, EFFECT@machine, or none for the model as it is. With
+    /// Effects to separate, with commas: EFFECT, EFFECT@CYLINDER, EFFECT@pump, EFFECT@machine, or none for the model as it is. With
     /// --parameter: effects that the model is to have besides.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "EFFECT[@PLACE],...")]
     pub between: Vec<String>,

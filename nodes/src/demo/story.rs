@@ -15,7 +15,7 @@ use super::sealed::Sealed;
 use super::{manoeuvre, plant};
 use crate::cli::{DemoArguments, Overwriting};
 use crate::error::VerbError;
-use crate::output::{Progress, candidate_table, number, step_table};
+use crate::output::{Progress, Stage, candidate_table, number, stage_table};
 use crate::outputs::write;
 use crate::verbs::print;
 
@@ -60,11 +60,11 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
         })?;
     drop(progress);
     if let Some(diagnosis) = refinement.diagnosis() {
-        print(&candidate_table(diagnosis).to_string());
+        print(&candidate_table(diagnosis, false).to_string());
         print(&format!("\n3  {}", verdict_sentence(&model, diagnosis)));
     }
     print("\n4  Added, refitted, simulated again on the recording that was never fitted:");
-    print(&step_table(&refinement).to_string());
+    print(&stage_table(&Stage::all(&refinement)).to_string());
 
     print(&format!("\n5  The seal is opened: the hidden effect is {}.", sealed.effect));
     for (name, truth, found, unit) in sealed.opened(&refinement.model) {

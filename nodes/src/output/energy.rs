@@ -8,7 +8,7 @@ use excavator_model::site_name;
 use serde_json::{Map, Value, json};
 
 use super::json::finite;
-use super::tables::{number, right, table};
+use super::tables::{fixed, number, right, table};
 
 /// Where the energy went: over the recording, and per cycle where the work repeats.
 pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
@@ -20,8 +20,8 @@ pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
         let per_cycle = cycle.as_ref().and_then(|(mean, deviation)| Some((mean.get(index)?.1, deviation.get(index)?)));
         rows.add_row([
             Cell::new(name),
-            right(format!("{energy:.1}")),
-            right(format!("{:.1}", 100.0 * energy / whole)),
+            right(fixed(*energy, 1)),
+            right(fixed(100.0 * energy / whole, 1)),
             right(per_cycle.map_or("-".into(), |(mean, deviation)| match deviation {
                 // A sum or difference of others: its deviation is not the sum or difference of theirs.
                 (_, _, true) => format!("{mean:.2}"),

@@ -6,7 +6,9 @@ use excavator_identification::diagnosis::{Candidate, Diagnosis, Share, Unexplain
 use excavator_identification::fit::nuisances_shown;
 use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
-use excavator_identification::validation::{Comparison, Correlation, PhaseShare};
+use excavator_identification::validation::{
+    Baseline, Baselines, Comparison, Correlation, PhaseShare, SignalComparison,
+};
 use excavator_identification::value_marks::value_mark;
 use excavator_model::effects::Site;
 use excavator_model::{Model, site_name};
@@ -114,9 +116,20 @@ fn correlation(found: Correlation) -> Value {
 }
 
 /// Result of `compare`.
-pub fn comparison_json(comparison: &Comparison) -> Value {
+pub fn comparison_json(comparison: &Comparison, baselines: &Baselines) -> Value {
+    let of_signal = |(signal, baseline): (&SignalComparison, &Baseline)| {
+        let value =
+            json!({"noise": finite(baseline.noise), "arx": finite(baseline.arx), "held": finite(baseline.held)});
+        (signal.name.clone(), value)
+    };
+    let each: Map<String, Value> = comparison.signals.iter().zip(&baselines.signals).map(of_signal).collect();
     json!({
+        "mean_nmse": finite(comparison.mean_error()),
         "signals": signals(std::slice::from_ref(comparison)),
+        "baseline_nmse": {
+            "held_s": baselines.held,
+            "signals": each,
+        },
         "excitation_frequency_hz": comparison.excitation_frequency,
     })
 }
@@ -248,6 +261,19 @@ fn where_json(diagnosis: &Diagnosis) -> Vec<Value> {
 fn instruments_json(diagnosis: &Diagnosis) -> Vec<Value> {
     let instruments = diagnosis.given().fit.instruments.iter();
     instruments.map(|one| json!({"name": one.name, "noise": finite(one.noise), "unit": one.unit})).collect()
+}
+
+/// Result of `refine --diagnosis`: `stages` are the names and comparisons of the models on the way, from the refitted one.
+pub fn saved_refinement_json(verdict: &str, stages: &[(String, Vec<Comparison>)], model_file: &Path) -> Value {
+    let step = |(name, comparisons): &(String, Vec<Comparison>)| {
+        let added = name.strip_prefix("+ ");
+        json!({"added": added, "signals": signals(comparisons)})
+    };
+    json!({
+        "verdict": verdict,
+        "steps": stages.iter().map(step).collect::<Vec<_>>(),
+        "model": model_file.display().to_string(),
+    })
 }
 
 /// Result of `refine`.

@@ -11,7 +11,7 @@ use super::tables::{number, right, table};
 
 /// Proposals, the best first.
 pub fn proposal_table(found: &Proposals) -> Table {
-    let mut table = table(&["law", "acts on", "at", "numbers", "error before", "error after", "result", "remarks"]);
+    let mut table = table(&["law", "acts on", "at", "numbers", "NMSE before", "NMSE after", "result", "remarks"]);
     table.set_content_arrangement(ContentArrangement::Dynamic);
     for proposal in &found.proposals {
         let free = proposal.effect.parameters.iter().filter(|parameter| !parameter.known);

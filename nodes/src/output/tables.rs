@@ -4,7 +4,7 @@ use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
 use comfy_table::{Attribute, Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 use excavator_identification::diagnosis::Diagnosis;
 use excavator_identification::refinement::Refinement;
-use excavator_identification::validation::{Comparison, Correlation, MotionPhase, SignalComparison};
+use excavator_identification::validation::{Baselines, Comparison, Correlation, MotionPhase, SignalComparison};
 use excavator_identification::value_marks::{remedies, value_mark};
 use excavator_model::Model;
 
@@ -24,9 +24,17 @@ pub fn number(value: f64) -> String {
     }
 }
 
+/// A number with so many decimals, and no minus before zero.
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let is_zero = text.chars().all(|character| matches!(character, '-' | '0' | '.'));
+    if is_zero { text.trim_start_matches('-').to_string() } else { text }
+}
+
 pub(super) fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED);
+    table.set_content_arrangement(ContentArrangement::Dynamic);
     table.set_header(header.iter().map(|text| Cell::new(text).add_attribute(Attribute::Bold)));
     table
 }
@@ -80,15 +88,30 @@ pub fn remedy_lines(model: &Model, fitted: &[usize]) -> Vec<String> {
     lines.map(|(names, experiment)| format!("To determine {}: {experiment}", names.join(", "))).collect()
 }
 
-/// Errors of every signal.
-pub fn comparison_table(comparison: &Comparison) -> Table {
-    let mut table = table(&["signal", "NMSE", "FIT %", "phase delay °", "error like its past", "error like the input"]);
+/// Errors of every signal beside those of noise, of a model without physics, and of a value that is held.
+pub fn comparison_table(comparison: &Comparison, baselines: &Baselines) -> Table {
+    let held = format!("{:.1} s before", baselines.held);
+    let mut table = table(&["signal", "NMSE", "noise", "linear ARX", &held, "FIT %", "delay °"]);
+    for (signal, baseline) in comparison.signals.iter().zip(&baselines.signals) {
+        table.add_row([
+            Cell::new(&signal.name),
+            right(number(signal.normalised_error)).add_attribute(Attribute::Bold),
+            right(number(baseline.noise)),
+            right(number(baseline.arx)),
+            right(number(baseline.held)),
+            right(format!("{:.1}", signal.fit)),
+            right(signal.phase_delay_degrees.map_or("-".into(), |degrees| format!("{degrees:.1}"))),
+        ]);
+    }
+    table
+}
+
+/// Whether the error of every signal still follows its own past, or the input.
+pub fn correlation_table(comparison: &Comparison) -> Table {
+    let mut table = table(&["signal", "error autocorrelation", "correlation with input"]);
     for signal in &comparison.signals {
         table.add_row([
             Cell::new(&signal.name),
-            right(number(signal.normalised_error)),
-            right(format!("{:.1}", signal.fit)),
-            right(signal.phase_delay_degrees.map_or("-".into(), |degrees| format!("{degrees:.1}"))),
             right(correlation(signal.autocorrelation)),
             right(correlation(signal.input_correlation)),
         ]);
@@ -125,56 +148,87 @@ pub fn phase_table(comparison: &Comparison) -> Option<Table> {
 fn correlation(found: Option<Correlation>) -> String {
     match found {
         None => "-".to_string(),
-        Some(found) if found.is_significant() => format!("{:.2} after {:.2} s", found.value, found.lag),
+        Some(found) if found.is_significant() => format!("{:.2} at a lag of {:.0} ms", found.value, 1e3 * found.lag),
         Some(_) => "no".to_string(),
     }
 }
 
-/// Effects with what they improve on the validation recordings: those of the verdict, others with evidence, the rest.
-pub fn candidate_table(diagnosis: &Diagnosis) -> Table {
-    let mut table =
-        table(&["effect", "at", "NMSE before", "after", "improvement", "significance", "first in", "verdict"]);
+/// Effects with what they improve on the validation recordings: those of the verdict, others with evidence, the rest; with
+/// `detail` also how sure that is.
+pub fn candidate_table(diagnosis: &Diagnosis, detail: bool) -> Table {
+    let mut heads = vec!["effect", "at", "NMSE before", "NMSE after", "verdict"];
+    if detail {
+        heads.extend(["improvement", "significance", "first in"]);
+    }
+    let mut table = table(&heads);
     for candidate in diagnosis.candidates().iter().chain(&diagnosis.rejected()) {
-        table.add_row([
+        let mut row = vec![
             Cell::new(candidate.name()),
             Cell::new(candidate.place()),
             right(number(candidate.errors[0])),
             right(number(candidate.errors[1])),
-            right(format!("{:.2}", candidate.improvement)),
-            right(format!("{:.1}", candidate.standing.significance)),
-            right(format!("{:.0} %", 100.0 * candidate.standing.is_first)),
             Cell::new(candidate.result()),
-        ]);
+        ];
+        if detail {
+            row.extend([
+                right(format!("{:.2}", candidate.improvement)),
+                right(format!("{:.1}", candidate.standing.significance)),
+                right(format!("{:.0} %", 100.0 * candidate.standing.is_first)),
+            ]);
+        }
+        table.add_row(row);
     }
     table
 }
 
-/// Normalised mean squared error of every signal, step by step.
-pub fn step_table(refinement: &Refinement) -> Table {
-    let Some(first) = refinement.steps.first().and_then(|step| step.comparisons.first()) else {
-        return table(&["step"]);
-    };
-    let mut header: Vec<&str> = vec!["NMSE on validation"];
-    header.extend(first.signals.iter().map(|signal| signal.name.as_str()));
-    header.push("mean");
-    let mut table = table(&header);
-    let mut row = |name: String, comparisons: &[Comparison]| {
-        let count = comparisons.len() as f64;
-        let mean = |of: &dyn Fn(&Comparison) -> f64| comparisons.iter().map(of).sum::<f64>() / count;
-        let mut cells = vec![Cell::new(name)];
-        for index in 0..first.signals.len() {
-            let of = |comparison: &Comparison| comparison.signals.get(index).map_or(f64::NAN, |s| s.normalised_error);
-            cells.push(right(number(mean(&of))));
-        }
-        cells.push(right(number(mean(&Comparison::mean_error))).add_attribute(Attribute::Bold));
-        table.add_row(cells);
-    };
-    if !refinement.given.is_empty() {
-        row("as given".into(), &refinement.given);
+/// A model of a story and its comparison with each validation recording.
+#[derive(Debug)]
+pub struct Stage<'c> {
+    /// What it is: "as given", "identified", "+ effect@place".
+    pub name: String,
+    /// Its comparisons.
+    pub comparisons: &'c [Comparison],
+}
+
+impl<'c> Stage<'c> {
+    /// The stages of a refinement.
+    pub fn all(refinement: &'c Refinement) -> Vec<Stage<'c>> {
+        let given = Stage { name: AS_GIVEN.into(), comparisons: &refinement.given };
+        let steps = refinement
+            .steps
+            .iter()
+            .map(|step| Stage { name: stage_name(step.added.as_deref()), comparisons: &step.comparisons });
+        std::iter::once(given).filter(|stage| !stage.comparisons.is_empty()).chain(steps).collect()
     }
-    for step in &refinement.steps {
-        let name = step.added.as_ref().map_or("identified".to_string(), |added| format!("+ {added}"));
-        row(name, &step.comparisons);
+}
+
+/// Name of the model with its own numbers.
+pub const AS_GIVEN: &str = "as given";
+
+/// Name of the stage at which this was added.
+pub fn stage_name(added: Option<&str>) -> String {
+    added.map_or_else(|| "identified".to_string(), |added| format!("+ {added}"))
+}
+
+/// Normalised mean squared error of every signal on the validation recordings, stage by stage.
+pub fn stage_table(stages: &[Stage<'_>]) -> Table {
+    let heads: Vec<&str> = std::iter::once("NMSE").chain(stages.iter().map(|stage| stage.name.as_str())).collect();
+    let mut table = table(&heads);
+    let mean = |comparisons: &[Comparison], of: &dyn Fn(&Comparison) -> f64| {
+        comparisons.iter().map(of).sum::<f64>() / comparisons.len() as f64
+    };
+    let signals = stages.iter().find_map(|stage| stage.comparisons.first()).map_or(&[][..], |first| &first.signals);
+    for (index, signal) in signals.iter().enumerate() {
+        let of = |one: &Comparison| one.signals.get(index).map_or(f64::NAN, |signal| signal.normalised_error);
+        let cells = stages.iter().map(|stage| right(number(mean(stage.comparisons, &of))));
+        table.add_row(std::iter::once(Cell::new(&signal.name)).chain(cells));
     }
+    if signals.len() < 2 {
+        return table;
+    }
+    let means = stages
+        .iter()
+        .map(|stage| right(number(mean(stage.comparisons, &Comparison::mean_error))).add_attribute(Attribute::Bold));
+    table.add_row(std::iter::once(Cell::new("mean").add_attribute(Attribute::Bold)).chain(means));
     table
 }

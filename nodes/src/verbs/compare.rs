@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use excavator_identification::report::comparison_page;
-use excavator_identification::validation::compare;
+use excavator_identification::report::{comparison_page, comparison_sentence};
+use excavator_identification::validation::{Baselines, Comparison, compare};
 
-use super::print;
+use super::{print, print_detail, print_next};
 use crate::cli::CompareArguments;
 use crate::error::VerbError;
-use crate::output::{comparison_json, comparison_table, phase_table, write_json};
+use crate::output::{NextStep, comparison_json, comparison_table, correlation_table, halves, phase_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -20,18 +20,34 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
     let model = sources::model(&arguments.model)?;
     let recording = sources::telling_recording(&arguments.bag, arguments.extent, &arguments.mapping, &model)?;
     let comparison = compare(&model, &recording)?;
+    let baselines = Baselines::of(&model, &recording, &comparison);
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        print(&format!("{} simulated with the input of {}", model.machine.name, recording.source));
-        print(&comparison_table(&comparison).to_string());
+        print(&comparison_sentence(&comparison, &baselines));
+        print(&comparison_table(&comparison, &baselines).to_string());
+        print_detail(&correlation_table(&comparison).to_string());
         if let Some(table) = phase_table(&comparison) {
-            print(&table.to_string());
+            print_detail(&table.to_string());
         }
+        print_next(&next(arguments, &comparison));
     }
     if let Some(path) = &arguments.report {
-        outputs::write(path, &comparison_page(&model, std::slice::from_ref(&comparison)), arguments.overwriting)?;
+        let page = comparison_page(&model, std::slice::from_ref(&comparison), std::slice::from_ref(&baselines));
+        outputs::write(path, &page, arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &comparison_json(&comparison), arguments.overwriting)?;
+        write_json(path, &comparison_json(&comparison, &baselines), arguments.overwriting)?;
     }
     Ok(())
+}
+
+/// A diagnosis wants one recording to fit and another to judge.
+fn next(arguments: &CompareArguments, comparison: &Comparison) -> NextStep {
+    let [fitted, judged] = halves(&arguments.bag, comparison.measured.duration());
+    NextStep::new("find out what the model is missing", "diagnose")
+        .same_model(&arguments.model)
+        .word("--identification")
+        .word(fitted)
+        .word("--validation")
+        .word(judged)
+        .mapping(&arguments.mapping)
 }

@@ -6,22 +6,26 @@ use excavator_identification::decision::Kind;
 use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
 use excavator_identification::energy::{EnergySettings, MissingPower, analyse, missing_power};
 use excavator_identification::proposal::{Guess, first_guess};
+use excavator_identification::refinement::refinement_of;
 use excavator_identification::report::{NONE_TRIED, diagnosis_page, guess_sentence, verdict_sentence};
 use excavator_identification::search::Unpromising;
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
-use super::print;
+use super::{print, print_detail, print_next};
 use crate::cli::DiagnoseArguments;
 use crate::error::VerbError;
-use crate::output::{Progress, candidate_table, diagnosis_json, guess_json, missing_power_json, write_json};
+use crate::output::{NextStep, Progress, candidate_table, diagnosis_json, guess_json, missing_power_json, write_json};
 use crate::outputs::{self, Inputs};
+use crate::saved_diagnosis::SavedDiagnosis;
 use crate::sources;
+use crate::verbosity::Verbosity;
 
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     let outputs = [
         ("--report", arguments.report.as_deref()),
+        ("--save", arguments.save.as_deref()),
         ("--scores", arguments.scores.as_deref()),
         ("--json", arguments.json.json.as_deref()),
     ];
@@ -34,8 +38,18 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     let validation: Vec<&Recording> = validation.iter().collect();
     let progress = Progress::new();
     let settings = DiagnosisSettings::default();
-    let diagnosis = diagnose(&model, &identification, &validation, &settings, &|what, done| progress.tell(what, done))?;
+    let mut diagnosis =
+        diagnose(&model, &identification, &validation, &settings, &|what, done| progress.tell(what, done))?;
     drop(progress);
+    if let Some(path) = &arguments.save {
+        let when = jiff::Timestamp::now().to_string();
+        let refinement = refinement_of(&model, &diagnosis, &identification, &validation, &settings, &when)?;
+        outputs::write(path, &SavedDiagnosis::of(&refinement, &arguments.recordings)?.text()?, arguments.overwriting)?;
+        // A refinement leaves out what is superfluous in the fits: its numbers are those that will be seen again.
+        if let Some(found) = refinement.diagnosis() {
+            diagnosis.errors.clone_from(&found.errors);
+        }
+    }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&model, &diagnosis);
     }
@@ -44,14 +58,13 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         && let Some(guess) = &guess
     {
         print(&guess_sentence(guess));
-        let (model, recordings) = (&arguments.model.model, arguments.recordings.words());
-        print(&format!("Fit and judge laws: excavator propose --model {model} {recordings} -o laws.toml"));
     }
     let missing = ledgers(&diagnosis.given().fit.model, &validation);
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         for (source, found) in &missing {
-            found.iter().for_each(|one| print(&format!("Energy in {source}: {}", one.sentence)));
+            found.iter().for_each(|one| print_detail(&format!("Energy in {source}: {}", one.sentence)));
         }
+        print_next(&next(arguments, &diagnosis));
     }
     if let Some(path) = &arguments.scores {
         let text = serde_json::to_string(&diagnosis.scores).map_err(VerbError::from)?;
@@ -75,6 +88,28 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         write_json(path, &value, arguments.overwriting)?;
     }
     Ok(())
+}
+
+/// What a verdict asks for.
+fn next(arguments: &DiagnoseArguments, diagnosis: &Diagnosis) -> NextStep {
+    let same =
+        |why: &str, verb: &str| NextStep::new(why, verb).same_model(&arguments.model).recordings(&arguments.recordings);
+    match (diagnosis.verdict.kind, &arguments.save) {
+        (Kind::Unexplained, _) => {
+            same("look for a law of the missing physics", "propose").path("-o", Path::new("laws.toml"))
+        }
+        (Kind::Adequate, _) => {
+            let step = NextStep::new("see where the energy goes", "energy").same_model(&arguments.model);
+            let bag = arguments.recordings.validation.first();
+            bag.map_or(step.clone(), |bag| step.path("--bag", bag).mapping(&arguments.recordings.mapping))
+        }
+        (Kind::MissingEffect, Some(saved)) => NextStep::new("add it to the model", "refine")
+            .path("--diagnosis", saved)
+            .path("-o", Path::new("refined.toml")),
+        (Kind::MissingEffect, None) => {
+            same("add it to the model", "refine").word("--auto").path("-o", Path::new("refined.toml"))
+        }
+    }
 }
 
 /// Where nothing of the catalogue explains the recordings: the term that promises most.
@@ -103,7 +138,8 @@ pub fn show(model: &Model, diagnosis: &Diagnosis) {
     if diagnosis.tried() == 0 {
         print(NONE_TRIED);
     } else {
-        print(&candidate_table(diagnosis).to_string());
+        let detail = Verbosity::chosen() == Verbosity::Verbose;
+        print(&candidate_table(diagnosis, detail).to_string());
     }
     if !diagnosis.unpromising.is_empty() {
         let same =
@@ -117,7 +153,7 @@ pub fn show(model: &Model, diagnosis: &Diagnosis) {
                 _ => effect.name.clone(),
             })
             .collect();
-        print(&format!("Dropped after a few steps of their fits: {}.", names.join(", ")));
+        print_detail(&format!("Dropped in the screening: {}.", names.join(", ")));
     }
     for (name, error) in &diagnosis.failed {
         print(&format!("{name} could not be tried: {error}"));
@@ -126,9 +162,9 @@ pub fn show(model: &Model, diagnosis: &Diagnosis) {
         print("Where the fitted model fails cannot be located: no equation has all its signals measured.");
         return;
     }
-    print("Where the fitted model fails (share of the squared residual, in units of sensor noise):");
+    print_detail("Where the fitted model fails (share of the squared residual, in units of sensor noise):");
     for share in diagnosis.map.iter().filter(|share| share.share_of_residual >= LEAST_SHARE).take(6) {
         let (residual, time) = (100.0 * share.share_of_residual, 100.0 * share.share_of_time);
-        print(&format!("  {:4.0} %  {}, {} ({time:.0} % of the time)", residual, share.equation, share.regime));
+        print_detail(&format!("  {:4.0} %  {}, {} ({time:.0} % of the time)", residual, share.equation, share.regime));
     }
 }

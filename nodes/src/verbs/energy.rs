@@ -9,11 +9,11 @@ use excavator_identification::report::energy_page;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
-use super::print;
+use super::{print, print_next};
 use crate::block_reader::{needs_a_map, read_beside};
 use crate::cli::{EnergyArguments, Mapping};
 use crate::error::VerbError;
-use crate::output::{energy_json, energy_table, ledger_table, write_json};
+use crate::output::{NextStep, energy_json, energy_table, halves, ledger_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::{sources, terminal};
 
@@ -31,6 +31,7 @@ pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
     let analysis = analyse_bag(&model, &arguments.bag, &arguments.mapping)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&model, &analysis);
+        print_next(&next(arguments, missing_power(&model, &analysis).is_empty(), analysis.duration));
     }
     if let Some(path) = &arguments.report {
         outputs::write(path, &energy_page(&model, &analysis), arguments.overwriting)?;
@@ -39,6 +40,24 @@ pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
         write_json(path, &energy_json(&model, &analysis), arguments.overwriting)?;
     }
     Ok(())
+}
+
+/// Where power is missing, a diagnosis says what takes it; else the signals may still differ.
+fn next(arguments: &EnergyArguments, closes: bool, duration: f64) -> NextStep {
+    if closes {
+        return NextStep::new("compare every signal", "compare")
+            .same_model(&arguments.model)
+            .path("--bag", &arguments.bag)
+            .mapping(&arguments.mapping);
+    }
+    let [fitted, judged] = halves(&arguments.bag, duration);
+    NextStep::new("find out which effect takes it", "diagnose")
+        .same_model(&arguments.model)
+        .word("--identification")
+        .word(fitted)
+        .word("--validation")
+        .word(judged)
+        .mapping(&arguments.mapping)
 }
 
 /// A bag of our own topics goes through in blocks, whatever its length; what needs a map is read whole.
@@ -57,16 +76,23 @@ fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAna
     let all = |block| (Some(block), ControlFlow::Continue(()));
     let (report, analysis) = read_beside(bag, mapping.origin().namespace, BLOCK, WAITING, all, work)?;
     for problem in report.problems() {
-        terminal::complain(&format!("{}: {problem}", bag.display()));
+        terminal::remark(&format!("{}: {problem}", bag.display()));
     }
     Ok(analysis?.finish()?)
 }
 
 fn show(model: &Model, analysis: &EnergyAnalysis) {
-    print(&format!(
-        "{} over {:.1} s of {} ({} samples)",
-        model.machine.name, analysis.duration, analysis.source, analysis.samples
-    ));
+    let missing = missing_power(model, analysis);
+    let over = format!("{:.1} s of {}", analysis.duration, analysis.source);
+    match missing.first() {
+        None => print(&format!(
+            "The ledger of {} closes over {over}: noise explains the rest of every equation.",
+            model.machine.name
+        )),
+        Some(first) => {
+            print(&format!("The ledger of {} does not close over {over}. {}", model.machine.name, first.sentence))
+        }
+    }
     print(&energy_table(model, analysis).to_string());
     if let Some(cycle) = &analysis.cycle {
         print(&format!("energies per cycle are means over {} cycles of {:.3} s", cycle.count, cycle.period));
@@ -90,11 +116,7 @@ fn show(model: &Model, analysis: &EnergyAnalysis) {
     if !analysis.parameters_have_errors {
         print("The model's parameters carry no standard errors and are taken for exact. Identify it first.");
     }
-    let missing = missing_power(model, analysis);
-    if missing.is_empty() {
-        print("The ledger closes: noise explains what is left at every equation.");
-    }
-    for evidence in missing {
+    for evidence in missing.iter().skip(1) {
         print(&format!("{}: {}", evidence.equation, evidence.sentence));
     }
 }

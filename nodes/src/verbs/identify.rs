@@ -1,6 +1,6 @@
 //! `excavator identify`
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use excavator_identification::fit::{
     FitSettings, ProfileInterval, fit, profile, simplified, with_nuisances, with_nuisances_of,
@@ -12,13 +12,13 @@ use excavator_identification::report::implausible_sentence;
 use excavator_model::document::to_text;
 use excavator_model::effects::Family;
 use excavator_model::recording::Recording;
-use excavator_model::{HistoryEntry, Model};
+use excavator_model::{HistoryEntry, Model, Parameter};
 use serde_json::{Value, json};
 
-use super::print;
+use super::{print, print_detail, print_next};
 use crate::cli::{IdentifyArguments, Method};
 use crate::error::VerbError;
-use crate::output::{identification_json, number, parameter_table, remedy_lines, write_json};
+use crate::output::{NextStep, identification_json, number, parameter_table, remedy_lines, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -55,6 +55,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&model, &result);
+        print_next(&next(arguments));
     }
     if let Some(path) = &arguments.json.json {
         let equations = result.equations.iter().map(|gauge| {
@@ -175,11 +176,56 @@ fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
     text
 }
 
+/// The identified model beside the recording; first of all it has to be kept.
+fn next(arguments: &IdentifyArguments) -> NextStep {
+    let bag = arguments.bag.first().map(PathBuf::as_path).unwrap_or(Path::new("BAG"));
+    match &arguments.output {
+        Some(model) => NextStep::new("compare the identified model with a recording", "compare")
+            .model(model, &arguments.model)
+            .path("--bag", bag)
+            .mapping(&arguments.mapping),
+        None => {
+            let step =
+                NextStep::new("keep the identified model", "identify").same_model(&arguments.model).word("--bag");
+            let step = arguments.bag.iter().fold(step, |step, bag| step.word(bag.display().to_string()));
+            step.mapping(&arguments.mapping).path("-o", Path::new("identified.toml"))
+        }
+    }
+}
+
+/// How many parameters were identified, how well, and what the equations leave.
+fn summary(result: &Identified) -> String {
+    let machine = &result.model.machine.name;
+    let asked = result.fitted.len() + result.not_identified.len();
+    let names = result.model.parameter_names();
+    let share = |(index, parameter): (usize, &Parameter)| {
+        let margin = parameter.margin_95.filter(|margin| margin.is_finite() && parameter.value != 0.0)?;
+        Some((margin / parameter.value.abs(), names[index].as_str()))
+    };
+    let parameters = result.model.parameters().map(|(_, parameter)| parameter).enumerate();
+    let fitted = parameters.filter(|(index, _)| result.fitted.contains(index));
+    let widest = fitted.filter_map(share).max_by(|a, b| a.0.total_cmp(&b.0));
+    let mut text = format!("Identified {} of {asked} unknown parameters of {machine}.", result.fitted.len());
+    if let Some((share, name)) = widest {
+        text += &format!(" The widest 95 % interval is that of {name}: ± {:.1} % of its value.", 100.0 * share);
+    }
+    let known = result.equations.iter().filter(|gauge| gauge.chi_squared_per_row.is_finite());
+    if let Some(worst) = known.max_by(|a, b| a.chi_squared_per_row.total_cmp(&b.chi_squared_per_row)) {
+        text += &format!(
+            " The largest residual is that of {}: {} times the variance of sensor noise.",
+            worst.equation,
+            number(worst.chi_squared_per_row)
+        );
+    }
+    text
+}
+
 fn show(given: &Model, result: &Identified) {
+    print(&summary(result));
     print(&parameter_table(&result.model, &result.fitted).to_string());
     remedy_lines(&result.model, &result.fitted).iter().for_each(|line| print(line));
     for condition in &result.conditions {
-        print(&format!(
+        print_detail(&format!(
             "condition number, {}: {} in SI units, {} with columns scaled",
             condition.group,
             number(condition.unscaled),
@@ -187,7 +233,7 @@ fn show(given: &Model, result: &Identified) {
         ));
     }
     for gauge in result.equations.iter().filter(|gauge| gauge.chi_squared_per_row.is_finite()) {
-        print(&format!(
+        print_detail(&format!(
             "{}: squared residual {} times what sensor noise explains ({} rows)",
             gauge.equation,
             number(gauge.chi_squared_per_row),

@@ -9,9 +9,10 @@ use excavator_bags::map::{Confidence, Guess, Hints, guess, read_pieces};
 use excavator_bags::{Topics, WriteOptions, write_recording};
 use excavator_model::recording::is_measured;
 
-use super::print;
+use super::{print, print_next};
 use crate::cli::{ImportArguments, ModelChoice, OwnEffects};
 use crate::error::VerbError;
+use crate::output::NextStep;
 use crate::outputs::{self, Inputs};
 use crate::sources;
 use crate::terminal;
@@ -60,11 +61,7 @@ fn tell_unsure(guessed: &Guess) {
     let names: Vec<String> = unsure.map(|guessed| guessed.source.signal.to_string()).collect();
     if !names.is_empty() {
         let what = if names.len() == 1 { "signal, which is" } else { "signals, which are" };
-        terminal::complain(&format!(
-            "not sure of {} {what} commented out in the map: {}",
-            names.len(),
-            names.join(", ")
-        ));
+        terminal::remark(&format!("not sure of {} {what} commented out in the map: {}", names.len(), names.join(", ")));
     }
 }
 
@@ -74,8 +71,8 @@ fn import(arguments: &ImportArguments, bag: &Path) -> Result<(), VerbError> {
     let (recording, report) = read_pieces(&arguments.data, arguments.map.as_deref(), &arguments.join)?;
     for problem in report.problems() {
         match arguments.data.as_slice() {
-            [data] => terminal::complain(&format!("{}: {problem}", data.display())),
-            _ => terminal::complain(&problem),
+            [data] => terminal::remark(&format!("{}: {problem}", data.display())),
+            _ => terminal::remark(&problem),
         }
     }
     let options = WriteOptions { replace: arguments.overwriting.force, ..WriteOptions::default() };
@@ -90,5 +87,6 @@ fn import(arguments: &ImportArguments, bag: &Path) -> Result<(), VerbError> {
         recording.duration(),
         measured.join(", ")
     ));
+    print_next(&NextStep::new("see what it is good for", "info").word(bag.display().to_string()));
     Ok(())
 }

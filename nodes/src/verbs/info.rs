@@ -3,16 +3,17 @@
 use std::path::Path;
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
-use comfy_table::{Attribute, Cell, CellAlignment, Table};
+use comfy_table::{Attribute, Cell, CellAlignment, ContentArrangement, Table};
 use excavator_bags::map::{Origin, TopicMap, read_signals};
 use excavator_bags::table::Table as DataTable;
 use excavator_bags::{BagError, BagInfo, ColumnInfo, SignalsInfo, TableInfo, Timing, info};
+use excavator_model::document::{BUILT_IN, built_in};
 use serde_json::{Value, json};
 
-use super::print;
+use super::{print, print_next};
 use crate::cli::InfoArguments;
 use crate::error::VerbError;
-use crate::output::{number, write_json};
+use crate::output::{NextStep, number, write_json};
 use crate::outputs::{self, Inputs};
 
 /// A clock that is off by more than this is worth a line, s: networks and recorders take less.
@@ -47,6 +48,9 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
                 }
             }
             Err(error) => print(&format!("signals: none read: {}{}", error, advice(error))),
+        }
+        if let Ok((signals, _)) = &signals {
+            print_next(&next(arguments, signals));
         }
     }
     if let Some(file) = &arguments.json.json {
@@ -125,6 +129,7 @@ fn to_json(bag: Option<&BagInfo>, signals: &Result<&SignalsInfo, &BagError>) -> 
 fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED);
+    table.set_content_arrangement(ContentArrangement::Dynamic);
     table.set_header(header.iter().map(|text| Cell::new(text).add_attribute(Attribute::Bold)));
     table
 }
@@ -203,6 +208,29 @@ fn clock_problems(timing: &Timing) -> Vec<String> {
         lines.push(format!("log time minus stamp varies from {} to {}", seconds(least), seconds(most)));
     }
     lines
+}
+
+/// A model beside the recording: one that is built in where it has these cylinders, else one to be written.
+fn next(arguments: &InfoArguments, signals: &SignalsInfo) -> NextStep {
+    let mut cylinders: Vec<&str> =
+        signals.measured.iter().filter_map(|signal| Some(signal.name.split_once('.')?.0)).collect();
+    cylinders.sort_unstable();
+    cylinders.dedup();
+    let has_these = |name: &&str| {
+        built_in(name).is_ok_and(|model| {
+            let mut own: Vec<&str> = model.machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();
+            own.sort_unstable();
+            own == cylinders
+        })
+    };
+    match BUILT_IN.iter().map(|(name, _)| *name).find(has_these) {
+        Some(model) => {
+            let step = NextStep::new("compare a model with it", "compare").word("--model").word(model);
+            let step = step.path("--bag", &arguments.bag);
+            arguments.map.iter().fold(step, |step, map| step.path("--map", map))
+        }
+        None => NextStep::new("describe the machine", "model").word("new").path("-o", Path::new("machine.toml")),
+    }
 }
 
 fn show_signals(signals: &SignalsInfo) {

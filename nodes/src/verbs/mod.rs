@@ -24,7 +24,9 @@ use std::sync::OnceLock;
 
 use crate::cli::Verb;
 use crate::error::VerbError;
+use crate::output::{NextStep, filled};
 use crate::terminal;
+use crate::verbosity::Verbosity;
 use excavator_ros::RosArguments;
 
 /// Runs a verb; `ros` is what stood after --ros-args, `ros_words` the same in words.
@@ -57,8 +59,33 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
 /// Why something could not be printed.
 static NOT_PRINTED: OnceLock<Error> = OnceLock::new();
 
-/// Prints to standard output what is safe for a terminal. A closed pipe is not an error of ours; of anything else [`all_was_printed`] tells.
+/// Prints to standard output what is safe for a terminal, as wide as that is; nothing with `--quiet`. A closed pipe is not an error of ours; of anything else [`all_was_printed`] tells.
 pub fn print(text: &str) {
+    if Verbosity::chosen() > Verbosity::Quiet {
+        write(&filled(text, terminal::width()));
+    }
+}
+
+/// Prints text that was asked for as such, a schema or a model: as it is.
+pub fn print_text(text: &str) {
+    write(text);
+}
+
+/// As [`print()`], only with `--verbose`.
+pub fn print_detail(text: &str) {
+    if Verbosity::chosen() == Verbosity::Verbose {
+        print(text);
+    }
+}
+
+/// Prints the command that comes next.
+pub fn print_next(step: &NextStep) {
+    if Verbosity::chosen() > Verbosity::Quiet {
+        write(&step.text(terminal::width()));
+    }
+}
+
+fn write(text: &str) {
     match writeln!(std::io::stdout(), "{}", terminal::text(text)) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => drop(NOT_PRINTED.set(error)),
         _ => (),

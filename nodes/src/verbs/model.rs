@@ -9,7 +9,7 @@ use excavator_model::machine::{Cylinder, Drive, Supply};
 use excavator_model::{Model, addition_name, site_name, urdf};
 use serde_json::{Value, json};
 
-use super::{new_model, print, valve_test};
+use super::{new_model, print, print_text, valve_test};
 use crate::cli::{ModelCheckArguments, ModelChoice, ModelVerb};
 use crate::error::VerbError;
 use crate::output::{finite, number, write_json};
@@ -22,15 +22,15 @@ pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {
         ModelVerb::Check(arguments) => check(arguments),
         ModelVerb::Valve(arguments) => valve_test::run(arguments),
         ModelVerb::Urdf(choice) => {
-            print(urdf(&sources::model(choice)?).trim_end());
+            print_text(urdf(&sources::model(choice)?).trim_end());
             Ok(())
         }
         ModelVerb::Schema(own) => {
-            print(&serde_json::to_string_pretty(&schema(&sources::catalogue(own)?))?);
+            print_text(&serde_json::to_string_pretty(&schema(&sources::catalogue(own)?))?);
             Ok(())
         }
         ModelVerb::Reference(own) => {
-            print(reference(&sources::catalogue(own)?).trim_end());
+            print_text(reference(&sources::catalogue(own)?).trim_end());
             Ok(())
         }
     }
@@ -55,9 +55,9 @@ fn check(arguments: &ModelCheckArguments) -> Result<(), VerbError> {
         unused_formulas(&model)
             .iter()
             .for_each(|name| print(&format!("note: no [[effects]] entry uses formula {name}")));
-        odd.iter().for_each(|oddity| print(&format!("odd: {oddity}")));
+        odd.iter().for_each(|oddity| print(&format!("suspicious: {oddity}")));
         if odd.is_empty() {
-            print("nothing is odd");
+            print("No number is suspicious.");
         }
     }
     if let Some(path) = &arguments.json.json {

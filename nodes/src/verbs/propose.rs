@@ -1,6 +1,6 @@
 //! `excavator propose`
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::proposal::{Finding, Proposal, ProposalVerdict, Proposals, propose};
@@ -9,10 +9,10 @@ use excavator_model::Model;
 use excavator_model::document::catalogue_text;
 use excavator_model::recording::Recording;
 
-use super::print;
+use super::{print, print_next};
 use crate::cli::ProposeArguments;
 use crate::error::VerbError;
-use crate::output::{Progress, proposal_json, proposal_table, write_json};
+use crate::output::{NextStep, Progress, proposal_json, proposal_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -64,21 +64,31 @@ fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
         print(&format!("Lost without the variable: {}.", list(&found.survey.variables)));
     }
     let Some(first) = found.proposals.first() else { return };
-    let file = arguments.output.as_ref().map_or("laws.toml".to_string(), |path| path.display().to_string());
-    let model = &arguments.model.model;
+    let file = arguments.output.clone().unwrap_or_else(|| PathBuf::from("laws.toml"));
     let name = |proposal: &Proposal| format!("{}@{}", proposal.text.name, proposal.place);
-    let written = if arguments.output.is_none() { "Write the laws with -o laws.toml. To add" } else { "To add" };
-    print(&format!(
-        "{written} the first: excavator refine --model {model} --catalogue {file} --add {} {} -o refined.toml",
-        name(first),
-        arguments.recordings.words()
-    ));
+    if arguments.output.is_none() {
+        print_next(
+            &NextStep::new("keep the laws", "propose")
+                .same_model(&arguments.model)
+                .recordings(&arguments.recordings)
+                .path("-o", &file),
+        );
+        return;
+    }
+    let with_laws =
+        |why: &str, verb: &str| NextStep::new(why, verb).same_model(&arguments.model).path("--catalogue", &file);
+    print_next(
+        &with_laws("add the first law", "refine")
+            .word("--add")
+            .word(name(first))
+            .recordings(&arguments.recordings)
+            .path("-o", Path::new("refined.toml")),
+    );
     let tied: Vec<String> = found.proposals.iter().filter(|one| one.is_in_set).map(name).take(MOST_TIED).collect();
     if found.kind == ProposalVerdict::Law && found.diagnosis.verdict.set.len() > 1 {
-        print(&format!(
-            "A manoeuvre that tells them apart: excavator design --model {model} --catalogue {file} --between {} -o profile.toml",
-            tied.join(",")
-        ));
+        let step =
+            with_laws("or design a manoeuvre that separates them", "design").word("--between").word(tied.join(","));
+        print_next(&step.path("-o", Path::new("profile.toml")));
     }
 }
 

@@ -6,31 +6,44 @@ use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
 use excavator_identification::report::{refinement_page, refinement_sentence};
 use excavator_identification::search::Addition;
+use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
 
-use super::print;
-use crate::cli::RefineArguments;
+use super::{print, print_next};
+use crate::cli::{ModelChoice, Recordings, RefineArguments};
 use crate::error::VerbError;
-use crate::output::{Progress, parameter_table, refinement_json, remedy_lines, step_table, write_json};
+use crate::output::{
+    AS_GIVEN, NextStep, Progress, Stage, parameter_table, refinement_json, remedy_lines, saved_refinement_json,
+    stage_name, stage_table, write_json,
+};
 use crate::outputs::{self, Inputs};
+use crate::saved_diagnosis::SavedDiagnosis;
 use crate::sources;
 
 pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
+    match &arguments.diagnosis {
+        Some(path) => as_diagnosed(path, arguments),
+        None => searched(arguments),
+    }
+}
+
+fn searched(arguments: &RefineArguments) -> Result<(), VerbError> {
+    let (choice, recordings) = (arguments.model_choice(), arguments.recordings());
     let others = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
     let outputs = [("-o", Some(arguments.output.as_path())), others[0], others[1]];
-    let inputs = Inputs::recordings(arguments.recordings.bags(), arguments.recordings.mapping.map.as_deref());
+    let inputs = Inputs::recordings(recordings.bags(), recordings.mapping.map.as_deref());
     // With --force the model may become its own successor: it has a history.
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
-    outputs::check(&others, &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
-    let model = sources::model(&arguments.model)?;
+    outputs::check(&others, &inputs.and_all(choice.files()), arguments.overwriting)?;
+    let model = sources::model(&choice)?;
     let additions = match (arguments.auto, arguments.propose) {
         (true, true) => Additions::AutoWithLaws,
         (true, false) => Additions::Auto,
         _ => named(&model, &arguments.add)?,
     };
-    let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
+    let (identification, validation) = sources::fitted_and_judging(&recordings, &model)?;
     let identification: Vec<&Recording> = identification.iter().collect();
     let validation: Vec<&Recording> = validation.iter().collect();
     let progress = Progress::new();
@@ -43,7 +56,7 @@ pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
     outputs::write(&arguments.output, &to_text(&refinement.model)?, arguments.overwriting)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&refinement);
-        print(&format!("written: {}", arguments.output.display()));
+        end(arguments, &choice, &recordings);
     }
     if let Some(path) = &arguments.report {
         outputs::write(path, &refinement_page(&refinement), arguments.overwriting)?;
@@ -52,6 +65,62 @@ pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
         write_json(path, &refinement_json(&refinement, &arguments.output), arguments.overwriting)?;
     }
     Ok(())
+}
+
+/// Adds what a saved diagnosis found: its fits are used, and simulated once more.
+fn as_diagnosed(path: &Path, arguments: &RefineArguments) -> Result<(), VerbError> {
+    let saved = SavedDiagnosis::read(path)?;
+    let mut recordings = saved.recordings();
+    if !arguments.validation.is_empty() {
+        recordings.validation.clone_from(&arguments.validation);
+    }
+    let outputs = [("-o", Some(arguments.output.as_path())), ("--json", arguments.json.json.as_deref())];
+    let inputs = Inputs::recordings(recordings.bags(), recordings.mapping.map.as_deref()).and_all([path.to_path_buf()]);
+    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    let (given, refined) = (saved.given()?, saved.refined()?);
+    let validation =
+        sources::telling_recordings(&recordings.validation, recordings.extent, &recordings.mapping, &given)?;
+    let compared = |model: &Model| {
+        validation
+            .iter()
+            .map(|recording| Ok(compare(model, recording)?))
+            .collect::<Result<Vec<Comparison>, VerbError>>()
+    };
+    // A model with the numbers of a data sheet may not be simulated at all.
+    let mut stages = vec![(AS_GIVEN.to_string(), compared(&given).unwrap_or_default())];
+    for step in saved.steps()? {
+        stages.push((stage_name(step.added.as_deref()), compared(&step.model)?));
+    }
+    outputs::write(&arguments.output, &to_text(&refined)?, arguments.overwriting)?;
+    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        print(&saved.sentence);
+        let stages: Vec<Stage<'_>> = stages
+            .iter()
+            .filter(|(_, comparisons)| !comparisons.is_empty())
+            .map(|(name, comparisons)| Stage { name: name.clone(), comparisons })
+            .collect();
+        print(&stage_table(&stages).to_string());
+        print(&parameter_table(&refined, &refined.unknown_parameters()).to_string());
+        end(arguments, &ModelChoice { model: String::new(), own: arguments.own.clone() }, &recordings);
+    }
+    if let Some(file) = &arguments.json.json {
+        write_json(
+            file,
+            &saved_refinement_json(&saved.verdict, &stages[1..], &arguments.output),
+            arguments.overwriting,
+        )?;
+    }
+    Ok(())
+}
+
+/// Where the model is, and what to do with it.
+fn end(arguments: &RefineArguments, choice: &ModelChoice, recordings: &Recordings) {
+    print(&format!("written: {}", arguments.output.display()));
+    if let Some(bag) = recordings.validation.first() {
+        let step = NextStep::new("see every signal of the refined model", "compare").model(&arguments.output, choice);
+        let page = arguments.output.with_extension("html");
+        print_next(&step.path("--bag", bag).mapping(&recordings.mapping).path("--report", &page));
+    }
 }
 
 /// What the user named, each at every place it can act unless a place is given.
@@ -70,9 +139,9 @@ fn named(model: &Model, names: &[String]) -> Result<Additions, VerbError> {
 }
 
 /// Prints a refinement for people.
-pub fn show(refinement: &Refinement) {
+fn show(refinement: &Refinement) {
     print(&refinement_sentence(refinement));
-    print(&step_table(refinement).to_string());
+    print(&stage_table(&Stage::all(refinement)).to_string());
     if let Some(last) = refinement.steps.last() {
         print(&parameter_table(&last.fit.model, &last.fit.fitted).to_string());
         remedy_lines(&last.fit.model, &last.fit.fitted).iter().for_each(|line| print(line));

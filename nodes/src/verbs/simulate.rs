@@ -9,9 +9,10 @@ use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{InputSignals, Profile, RunError, Tolerances, rest_state, simulate, simulate_from};
 
-use super::print;
+use super::{print, print_next};
 use crate::cli::SimulateArguments;
 use crate::error::VerbError;
+use crate::output::NextStep;
 use crate::outputs;
 use crate::profile_file::ProfileFile;
 use crate::{sources, terminal};
@@ -35,6 +36,7 @@ pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
         simulated.duration(),
         model.machine.name
     ));
+    print_next(&NextStep::new("see what is in it", "info").word(arguments.output.display().to_string()));
     Ok(())
 }
 
@@ -42,7 +44,7 @@ fn with_profile(model: &Model, path: &Path) -> Result<Recording, VerbError> {
     let syntax = |reason: String| VerbError::ProfileSyntax { path: path.to_path_buf(), reason };
     let file = ProfileFile::read(path, &model.machine)?;
     for remark in file.remarks(&model.machine) {
-        terminal::complain(&format!("{}: {remark}", path.display()));
+        terminal::remark(&format!("{}: {remark}", path.display()));
     }
     let names: Vec<&str> = model.machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();
     let samples = (file.duration() * file.rate).round() as usize + 1;
