@@ -1,7 +1,7 @@
 //! A new user's way through the program: every screen begins with a sentence and ends with the command that comes next, which is
 //! pasted into a shell as it stands.
 
-#![allow(missing_docs, clippy::unwrap_used)]
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
