@@ -60,7 +60,7 @@ fn one_of_two_is_half_an_answer() {
     let machine = Machine::record(&with(&dead_zone, "asymmetric_friction", Site::Cylinder(0), &[400.0, 0.0]));
     let half = machine.refined(&["valve_dead_zone"]);
     assert_eq!((half.verdict(), helps(&half)), (Kind::Unexplained, true), "{}", refinement_sentence(&half));
-    assert!(refinement_sentence(&half).contains("something is missing still"));
+    assert!(refinement_sentence(&half).contains("Something is still missing"));
     let both = machine.refined(&["valve_dead_zone", "asymmetric_friction"]);
     assert_eq!(both.verdict(), Kind::MissingEffect, "{}", refinement_sentence(&both));
 }

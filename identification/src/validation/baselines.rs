@@ -12,6 +12,9 @@ const HELD: f64 = 1.0;
 /// Time between the samples of the ARX models, on a machine of the reference size, s: a tenth of an arm's fastest swing is 10 ms.
 const ARX_INTERVAL: f64 = 0.02;
 
+/// Rounding of times, s.
+const ROUNDING: f64 = 1e-7;
+
 /// Normalised mean squared errors to compare a model's with, for one signal. `NaN` where there is none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Baseline {
@@ -73,10 +76,10 @@ fn held_error(time: &[f64], signal: &[f64], held: f64) -> f64 {
     let past: Vec<f64> = time
         .iter()
         .map(|now| {
-            while before + 1 < time.len() && time[before + 1] <= now - held {
+            while before + 1 < time.len() && time[before + 1] <= now - held + ROUNDING {
                 before += 1;
             }
-            let is_there = time[before] <= now - held && now - held - time[before] < held;
+            let is_there = time[before] <= now - held + ROUNDING && now - held - time[before] < held;
             if is_there { signal.get(before).copied().unwrap_or(f64::NAN) } else { f64::NAN }
         })
         .collect();

@@ -39,15 +39,21 @@ pub fn command(words: &[String], width: Option<usize>) -> String {
     let Some(width) = width.filter(|width| words.iter().map(|word| word.len() + 1).sum::<usize>() + 2 > *width) else {
         return format!("  {}", words.join(" "));
     };
-    let mut lines: Vec<String> = Vec::new();
+    // An option stays with its values.
+    let mut groups: Vec<String> = Vec::new();
     for word in words {
+        match groups.last_mut() {
+            Some(group) if !word.starts_with('-') => *group += &format!(" {word}"),
+            _ => groups.push(word),
+        }
+    }
+    let mut lines: Vec<String> = Vec::new();
+    for group in groups {
         match lines.last_mut() {
-            // Two columns for the backslash.
-            Some(line) if !word.starts_with('-') || line.len() + word.len() + 12 < width => {
-                *line += &format!(" {word}")
-            }
-            Some(_) => lines.push(format!("      {word}")),
-            None => lines.push(format!("  {word}")),
+            // A blank before, and two columns for the backslash.
+            Some(line) if line.chars().count() + group.chars().count() + 3 <= width => *line += &format!(" {group}"),
+            Some(_) => lines.push(format!("      {group}")),
+            None => lines.push(format!("  {group}")),
         }
     }
     lines.join(" \\\n")
