@@ -68,25 +68,31 @@ pub fn message_text(type_name: &str) -> Option<&'static str> {
 /// assert!(schema.is_some_and(|text| text.contains("MSG: builtin_interfaces/Time\n")));
 /// ```
 pub fn schema(type_name: &str) -> Option<String> {
-    let root = layout::short_name(type_name);
-    let mut text = message_text(&root)?.to_string();
-    let mut included = vec![root];
+    let types = with_contained(type_name)?;
+    let (root, contained) = types.split_first()?;
+    let mut text = message_text(root)?.to_string();
+    for name in contained {
+        text.push_str(&format!("\n{SEPARATOR}\nMSG: {name}\n{}", message_text(name)?));
+    }
+    Some(text)
+}
+
+/// `package/Type` of a type and of all types that it contains, each once, in the order in which they are met. `None` where one of them is
+/// not known.
+pub(crate) fn with_contained(type_name: &str) -> Option<Vec<String>> {
+    let mut types = vec![layout::short_name(type_name)];
     let mut next = 0;
-    while next < included.len() {
-        let package = layout::package(&included[next]).to_string();
-        for field in layout::fields(message_text(&included[next])?) {
-            if field.is_primitive() {
-                continue;
-            }
-            let dependency = layout::resolve(field.base_type(), &package);
-            if !included.contains(&dependency) {
-                text.push_str(&format!("\n{SEPARATOR}\nMSG: {dependency}\n{}", message_text(&dependency)?));
-                included.push(dependency);
+    while let Some(name) = types.get(next) {
+        let package = layout::package(name).to_string();
+        for field in layout::fields(message_text(name)?).iter().filter(|field| !field.is_primitive()) {
+            let contained = layout::resolve(field.base_type(), &package);
+            if !types.contains(&contained) {
+                types.push(contained);
             }
         }
         next += 1;
     }
-    Some(text)
+    Some(types)
 }
 
 #[cfg(test)]

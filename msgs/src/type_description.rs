@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::definitions::message_text;
+use crate::definitions::{message_text, with_contained};
 use crate::layout::{self, Field};
 
 /// `type_description_interfaces/msg/TypeDescription`.
@@ -57,22 +57,11 @@ const SEQUENCE: u8 = 144;
 impl TypeDescription {
     /// Of a type that is known, written `package/msg/Type`; `None` for any other.
     pub fn of(type_name: &str) -> Option<TypeDescription> {
-        let root = layout::short_name(type_name);
-        let mut known = vec![root];
-        let mut described = Vec::new();
-        while let Some(name) = known.get(described.len()) {
-            let description = individual(name)?;
-            for field in &description.fields {
-                let nested = layout::short_name(&field.field_type.nested_type_name);
-                if !nested.is_empty() && !known.contains(&nested) {
-                    known.push(nested);
-                }
-            }
-            described.push(description);
-        }
-        let mut referenced_type_descriptions = described.split_off(1);
+        let mut described = with_contained(type_name)?.into_iter().map(|name| individual(&name));
+        let type_description = described.next()??;
+        let mut referenced_type_descriptions = described.collect::<Option<Vec<_>>>()?;
         referenced_type_descriptions.sort_by(|a, b| a.type_name.cmp(&b.type_name));
-        Some(TypeDescription { type_description: described.pop()?, referenced_type_descriptions })
+        Some(TypeDescription { type_description, referenced_type_descriptions })
     }
 
     /// The hash of the type: `RIHS01_` and the SHA-256 of its fields as JSON, without default values.

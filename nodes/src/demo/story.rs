@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
         print(&format!("\n3  {}", verdict_sentence(&model, diagnosis)));
     }
     print("\n4  Added, refitted, simulated again on the recording that was never fitted:");
-    print(&stage_table(&Stage::all(&refinement)).to_string());
+    print(&stage_table(&Stage::of_refinement(&refinement)).to_string());
 
     print(&format!("\n5  The seal is opened: the hidden effect is {}.", sealed.effect));
     for (name, truth, found, unit) in sealed.opened(&refinement.model) {

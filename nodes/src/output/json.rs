@@ -4,7 +4,6 @@ use std::path::Path;
 
 use excavator_identification::diagnosis::{Candidate, Diagnosis, Share, Unexplained};
 use excavator_identification::fit::nuisances_shown;
-use excavator_identification::refinement::Refinement;
 use excavator_identification::regression::ConditionNumber;
 use excavator_identification::validation::{
     Baseline, Baselines, Comparison, Correlation, PhaseShare, SignalComparison,
@@ -263,28 +262,16 @@ fn instruments_json(diagnosis: &Diagnosis) -> Vec<Value> {
     instruments.map(|one| json!({"name": one.name, "noise": finite(one.noise), "unit": one.unit})).collect()
 }
 
-/// Result of `refine --diagnosis`: `stages` are the names and comparisons of the models on the way, from the refitted one.
-pub fn saved_refinement_json(verdict: &str, stages: &[(String, Vec<Comparison>)], model_file: &Path) -> Value {
-    let step = |(name, comparisons): &(String, Vec<Comparison>)| {
-        let added = name.strip_prefix("+ ");
-        json!({"added": added, "signals": signals(comparisons)})
-    };
+/// Result of `refine`: what was added at each step, and how the model then compares.
+pub fn refinement_json<'s>(
+    verdict: &str,
+    steps: impl Iterator<Item = (Option<&'s str>, &'s [Comparison])>,
+    model_file: &Path,
+) -> Value {
+    let steps: Vec<Value> =
+        steps.map(|(added, comparisons)| json!({"added": added, "signals": signals(comparisons)})).collect();
     json!({
         "verdict": verdict,
-        "steps": stages.iter().map(step).collect::<Vec<_>>(),
-        "model": model_file.display().to_string(),
-    })
-}
-
-/// Result of `refine`.
-pub fn refinement_json(refinement: &Refinement, model_file: &Path) -> Value {
-    let steps: Vec<Value> = refinement
-        .steps
-        .iter()
-        .map(|step| json!({"added": step.added, "signals": signals(&step.comparisons)}))
-        .collect();
-    json!({
-        "verdict": refinement.verdict().name(),
         "steps": steps,
         "model": model_file.display().to_string(),
     })

@@ -7,7 +7,7 @@ use crate::recording_part::Part;
 
 /// Both halves of a recording of `duration` s, for a command that wants one to fit and another to judge; where `bag` is a part of a
 /// recording already, the second is left to whoever pastes it.
-pub fn halves(bag: &Path, duration: f64) -> [String; 2] {
+fn halves(bag: &Path, duration: f64) -> [String; 2] {
     let is_part = matches!(Part::split(bag), Ok((_, Some(_))) | Err(_));
     if is_part {
         return [bag.display().to_string(), "ANOTHER_BAG".to_string()];
@@ -74,6 +74,18 @@ impl NextStep {
         let step = paths(self, "--identification", &recordings.identification);
         let step = paths(step, "--validation", &recordings.validation).mapping(&recordings.mapping);
         if recordings.extent.whole { step.word("--whole") } else { step }
+    }
+
+    /// A diagnosis wants one recording to fit and another to judge: here both halves of `bag`, whose recording takes `duration` s.
+    pub fn diagnosis_of_halves(why: &str, model: &ModelChoice, bag: &Path, duration: f64, mapping: &Mapping) -> Self {
+        let [fitted, judged] = halves(bag, duration);
+        NextStep::new(why, "diagnose")
+            .same_model(model)
+            .word("--identification")
+            .word(fitted)
+            .word("--validation")
+            .word(judged)
+            .mapping(mapping)
     }
 
     /// The sentence and the command.

@@ -31,7 +31,8 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
     if is_zero { text.trim_start_matches('-').to_string() } else { text }
 }
 
-pub(super) fn table(header: &[&str]) -> Table {
+/// An empty table, as wide as the terminal.
+pub fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED);
     table.set_content_arrangement(ContentArrangement::Dynamic);
@@ -39,7 +40,8 @@ pub(super) fn table(header: &[&str]) -> Table {
     table
 }
 
-pub(super) fn right(text: impl ToString) -> Cell {
+/// A cell with a number.
+pub fn right(text: impl ToString) -> Cell {
     Cell::new(text.to_string()).set_alignment(CellAlignment::Right)
 }
 
@@ -191,23 +193,25 @@ pub struct Stage<'c> {
 }
 
 impl<'c> Stage<'c> {
-    /// The stages of a refinement.
-    pub fn all(refinement: &'c Refinement) -> Vec<Stage<'c>> {
-        let given = Stage { name: AS_GIVEN.into(), comparisons: &refinement.given };
-        let steps = refinement
-            .steps
-            .iter()
-            .map(|step| Stage { name: stage_name(step.added.as_deref()), comparisons: &step.comparisons });
+    /// The model with its own numbers, where it can be simulated, and what it became with each addition.
+    pub fn all(given: &'c [Comparison], steps: impl Iterator<Item = (Option<&'c str>, &'c [Comparison])>) -> Vec<Self> {
+        let given = Stage { name: "as given".into(), comparisons: given };
+        let steps = steps.map(|(added, comparisons)| Stage {
+            name: added.map_or_else(|| "identified".to_string(), |added| format!("+ {added}")),
+            comparisons,
+        });
         std::iter::once(given).filter(|stage| !stage.comparisons.is_empty()).chain(steps).collect()
+    }
+
+    /// The stages of a refinement.
+    pub fn of_refinement(refinement: &'c Refinement) -> Vec<Self> {
+        Stage::all(&refinement.given, compared_steps(refinement))
     }
 }
 
-/// Name of the model with its own numbers.
-pub const AS_GIVEN: &str = "as given";
-
-/// Name of the stage at which this was added.
-pub fn stage_name(added: Option<&str>) -> String {
-    added.map_or_else(|| "identified".to_string(), |added| format!("+ {added}"))
+/// What each step of a refinement added, with its comparisons.
+pub fn compared_steps(refinement: &Refinement) -> impl Iterator<Item = (Option<&str>, &[Comparison])> {
+    refinement.steps.iter().map(|step| (step.added.as_deref(), step.comparisons.as_slice()))
 }
 
 /// Normalised mean squared error of every signal on the validation recordings, stage by stage.

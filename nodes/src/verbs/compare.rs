@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use excavator_identification::report::{comparison_page, comparison_sentence};
-use excavator_identification::validation::{Baselines, Comparison, compare};
+use excavator_identification::validation::{Baselines, compare};
 
 use super::{print, print_detail, print_next};
 use crate::cli::CompareArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, comparison_json, comparison_table, correlation_table, halves, phase_table, write_json};
+use crate::output::{NextStep, comparison_json, comparison_table, correlation_table, phase_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -28,7 +28,8 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
         if let Some(table) = phase_table(&comparison) {
             print_detail(&table.to_string());
         }
-        print_next(&next(arguments, &comparison));
+        let (why, duration) = ("find out what the model is missing", comparison.measured.duration());
+        print_next(&NextStep::diagnosis_of_halves(why, &arguments.model, &arguments.bag, duration, &arguments.mapping));
     }
     if let Some(path) = &arguments.report {
         let page = comparison_page(&model, std::slice::from_ref(&comparison), std::slice::from_ref(&baselines));
@@ -38,16 +39,4 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
         write_json(path, &comparison_json(&comparison, &baselines), arguments.overwriting)?;
     }
     Ok(())
-}
-
-/// A diagnosis wants one recording to fit and another to judge.
-fn next(arguments: &CompareArguments, comparison: &Comparison) -> NextStep {
-    let [fitted, judged] = halves(&arguments.bag, comparison.measured.duration());
-    NextStep::new("find out what the model is missing", "diagnose")
-        .same_model(&arguments.model)
-        .word("--identification")
-        .word(fitted)
-        .word("--validation")
-        .word(judged)
-        .mapping(&arguments.mapping)
 }

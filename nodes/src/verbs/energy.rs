@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::mpsc::Receiver;
 
-use excavator_identification::energy::{Analyser, EnergyAnalysis, EnergyError, EnergySettings, analyse, missing_power};
+use excavator_identification::energy::{
+    Analyser, EnergyAnalysis, EnergyError, EnergySettings, MissingPower, analyse, missing_power,
+};
 use excavator_identification::report::energy_page;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -13,7 +15,7 @@ use super::{print, print_next};
 use crate::block_reader::{needs_a_map, read_beside};
 use crate::cli::{EnergyArguments, Mapping};
 use crate::error::VerbError;
-use crate::output::{NextStep, energy_json, energy_table, halves, ledger_table, write_json};
+use crate::output::{NextStep, energy_json, energy_table, ledger_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::{sources, terminal};
 
@@ -30,8 +32,9 @@ pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
     let model = sources::model(&arguments.model)?;
     let analysis = analyse_bag(&model, &arguments.bag, &arguments.mapping)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&model, &analysis);
-        print_next(&next(arguments, missing_power(&model, &analysis).is_empty(), analysis.duration));
+        let missing = missing_power(&model, &analysis);
+        show(&model, &analysis, &missing);
+        print_next(&next(arguments, missing.is_empty(), analysis.duration));
     }
     if let Some(path) = &arguments.report {
         outputs::write(path, &energy_page(&model, &analysis), arguments.overwriting)?;
@@ -50,14 +53,13 @@ fn next(arguments: &EnergyArguments, closes: bool, duration: f64) -> NextStep {
             .path("--bag", &arguments.bag)
             .mapping(&arguments.mapping);
     }
-    let [fitted, judged] = halves(&arguments.bag, duration);
-    NextStep::new("find out which effect takes it", "diagnose")
-        .same_model(&arguments.model)
-        .word("--identification")
-        .word(fitted)
-        .word("--validation")
-        .word(judged)
-        .mapping(&arguments.mapping)
+    NextStep::diagnosis_of_halves(
+        "find out which effect takes it",
+        &arguments.model,
+        &arguments.bag,
+        duration,
+        &arguments.mapping,
+    )
 }
 
 /// A bag of our own topics goes through in blocks, whatever its length; what needs a map is read whole.
@@ -81,8 +83,7 @@ fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAna
     Ok(analysis?.finish()?)
 }
 
-fn show(model: &Model, analysis: &EnergyAnalysis) {
-    let missing = missing_power(model, analysis);
+fn show(model: &Model, analysis: &EnergyAnalysis, missing: &[MissingPower]) {
     let over = format!("{:.1} s of {}", analysis.duration, analysis.source);
     match missing.first() {
         None => print(&format!(

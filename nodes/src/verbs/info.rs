@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use comfy_table::presets::UTF8_FULL_CONDENSED;
-use comfy_table::{Attribute, Cell, CellAlignment, ContentArrangement, Table};
+use comfy_table::Cell;
 use excavator_bags::map::{Origin, TopicMap, read_signals};
 use excavator_bags::table::Table as DataTable;
 use excavator_bags::{BagError, BagInfo, ColumnInfo, SignalsInfo, TableInfo, Timing, info};
@@ -13,7 +12,7 @@ use serde_json::{Value, json};
 use super::{print, print_next};
 use crate::cli::InfoArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, number, write_json};
+use crate::output::{NextStep, number, right, table, write_json};
 use crate::outputs::{self, Inputs};
 
 /// A clock that is off by more than this is worth a line, s: networks and recorders take less.
@@ -124,18 +123,6 @@ fn to_json(bag: Option<&BagInfo>, signals: &Result<&SignalsInfo, &BagError>) -> 
         Err(error) => json!({"error": error.to_string()}),
     };
     Ok(value)
-}
-
-fn table(header: &[&str]) -> Table {
-    let mut table = Table::new();
-    table.load_style(UTF8_FULL_CONDENSED);
-    table.set_content_arrangement(ContentArrangement::Dynamic);
-    table.set_header(header.iter().map(|text| Cell::new(text).add_attribute(Attribute::Bold)));
-    table
-}
-
-fn right(text: impl ToString) -> Cell {
-    Cell::new(text.to_string()).set_alignment(CellAlignment::Right)
 }
 
 fn show_bag(bag: &BagInfo) {

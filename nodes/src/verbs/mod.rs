@@ -59,7 +59,9 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
 /// Why something could not be printed.
 static NOT_PRINTED: OnceLock<Error> = OnceLock::new();
 
-/// Prints to standard output what is safe for a terminal, as wide as that is; nothing with `--quiet`. A closed pipe is not an error of ours; of anything else [`all_was_printed`] tells.
+/// Prints to standard output what is safe for a terminal, as wide as that is; nothing with `--quiet`.
+///
+/// A closed pipe is not an error of ours. [`all_was_printed`] tells of any other.
 pub fn print(text: &str) {
     if Verbosity::chosen() > Verbosity::Quiet {
         write(&filled(text, terminal::width()));

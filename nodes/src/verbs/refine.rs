@@ -15,8 +15,7 @@ use super::{print, print_next};
 use crate::cli::{ModelChoice, Recordings, RefineArguments};
 use crate::error::VerbError;
 use crate::output::{
-    AS_GIVEN, NextStep, Progress, Stage, parameter_table, refinement_json, remedy_lines, saved_refinement_json,
-    stage_name, stage_table, write_json,
+    NextStep, Progress, Stage, compared_steps, parameter_table, refinement_json, remedy_lines, stage_table, write_json,
 };
 use crate::outputs::{self, Inputs};
 use crate::saved_diagnosis::SavedDiagnosis;
@@ -62,7 +61,8 @@ fn searched(arguments: &RefineArguments) -> Result<(), VerbError> {
         outputs::write(path, &refinement_page(&refinement), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &refinement_json(&refinement, &arguments.output), arguments.overwriting)?;
+        let value = refinement_json(refinement.verdict().name(), compared_steps(&refinement), &arguments.output);
+        write_json(path, &value, arguments.overwriting)?;
     }
     Ok(())
 }
@@ -87,28 +87,19 @@ fn as_diagnosed(path: &Path, arguments: &RefineArguments) -> Result<(), VerbErro
             .collect::<Result<Vec<Comparison>, VerbError>>()
     };
     // A model with the numbers of a data sheet may not be simulated at all.
-    let mut stages = vec![(AS_GIVEN.to_string(), compared(&given).unwrap_or_default())];
-    for step in saved.steps()? {
-        stages.push((stage_name(step.added.as_deref()), compared(&step.model)?));
-    }
+    let as_given = compared(&given).unwrap_or_default();
+    let steps = saved.steps()?.into_iter().map(|step| Ok((step.added, compared(&step.model)?)));
+    let steps = steps.collect::<Result<Vec<_>, VerbError>>()?;
+    let steps = || steps.iter().map(|(added, comparisons)| (added.as_deref(), comparisons.as_slice()));
     outputs::write(&arguments.output, &to_text(&refined)?, arguments.overwriting)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         print(&saved.sentence);
-        let stages: Vec<Stage<'_>> = stages
-            .iter()
-            .filter(|(_, comparisons)| !comparisons.is_empty())
-            .map(|(name, comparisons)| Stage { name: name.clone(), comparisons })
-            .collect();
-        print(&stage_table(&stages).to_string());
+        print(&stage_table(&Stage::all(&as_given, steps())).to_string());
         print(&parameter_table(&refined, &refined.unknown_parameters()).to_string());
         end(arguments, &ModelChoice { model: String::new(), own: arguments.own.clone() }, &recordings);
     }
     if let Some(file) = &arguments.json.json {
-        write_json(
-            file,
-            &saved_refinement_json(&saved.verdict, &stages[1..], &arguments.output),
-            arguments.overwriting,
-        )?;
+        write_json(file, &refinement_json(&saved.verdict, steps(), &arguments.output), arguments.overwriting)?;
     }
     Ok(())
 }
@@ -141,7 +132,7 @@ fn named(model: &Model, names: &[String]) -> Result<Additions, VerbError> {
 /// Prints a refinement for people.
 fn show(refinement: &Refinement) {
     print(&refinement_sentence(refinement));
-    print(&stage_table(&Stage::all(refinement)).to_string());
+    print(&stage_table(&Stage::of_refinement(refinement)).to_string());
     if let Some(last) = refinement.steps.last() {
         print(&parameter_table(&last.fit.model, &last.fit.fitted).to_string());
         remedy_lines(&last.fit.model, &last.fit.fitted).iter().for_each(|line| print(line));
