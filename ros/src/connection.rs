@@ -9,6 +9,7 @@ use tokio::runtime::Handle;
 
 use super::farewell::Farewell;
 use super::guard::{Before, Guard, GuardError};
+use super::probe::Probe;
 use super::threads::Threads;
 use super::{Environment, NodeIdentity, RosError, Security};
 
@@ -67,6 +68,7 @@ pub trait Endpoint: Send + Sync {
 /// One participant with its node.
 pub struct Connection {
     // Dropped in this order: the node says good-bye through the context.
+    probe: Option<Probe>,
     node: Node,
     context: Context,
     threads: Threads,
@@ -86,12 +88,14 @@ impl Connection {
         let failed = |reason: String| RosError::Join { domain: environment.domain, reason };
         let (participant, threads) = Threads::started_by(|| participant(environment));
         let (participant, guard) = participant.map_err(failed)?;
+        // Before all others: see the probe.
+        let probe = Some(Probe::open(&participant).map_err(failed)?);
         let context = Context::from_domain_participant(participant).map_err(|error| failed(error.to_string()))?;
         let name = NodeName::new(identity.namespace(), identity.name()).map_err(|error| failed(error.to_string()))?;
         // Parameter services and log are ours: the library's are bound to one mapping and to its own spinner.
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
         let node = context.new_node(name, options).map_err(|error| failed(error.to_string()))?;
-        Ok(Connection { node, context, threads, guard, farewell: Farewell::new(environment) })
+        Ok(Connection { node, context, threads, guard, probe, farewell: Farewell::new(environment) })
     }
 
     /// Creates an endpoint on this connection; the connection is returned with it.
@@ -113,6 +117,11 @@ impl Connection {
     /// The threads of the participant.
     pub(super) fn threads(&self) -> Threads {
         self.threads.clone()
+    }
+
+    /// The first endpoints of the connection, once: for who watches it.
+    pub(super) fn take_probe(&mut self) -> Option<Probe> {
+        self.probe.take()
     }
 
     /// The filter in front of the participant's sockets, or why there is none.

@@ -1,10 +1,12 @@
 //! Finding out that the middleware is broken for good.
 //!
-//! Two faults of the middleware end communication silently, and a third lets it grow without bound ([`super::memory`]). A peer whose lease expired is never matched again, since
-//! its announcements look like duplicates; and its threads end when a system call is interrupted (SIGSTOP and SIGCONT, a
-//! frozen container, suspend to disk). The remedy for all is a new participant. Building one disturbs every other
-//! peer, so it is done only on proof: a dead thread, or a lost peer that is back and had something to do with us. Since our
-//! own participant cannot see that a lost peer is back, a second one without any endpoint, the scout, looks out for it.
+//! Three faults of the middleware end communication silently, and a fourth lets it grow without bound ([`super::memory`]). A
+//! peer whose lease expired is never matched again, since its announcements look like duplicates; its threads end when a
+//! system call is interrupted (SIGSTOP and SIGCONT, a frozen container, suspend to disk); and a peer of Fast DDS may
+//! miss a part of our endpoints for good ([`super::probe`]). The remedy for all is a new participant. Building one disturbs
+//! every other peer, so it is done only on proof: a dead thread, a lost peer that is back and had something to do with us,
+//! a peer that answers what is new and not what is old. Since our own participant cannot see that a lost peer is back, a
+//! second one without any endpoint, the scout, looks out for it.
 
 use std::collections::BTreeSet;
 use std::net::Ipv4Addr;
@@ -17,11 +19,12 @@ use super::dds_names::dds_topic;
 use super::memory::Memory;
 use super::networks::networks;
 use super::patience::{BUILDING, let_go, within};
+use super::probe::{Probe, Probes};
 use super::reminder::ask_again;
 use super::threads::{Died, Threads};
 
 /// Identity of a participant.
-type Prefix = [u8; 12];
+pub(super) type Prefix = [u8; 12];
 
 /// Why the link must be built anew.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,6 +33,8 @@ pub(super) enum Fault {
     ThreadsDied(Died),
     /// A peer that was lost is there again, but out of reach of our participant.
     PeerReturned(Prefix),
+    /// A peer is there that does not know our first endpoints.
+    HalfKnown,
     /// The process needs much more memory than before, MB.
     MemoryGrown { before: u64, now: u64 },
     /// There is a network that our participant does not know, and nobody else to be disturbed.
@@ -46,6 +51,7 @@ impl std::fmt::Display for Fault {
                 let name: String = prefix.iter().map(|byte| format!("{byte:02x}")).collect();
                 write!(formatter, "peer {name} was lost and is back")
             }
+            Fault::HalfKnown => write!(formatter, "a peer has missed a part of our endpoints"),
             Fault::MemoryGrown { before, now } => write!(formatter, "memory has grown from {before} to {now} MB"),
             Fault::NewNetwork(name) => write!(formatter, "network {name} is new"),
         }
@@ -72,12 +78,20 @@ pub(super) struct Watch {
     scout: Option<Scout>,
     networks: BTreeSet<(String, Ipv4Addr)>,
     memory: Option<Memory>,
+    probes: Option<Probes>,
 }
 
 impl Watch {
     /// Watches a connection that was built a moment ago, and the memory of this process where that is asked for.
-    pub fn new(environment: Environment, participant: DomainParticipant, threads: Threads, watch_memory: bool) -> Self {
+    pub fn new(
+        environment: Environment,
+        participant: DomainParticipant,
+        threads: Threads,
+        probe: Option<Probe>,
+        watch_memory: bool,
+    ) -> Self {
         Watch {
+            probes: probe.map(Probes::new),
             environment,
             participant,
             threads,
@@ -159,6 +173,10 @@ impl Watch {
             }
         }
         self.send_scout(newly_lost, &mut seen);
+        let half_known = self.probes.as_mut().is_some_and(|probes| probes.look(&self.participant, &self.present));
+        if seen.fault.is_none() && half_known {
+            seen.fault = Some(Fault::HalfKnown);
+        }
         if seen.fault.is_none() && self.present.is_empty() {
             let new = addresses().into_iter().find(|network| !self.networks.contains(network));
             seen.fault = new.map(|(name, address)| Fault::NewNetwork(format!("{name} ({address})")));
@@ -222,6 +240,9 @@ impl Watch {
 impl Drop for Watch {
     fn drop(&mut self) {
         self.dismiss_scout();
+        if let Some(probes) = self.probes.take() {
+            let_go(probes);
+        }
     }
 }
 
@@ -269,7 +290,7 @@ impl Scout {
     }
 }
 
-fn prefix_of(bytes: &[u8]) -> Prefix {
+pub(super) fn prefix_of(bytes: &[u8]) -> Prefix {
     let mut prefix = Prefix::default();
     prefix.iter_mut().zip(bytes).for_each(|(slot, byte)| *slot = *byte);
     prefix

@@ -37,6 +37,7 @@
 //! | a lock waits for itself | `patience.rs`: what may hang runs on a thread of its own |
 //! | each fragment of a sample with inline parameters has a byte too many | `large_replies.rs`: long replies go another way |
 //! | Fast DDS does not understand its good-bye | `farewell.rs`: it is said once more in Fast DDS's words |
+//! | its announcements have no time of writing, and Fast DDS may lose those that were overtaken | `probe.rs`: two probes prove it, the link is built anew |
 //! | Fast DDS does not hear its first question | `reminder.rs`: the question is asked once more |
 //! | malformed packets end threads or exhaust memory | `guard`: a filter in the kernel, in front of the sockets |
 
@@ -69,6 +70,7 @@ mod parameter_services;
 mod parameters;
 mod patience;
 mod peers;
+mod probe;
 mod qos;
 pub mod raw;
 mod reminder;

@@ -12,6 +12,7 @@ use super::dds_names::dds_topic;
 use super::guard::{Guard, GuardError};
 use super::inlet::{Inlet, Received};
 use super::patience::{BUILDING, FAREWELL, let_go, within};
+use super::probe::Probe;
 use super::threads::Threads;
 use super::{Environment, Latched, NodeIdentity, Outlet, RosError, TopicQos};
 
@@ -142,9 +143,11 @@ impl Link {
         self.lock().connection.as_ref().map(Connection::participant)
     }
 
-    /// The participant of the connection and its threads, `None` while there is none.
-    pub(super) fn alive(&self) -> Option<(DomainParticipant, Threads)> {
-        self.lock().connection.as_ref().map(|connection| (connection.participant(), connection.threads()))
+    /// The participant of the connection, its threads and, once, its probe; `None` while there is none.
+    pub(super) fn alive(&self) -> Option<(DomainParticipant, Threads, Option<Probe>)> {
+        let mut state = self.lock();
+        let connection = state.connection.as_mut()?;
+        Some((connection.participant(), connection.threads(), connection.take_probe()))
     }
 
     /// The filter in front of the middleware's sockets, or why there is none; `None` while there is no connection.

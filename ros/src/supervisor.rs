@@ -186,8 +186,8 @@ impl Supervisor {
     }
 
     fn watch(&self) -> Option<Watch> {
-        let (participant, threads) = self.link.alive()?;
-        Some(Watch::new(self.link.environment().clone(), participant, threads, self.watch_memory))
+        let (participant, threads, probe) = self.link.alive()?;
+        Some(Watch::new(self.link.environment().clone(), participant, threads, probe, self.watch_memory))
     }
 
     /// What this node has on the graph.
