@@ -14,6 +14,7 @@ mod error;
 mod identification_node;
 mod joint_controller;
 mod long_recording;
+mod manual;
 mod output;
 mod outputs;
 mod play;
@@ -32,13 +33,15 @@ pub use arm_bridge::can::fuzzing;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::FromArgMatches;
 
 /// Runs the command line of this process.
 pub fn run_command_line() -> ExitCode {
     let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let outcome = excavator_ros::RosArguments::parse(&all).map_err(error::VerbError::from).and_then(|(ros, words)| {
-        let arguments = cli::Arguments::try_parse_from(words).unwrap_or_else(|refusal| refuse(&refusal));
+        let parsed = manual::command().try_get_matches_from(words);
+        let arguments = parsed.and_then(|found| cli::Arguments::from_arg_matches(&found));
+        let arguments = arguments.unwrap_or_else(|refusal| refuse(&refusal));
         arguments.verbosity().choose();
         verbs::run(arguments.verb, &ros, excavator_ros::ros_words(&all))?;
         verbs::all_was_printed()

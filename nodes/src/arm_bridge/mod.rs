@@ -57,4 +57,5 @@ mod sequence;
 mod signals;
 mod udp_source;
 
+pub(crate) use node::parameters;
 pub use node::run;

@@ -21,15 +21,19 @@ const GLANCE: Duration = Duration::from_millis(100);
 /// Time that readers have to find the bridge, and to take what is left at the end, where it does not run for ever.
 const ACQUAINTANCE: Duration = Duration::from_secs(1);
 
+/// All of them, with defaults.
+pub(crate) fn parameters() -> Vec<Parameter> {
+    let file =
+        Parameter::new("description", Value::String(String::new()), "file (.toml) that says where signals come from");
+    vec![file.read_only(), frame_parameter(), Lifecycle::parameter()]
+}
+
 /// Runs the bridge until it is told to stop.
 ///
 /// # Errors
 /// [`VerbError`] when it cannot start.
 pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
-    let file =
-        Parameter::new("description", Value::String(String::new()), "file (.toml) that says where signals come from");
-    let supervisor =
-        Supervisor::start("arm_bridge", ros, vec![file.read_only(), frame_parameter(), Lifecycle::parameter()])?;
+    let supervisor = Supervisor::start("arm_bridge", ros, parameters())?;
     let path = supervisor.parameters.text("description");
     if path.is_empty() {
         let reason = "no signals: give the file that describes them with -p description:=FILE.toml".to_string();

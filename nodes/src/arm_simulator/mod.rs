@@ -10,6 +10,7 @@ mod node;
 mod sensors;
 mod stamps;
 
+pub(crate) use declared::parameters;
 pub use machine::run as run_machine;
 pub use node::run;
 

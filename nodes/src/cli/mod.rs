@@ -87,7 +87,30 @@ pub enum Verb {
     /// A live ROS 2 node.
     #[command(subcommand)]
     Node(NodeVerb),
+    /// Print the completions of a shell, for its start-up file.
+    Completions {
+        /// Shell.
+        shell: clap_complete::Shell,
+    },
+    /// Man pages and pages of the docs that are made of the command line.
+    #[command(subcommand, hide = true)]
+    Manual(ManualVerb),
     /// The simulated machine of an arm simulator, which starts it.
     #[command(hide = true)]
     Machine,
+}
+
+/// What is made of the command line.
+#[derive(Debug, Subcommand)]
+pub enum ManualVerb {
+    /// Write man pages, one for each verb.
+    Man {
+        /// Folder to write them to.
+        #[arg(long, value_name = "FOLDER")]
+        to: std::path::PathBuf,
+    },
+    /// Print the page of the verbs, in Markdown.
+    Verbs,
+    /// Print the page of the nodes' parameters, in Markdown.
+    Parameters,
 }

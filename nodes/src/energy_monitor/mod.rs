@@ -5,4 +5,5 @@ mod incoming;
 mod ledger;
 mod node;
 
+pub(crate) use node::parameters;
 pub use node::run;

@@ -30,7 +30,8 @@ const REPORT: Duration = Duration::from_millis(500);
 /// Time without a state after which that is worth a warning.
 const SILENT: Duration = Duration::from_secs(2);
 
-fn parameters() -> Vec<Parameter> {
+/// All of them, with units, ranges and defaults.
+pub(crate) fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     vec![
         sources::model_parameter(),

@@ -15,4 +15,5 @@ mod server;
 mod types;
 mod work;
 
+pub(crate) use node::parameters;
 pub use node::run;

@@ -20,7 +20,8 @@ const GLANCE: Duration = Duration::from_millis(200);
 /// Characters of a model's name in the log.
 const NAMED: usize = 80;
 
-fn parameters() -> Vec<Parameter> {
+/// All of them, with units, ranges and defaults.
+pub(crate) fn parameters() -> Vec<Parameter> {
     let text = |name, description| Parameter::new(name, Value::String(String::new()), description).read_only();
     vec![
         text("model_folder", "folder below which goals may name model files; empty: goals read no model files"),

@@ -7,4 +7,5 @@
 mod law;
 mod node;
 
+pub(crate) use node::parameters;
 pub use node::run;

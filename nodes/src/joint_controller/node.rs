@@ -23,7 +23,8 @@ use excavator_ros::{
 /// Time between two words to diagnostics.
 const REPORT: Duration = Duration::from_millis(500);
 
-fn parameters() -> Vec<Parameter> {
+/// All of them, with units, ranges and defaults.
+pub(crate) fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     vec![
         sources::model_parameter(),

@@ -10,6 +10,7 @@ mod energy;
 mod identify;
 mod import;
 mod info;
+mod manual;
 mod model;
 mod new_model;
 mod node;
@@ -52,6 +53,11 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Node(which) => node::run(which, ros),
         Verb::Import(arguments) => import::run(&arguments),
         Verb::Machine => crate::arm_simulator::run_machine(),
+        Verb::Completions { shell } => {
+            manual::completions(shell);
+            Ok(())
+        }
+        Verb::Manual(which) => manual::run(&which),
         Verb::Reindex(arguments) => reindex::run(&arguments),
     }
 }
