@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let (Some(diagnosis), Some(first)) = (refinement.diagnosis(), refinement.steps.first()) {
         println!("{}", verdict_sentence(&model, diagnosis));
         write("diagnosis", diagnosis_page(&model, diagnosis, &first.comparisons, &[]))?;
-        write("comparison", comparison_page(&first.fit.model, &first.comparisons, &[]))?;
+        write("comparison", comparison_page(&first.fit.model, &first.comparisons, &[], &[]))?;
     }
     Ok(())
 }

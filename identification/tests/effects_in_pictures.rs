@@ -4,7 +4,7 @@
 mod common;
 
 use common::swing;
-use excavator_identification::diagnosis::{Contribution, contribution};
+use excavator_identification::diagnosis::{Contribution, Drawn, contribution};
 use excavator_identification::fit::{FitSettings, evaluate};
 use excavator_identification::search::{Addition, Trial};
 use excavator_model::Model;
@@ -44,6 +44,9 @@ fn friction_shows_against_speed_in_the_force_balance() {
     let shown = shown("stribeck_friction", &stribeck, &stribeck).unwrap();
     assert_eq!((shown.equation.as_str(), shown.variable, shown.unit), ("arm.motion", "speed", "N m"));
     assert!(distance(&shown) < 0.1, "{}: {shown:#?}", distance(&shown));
+    // With it, all friction: viscous and Coulomb friction of the nominal model are under the effect.
+    assert_eq!(shown.drawn, Drawn::Friction);
+    assert!(shown.bins.iter().filter(|bin| bin.at.abs() > 0.01).all(|bin| bin.nominal * bin.at > 0.0), "{shown:#?}");
     // The upturn near zero: against the motion, gone at speed.
     assert!(shown.bins.iter().all(|bin| bin.effect * bin.at > 0.0));
     let largest = shown.bins.iter().max_by(|a, b| a.effect.abs().total_cmp(&b.effect.abs())).unwrap();
@@ -57,6 +60,12 @@ fn a_dead_zone_shows_against_the_opening_in_an_oil_balance() {
     let shown = shown("valve_dead_zone", &zone, &zone).unwrap();
     assert!(shown.equation.ends_with("continuity") && shown.variable == "command", "{shown:?}");
     assert!(distance(&shown) < 0.1, "{}: {shown:#?}", distance(&shown));
+    // As a textbook has it: no opening inside the zone, and outside the command less the zone.
+    assert_eq!((shown.drawn, shown.unit), (Drawn::Opening, "m2"));
+    for bin in shown.bins.iter().filter(|bin| bin.at.abs() > 3.0 * zone[0]) {
+        let opening = bin.nominal + bin.lacking;
+        assert!((opening.abs() - (bin.at.abs() - zone[0])).abs() < 0.3 * zone[0], "{opening} at {}", bin.at);
+    }
 }
 
 #[test]

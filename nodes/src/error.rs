@@ -90,8 +90,10 @@ pub enum VerbError {
     DiagnosisSyntax { path: PathBuf, reason: String },
     #[error("{} has no tie: {found}; name rivals with --between", path.display())]
     NoTie { path: PathBuf, found: String },
-    #[error("no manoeuvre within the limits settles this, no profile is written: {0}")]
-    NothingSettles(String),
+    #[error(
+        "no manoeuvre within the limits is expected to be enough, no profile is written: {0}; try a longer --duration or a smaller --stroke-margin"
+    )]
+    NothingSeparates(String),
     #[error("{}: {reason}; a part is BAG@FROM..TO, in seconds after the first sample", path.display())]
     Part { path: PathBuf, reason: String },
     #[error("{option} {} would be lost: {what}; give another name", path.display())]

@@ -1,4 +1,4 @@
-//! Long recordings: the stretches that tell most, chosen while the bag goes by.
+//! Long recordings: the most informative stretches, chosen while the bag goes by.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -24,7 +24,7 @@ const BLOCK: usize = 180_000;
 /// Blocks that may wait to be looked at.
 const WAITING: usize = 1;
 
-/// A recording, or of a long one the stretches that tell most of the parameters of `model`, and how they were chosen (without the
+/// A recording, or of a long one the stretches most informative about the parameters of `model`, and how they were chosen (without the
 /// recording itself).
 ///
 /// # Errors
@@ -97,7 +97,7 @@ enum Taken {
     Stretches(Chosen),
 }
 
-/// All blocks together where they are short, else the stretches that tell most.
+/// All blocks together where they are short, else the most informative stretches.
 fn taken(blocks: Receiver<Recording>, path: &Path, model: &Model) -> Result<Taken, RegressionError> {
     let source = path.display().to_string();
     let mut pending: Vec<Recording> = Vec::new();

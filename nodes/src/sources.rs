@@ -26,6 +26,11 @@ pub fn model(choice: &cli::ModelChoice) -> Result<Model, VerbError> {
     model_with(&choice.model, &catalogue(&choice.own)?)
 }
 
+/// A second model, with the catalogues of the first.
+pub fn another_model(name: &str, first: &cli::ModelChoice) -> Result<Model, VerbError> {
+    model_with(name, &catalogue(&first.own)?)
+}
+
 /// The parameter by which a node gets its model, where it does not take the one that is published.
 pub fn model_parameter() -> Parameter {
     let meaning = "built-in model or model file (.toml); empty: the model on arm/model";
@@ -84,7 +89,7 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
     checked(path, recording, &report, map, model)
 }
 
-/// As [`recording`]; of a long one the stretches that tell most of the parameters of `model`, unless all of it is wanted. What was
+/// As [`recording`]; of a long one the stretches most informative about the parameters of `model`, unless all of it is wanted. What was
 /// chosen is told on standard error.
 pub fn telling_recording(path: &Path, extent: Extent, map: &Mapping, model: &Model) -> Result<Recording, VerbError> {
     if extent.whole {
@@ -206,7 +211,7 @@ pub fn recordings(paths: &[impl AsRef<Path>], map: &Mapping, model: &Model) -> R
     paths.iter().map(|path| recording(path.as_ref(), map, model)).collect()
 }
 
-/// Several recordings, of long ones the stretches that tell most.
+/// Several recordings, of long ones the most informative stretches.
 pub fn telling_recordings(
     paths: &[impl AsRef<Path>],
     extent: Extent,

@@ -1,4 +1,4 @@
-//! From a tie to a name: `diagnose` leaves a tie, `design` proposes a profile, and under that profile `diagnose` settles it.
+//! From a tie to a name: `diagnose` leaves a tie, `design` proposes a profile, and under that profile `diagnose` separates it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 mod common;
@@ -108,12 +108,12 @@ fn story(effect: &str, values: &[(&str, f64)], profile: &str, others: &str, dura
     let design = json(&excavator(folder, &words));
     for pair in design["pairs"].as_array().unwrap() {
         println!(
-            "  {} and {}: distance {:.0}, linear gain {:.2}, expected gain {:.2}, significance {:.1}",
+            "  {} and {}: distance {:.0}, linear improvement {:.2}, expected improvement {:.2}, significance {:.1}",
             pair["first"],
             pair["second"],
             pair["distance"].as_f64().unwrap(),
-            pair["linear_gain"].as_f64().unwrap(),
-            pair["expected_gain"].as_f64().unwrap(),
+            pair["linear_improvement"].as_f64().unwrap(),
+            pair["expected_improvement"].as_f64().unwrap(),
             pair["expected_significance"].as_f64().unwrap()
         );
     }
@@ -148,10 +148,10 @@ segments = [
 /// A short lag of the valve leaves no name under slow sines: it is below what a diagnosis acts on, like late sensors. Under
 /// the proposed profile it is named, alone.
 #[test]
-fn a_tie_is_settled_by_the_proposed_profile() {
+fn a_tie_is_separated_by_the_proposed_profile() {
     let story = story("valve_lag@arm", &[("lag_time", 0.006)], SHORT_SINES, "valve_lag@arm,sensor_delay@arm", "20");
     assert_ne!(story.before, ["valve_lag"], "the sines must leave it open");
-    assert_eq!(story.design["all_settled"], true, "{}", story.design["pairs"]);
+    assert_eq!(story.design["all_separated"], true, "{}", story.design["pairs"]);
     let duration = &story.design["plan"]["duration"];
     assert!(duration.as_f64().unwrap() <= 20.0, "{duration}");
     assert_eq!((story.after_verdict.as_str(), story.after), ("missing_effect", vec!["valve_lag".to_string()]));

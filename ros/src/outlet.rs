@@ -17,7 +17,7 @@ pub enum PublishError {
     #[error("readers are too far behind, the send window is full")]
     Full,
     /// The link is being built.
-    #[error("the link is being built anew")]
+    #[error("the link is being rebuilt")]
     Down,
     /// Anything else.
     #[error("{0}")]

@@ -1,7 +1,7 @@
 //! Calls into the middleware that may never return.
 //!
 //! RustDDS waits for itself where its threads end at the wrong moment: a writer that cannot be registered any more is
-//! dropped by the very call that holds the lock which the drop asks for. Nobody may wait for that for ever, so such calls
+//! dropped by the very call that holds the lock which the drop asks for (so still in 0.15.1, `create_datawriter`). Nobody may wait for that for ever, so such calls
 //! run on threads of their own, which are left behind with what they hold.
 
 use std::sync::mpsc::channel;

@@ -164,8 +164,8 @@ impl Supervisor {
                 continue;
             }
             if let Some(fault) = pending.take() {
-                self.diagnostics.tell("link", Health::Warning, format!("{fault}: building it anew"), &[]);
-                self.logger.warn(format!("{fault}: building the link anew"));
+                self.diagnostics.tell("link", Health::Warning, format!("{fault}: rebuilding the link"), &[]);
+                self.logger.warn(format!("{fault}: rebuilding the link"));
             } else if watch.is_some() && self.link.participant().is_some() {
                 self.tell_link(watch.as_ref(), rebuilds);
                 continue;
@@ -206,7 +206,7 @@ impl Supervisor {
         let values = [
             ("peers", watch.peers().to_string()),
             ("lost peers", watch.lost().to_string()),
-            ("times built anew", rebuilds.to_string()),
+            ("times rebuilt", rebuilds.to_string()),
             ("packet guard", guard),
             ("packets refused or lost by the kernel", refused.to_string()),
             ("malformed packets", malformed.to_string()),

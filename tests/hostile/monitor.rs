@@ -58,7 +58,7 @@ fn judged(network: &Network, folder: &Path, name: &str, model: &Path, seconds: f
     let mut late: Vec<f64> = Vec::new();
     let mut starts = String::from("0");
     for (time, status) in &all {
-        let now = status.values.iter().find(|entry| entry.key == "schedules started anew");
+        let now = status.values.iter().find(|entry| entry.key == "schedule restarts");
         if let Some(now) = now.filter(|now| now.value != starts) {
             starts.clone_from(&now.value);
             late.push(*time);

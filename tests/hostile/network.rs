@@ -427,7 +427,7 @@ fn a_flood_of_fragments_within_the_limits() {
     Fault {
         group: "Network",
         tried: "200 fragments of samples of 1 MB each, from writers that never were",
-        outcome: "the link is built anew when the memory has grown by 96 MB, and what it held is given back",
+        outcome: "the link is rebuilt when the memory has grown by 96 MB, and its memory is released",
     }
     .survived(&[("most memory [MB]", format!("{peak:.0}")), ("memory afterwards [MB]", format!("{after:.0}"))]);
 }

@@ -87,10 +87,10 @@ def test_a_simulator_that_was_stopped_with_an_open_valve_closes_it(ros, simulato
 
 
 def test_a_bystander_that_is_lost_and_comes_back_disturbs_nobody(ros, simulator):
-    """A daemon that was starved of its processor: nobody builds a link anew for it."""
+    """A daemon that was starved of its processor: nobody rebuilds a link for it."""
     bystander = ros.start_python(BYSTANDER)
     ros.spin_until(lambda: "here" in bystander.output() and "bystander" in ros.node.get_node_names(), "the bystander")
-    rebuilt = simulator.process.output().count("anew")
+    rebuilt = simulator.process.output().count("rebuilding the link")
     with stopped(bystander):
         ros.spin_until(lambda: "bystander" not in ros.node.get_node_names(), "its lease to run out", 90.0)
     before = bystander.output().count("here")
@@ -98,5 +98,5 @@ def test_a_bystander_that_is_lost_and_comes_back_disturbs_nobody(ros, simulator)
     # longer than a lost partner's return takes to be found
     stamps = [seconds(state.header.stamp) for state in simulator.next(round(8 * RATE))]
     assert max(later - earlier for earlier, later in zip(stamps, stamps[1:])) < STALL
-    assert simulator.process.output().count("anew") == rebuilt
+    assert simulator.process.output().count("rebuilding the link") == rebuilt
     bystander.interrupt()

@@ -1,10 +1,10 @@
-//! Which manoeuvre would settle what a recording leaves open: a tie between effects, or a parameter that it does not show.
+//! Which manoeuvre would separate tied effects, or show a parameter that a recording does not show.
 //!
 //! Rivals are models that explain the recordings equally well. A library of manoeuvres is simulated with every rival; those
 //! that leave the machine's limits are dropped. What is left is judged by what one rival would still miss of another after
 //! its own parameters have been fitted again (the T-criterion of Atkinson and Fedorov, Biometrika 62 (1975) 57, by one
 //! linearised step), or by the standard error of the parameter asked for (the Ds-criterion with one parameter of interest).
-//! The best manoeuvres are joined greedily, with moves between their places, into one profile. A rehearsal with noisy
+//! The best manoeuvres are joined greedily, with moves between their places, into one profile. A trial run with noisy
 //! sensors and real fits then states what to expect, by the rules of a diagnosis.
 
 mod error;
@@ -12,7 +12,6 @@ mod limits;
 mod manoeuvre;
 mod parameter;
 mod plan;
-mod rehearsal;
 mod ride;
 mod rival;
 mod selection;
@@ -20,14 +19,15 @@ mod sensors;
 mod separation;
 mod settings;
 mod transfer;
+mod trial_run;
 
 pub use error::DesignError;
 pub use limits::{Limits, Violation};
 pub use manoeuvre::{Manoeuvre, library};
 pub use parameter::{ParameterDesign, determine};
 pub use plan::Plan;
-pub use rehearsal::Rehearsed;
 pub use rival::Rival;
 pub use sensors::Sensors;
 pub use separation::{PairSeparation, SeparationDesign, separate};
 pub use settings::DesignSettings;
+pub use trial_run::TrialRun;

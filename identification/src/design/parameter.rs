@@ -7,11 +7,11 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::manoeuvre::general;
-use super::rehearsal::record;
 use super::ride::Rider;
 use super::rival::cylinders;
 use super::selection::{Screened, join, screen};
 use super::separation::{moderate_sines, noise_free};
+use super::trial_run::record;
 use super::{DesignError, DesignSettings, Plan, Rival, library};
 use crate::fit::{FitSettings, LinearRefit, fit, scales};
 
@@ -30,10 +30,10 @@ pub struct ParameterDesign {
     pub sine_error: f64,
     /// Standard error from the profile, from sensor noise alone.
     pub expected_error: f64,
-    /// Standard error that a fit reports of a rehearsal with noisy sensors.
-    pub rehearsed_error: f64,
+    /// Standard error that a fit reports of a trial run with noisy sensors.
+    pub trial_run_error: f64,
     /// Value that this fit finds.
-    pub rehearsed_value: f64,
+    pub trial_run_value: f64,
     /// Whether the parameter is expected to be told from zero: its standard error is below half of it.
     pub determined: bool,
     /// What is to be done.
@@ -107,10 +107,10 @@ pub fn determine(
     let sines = noise_free(&alone, &sines, settings)?;
     let share = plan.duration / length;
     let sine_error = error(information(&sines).unwrap_or_else(|| DMatrix::zeros(count, count)) * share);
-    progress("rehearsal", 0.8);
+    progress("trial run", 0.8);
     let [fitted, _] = record(&alone, &profiles, settings, 0)?;
-    let rehearsal = fit(model, &[&fitted], &settings.fit)?;
-    let (rehearsed_value, rehearsed_error) = rehearsal
+    let trial = fit(model, &[&fitted], &settings.fit)?;
+    let (trial_run_value, trial_run_error) = trial
         .model
         .parameters()
         .nth(index)
@@ -122,9 +122,9 @@ pub fn determine(
         given_error: parameter.standard_error,
         sine_error,
         expected_error,
-        rehearsed_error,
-        rehearsed_value,
-        determined: expected_error <= LARGEST_SHARE * scale && rehearsed_error <= LARGEST_SHARE * scale,
+        trial_run_error,
+        trial_run_value,
+        determined: expected_error <= LARGEST_SHARE * scale && trial_run_error <= LARGEST_SHARE * scale,
         plan,
         profiles,
         manoeuvres: (tried, within),

@@ -1,4 +1,4 @@
-//! Models that are to be told apart.
+//! Models that are to be separated.
 
 use excavator_model::Model;
 use excavator_model::effects::{AnyEffect, Site};

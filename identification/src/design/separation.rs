@@ -1,4 +1,4 @@
-//! A profile under which rivals cannot all stay tied.
+//! A profile under which rivals cannot all are not separated.
 
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -6,11 +6,11 @@ use excavator_model::simulation::{Profile, Segment};
 use rayon::prelude::*;
 
 use super::manoeuvre::general;
-use super::rehearsal::{best_fit, record, rehearse};
 use super::ride::Rider;
 use super::rival::cylinders;
 use super::selection::{Screened, join, screen};
-use super::{DesignError, DesignSettings, Plan, Rehearsed, Rival, library};
+use super::trial_run::{best_fit, record, try_out};
+use super::{DesignError, DesignSettings, Plan, Rival, TrialRun, library};
 use crate::decision::Policy;
 use crate::fit::{FitError, FitSettings, LinearRefit, evaluate, fit};
 
@@ -23,18 +23,18 @@ pub struct PairSeparation {
     /// Name of the other.
     pub second: String,
     /// Difference of their losses on moderate sines that both were fitted to; `None` where rivals came with fitted values.
-    pub gain_before: Option<f64>,
+    pub improvement_before: Option<f64>,
     /// Distance in standard deviations of sensor noise after a linearised refit: root of the sum over all readings of the
     /// squared difference that is left.
     pub distance: f64,
-    /// Gain of loss that goes with it, without noise on the spools.
-    pub linear_gain: f64,
-    /// Gain of loss of the truth in the rehearsal.
-    pub expected_gain: f64,
+    /// Improvement that goes with it, without noise on the spools.
+    pub linear_improvement: f64,
+    /// Improvement of the truth in the trial run.
+    pub expected_improvement: f64,
     /// The same in standard errors.
     pub expected_significance: f64,
     /// Whether a diagnosis would no longer call them tied.
-    pub settled: bool,
+    pub separated: bool,
 }
 
 /// A proposed profile and what to expect of it.
@@ -48,21 +48,21 @@ pub struct SeparationDesign {
     pub profiles: Vec<Profile>,
     /// Expectations of every pair.
     pub pairs: Vec<PairSeparation>,
-    /// Every rehearsal, truth by truth.
-    pub rehearsals: Vec<Rehearsed>,
+    /// Every trial run, truth by truth.
+    pub trial_runs: Vec<TrialRun>,
     /// Manoeuvres in the library, and how many of them stay inside the limits.
     pub manoeuvres: (usize, usize),
 }
 
 impl SeparationDesign {
-    /// Whether every pair is expected to be told apart.
-    pub fn all_settled(&self) -> bool {
-        self.pairs.iter().all(|pair| pair.settled)
+    /// Whether every pair is expected to be separated.
+    pub fn all_separated(&self) -> bool {
+        self.pairs.iter().all(|pair| pair.separated)
     }
 
     /// Whether any pair is.
-    pub fn any_settled(&self) -> bool {
-        self.pairs.iter().any(|pair| pair.settled)
+    pub fn any_separated(&self) -> bool {
+        self.pairs.iter().any(|pair| pair.separated)
     }
 }
 
@@ -136,10 +136,10 @@ pub fn separate(
         .map(|rival| noise_free(rival, &profiles, settings))
         .collect::<Result<Vec<Recording>, DesignError>>()?;
     let refitted = refits(&models, &whole, settings);
-    let rehearsals = rehearse(&rivals, &profiles, settings, &|what, done| progress(what, 0.65 + 0.35 * done))?;
+    let trial_runs = try_out(&rivals, &profiles, settings, &|what, done| progress(what, 0.65 + 0.35 * done))?;
     let within = screened.iter().filter(|one| !is_general(one)).count();
-    let pairs = judged(&rivals, &before, &models, &refitted, &rehearsals);
-    Ok(SeparationDesign { pairs, plan, profiles, rehearsals, manoeuvres: (tried, within), rivals })
+    let pairs = judged(&rivals, &before, &models, &refitted, &trial_runs);
+    Ok(SeparationDesign { pairs, plan, profiles, trial_runs, manoeuvres: (tried, within), rivals })
 }
 
 /// Every ordered pair (truth, model) of `count` rivals.
@@ -196,7 +196,7 @@ fn judged(
     before: &[Option<f64>],
     models: &[Model],
     refitted: &[Option<LinearRefit>],
-    rehearsals: &[Rehearsed],
+    trial_runs: &[TrialRun],
 ) -> Vec<PairSeparation> {
     let rules = Policy::default();
     let directed = directions(rivals.len());
@@ -204,27 +204,27 @@ fn judged(
     for first in 0..rivals.len() {
         for second in first + 1..rivals.len() {
             let both = [(first, second), (second, first)];
-            let (mut distance, mut linear_gain) = (f64::INFINITY, f64::INFINITY);
-            let (mut gain, mut significance) = (f64::INFINITY, f64::INFINITY);
+            let (mut distance, mut linear_improvement) = (f64::INFINITY, f64::INFINITY);
+            let (mut improvement, mut significance) = (f64::INFINITY, f64::INFINITY);
             for (number, _) in directed.iter().enumerate().filter(|(_, pair)| both.contains(pair)) {
                 if let Some(part) = &refitted[number] {
                     let left = LinearRefit::remainder(&models[number], &[part]);
                     distance = distance.min(left.distance());
-                    linear_gain = linear_gain.min(left.gain());
+                    linear_improvement = linear_improvement.min(left.gain());
                 }
                 // Rehearsals come in the order of the directions.
-                gain = gain.min(rehearsals[number].improvement);
-                significance = significance.min(rehearsals[number].significance);
+                improvement = improvement.min(trial_runs[number].improvement);
+                significance = significance.min(trial_runs[number].significance);
             }
             pairs.push(PairSeparation {
                 first: rivals[first].name.clone(),
                 second: rivals[second].name.clone(),
-                gain_before: before[first * rivals.len() + second],
+                improvement_before: before[first * rivals.len() + second],
                 distance,
-                linear_gain,
-                expected_gain: gain,
+                linear_improvement,
+                expected_improvement: improvement,
                 expected_significance: significance,
-                settled: gain >= rules.least_improvement && significance >= rules.least_significance,
+                separated: improvement >= rules.least_improvement && significance >= rules.least_significance,
             });
         }
     }

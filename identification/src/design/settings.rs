@@ -14,9 +14,9 @@ pub struct DesignSettings {
     pub limits: Limits,
     /// What the instruments measure, and their noise.
     pub sensors: Sensors,
-    /// Fits of the rehearsal.
+    /// Fits of the trial run.
     pub fit: FitSettings,
-    /// Draws the noise of the rehearsal.
+    /// Draws the noise of the trial run.
     pub seed: u64,
 }
 

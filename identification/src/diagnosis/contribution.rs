@@ -3,13 +3,17 @@
 //! A component-and-residual plot (Larsen and McCleary 1972): the effect is taken out of the fitted model and nothing is
 //! fitted again, so that what is left shows the effect itself, and not what other parameters have taken up of it. Where the
 //! effect is right the points lie on its line; where another one is missing they have a shape of their own.
+//!
+//! A textbook draws friction as the whole force against speed, and what a valve does as the opening that flow sees against the
+//! opening that was commanded. Where the model has the nominal law, the picture is that of the textbook.
 
 use std::collections::BTreeMap;
 
 use excavator_model::Model;
+use excavator_model::effects::{ActsOn, Site};
 use excavator_model::recording::Recording;
 
-use super::residual_points::{Point, VARIABLES, Variable, bins, points, share_explained, unit_of};
+use super::residual_points::{Key, Point, VARIABLES, Variable, bins, points, share_explained, unit_of};
 use crate::regression::{EquationKind, RegressionError};
 use crate::search::{Addition, Trial};
 
@@ -20,7 +24,9 @@ pub struct Contribution {
     pub equation: String,
     /// The variable that what the effect does follows most closely.
     pub variable: &'static str,
-    /// Unit of what the equation lacks: N m, N for a load without joint, or m³/s.
+    /// What is drawn.
+    pub drawn: Drawn,
+    /// Unit of that: N m, N for a load without joint, m³/s, or m² for an opening.
     pub unit: &'static str,
     /// Share of what the effect does, squared, that a curve over the variable explains.
     pub share: f64,
@@ -28,11 +34,24 @@ pub struct Contribution {
     pub bins: Vec<ContributionBin>,
 }
 
+/// How a textbook draws an effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drawn {
+    /// What the equation lacks, and what the effect gives.
+    Residual,
+    /// All friction, with the nominal one.
+    Friction,
+    /// The opening that the flow sees, with the nominal one, which is the command.
+    Opening,
+}
+
 /// Neighbours along the variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContributionBin {
     /// Mean of the variable.
     pub at: f64,
+    /// What the model gives without the effect; 0 for [`Drawn::Residual`].
+    pub nominal: f64,
     /// What the equation lacks without the effect, on average.
     pub lacking: f64,
     /// Standard error of that.
@@ -43,6 +62,12 @@ pub struct ContributionBin {
 
 /// Least share of what an effect does that a curve must explain to be worth a picture.
 const LEAST_SHARE: f64 = 0.2;
+
+/// Least flow by opening, as a share of the largest, at which a flow tells an opening: none flows where there is no pressure drop.
+const LEAST_SLOPE: f64 = 0.05;
+
+/// Fewest openings that make a picture.
+const LEAST_BINS: usize = 8;
 
 /// How an addition to the fitted model of `trial` shows on the validation recordings. `None` where no equation is changed by it, or by nothing that one variable tells.
 ///
@@ -56,16 +81,109 @@ pub fn contribution(
     let with = &trial.model_on_validation();
     let mut without = with.clone();
     without.effects.retain(|effect| !effect.is(&addition.physics.card().name, addition.site));
-    let with: BTreeMap<_, f64> =
-        points(with, recordings)?.into_iter().map(|point| ((point.kind, point.place), point.residual)).collect();
-    let pairs: Vec<(Point, f64)> = points(&without, recordings)?
+    let (with, residuals) = (residuals(with, recordings)?, points(&without, recordings)?);
+    let pairs: Vec<(Point, f64)> = residuals
         .into_iter()
         .filter_map(|point| {
-            let effect = point.residual - with.get(&(point.kind, point.place))?;
+            let effect = point.residual - with.get(&point.key())?;
             (point.residual.is_finite() && effect.is_finite()).then_some((point, effect))
         })
         .collect();
-    Ok(clearest_equation(&pairs).and_then(|kind| along_its_variable(kind, &pairs, &without)))
+    let Some(kind) = clearest_equation(&pairs) else { return Ok(None) };
+    let Some(shown) = along_its_variable(kind, &pairs, &without) else { return Ok(None) };
+    let drawn = textbook(kind, &shown, addition);
+    let nominal = without.clone();
+    let is_nominal = |name: &str| nominal_effects(drawn).contains(&name);
+    let place = site_of(kind);
+    without.effects.retain(|effect| !(is_nominal(effect.name()) && Some(effect.site) == place));
+    if without.effects.len() == nominal.effects.len() {
+        return Ok(Some(shown));
+    }
+    let bare = self::residuals(&without, recordings)?;
+    Ok(Some(with_nominal(kind, shown, drawn, &pairs, &bare)))
+}
+
+/// Residuals of a model by equation and place.
+fn residuals(model: &Model, recordings: &[&Recording]) -> Result<BTreeMap<Key, f64>, RegressionError> {
+    Ok(points(model, recordings)?.into_iter().map(|point| (point.key(), point.residual)).collect())
+}
+
+/// What a textbook draws of an effect that shows like this.
+fn textbook(kind: EquationKind, shown: &Contribution, addition: &Addition) -> Drawn {
+    let shifts_an_opening = !addition.physics.has_power() && addition.physics.card().acts_on != ActsOn::Instruments;
+    match (kind, shown.variable) {
+        (EquationKind::Motion(_), "speed") => Drawn::Friction,
+        (EquationKind::CapContinuity(_) | EquationKind::RodContinuity(_), "command") if shifts_an_opening => {
+            Drawn::Opening
+        }
+        _ => Drawn::Residual,
+    }
+}
+
+/// Effects of the nominal model that the picture shows together with the effect.
+fn nominal_effects(drawn: Drawn) -> &'static [&'static str] {
+    match drawn {
+        Drawn::Residual => &[],
+        Drawn::Friction => &["coulomb_friction", "viscous_damping"],
+        Drawn::Opening => &["orifice_flow"],
+    }
+}
+
+fn site_of(kind: EquationKind) -> Option<Site> {
+    match kind {
+        EquationKind::Motion(c) | EquationKind::CapContinuity(c) | EquationKind::RodContinuity(c) => {
+            Some(Site::Cylinder(c))
+        }
+        EquationKind::PumpContinuity => None,
+    }
+}
+
+/// The picture with what the nominal effects give; `bare` are the residuals without them.
+fn with_nominal(
+    kind: EquationKind,
+    shown: Contribution,
+    drawn: Drawn,
+    pairs: &[(Point, f64)],
+    bare: &BTreeMap<Key, f64>,
+) -> Contribution {
+    let own = || pairs.iter().filter(|(point, _)| point.kind == kind);
+    let nominal = |point: &Point| bare.get(&point.key()).map_or(0.0, |bare| bare - point.residual);
+    let Some((_, of)) = VARIABLES.into_iter().find(|(name, _)| *name == shown.variable) else { return shown };
+    let along = |value: &dyn Fn(&Point) -> f64| bins(own().map(|(point, _)| (of(point), value(point))).collect());
+    match drawn {
+        Drawn::Residual => shown,
+        Drawn::Friction => {
+            let Some(friction) = along(&nominal) else { return shown };
+            let bins = shown
+                .bins
+                .iter()
+                .zip(&friction)
+                .map(|(bin, nominal)| ContributionBin { nominal: nominal.mean, ..*bin });
+            Contribution { bins: bins.collect(), drawn, ..shown }
+        }
+        Drawn::Opening => {
+            // Flow by opening, by least squares in each bin: what turns a flow into an opening.
+            let (Some(product), Some(square)) =
+                (along(&|point| nominal(point) * point.opening), along(&|point| point.opening.powi(2)))
+            else {
+                return shown;
+            };
+            let slope = |product: f64, square: f64| if square > 0.0 { product / square } else { 0.0 };
+            let slopes: Vec<f64> = product.iter().zip(&square).map(|(p, q)| slope(p.mean, q.mean)).collect();
+            let least = LEAST_SLOPE * slopes.iter().map(|slope| slope.abs()).fold(0.0, f64::max);
+            let bins = shown.bins.iter().zip(&slopes).filter(|(_, slope)| slope.abs() > least).map(|(bin, slope)| {
+                ContributionBin {
+                    at: bin.at,
+                    nominal: bin.at,
+                    lacking: bin.lacking / slope,
+                    standard_error: bin.standard_error / slope.abs(),
+                    effect: bin.effect / slope,
+                }
+            });
+            let bins: Vec<ContributionBin> = bins.collect();
+            if bins.len() < LEAST_BINS { shown } else { Contribution { bins, drawn, unit: "m2", ..shown } }
+        }
+    }
 }
 
 /// The equation in which the effect does most, in units of noise.
@@ -95,6 +213,7 @@ fn along_its_variable(kind: EquationKind, pairs: &[(Point, f64)], model: &Model)
     (share >= LEAST_SHARE).then(|| Contribution {
         equation: kind.name(model),
         variable,
+        drawn: Drawn::Residual,
         unit: unit_of(kind, model),
         share,
         bins: lacking
@@ -102,6 +221,7 @@ fn along_its_variable(kind: EquationKind, pairs: &[(Point, f64)], model: &Model)
             .zip(&effect)
             .map(|(lacking, effect)| ContributionBin {
                 at: lacking.at,
+                nominal: 0.0,
                 lacking: lacking.mean,
                 standard_error: lacking.standard_error(),
                 effect: effect.mean,

@@ -25,6 +25,16 @@ pub(super) struct Point {
     pub time: f64,
 }
 
+/// Equation, recording and sample: what two models' residuals have in common.
+pub(super) type Key = (EquationKind, (usize, usize));
+
+impl Point {
+    /// Where it is.
+    pub fn key(&self) -> Key {
+        (self.kind, self.place)
+    }
+}
+
 /// Something that a residual may depend on.
 pub(super) type Variable = fn(&Point) -> f64;
 

@@ -45,7 +45,7 @@ fn evidence(model: &Model, judgement: &PlaceJudgement, worst: &RegimeJudgement) 
     let place = judgement.place;
     let cylinder = place.cylinder(model).and_then(|index| model.machine.cylinders.get(index));
     let cylinder = cylinder.map(|cylinder| cylinder.name.clone());
-    let verb = if worst.peak < 0.0 { "go missing" } else { "appear from nowhere" };
+    let verb = if worst.peak < 0.0 { "go missing" } else { "appear without a source" };
     let sentence = format!(
         "{}, up to {} W {verb} {} ({} W root mean square, where {} W would be within the noise).",
         capitalised(worst.regime.words()),

@@ -40,7 +40,9 @@ pub enum FitError {
     #[error("the recordings have no stretch of at least 20 samples without a gap that begins with a measured position")]
     TooShort,
     /// An effect acts in a window of time, and the recordings do not tell where to look for that.
-    #[error("when it acts cannot be told: the force balance needs signals that the recordings lack")]
+    #[error(
+        "the time at which it acts cannot be found: the force balance needs signals that the recordings do not have"
+    )]
     NoActiveWindow,
     /// Whoever watched it wanted no more of it.
     #[error("stopped on request")]

@@ -152,7 +152,7 @@ pub enum GateError {
     },
     /// The sensors of the two chambers are swapped.
     #[error(
-        "{source_name}: cap_pressure and rod_pressure of {cylinder} look swapped: as they are they leave {given:.0} % of the piston's flow unexplained, the other way round {swapped:.0} %"
+        "{source_name}: cap_pressure and rod_pressure of {cylinder} look swapped: as given, {given:.0} % of the piston's flow stays unexplained; swapped, {swapped:.0} %"
     )]
     SwappedChambers {
         /// The recording.

@@ -39,7 +39,7 @@ pub enum RegressionError {
         needed: usize,
     },
     /// A combination of parameters does not show in the data.
-    #[error("{source_name}: these parameters cannot be told apart here: {}; vary speed, load and opening more, or mark one of them as known", names.join(", "))]
+    #[error("{source_name}: these recordings determine only a combination of these parameters: {}; vary speed, load and opening more, or mark one of them as known", names.join(", "))]
     NotIdentifiable {
         /// The recordings.
         source_name: String,

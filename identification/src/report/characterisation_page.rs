@@ -4,7 +4,7 @@ use excavator_model::Model;
 use maud::{Markup, html};
 
 use super::characterisation_plots::{edge_plots, friction_plot, gain_plots, transient_plots};
-use super::numbers::{percent, significant, with_error};
+use super::numbers::{SIDES_95, percent, significant, with_margin};
 use super::page::{Section, page, tile};
 use crate::characterisation::{
     ChamberLeakage, Characterisation, ClosedValve, DeadZone, DirectionalGain, Edge, FrictionCurve, Polynomial, Refusal,
@@ -88,7 +88,7 @@ fn gain_row(name: &str, count: usize, from: &str, curve: &Polynomial) -> Markup 
 /// `c0 + c1 x + ...` with standard errors.
 fn polynomial_text(curve: &Polynomial) -> String {
     let terms = curve.coefficients.iter().enumerate().map(|(power, &coefficient)| {
-        let number = with_error(coefficient, curve.covariance[(power, power)].sqrt());
+        let number = with_margin(coefficient, SIDES_95 * curve.covariance[(power, power)].sqrt());
         match power {
             0 => number,
             1 => format!("({number}) x"),
@@ -103,7 +103,9 @@ fn polynomial_text(curve: &Polynomial) -> String {
 fn dead_zones(one: &Characterisation) -> Markup {
     let found: Vec<(Edge, &DeadZone)> =
         one.dead_zones.iter().filter_map(|(edge, zone)| Some((*edge, zone.as_ref().ok()?))).collect();
-    let area = |estimate: crate::characterisation::Estimate| with_error(estimate.value * 1e6, estimate.error * 1e6);
+    let area = |estimate: crate::characterisation::Estimate| {
+        with_margin(estimate.value * 1e6, SIDES_95 * estimate.error * 1e6)
+    };
     html! {
         @if !found.is_empty() {
             (edge_plots(&found))
@@ -122,8 +124,8 @@ fn dead_zones(one: &Characterisation) -> Markup {
                 } } }
             } }
             p.note {
-                "Where flow over root of the pressure drop rises from zero while the valve opens, and falls to zero while it closes; ± one standard error. Where the opening is the "
-                "command and not the spool's, a lag of the valve (the equal lag) looks like hysteresis: run the same at another speed to tell them apart."
+                "Where flow over root of the pressure drop rises from zero while the valve opens, and falls to zero while it closes; ± 95 %. Where the opening is the "
+                "command and not the spool's, a lag of the valve (the equal lag) looks like hysteresis: run the same test at another speed to separate the two."
             }
         }
         @for (edge, zone) in &one.dead_zones { @if let Err(refusal) = zone { (refused(edge.name(), refusal)) } }
@@ -146,7 +148,7 @@ fn leakage(one: &Characterisation) -> Markup {
             } }
             p.note {
                 (found.holds.len()) " times with closed valve; the piston creeps " (significant(1e3 * creep(found), 2)) " mm at most, which the balance takes into account. "
-                "Time constants and static gains are for a held piston at mid-stroke; one that its load moves settles where flows and load agree. All rests on a bulk modulus of " (significant(found.bulk_modulus * 1e-9, 3)) " GPa, the model's. ± one standard error."
+                "Time constants and static gains are for a held piston at mid-stroke; one that its load moves settles where flows and load agree. All rests on a bulk modulus of " (significant(found.bulk_modulus * 1e-9, 3)) " GPa, the model's. ± 95 %."
             }
             @if let Err(refusal) = &found.cap { (refused("Cap side", refusal)) }
             @if let Err(refusal) = &found.rod { (refused("Rod side", refusal)) }
@@ -159,7 +161,7 @@ fn creep(found: &ClosedValve) -> f64 {
 }
 
 fn leakage_row(name: &str, side: &ChamberLeakage) -> Markup {
-    let text = |estimate: crate::characterisation::Estimate| with_error(estimate.value, estimate.error);
+    let text = |estimate: crate::characterisation::Estimate| with_margin(estimate.value, SIDES_95 * estimate.error);
     html! { tr {
         td { (name) }
         td.n { (text(side.from_pump)) } td.n { (text(side.to_tank)) } td.n { (text(side.time_constant)) } td.n { (text(side.static_gain)) }
@@ -181,11 +183,11 @@ fn friction_table(curve: &FrictionCurve) -> Markup {
                 @for term in &curve.terms { tr {
                     td { (super::words::spoken(term.effect)) }
                     td { (term.shape) }
-                    td.n { (with_error(term.coefficient.value, term.coefficient.error)) }
+                    td.n { (with_margin(term.coefficient.value, SIDES_95 * term.coefficient.error)) }
                     td.unit { (term.unit) }
                 } }
-                @if let Some(faded) = curve.stribeck_speed { tr { td { "fades by vs" } td {} td.n { (with_error(1e3 * faded.value, 1e3 * faded.error)) } td.unit { "mm/s" } } }
-                @if let Some(share) = curve.load_share { tr { td { "load over the model's" } td {} td.n { (with_error(share.value, share.error)) } td.unit {} } }
+                @if let Some(faded) = curve.stribeck_speed { tr { td { "fades by vs" } td {} td.n { (with_margin(1e3 * faded.value, SIDES_95 * 1e3 * faded.error)) } td.unit { "mm/s" } } }
+                @if let Some(share) = curve.load_share { tr { td { "load over the model's" } td {} td.n { (with_margin(share.value, SIDES_95 * share.error)) } td.unit {} } }
             }
         } }
         p.note {

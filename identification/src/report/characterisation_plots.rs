@@ -2,11 +2,10 @@
 
 use maud::{Markup, html};
 
+use super::numbers::SIDES_95;
 use super::svg::{Frame, picture, range_of};
 use crate::characterisation::{ClosedValve, DeadZone, Direction, DirectionalGain, Edge, FrictionCurve, Polynomial};
 
-/// Half width of a 95 % band in standard errors.
-const BAND: f64 = 1.96;
 /// Pairs of colours that people with any colour vision tell apart: from closed and from the edge, opening and closing.
 const FIRST: &str = "#0072b2";
 const SECOND: &str = "#d55e00";
@@ -29,7 +28,7 @@ fn along(range: (f64, f64)) -> impl Iterator<Item = f64> {
 
 fn banded(frame: &Frame, curve: &Polynomial, range: (f64, f64), colour: &str) -> Markup {
     let band: Vec<(f64, f64, f64)> = along(range)
-        .map(|x| (x, curve.at(x) - BAND * curve.error_at(x), curve.at(x) + BAND * curve.error_at(x)))
+        .map(|x| (x, curve.at(x) - SIDES_95 * curve.error_at(x), curve.at(x) + SIDES_95 * curve.error_at(x)))
         .map(|(x, low, high)| (x, 1e3 * low, 1e3 * high))
         .collect();
     let line: Vec<(f64, f64)> = along(range).map(|x| (x, 1e3 * curve.at(x))).collect();
@@ -130,7 +129,11 @@ pub(super) fn friction_plot(curve: &FrictionCurve) -> Markup {
             .filter(|speed| speed.abs() > 1e-6)
             .map(|speed| (speed, curve.at(speed)))
             .map(|(speed, force)| {
-                (1e3 * speed, 1e-3 * (force.value - BAND * force.error), 1e-3 * (force.value + BAND * force.error))
+                (
+                    1e3 * speed,
+                    1e-3 * (force.value - SIDES_95 * force.error),
+                    1e-3 * (force.value + SIDES_95 * force.error),
+                )
             })
             .collect()
     };

@@ -1,5 +1,6 @@
 //! How far a model is from a recording, in plain sentences.
 
+use super::comparison_page::Beside;
 use super::numbers::{percent, significant};
 use crate::validation::{Baselines, Comparison, PhaseShare, SignalComparison};
 
@@ -35,6 +36,22 @@ pub fn comparison_sentence(comparison: &Comparison, baselines: &Baselines) -> St
     let worst = comparison.signals.iter().max_by(|a, b| a.normalised_error.total_cmp(&b.normalised_error));
     sentences.extend(worst.filter(|_| comparison.signals.len() > 1).map(worst_sentence));
     sentences.join(" ")
+}
+
+/// How what is drawn beside the model does on the same recording.
+pub fn others_sentence(comparison: &Comparison, other: Beside<'_>) -> String {
+    let (own, its) = (comparison.mean_error(), other.comparison().mean_error());
+    let error = significant(its, 3);
+    match other {
+        Beside::Model(_) if its < own => format!("The other model is closer: mean NMSE {error}."),
+        Beside::Model(_) => format!("The other model is not closer: mean NMSE {error}."),
+        Beside::Run(_) if its < own => {
+            format!("A second run of the machine has mean NMSE {error}: a perfect model could come that close.")
+        }
+        Beside::Run(_) => format!(
+            "A second run of the machine has mean NMSE {error}, more than the model: the machine does not repeat itself better."
+        ),
+    }
 }
 
 fn worst_sentence(signal: &SignalComparison) -> String {

@@ -40,7 +40,7 @@ pub fn diagnosis_page(
         title: "Errors of the model".into(),
         body: measures(comparisons_before),
     });
-    sections.push(Section { anchor: "time", title: "Over time".into(), body: over_time(comparisons_before) });
+    sections.push(Section { anchor: "time", title: "Over time".into(), body: over_time(comparisons_before, &[]) });
     sections.push(Section {
         anchor: "errors",
         title: "What the error depends on".into(),
@@ -86,12 +86,14 @@ pub(super) fn diagnosis_sections(diagnosis: &Diagnosis, comparisons: &[Compariso
     if let Some(left) = &diagnosis.unexplained {
         sections.push(Section {
             anchor: "unexplained",
-            title: "What is left".into(),
+            title: "Unexplained residual".into(),
             body: unexplained_plot(&diagnosis.given().fit.model.machine, left),
         });
     }
     sections.push(Section { anchor: "evidence", title: "Evidence".into(), body: evidence(diagnosis) });
-    sections.push(Section { anchor: "where", title: "Where the model fails".into(), body: regimes(&diagnosis.map) });
+    let adequate = diagnosis.verdict.kind == Kind::Adequate;
+    let title = if adequate { "Where residuals are largest" } else { "Where the model fails" };
+    sections.push(Section { anchor: "where", title: title.into(), body: regimes(&diagnosis.map) });
     sections
 }
 

@@ -124,7 +124,7 @@ fn rates(model: &Model, trace: &CylinderTraces, number: usize, budget: usize) ->
         @if let Some(phase) = &trace.phase {
             p.note {
                 "At " (significant(phase.frequency, 3)) " Hz the analytical rate lags behind the experimental one by " (degrees(phase.analytical))
-                ", the numerical one by " (degrees(phase.numerical)) "; less than 90° is asked for. The band is two standard errors from sensor noise. "
+                ", the numerical one by " (degrees(phase.numerical)) "; less than 90° is asked for. The band is the 95 % interval from sensor noise. "
                 "Experimental: slope of the energy stored in the measured state. Analytical: supply and dissipation at the measured state. Numerical: the same at the simulated state."
             }
         }

@@ -44,8 +44,8 @@ mod tests;
 
 pub use assets::plotting;
 pub use characterisation_page::characterisation_page;
-pub use comparison_page::comparison_page;
-pub use comparison_text::comparison_sentence;
+pub use comparison_page::{Beside, comparison_page};
+pub use comparison_text::{comparison_sentence, others_sentence};
 pub use diagnosis_page::diagnosis_page;
 pub use energy_page::energy_page;
 pub use named_text::refinement_sentence;

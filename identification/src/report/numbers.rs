@@ -21,8 +21,11 @@ pub(super) fn significant(value: f64, digits: usize) -> String {
     format!("{} × 10{}", with_minus(mantissa), superscript(exponent))
 }
 
-/// A value with its standard error to two digits, rounded alike: `4.21 ± 0.13`; both with one power of ten.
-pub(super) fn with_error(value: f64, error: f64) -> String {
+/// Standard errors to either side of a value within which the truth lies in 95 % of cases.
+pub(super) const SIDES_95: f64 = 1.96;
+
+/// A value with the half width of its 95 % interval to two digits, rounded alike: `4.21 ± 0.13`; both with one power of ten.
+pub(super) fn with_margin(value: f64, error: f64) -> String {
     if !(error.is_finite() && error > 0.0) {
         return plain(value);
     }
@@ -120,10 +123,10 @@ mod tests {
         assert_eq!(significant(0.001234, 3), "0.00123");
         assert_eq!(significant(-1.2345e-12, 3), "−1.23 × 10⁻¹²");
         assert_eq!(significant(f64::NAN, 3), NOTHING);
-        assert_eq!(with_error(4.2134, 0.134), "4.21 ± 0.13");
-        assert_eq!(with_error(1.2341e-12, 3.4e-14), "(1.234 ± 0.034) × 10⁻¹²");
-        assert_eq!(with_error(2.0, f64::INFINITY), "2");
-        assert_eq!(with_error(5e7, f64::NAN), "5 × 10⁷");
+        assert_eq!(with_margin(4.2134, 0.134), "4.21 ± 0.13");
+        assert_eq!(with_margin(1.2341e-12, 3.4e-14), "(1.234 ± 0.034) × 10⁻¹²");
+        assert_eq!(with_margin(2.0, f64::INFINITY), "2");
+        assert_eq!(with_margin(5e7, f64::NAN), "5 × 10⁷");
         assert_eq!(percent(0.0123), "1.2 %");
         assert_eq!(decimal(-0.01), "0.0");
         assert_eq!(percent(0.0001), "< 0.1 %");

@@ -1,4 +1,4 @@
-//! Parameters with units and standard errors.
+//! Parameters with units and 95 % intervals.
 
 use std::collections::BTreeMap;
 
@@ -6,13 +6,13 @@ use excavator_model::effects::{Site, Start};
 use excavator_model::{Model, ModelEffect, Parameter, addition_name, site_name};
 use maud::{Markup, html};
 
-use super::numbers::{NOTHING, percent, with_error};
+use super::numbers::{NOTHING, SIDES_95, percent, with_margin};
 use super::{units, words};
 use crate::fit::nuisances_shown;
 use crate::value_marks::{self, ValueMark};
 
-/// Standard error over value from which on a number is called poorly known.
-const POORLY_KNOWN: f64 = 0.5;
+/// Half width of the 95 % interval over the value from which on a number is called poorly known.
+const POORLY_KNOWN: f64 = 1.0;
 
 /// All parameters of a model, effect by effect. Marked are effects in `added` (`effect@place`), and nuisance effects that show
 /// since the model `given`.
@@ -39,20 +39,20 @@ fn table(model: &Model, effects: &[&ModelEffect], marks: Option<BTreeMap<String,
     let poor = effects
         .iter()
         .flat_map(|effect| &effect.parameters)
-        .any(|p| relative_error(p).is_some_and(|r| r > POORLY_KNOWN));
+        .any(|p| relative_margin(p).is_some_and(|r| r > POORLY_KNOWN));
     html! {
         @if effects.is_empty() { p.empty { "No parameters." } } @else {
             div.wide { table.data {
                 thead { tr {
                     @if in_model { th { "Effect" } }
-                    th { "Parameter" } th { "Symbol" } th.n { "Value ± standard error" } th { "Unit" } th.n { "Relative" }
+                    th { "Parameter" } th { "Symbol" } th.n { "Value ± 95 %" } th { "Unit" } th.n { "Relative" }
                     th { "Meaning" } th { "From" }
                 } }
                 tbody { @for effect in effects {
                     @let place = site_name(&model.machine, effect.site);
                     @let mark = marks.get(&addition_name(effect.name(), place));
                     @for (number, parameter) in effect.parameters.iter().enumerate() {
-                        @let relative = relative_error(parameter);
+                        @let relative = relative_margin(parameter);
                         tr.weak[relative.is_some_and(|relative| relative > POORLY_KNOWN)].first[in_model && number == 0] {
                             @if in_model {
                                 td { @if number == 0 {
@@ -67,7 +67,7 @@ fn table(model: &Model, effects: &[&ModelEffect], marks: Option<BTreeMap<String,
                 } }
             } }
             @if poor {
-                p.note { "Grey: the standard error is more than half the value; these recordings hardly show this parameter." }
+                p.note { "Grey: the 95 % interval is as wide as the value itself; these recordings hardly determine this parameter." }
             }
         }
     }
@@ -83,12 +83,12 @@ fn cells(
     // A window of time is read along the recording, a time constant is short.
     let is_a_time = parameter.card.start.is_a_time();
     let unit = if is_a_time { units::SECOND } else { units::of_parameter(&parameter.card.unit) };
-    let error = parameter.standard_error.filter(|_| !parameter.known).unwrap_or(f64::NAN);
+    let margin = margin(parameter).unwrap_or(f64::NAN);
     let value = if is_a_time && effect.physics.value_where_left_out(&parameter.card.name) == Some(parameter.value) {
         let is_begin = parameter.card.start == Start::WorstStretchBegin;
         if is_begin { "from the beginning" } else { "to the end" }.to_string()
     } else {
-        with_error(parameter.value * unit.factor, error * unit.factor)
+        with_margin(parameter.value * unit.factor, margin * unit.factor)
     };
     let relative = match relative {
         Some(relative) if relative < 10.0 => percent(relative),
@@ -115,8 +115,13 @@ fn origin(parameter: &Parameter) -> String {
     }
 }
 
-/// Standard error over value of an identified parameter.
-fn relative_error(parameter: &Parameter) -> Option<f64> {
-    let error = parameter.standard_error.filter(|error| !parameter.known && error.is_finite())?;
-    (parameter.value != 0.0).then(|| (error / parameter.value).abs())
+/// Half width of the 95 % interval of an identified parameter, in the parameter's unit.
+fn margin(parameter: &Parameter) -> Option<f64> {
+    let from_error = parameter.standard_error.map(|error| SIDES_95 * error);
+    parameter.margin_95.or(from_error).filter(|margin| !parameter.known && margin.is_finite())
+}
+
+/// That half width over the value.
+fn relative_margin(parameter: &Parameter) -> Option<f64> {
+    margin(parameter).filter(|_| parameter.value != 0.0).map(|margin| (margin / parameter.value).abs())
 }

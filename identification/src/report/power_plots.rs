@@ -2,6 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
+use super::numbers::SIDES_95;
 use super::thinning;
 use super::time_plots::{array, shortest, text};
 
@@ -37,9 +38,6 @@ pub(super) struct PowerPlot<'a> {
     pub budget: usize,
 }
 
-/// Width of a band, standard errors on each side.
-const BAND: f64 = 2.0;
-
 impl PowerPlot<'_> {
     /// The plot of lines over `time`.
     pub fn markup(&self, time: &[f64], lines: &[PowerLine<'_>]) -> Markup {
@@ -54,12 +52,12 @@ impl PowerPlot<'_> {
         for line in &drawn {
             if let Some(errors) = line.errors.filter(|errors| errors.iter().any(|error| error.is_finite())) {
                 let edge = |side: f64| -> Vec<f64> {
-                    line.values.iter().zip(errors).map(|(value, error)| value + side * BAND * error).collect()
+                    line.values.iter().zip(errors).map(|(value, error)| value + side * SIDES_95 * error).collect()
                 };
                 let number = series.len();
                 let fill = format!("{}33", line.colour);
                 bands.push(format!(r#"{{"high":{number},"low":{},"fill":"{fill}"}}"#, number + 1));
-                for (side, label) in [(1.0, "+ 2 standard errors"), (-1.0, "− 2 standard errors")] {
+                for (side, label) in [(1.0, "95 %, upper"), (-1.0, "95 %, lower")] {
                     let label = format!("{} {label}", line.label);
                     series.push(one(&label, "#00000000", 0.0, r#","edge":true"#, &edge(side), &kept));
                 }

@@ -57,8 +57,8 @@ pub fn proposal_page(model: &Model, found: &Proposals) -> String {
         let frontier = html! {
             (frontier_plot(found))
             p.note {
-                "Each dot is a law that was fitted. The line joins the best of each number of parameters: a law is worth its parameters "
-                "where the line falls."
+                "Each dot is a law that was fitted. The line joins the best law for each number of parameters. More parameters pay off "
+                "only where the line falls."
             }
         };
         sections.push(Section { anchor: "frontier", title: "Error against complexity".into(), body: frontier });
@@ -83,12 +83,12 @@ fn survey(survey: &Survey) -> Markup {
         }
     };
     html! {
-        (table("Enters", "of the best promise", &survey.rows))
-        (table("Variable", "lost without it", &survey.variables))
+        (table("Equation", "share of the best", &survey.rows))
+        (table("Variable", "share lost without it", &survey.variables))
         p.note {
-            "By what terms of one product promise before any is fitted. Left column of a row: the best term there beside the best of all. "
-            "Of a variable: how much of the promise is lost when no term may use it; " code { "z" } " is a memory. Rows and variables "
-            "that stand close together are not told apart by these recordings."
+            "Predicted improvement of terms with one product, before any is fitted. First table: the best term in each equation, relative to "
+            "the best of all. Second table: the share that is lost when no term may use the variable; " code { "z" } " is a state with "
+            "memory. These recordings do not separate equations or variables with similar shares."
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use excavator_model::Model;
 
-use super::numbers::{change_of_error, percent, significant, with_error};
+use super::numbers::{change_of_error, percent, significant, with_margin};
 use super::verdict_text::verdict_sentence;
 use super::words;
 use crate::proposal::{Guess, Proposal, ProposalVerdict, Proposals};
@@ -84,7 +84,7 @@ pub(super) fn numbers(proposal: &Proposal) -> Vec<String> {
         format!(
             "{} = {}{unit}",
             parameter.card.name,
-            with_error(parameter.value, parameter.margin_95.unwrap_or(f64::NAN))
+            with_margin(parameter.value, parameter.margin_95.unwrap_or(f64::NAN))
         )
     };
     free.map(number).collect()

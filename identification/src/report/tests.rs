@@ -206,7 +206,7 @@ fn plots(page: &str) -> Vec<serde_json::Value> {
 
 #[test]
 fn comparison_has_every_signal_and_its_error() {
-    let page = comparison_page(&model(), &[comparison(0.1), comparison(0.2)], &[]);
+    let page = comparison_page(&model(), &[comparison(0.1), comparison(0.2)], &[], &[]);
     assert_sound(&page);
     assert!(SIGNALS.iter().all(|signal| page.contains(signal)));
     let plots = plots(&page);
@@ -225,14 +225,14 @@ fn comparison_has_every_signal_and_its_error() {
 
 #[test]
 fn pages_without_data_are_sound() {
-    assert_sound(&comparison_page(&model(), &[], &[]));
+    assert_sound(&comparison_page(&model(), &[], &[], &[]));
     let mut empty = comparison(0.1);
     empty.measured = Recording::unmeasured(HOSTILE, vec![], &["arm"]);
     empty.simulated = empty.measured.clone();
     let none = Baselines { signals: Vec::new(), held: 1.0 };
-    assert_sound(&comparison_page(&model(), &[empty.clone()], std::slice::from_ref(&none)));
+    assert_sound(&comparison_page(&model(), &[empty.clone()], std::slice::from_ref(&none), &[]));
     empty.signals.clear();
-    assert_sound(&comparison_page(&model(), &[empty], &[none]));
+    assert_sound(&comparison_page(&model(), &[empty], &[none], &[]));
     let mut nothing = refinement();
     (nothing.given, nothing.reason) = (Vec::new(), Cause::Named(named_to_no_avail()));
     nothing.steps.truncate(1);

@@ -34,6 +34,10 @@ pub(super) const MODEL: Line = Line { label: "model", colour: "#0072b2", dashed:
 pub(super) const BEFORE: Line = Line { label: "before", colour: "#d55e00", dashed: true };
 /// The model with all effects.
 pub(super) const AFTER: Line = Line { label: "after", colour: "#0072b2", dashed: false };
+/// A second model beside the first.
+pub(super) const OTHER_MODEL: Line = Line { label: "other model", colour: "#d55e00", dashed: true };
+/// A second run of the machine.
+pub(super) const SECOND_RUN: Line = Line { label: "second run", colour: "#7b4a9a", dashed: true };
 /// The measurement.
 const MEASURED: Line = Line { label: "measured", colour: "#9aa4ad", dashed: false };
 

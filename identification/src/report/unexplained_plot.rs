@@ -3,14 +3,11 @@
 use excavator_model::machine::Machine;
 use maud::{Markup, html};
 
-use super::numbers::percent;
+use super::numbers::{SIDES_95, percent};
 use super::residual_units::{unit_of_residual, unit_of_variable};
 use super::svg::{Frame, picture, range_of};
 use super::words;
 use crate::diagnosis::Unexplained;
-
-/// Half width of a 95 % band in standard errors.
-const BAND: f64 = 1.96;
 
 /// What is left, with its band.
 pub(super) fn unexplained_plot(machine: &Machine, left: &Unexplained) -> Markup {
@@ -21,7 +18,8 @@ pub(super) fn unexplained_plot(machine: &Machine, left: &Unexplained) -> Markup 
         .map(|[x, mean, error]| (x * x_unit.factor, mean * y_unit.factor, error * y_unit.factor))
         .filter(|(x, mean, error)| x.is_finite() && mean.is_finite() && error.is_finite())
         .collect();
-    let band: Vec<(f64, f64, f64)> = points.iter().map(|&(x, mean, e)| (x, mean - BAND * e, mean + BAND * e)).collect();
+    let band: Vec<(f64, f64, f64)> =
+        points.iter().map(|&(x, mean, e)| (x, mean - SIDES_95 * e, mean + SIDES_95 * e)).collect();
     let line: Vec<(f64, f64)> = points.iter().map(|&(x, mean, _)| (x, mean)).collect();
     let size = (760.0, 340.0);
     let frame = Frame {

@@ -67,7 +67,14 @@ pub fn measured_velocity(model: &Model, recording: &Recording) -> Result<Vec<Vec
 /// # Errors
 /// [`RunError`] when the recording lacks inputs or the simulation fails.
 pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunError> {
-    let simulated = simulate(model, recording)?;
+    beside(model, recording, simulate(model, recording)?)
+}
+
+/// A recording beside other signals on its clock.
+///
+/// # Errors
+/// [`RunError`] when the recording lacks inputs.
+pub(super) fn beside(model: &Model, recording: &Recording, simulated: Recording) -> Result<Comparison, RunError> {
     let mut measured = recording.clone();
     for (cylinder, velocity) in model.machine.cylinders.iter().zip(measured_velocity(model, recording)?) {
         if let Some(signals) = measured.cylinders.iter_mut().find(|signals| signals.name == cylinder.name) {

@@ -7,6 +7,7 @@ mod measures;
 mod motion_phase;
 mod phase;
 mod residual_test;
+mod runs;
 
 pub use baselines::{Baseline, Baselines};
 pub use compare::{Comparison, SignalComparison, compare, mean_error, measured_velocity};
@@ -14,3 +15,4 @@ pub use measures::{fit_percent, normalised_mean_squared_error};
 pub use motion_phase::{MotionPhase, PhaseShare, motion_phases, phase_shares};
 pub use phase::{dominant_frequency, phase_delay_degrees};
 pub use residual_test::{Correlation, autocorrelation, input_correlation};
+pub use runs::{Repeat, compare_runs};

@@ -18,7 +18,7 @@ static CARD: Card = Card {
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Rounding,
-    summary: text("The end stops are elsewhere, stiffer or softer than the model file says."),
+    summary: text("The end stops differ from the model file in position or stiffness."),
     equation: text(
         "in the end stop: k becomes fk k, c becomes fc c, the ends +L/2 + d+ and -L/2 - d-; d v x/(x + 0.1 mm) more",
     ),

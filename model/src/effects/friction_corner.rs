@@ -19,9 +19,7 @@ static CARD: Card = Card {
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Rounding,
-    summary: text(
-        "The friction of a piston turns round along another curve than the hyperbolic tangent of the equations.",
-    ),
+    summary: text("The piston's friction reverses along a curve other than the nominal hyperbolic tangent."),
     equation: text(
         "sgn(v) = tanh(sinh(sqrt(q) x)/sqrt(q)), x = v/vr; q < 0: tanh(asinh(sqrt(-q) x)/sqrt(-q)), in all friction of the piston",
     ),

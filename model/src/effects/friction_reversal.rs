@@ -21,7 +21,7 @@ static CARD: Card = Card {
     acts_on: ActsOn::Cylinder,
     needs: Needs::Nothing,
     family: Family::Rounding,
-    summary: text("The friction of a piston turns round over another speed than the 1 mm/s of the equations."),
+    summary: text("The piston's friction reverses over a speed range other than the nominal 1 mm/s."),
     equation: text(
         "sgn(v) = tanh(v/vr) in all friction of the piston, or along another curve of v/vr with friction_corner",
     ),

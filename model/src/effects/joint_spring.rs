@@ -17,7 +17,7 @@ static CARD: Card = Card {
     needs: Needs::Nothing,
     family: Family::Construction,
     summary: text(
-        "A balance spring, a gas strut, or hoses and cables that are stiff: a torque on the joint that falls as its angle grows.",
+        "A balance spring, a gas strut, or stiff hoses and cables: a joint torque that falls linearly with the angle.",
     ),
     equation: text("torque tau0 - k (q - qm), qm the angle at mid-stroke; linear load: force F0 - k s"),
     source: text("textbook (spring); [A] Eq. 1 for where it acts"),

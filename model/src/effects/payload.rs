@@ -19,7 +19,7 @@ static CARD: Card = Card {
     needs: Needs::Nothing,
     family: Family::Candidate,
     summary: text(
-        "Added mass at the tip, always or while it is carried: inertia and weight grow together, by mass times distance squared and mass times distance.",
+        "A mass at the tip, permanent or carried for a time: it adds mass times distance squared to the inertia, and mass times distance to the gravity moment.",
     ),
     equation: text(
         "J += m r^2, W += m r; second of two links: J1 += m (l1^2 + r^2), J2 += m r^2, R12 += m r l1, W1 += m l1, W2 += m r; link of a chain: the same with the known lengths; linear load: M += m, Fg += m g i; rotor: J += m r^2; m times w(t), w = s(t - t0) s(t0 + d - t), s(x) = 1/(1 + exp(-2 x/e)), e = 30 ms",

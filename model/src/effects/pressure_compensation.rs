@@ -17,7 +17,7 @@ static CARD: Card = Card {
     needs: Needs::Valve,
     family: Family::Construction,
     summary: text(
-        "A compensator between pump and metering edge holds flow, not opening: the edge sees no more than the compensator's margin of pressure drop.",
+        "A compensator between pump and metering edge limits the edge's pressure drop to its margin, so the opening sets the flow.",
     ),
     equation: text(
         "flow from the pump Cf u phi(x), x = d / (1 + (d/pm)^8)^(1/8) for a drop d > 0: the orifice law well below pm, Cf u sqrt(pm) well above; edges to tank keep the orifice law",

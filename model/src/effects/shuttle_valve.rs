@@ -14,7 +14,7 @@ static CARD: Card = Card {
     needs: Needs::Pump,
     family: Family::Construction,
     summary: text(
-        "The side at lower pressure is open to the charge line, which takes or gives what unequal areas need.",
+        "The side at lower pressure is open to the charge line, which makes up or takes the flow difference of unequal areas.",
     ),
     equation: text(
         "Q+ = k s(p- - p+) (pp - p+), Q- = k s(p+ - p-) (pp - p-), s(x) = 1/(1 + exp(-2 (x - po)/w)), w = 0.45 po + 10 kPa",

@@ -88,6 +88,17 @@ impl Recording {
         }
     }
 
+    /// The recording at other times, s on its own clock: straight lines between samples, `NaN` outside.
+    pub fn interpolated(&self, times: &[f64]) -> Self {
+        let range = self.time.first().copied().unwrap_or(0.0)..=self.time.last().copied().unwrap_or(0.0);
+        let at = |column: &[f64], time: f64| {
+            if range.contains(&time) { linear(&self.time, column, time) } else { f64::NAN }
+        };
+        let mut other = self.with_columns(|column| times.iter().map(|&time| at(column, time)).collect());
+        other.time = times.to_vec();
+        other
+    }
+
     /// The samples from `from` to `to`, s after the first; the first of them is time 0 of the part.
     pub fn part(&self, from: f64, to: f64) -> Self {
         let (first, last) = (self.time.partition_point(|&t| t < from), self.time.partition_point(|&t| t <= to));

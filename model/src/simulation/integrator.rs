@@ -19,9 +19,7 @@ use crate::machine::{Growth, Machine, Mechanism};
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SimulationError {
     /// The step size fell below what can carry the solution on.
-    #[error(
-        "the simulation of {model} cannot go on at {time:.3} s: step {step:.1e} s is below {minimum:.1e} s; {state}"
-    )]
+    #[error("the simulation of {model} stops at {time:.3} s: step {step:.1e} s is below {minimum:.1e} s; {state}")]
     StepTooSmall {
         /// Machine of the model.
         model: String,

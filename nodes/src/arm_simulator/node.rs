@@ -218,7 +218,7 @@ impl Simulation<'_> {
         let values = [
             ("published states", state.published().to_string()),
             ("refused states", state.refused().to_string()),
-            ("schedules started anew", pace.late().to_string()),
+            ("schedule restarts", pace.late().to_string()),
             ("jumps of the clock", clock.jumps.to_string()),
             ("times set up again", counts.failures.to_string()),
         ];

@@ -94,7 +94,7 @@ pub struct DashboardArguments {
     /// Port of the page; 0: any that is free.
     #[arg(long, default_value_t = 8050)]
     pub port: u16,
-    /// Address that the page is offered at; 0.0.0.0: to everybody on the network.
+    /// Address that the page listens on; 0.0.0.0 opens it to the whole network.
     #[arg(long, default_value = "127.0.0.1")]
     pub host: String,
     /// Name under which browsers may ask for the page, beside localhost and its address; may be given several times.

@@ -51,7 +51,7 @@ impl Mapping {
 
 #[derive(Debug, Default, Clone, Copy, Args)]
 pub struct Extent {
-    /// Use all of a recording of more than three minutes, not only the stretches that tell most about the parameters: slow, and in memory
+    /// Use all of a recording of more than three minutes, not only its most informative stretches: slow, and in memory
     /// as a whole.
     #[arg(long)]
     pub whole: bool,
@@ -150,6 +150,12 @@ pub struct CompareArguments {
     pub mapping: Mapping,
     #[command(flatten)]
     pub extent: Extent,
+    /// Another model, for the same recording: in the table and on every plot beside the first.
+    #[arg(long, value_name = "MODEL")]
+    pub against: Option<String>,
+    /// Another run of the same commands, aligned with the first: how well the machine repeats itself.
+    #[arg(long, value_name = "BAG")]
+    pub repeat: Option<PathBuf>,
     /// Write a page with plots of every signal, residuals, and error against command, speed, pressure and position.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,

@@ -15,9 +15,9 @@ use super::sealed::Sealed;
 use super::{manoeuvre, plant};
 use crate::cli::{DemoArguments, Overwriting};
 use crate::error::VerbError;
-use crate::output::{Progress, Stage, candidate_table, number, stage_table};
+use crate::output::{NextStep, Progress, Stage, candidate_table, number, stage_table};
 use crate::outputs::write;
-use crate::verbs::print;
+use crate::verbs::{print, print_next};
 
 /// Every story has files of its own.
 const NEVER: Overwriting = Overwriting { force: false };
@@ -81,6 +81,8 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
     let report = folder.join(REPORT);
     write(&report, &refinement_page(&refinement), NEVER)?;
     print(&format!("\nOpen {} to see every signal before and after.", report.display()));
+    let step = NextStep::new("simulate the refined model on a recording yourself", "compare");
+    print_next(&step.path("--model", &model_file).path("--bag", &folder.join(VALIDATION)));
     Ok(())
 }
 

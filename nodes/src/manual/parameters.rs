@@ -2,6 +2,12 @@
 
 use excavator_ros::{Parameter, Value};
 
+use crate::output::filled;
+use crate::terminal;
+
+/// Width of a help text on a wide terminal: the one that clap keeps to.
+const MOST_COLUMNS: usize = 100;
+
 /// Parameters of a node by its name on the command line, in the order of their declaration.
 pub(super) fn of(kind: &str) -> Vec<Parameter> {
     match kind {
@@ -17,11 +23,14 @@ pub(super) fn of(kind: &str) -> Vec<Parameter> {
 /// What the help of a node says of its parameters.
 pub(super) fn help(kind: &str) -> String {
     let parameters = of(kind);
-    let width = parameters.iter().map(|parameter| parameter.name.len()).max().unwrap_or(0);
+    let longest = parameters.iter().map(|parameter| parameter.name.len()).max().unwrap_or(0);
+    let indent = " ".repeat(longest + 4);
+    let width = terminal::width().map_or(MOST_COLUMNS, |width| width.min(MOST_COLUMNS)).saturating_sub(indent.len());
     let lines = parameters.iter().map(|parameter| {
         let value = default(&parameter.value);
         let value = if value.is_empty() { String::new() } else { format!(" [default: {value}]") };
-        format!("  {:width$}  {}{value}", parameter.name, parameter.description)
+        let text = filled(&format!("{}{value}", parameter.description), Some(width));
+        format!("  {:longest$}  {}", parameter.name, text.replace('\n', &format!("\n{indent}")))
     });
     format!("Parameters (--ros-args -p NAME:=VALUE):\n{}", lines.collect::<Vec<_>>().join("\n"))
 }

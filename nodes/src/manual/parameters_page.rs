@@ -27,8 +27,15 @@ pub fn parameters_page() -> String {
     page
 }
 
+/// A bound in the shortest form that is exact.
+fn number(value: f64) -> String {
+    let (plain, scientific) = (value.to_string(), format!("{value:e}"));
+    if scientific.len() < plain.len() { scientific } else { plain }
+}
+
 fn row(parameter: &Parameter) -> String {
-    let range = parameter.range.map_or(String::new(), |range| format!("{:?} to {:?}", range.from, range.to));
+    let range =
+        parameter.range.map_or(String::new(), |range| format!("{} to {}", number(range.from), number(range.to)));
     let default = parameters::default(&parameter.value);
     let default = if default.is_empty() { "none".to_string() } else { format!("`{default}`") };
     let fixed = if parameter.read_only { "yes" } else { "" };

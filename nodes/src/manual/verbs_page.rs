@@ -61,12 +61,16 @@ fn name(argument: &Arg) -> String {
         (false, true) => names.join(", "),
         (false, false) => format!("{} {value}", names.join(", ")),
     };
-    format!("`{text}`")
+    // A bar ends a cell even in code.
+    format!("`{}`", text.replace('|', "\\|"))
 }
 
 fn meaning(argument: &Arg) -> String {
     let help = argument.get_long_help().or_else(|| argument.get_help()).map(ToString::to_string).unwrap_or_default();
     let mut text = escaped(&help.replace('\n', " "));
+    if !text.ends_with(['.', '?']) {
+        text.push('.');
+    }
     let choices: Vec<String> =
         argument.get_possible_values().iter().map(|value| format!("`{}`", value.get_name())).collect();
     if !choices.is_empty() && argument.get_action().takes_values() {

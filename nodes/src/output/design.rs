@@ -12,17 +12,17 @@ use super::tables::{number, right, table};
 
 /// What is expected of every pair.
 pub fn pair_table(design: &SeparationDesign) -> Table {
-    let header = ["one", "other", "gain on sines", "distance, std. dev.", "expected gain", "significance", "expected"];
+    let header = ["effect", "other", "under sines", "distance, σ", "improvement", "significance", "expected"];
     let mut table = table(&header);
     for pair in &design.pairs {
         table.add_row([
             Cell::new(&pair.first),
             Cell::new(&pair.second),
-            right(pair.gain_before.map_or("-".into(), |gain| format!("{gain:.2}"))),
+            right(pair.improvement_before.map_or("-".into(), |value| format!("{value:.2}"))),
             right(number(pair.distance)),
-            right(format!("{:.2}", pair.expected_gain)),
+            right(format!("{:.2}", pair.expected_improvement)),
             right(format!("{:.1}", pair.expected_significance)),
-            Cell::new(if pair.settled { "told apart" } else { "stay tied" }),
+            Cell::new(if pair.separated { "separated" } else { "not separated" }),
         ]);
     }
     table
@@ -60,33 +60,33 @@ pub fn separation_json(design: &SeparationDesign, profile: Option<&Path>) -> Val
             json!({
                 "first": pair.first,
                 "second": pair.second,
-                "gain_on_sines": pair.gain_before.map_or(Value::Null, finite),
+                "improvement_on_sines": pair.improvement_before.map_or(Value::Null, finite),
                 "distance": finite(pair.distance),
-                "linear_gain": finite(pair.linear_gain),
-                "expected_gain": finite(pair.expected_gain),
+                "linear_improvement": finite(pair.linear_improvement),
+                "expected_improvement": finite(pair.expected_improvement),
                 "expected_significance": finite(pair.expected_significance),
-                "settled": pair.settled,
+                "separated": pair.separated,
             })
         })
         .collect();
-    let rehearsals: Vec<Value> = design
-        .rehearsals
+    let trial_runs: Vec<Value> = design
+        .trial_runs
         .iter()
         .map(|one| {
             json!({
                 "truth": one.truth,
                 "other": one.other,
-                "gain": finite(one.improvement),
+                "improvement": finite(one.improvement),
                 "significance": finite(one.significance),
             })
         })
         .collect();
     json!({
         "profile": profile.map(|path| path.display().to_string()),
-        "all_settled": design.all_settled(),
+        "all_separated": design.all_separated(),
         "rivals": rivals,
         "pairs": pairs,
-        "rehearsals": rehearsals,
+        "trial_runs": trial_runs,
         "plan": plan_json(&design.plan, design.manoeuvres),
     })
 }
@@ -101,8 +101,8 @@ pub fn determination_json(design: &ParameterDesign, profile: Option<&Path>) -> V
         "std_error_given": design.given_error.map_or(Value::Null, finite),
         "std_error_on_sines": finite(design.sine_error),
         "std_error_expected": finite(design.expected_error),
-        "std_error_rehearsed": finite(design.rehearsed_error),
-        "value_rehearsed": finite(design.rehearsed_value),
+        "std_error_trial_run": finite(design.trial_run_error),
+        "value_trial_run": finite(design.trial_run_value),
         "determined": design.determined,
         "plan": plan_json(&design.plan, design.manoeuvres),
     })

@@ -5,6 +5,7 @@ use std::path::Path;
 use excavator_identification::diagnosis::{Candidate, Diagnosis, Share, Unexplained};
 use excavator_identification::fit::nuisances_shown;
 use excavator_identification::regression::ConditionNumber;
+use excavator_identification::report::Beside;
 use excavator_identification::validation::{
     Baseline, Baselines, Comparison, Correlation, PhaseShare, SignalComparison,
 };
@@ -115,15 +116,24 @@ fn correlation(found: Correlation) -> Value {
 }
 
 /// Result of `compare`.
-pub fn comparison_json(comparison: &Comparison, baselines: &Baselines) -> Value {
+pub fn comparison_json(comparison: &Comparison, baselines: &Baselines, others: &[Beside<'_>]) -> Value {
     let of_signal = |(signal, baseline): (&SignalComparison, &Baseline)| {
         let value =
             json!({"noise": finite(baseline.noise), "arx": finite(baseline.arx), "held": finite(baseline.held)});
         (signal.name.clone(), value)
     };
     let each: Map<String, Value> = comparison.signals.iter().zip(&baselines.signals).map(of_signal).collect();
+    let beside = |is_run: bool| {
+        let found = others.iter().find(|other| matches!(other, Beside::Run(_)) == is_run);
+        found.map_or(Value::Null, |other| {
+            let own = other.comparison();
+            json!({"mean_nmse": finite(own.mean_error()), "signals": signals(std::slice::from_ref(own))})
+        })
+    };
     json!({
         "mean_nmse": finite(comparison.mean_error()),
+        "against": beside(false),
+        "repeat": beside(true),
         "signals": signals(std::slice::from_ref(comparison)),
         "baseline_nmse": {
             "held_s": baselines.held,

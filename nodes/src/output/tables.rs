@@ -4,6 +4,7 @@ use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
 use comfy_table::{Attribute, Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 use excavator_identification::diagnosis::Diagnosis;
 use excavator_identification::refinement::Refinement;
+use excavator_identification::report::Beside;
 use excavator_identification::validation::{Baselines, Comparison, Correlation, MotionPhase, SignalComparison};
 use excavator_identification::value_marks::{remedies, value_mark};
 use excavator_model::Model;
@@ -91,19 +92,24 @@ pub fn remedy_lines(model: &Model, fitted: &[usize]) -> Vec<String> {
 }
 
 /// Errors of every signal beside those of noise, of a model without physics, and of a value that is held.
-pub fn comparison_table(comparison: &Comparison, baselines: &Baselines) -> Table {
+pub fn comparison_table(comparison: &Comparison, baselines: &Baselines, others: &[Beside<'_>]) -> Table {
     let held = format!("{:.1} s before", baselines.held);
-    let mut table = table(&["signal", "NMSE", "noise", "linear ARX", &held, "FIT %", "delay °"]);
+    let mut heads = vec!["signal", "NMSE"];
+    heads.extend(others.iter().map(|other| other.label()));
+    heads.extend(["noise", "linear ARX", &held, "FIT %", "delay °"]);
+    let mut table = table(&heads);
     for (signal, baseline) in comparison.signals.iter().zip(&baselines.signals) {
-        table.add_row([
-            Cell::new(&signal.name),
-            right(number(signal.normalised_error)).add_attribute(Attribute::Bold),
+        let mut cells =
+            vec![Cell::new(&signal.name), right(number(signal.normalised_error)).add_attribute(Attribute::Bold)];
+        cells.extend(others.iter().map(|other| right(number(other.error_of(&signal.name)))));
+        cells.extend([
             right(number(baseline.noise)),
             right(number(baseline.arx)),
             right(number(baseline.held)),
             right(format!("{:.1}", signal.fit)),
             right(signal.phase_delay_degrees.map_or("-".into(), |degrees| format!("{degrees:.1}"))),
         ]);
+        table.add_row(cells);
     }
     table
 }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use excavator_identification::report::{comparison_page, comparison_sentence};
-use excavator_identification::validation::{Baselines, compare};
+use excavator_identification::report::{Beside, comparison_page, comparison_sentence, others_sentence};
+use excavator_identification::validation::{Baselines, compare, compare_runs};
 
 use super::{print, print_detail, print_next};
 use crate::cli::CompareArguments;
@@ -14,16 +14,25 @@ use crate::sources;
 
 pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
-    let inputs =
-        Inputs::recordings([&arguments.bag], arguments.mapping.map.as_deref()).and_all(arguments.model.files());
+    let bags = std::iter::once(&arguments.bag).chain(&arguments.repeat);
+    let inputs = Inputs::recordings(bags, arguments.mapping.map.as_deref()).and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let recording = sources::telling_recording(&arguments.bag, arguments.extent, &arguments.mapping, &model)?;
     let comparison = compare(&model, &recording)?;
     let baselines = Baselines::of(&model, &recording, &comparison);
+    let against =
+        arguments.against.as_deref().map(|name| sources::another_model(name, &arguments.model)).transpose()?;
+    let against = against.map(|model| compare(&model, &recording)).transpose()?;
+    let again =
+        arguments.repeat.as_deref().map(|bag| sources::recording(bag, &arguments.mapping, &model)).transpose()?;
+    let again = again.map(|again| compare_runs(&model, &recording, &again)).transpose()?;
+    let others: Vec<Beside<'_>> =
+        (against.iter().map(Beside::Model)).chain(again.iter().map(|again| Beside::Run(&again.comparison))).collect();
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         print(&comparison_sentence(&comparison, &baselines));
-        print(&comparison_table(&comparison, &baselines).to_string());
+        others.iter().for_each(|other| print(&others_sentence(&comparison, *other)));
+        print(&comparison_table(&comparison, &baselines, &others).to_string());
         print_detail(&correlation_table(&comparison).to_string());
         if let Some(table) = phase_table(&comparison) {
             print_detail(&table.to_string());
@@ -32,11 +41,12 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
         print_next(&NextStep::diagnosis_of_halves(why, &arguments.model, &arguments.bag, duration, &arguments.mapping));
     }
     if let Some(path) = &arguments.report {
-        let page = comparison_page(&model, std::slice::from_ref(&comparison), std::slice::from_ref(&baselines));
+        let (one, its_baselines) = (std::slice::from_ref(&comparison), std::slice::from_ref(&baselines));
+        let page = comparison_page(&model, one, its_baselines, &others);
         outputs::write(path, &page, arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &comparison_json(&comparison, &baselines), arguments.overwriting)?;
+        write_json(path, &comparison_json(&comparison, &baselines, &others), arguments.overwriting)?;
     }
     Ok(())
 }

@@ -8,11 +8,11 @@ use excavator_identification::design::{
 use excavator_model::Model;
 use excavator_model::simulation::Profile;
 
-use super::print;
+use super::{print, print_detail, print_next};
 use crate::cli::DesignArguments;
 use crate::diagnosis_file::DiagnosisFile;
 use crate::error::VerbError;
-use crate::output::{Progress, determination_json, number, pair_table, separation_json, write_json};
+use crate::output::{NextStep, Progress, determination_json, number, pair_table, separation_json, write_json};
 use crate::outputs::{self, Inputs, write};
 use crate::profile_file::{ProfileFile, usual_rate};
 use crate::sources;
@@ -56,51 +56,58 @@ fn between_rivals(
     let progress = Progress::new();
     let design = separate(rivals, fitted, settings, &|what, done| progress.tell(what, done))?;
     drop(progress);
-    let written = design.any_settled().then_some(arguments.output.as_path());
+    let written = design.any_separated().then_some(arguments.output.as_path());
     if let Some(path) = written {
         let expectation = design.pairs.iter().map(|pair| {
             format!(
-                "{} from {}: expected gain {:.2} ({:.1} standard errors), {}",
+                "{} from {}: expected improvement {:.2} ({:.1} standard errors), {}",
                 pair.first,
                 pair.second,
-                pair.expected_gain,
+                pair.expected_improvement,
                 pair.expected_significance,
-                if pair.settled { "told apart" } else { "stay tied" }
+                if pair.separated { "separated" } else { "not separated" }
             )
         });
         write(path, &text(model, &design.profiles, &design.plan, expectation.collect())?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&design, written);
+        show(&design, written, arguments);
     }
     if let Some(path) = &arguments.json.json {
         write_json(path, &separation_json(&design, written), arguments.overwriting)?;
     }
-    if written.is_some() { Ok(()) } else { Err(VerbError::NothingSettles(sentence(&design))) }
+    if written.is_some() { Ok(()) } else { Err(VerbError::NothingSeparates(sentence(&design))) }
 }
 
-/// The pairs that stay tied, in words.
+/// The pairs that are not separated, in words.
 fn sentence(design: &SeparationDesign) -> String {
-    let tied = design.pairs.iter().filter(|pair| !pair.settled);
+    let tied = design.pairs.iter().filter(|pair| !pair.separated);
     let each = tied.map(|pair| {
         format!(
-            "{} and {} stay tied (expected gain {:.2}, {:.1} standard errors)",
-            pair.first, pair.second, pair.expected_gain, pair.expected_significance
+            "{} and {} are not separated (expected improvement {:.2}, {:.1} standard errors)",
+            pair.first, pair.second, pair.expected_improvement, pair.expected_significance
         )
     });
     each.collect::<Vec<_>>().join("; ")
 }
 
-fn show(design: &SeparationDesign, written: Option<&Path>) {
+fn show(design: &SeparationDesign, written: Option<&Path>, arguments: &DesignArguments) {
     let (all, within) = design.manoeuvres;
-    print(&format!("{within} of {all} manoeuvres stay within the limits with every rival."));
-    show_plan(&design.plan);
+    let separated = design.pairs.iter().filter(|pair| pair.separated).count();
+    let pairs = design.pairs.len();
+    print(&format!(
+        "A profile of {:.1} s is expected to separate {separated} of {pairs} {}.",
+        design.plan.duration,
+        if pairs == 1 { "pair" } else { "pairs" }
+    ));
     print(&pair_table(design).to_string());
-    if !design.all_settled() && design.any_settled() {
+    if !design.all_separated() && design.any_separated() {
         print(&format!("{}.", sentence(design)));
     }
+    show_plan(&design.plan);
+    print_detail(&format!("{within} of {all} manoeuvres stay within the limits with every rival."));
     if let Some(path) = written {
-        show_use(path);
+        show_use(path, arguments);
     }
 }
 
@@ -111,11 +118,10 @@ fn show_plan(plan: &Plan) {
     }
 }
 
-fn show_use(path: &Path) {
-    print(&format!(
-        "written: {0}\nRun it twice, once to fit and once to judge; `excavator simulate --input {0}` makes the commands a bag.",
-        path.display()
-    ));
+fn show_use(path: &Path, arguments: &DesignArguments) {
+    print(&format!("The profile is in {}. Run it twice: one recording to fit, one to judge.", path.display()));
+    let step = NextStep::new("make its commands a bag", "simulate").same_model(&arguments.model);
+    print_next(&step.path("--input", path).path("-o", Path::new("commands")));
 }
 
 fn for_parameter(
@@ -143,7 +149,7 @@ fn for_parameter(
         let expectation = format!(
             "{}: expected standard error {} {} of {}",
             design.name,
-            number(design.rehearsed_error),
+            number(design.trial_run_error),
             design.unit,
             number(design.value)
         );
@@ -152,7 +158,7 @@ fn for_parameter(
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show_parameter(&design);
         if let Some(path) = written {
-            show_use(path);
+            show_use(path, arguments);
         }
     }
     if let Some(path) = &arguments.json.json {
@@ -161,20 +167,25 @@ fn for_parameter(
     if written.is_some() {
         return Ok(());
     }
-    Err(VerbError::NothingSettles(format!(
+    Err(VerbError::NothingSeparates(format!(
         "{} = {} {} would keep a standard error of {} (a fit reports {})",
         design.name,
         number(design.value),
         design.unit,
         number(design.expected_error),
-        number(design.rehearsed_error)
+        number(design.trial_run_error)
     )))
 }
 
 fn show_parameter(design: &ParameterDesign) {
     let (all, within) = design.manoeuvres;
-    print(&format!("{within} of {all} manoeuvres stay within the limits."));
-    show_plan(&design.plan);
+    print(&format!(
+        "A profile of {:.1} s is expected to determine {} to within {:.1} % (one standard error).",
+        design.plan.duration,
+        design.name,
+        100.0 * (design.trial_run_error / design.value).abs()
+    ));
+    print_detail(&format!("{within} of {all} manoeuvres stay within the limits."));
     let line = |what: &str, error: f64| {
         let share = 100.0 * error / design.value.abs();
         print(&format!("  {what:52} {:>10} {}  ({share:.2} %)", number(error), design.unit));
@@ -185,7 +196,8 @@ fn show_parameter(design: &ParameterDesign) {
     }
     line("moderate sines as long, sensor noise alone", design.sine_error);
     line("this profile, sensor noise alone", design.expected_error);
-    line("this profile, as a fit to a rehearsal reports it", design.rehearsed_error);
+    line("this profile, as a fit to a trial run reports it", design.trial_run_error);
+    show_plan(&design.plan);
 }
 
 /// The profile file.

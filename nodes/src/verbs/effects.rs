@@ -56,11 +56,11 @@ fn list(all: &[AnyEffect]) {
         |text: fn(&Card) -> &str| all.iter().map(|effect| text(effect.card()).len() as u16).max().unwrap_or_default();
     for (family, title) in [
         (Family::Base, "In the nominal model"),
-        (Family::Recording, "How recordings are made: nuisances, estimated with every model, never attributed"),
-        (Family::Rounding, "How widely corners are rounded: nuisances, estimated with every model, never attributed"),
-        (Family::Construction, "How a machine is built: added by hand, never a candidate"),
-        (Family::Loss, "Losses of the nominal model, candidates where a model leaves them out"),
-        (Family::Candidate, "Candidates beyond it"),
+        (Family::Recording, "Instruments and recording: estimated with every model, never a verdict"),
+        (Family::Rounding, "Smoothing of corners: estimated with every model, never a verdict"),
+        (Family::Construction, "Construction: added by hand, never a candidate"),
+        (Family::Loss, "Losses of the nominal model: candidates where a model leaves them out"),
+        (Family::Candidate, "Candidates beyond the nominal model"),
     ] {
         print(title);
         let own = all.iter().map(|effect| effect.card()).filter(|card| card.family == family);

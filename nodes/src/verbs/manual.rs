@@ -18,8 +18,7 @@ pub fn completions(shell: Shell) {
 pub fn run(which: &ManualVerb) -> Result<(), VerbError> {
     match which {
         ManualVerb::Man { to } => {
-            let written = write_man_pages(to)
-                .map_err(|source| VerbError::Write { path: to.clone(), source })?;
+            let written = write_man_pages(to).map_err(|source| VerbError::Write { path: to.clone(), source })?;
             print(&format!("{} man pages are in {}.", written.len(), to.display()));
         }
         ManualVerb::Verbs => print_text(verbs_page().trim_end()),

@@ -27,8 +27,8 @@ fn sentence(file: &ReindexedFile) -> String {
     match (file.rewritten, file.damage.is_empty()) {
         (false, true) => format!("{path}: whole, {messages} messages; left as it is"),
         (false, false) => format!("{path}: {messages} messages readable; left as it is:"),
-        (true, true) => format!("{path}: had no index, written anew with all {messages} messages"),
-        (true, false) => format!("{path}: written anew with {messages} messages; of the original:"),
+        (true, true) => format!("{path}: had no index; rewritten with all {messages} messages"),
+        (true, false) => format!("{path}: rewritten with {messages} messages; of the original:"),
     }
 }
 

@@ -61,7 +61,7 @@ pub fn run(arguments: &ValveTestArguments) -> Result<(), VerbError> {
 fn of_edge(name: &str, side: &str, edge: &StaticEdge, unit: CommandUnit) -> String {
     let unit = if unit == CommandUnit::One { "" } else { unit.text() };
     let with_error = |one: Estimate| format!("{} ± {} {unit}", in_digits(one.value), in_digits(1.96 * one.error));
-    let play = edge.play.map_or("the test runs one way, so it says nothing of a play".to_string(), |play| {
+    let play = edge.play.map_or("the test runs in one direction only, so play is unknown".to_string(), |play| {
         format!("play {}", with_error(play).trim_end())
     });
     format!(

@@ -92,7 +92,10 @@ fn groups_of(case: &Case) -> Vec<String> {
         Sort::Single => vec![format!("1 effect, {strength}"), format!("1 effect, all"), format!("  {}", case.secret())],
         Sort::Pair => vec![format!("2 effects, {strength}"), "2 effects, all".to_string()],
         Sort::Unknown => {
-            vec![format!("foreign, {strength} (right = unexplained)"), "foreign, all (right = unexplained)".into()]
+            vec![
+                format!("outside the catalogue, {strength} (right = unexplained)"),
+                "outside the catalogue, all (right = unexplained)".into(),
+            ]
         }
     }
 }

@@ -11,9 +11,9 @@ use crate::decision::{block_costs_of, improvement_on_blocks};
 use crate::fit::{Fit, FitError, evaluate, fit};
 use crate::search::{AdditionError, fit_addition, misfit, side};
 
-/// What a rehearsal says when one rival is the truth and another is held against it.
+/// What a trial run says when one rival is the truth and another is held against it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rehearsed {
+pub struct TrialRun {
     /// Name of the rival that made the recordings.
     pub truth: String,
     /// Name of the rival that was fitted to them.
@@ -73,28 +73,28 @@ pub(super) fn best_fit(rival: &Rival, recording: &Recording, settings: &DesignSe
 ///
 /// # Errors
 /// [`DesignError`].
-pub(super) fn rehearse(
+pub(super) fn try_out(
     rivals: &[Rival],
     profiles: &[Profile],
     settings: &DesignSettings,
     progress: &(dyn Fn(&str, f64) + Sync),
-) -> Result<Vec<Rehearsed>, DesignError> {
-    let mut rehearsed = Vec::new();
+) -> Result<Vec<TrialRun>, DesignError> {
+    let mut trial_runs = Vec::new();
     let total = (rivals.len() * rivals.len()) as f64;
     for (number, truth) in rivals.iter().enumerate() {
         let [fitted, kept] = record(truth, profiles, settings, number as u64)?;
         let own = fit(&truth.model, &[&fitted], &settings.fit)?;
         let own = evaluate(&own.model, &[&kept], &settings.fit)?;
         for (index, other) in rivals.iter().enumerate().filter(|(index, _)| *index != number) {
-            progress("rehearsal", (number * rivals.len() + index) as f64 / total);
+            progress("trial run", (number * rivals.len() + index) as f64 / total);
             let refitted = best_fit(other, &fitted, settings)?;
             let refitted = evaluate(&refitted.model, &[&kept], &settings.fit)?;
             let side = side(&own, &[&kept]);
             let costs = |fit: &Fit| block_costs_of(&side, &misfit(fit));
             let (improvement, significance) = improvement_on_blocks(costs(&refitted), costs(&own));
             let (truth, other) = (truth.name.clone(), other.name.clone());
-            rehearsed.push(Rehearsed { truth, other, improvement, significance });
+            trial_runs.push(TrialRun { truth, other, improvement, significance });
         }
     }
-    Ok(rehearsed)
+    Ok(trial_runs)
 }

@@ -1,0 +1,87 @@
+"""The commands of the docs: every one of them parses, and those of the first pages run, in order, in an empty folder."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+DOCS = REPOSITORY / "docs"
+SAMPLES = REPOSITORY / "bags" / "samples"
+HIDDEN_LAW = SAMPLES / "hidden-law"
+COMMAND = re.compile(r"^    (?:\$ )?(excavator .*)$")
+
+# What stands for a file of the reader, by what the test puts in its place.
+PLACEHOLDERS = {
+    "M": "zx30u-arm",
+    "BAG": HIDDEN_LAW / "validation",
+    "BAG-A": HIDDEN_LAW / "identification",
+    "BAG-B": HIDDEN_LAW / "validation",
+    "my-bag": SAMPLES / "arm-swing",
+    "bag-a": HIDDEN_LAW / "identification",
+    "bag-b": HIDDEN_LAW / "validation",
+    "TABLE.csv": "drive.csv",
+    "BAG@20..40": f"{HIDDEN_LAW / 'validation'}@2..8",
+    "$REPO": REPOSITORY,
+}
+# Pages whose offline commands run. A command with live nodes is for tests/rclpy.
+RUN = ["start.md", "your-data.md", "verdict.md", "laws.md"]
+LIVE = {"node", "play", "record", "up", "dashboard"}
+
+
+@pytest.fixture
+def excavator():
+    """The program, as `tests/run` builds it."""
+    binary = os.environ.get("EXCAVATOR_BINARY")
+    if not binary:
+        pytest.skip("EXCAVATOR_BINARY does not say where the program is")
+    return binary
+
+
+def commands(page):
+    """The words of each command of a page, continued lines joined; what is optional in it is left out."""
+    lines = page.read_text().splitlines()
+    found = []
+    for number, line in enumerate(lines):
+        match = COMMAND.match(line)
+        if not match:
+            continue
+        text = match.group(1)
+        while text.endswith("\\"):
+            number += 1
+            text = text[:-1] + lines[number]
+        text = re.sub(r"\[-.*?\]", "", text)
+        text = re.sub(r"\s>\s.*$", "", text) if ' "' not in text else text
+        words = [word for word in shlex.split(text, comments=True) if word != "&"]
+        found.append(words)
+    return found
+
+
+ALL = [(page, words) for page in sorted(DOCS.glob("*.md")) for words in commands(page)]
+
+
+def test_there_are_commands():
+    assert len(ALL) > 40
+
+
+@pytest.mark.parametrize(("page", "words"), ALL, ids=[f"{page.name}: {' '.join(words[1:4])}" for page, words in ALL])
+def test_every_command_parses(excavator, page, words):
+    words = words[1 : words.index("--ros-args")] if "--ros-args" in words else words[1:]
+    result = subprocess.run([excavator, *words, "--help"], capture_output=True, text=True)
+    assert result.returncode == 0, f"{page}: {' '.join(words)}\n{result.stderr}"
+
+
+@pytest.mark.parametrize("name", RUN)
+def test_the_commands_of_a_page_run(excavator, tmp_path, name):
+    shutil.copy(SAMPLES / "arm-swing.csv", tmp_path / "drive.csv")
+    (tmp_path / "bags").symlink_to(REPOSITORY / "bags")
+    own = [words for words in commands(DOCS / name) if words[1] not in LIVE]
+    assert own
+    for words in own:
+        words = [str(PLACEHOLDERS.get(word, word)) for word in words[1:]]
+        result = subprocess.run([excavator, *words], cwd=tmp_path, capture_output=True, text=True)
+        assert result.returncode == 0, f"{' '.join(words)}\n{result.stdout}\n{result.stderr}"
