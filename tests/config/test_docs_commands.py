@@ -26,6 +26,7 @@ PLACEHOLDERS = {
     "bag-b": HIDDEN_LAW / "validation",
     "TABLE.csv": "drive.csv",
     "BAG@20..40": f"{HIDDEN_LAW / 'validation'}@2..8",
+    "OTHER": "zx30u-arm",
     "$REPO": REPOSITORY,
 }
 # Pages whose offline commands run. A command with live nodes is for tests/rclpy.

@@ -13,7 +13,7 @@ use excavator_model::Model;
 use excavator_model::effects::{ActsOn, Site};
 use excavator_model::recording::Recording;
 
-use super::residual_points::{Key, Point, VARIABLES, Variable, bins, points, share_explained, unit_of};
+use super::residual_points::{Bin, Key, Point, VARIABLES, Variable, bins, points, share_explained, unit_of};
 use crate::regression::{EquationKind, RegressionError};
 use crate::search::{Addition, Trial};
 
@@ -89,8 +89,8 @@ pub fn contribution(
             (point.residual.is_finite() && effect.is_finite()).then_some((point, effect))
         })
         .collect();
-    let Some(kind) = clearest_equation(&pairs) else { return Ok(None) };
-    let Some(shown) = along_its_variable(kind, &pairs, &without) else { return Ok(None) };
+    let Some(kind) = clearest_equation(&pairs, addition) else { return Ok(None) };
+    let Some(shown) = along_its_variable(kind, &pairs, &without, shifts_an_opening(addition)) else { return Ok(None) };
     let drawn = textbook(kind, &shown, addition);
     let nominal = without.clone();
     let is_nominal = |name: &str| nominal_effects(drawn).contains(&name);
@@ -110,10 +110,9 @@ fn residuals(model: &Model, recordings: &[&Recording]) -> Result<BTreeMap<Key, f
 
 /// What a textbook draws of an effect that shows like this.
 fn textbook(kind: EquationKind, shown: &Contribution, addition: &Addition) -> Drawn {
-    let shifts_an_opening = !addition.physics.has_power() && addition.physics.card().acts_on != ActsOn::Instruments;
     match (kind, shown.variable) {
         (EquationKind::Motion(_), "speed") => Drawn::Friction,
-        (EquationKind::CapContinuity(_) | EquationKind::RodContinuity(_), "command") if shifts_an_opening => {
+        (EquationKind::CapContinuity(_) | EquationKind::RodContinuity(_), "command") if shifts_an_opening(addition) => {
             Drawn::Opening
         }
         _ => Drawn::Residual,
@@ -186,18 +185,34 @@ fn with_nominal(
     }
 }
 
-/// The equation in which the effect does most, in units of noise.
-fn clearest_equation(pairs: &[(Point, f64)]) -> Option<EquationKind> {
+/// The equation in which the effect does most, in units of noise; for what shifts an opening one of a chamber, where the flow
+/// through each edge stands alone.
+fn clearest_equation(pairs: &[(Point, f64)], addition: &Addition) -> Option<EquationKind> {
     let mut sums: BTreeMap<EquationKind, f64> = BTreeMap::new();
     for (point, effect) in pairs.iter().filter(|(point, _)| point.residual != 0.0) {
         *sums.entry(point.kind).or_default() += (point.weighed / point.residual * effect).powi(2);
     }
     let mut sums: Vec<(EquationKind, f64)> = sums.into_iter().filter(|(_, sum)| *sum > 0.0).collect();
     sums.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-    sums.first().map(|(kind, _)| *kind)
+    let of_a_chamber =
+        |kind: &EquationKind| matches!(kind, EquationKind::CapContinuity(_) | EquationKind::RodContinuity(_));
+    let chamber = sums.iter().map(|(kind, _)| *kind).find(of_a_chamber).filter(|_| shifts_an_opening(addition));
+    chamber.or(sums.first().map(|(kind, _)| *kind))
 }
 
-fn along_its_variable(kind: EquationKind, pairs: &[(Point, f64)], model: &Model) -> Option<Contribution> {
+/// Whether the effect acts on what the valve lets through, and not on an instrument.
+fn shifts_an_opening(addition: &Addition) -> bool {
+    !addition.physics.has_power() && addition.physics.card().acts_on != ActsOn::Instruments
+}
+
+/// Along the variable that explains most of what the effect does, or along the command where the effect shifts an opening and
+/// the command explains enough.
+fn along_its_variable(
+    kind: EquationKind,
+    pairs: &[(Point, f64)],
+    model: &Model,
+    prefers_command: bool,
+) -> Option<Contribution> {
     let own: Vec<&(Point, f64)> = pairs.iter().filter(|(point, _)| point.kind == kind).collect();
     let along = |of: Variable, value: &dyn Fn(&(Point, f64)) -> f64| {
         bins(own.iter().map(|pair| (of(&pair.0), value(pair))).collect())
@@ -208,7 +223,11 @@ fn along_its_variable(kind: EquationKind, pairs: &[(Point, f64)], model: &Model)
             let effect = along(of, &|pair| pair.1)?;
             Some((share_explained(&effect), variable, effect, of))
         })
-        .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        .max_by(|a, b| {
+            let rank =
+                |own: &(f64, &str, Vec<Bin>, Variable)| prefers_command && own.1 == "command" && own.0 >= LEAST_SHARE;
+            rank(a).cmp(&rank(b)).then(a.0.total_cmp(&b.0))
+        })?;
     let lacking = along(of, &|pair| pair.0.residual)?;
     (share >= LEAST_SHARE).then(|| Contribution {
         equation: kind.name(model),

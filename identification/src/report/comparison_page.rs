@@ -9,7 +9,7 @@ use super::numbers::significant;
 use super::page::{Section, page, tile};
 use super::time_plots::{Line, MODEL, OTHER_MODEL, SECOND_RUN, hint, time_plots};
 use super::{parameter_table, signal_tables};
-use crate::validation::{Baselines, Comparison};
+use crate::validation::{Baselines, Comparison, Repeat};
 
 /// What is drawn beside the model on every plot of a recording.
 #[derive(Debug, Clone, Copy)]
@@ -17,14 +17,15 @@ pub enum Beside<'a> {
     /// Another model of the machine.
     Model(&'a Comparison),
     /// Another run of it, aligned.
-    Run(&'a Comparison),
+    Run(&'a Repeat),
 }
 
 impl<'a> Beside<'a> {
     /// The comparison.
     pub fn comparison(self) -> &'a Comparison {
         match self {
-            Beside::Model(comparison) | Beside::Run(comparison) => comparison,
+            Beside::Model(comparison) => comparison,
+            Beside::Run(run) => &run.comparison,
         }
     }
 

@@ -45,6 +45,11 @@ pub fn others_sentence(comparison: &Comparison, other: Beside<'_>) -> String {
     match other {
         Beside::Model(_) if its < own => format!("The other model is closer: mean NMSE {error}."),
         Beside::Model(_) => format!("The other model is not closer: mean NMSE {error}."),
+        Beside::Run(run) if !run.has_same_commands() => {
+            format!(
+                "The second run had other commands: its mean NMSE of {error} does not show how well the machine repeats itself."
+            )
+        }
         Beside::Run(_) if its < own => {
             format!("A second run of the machine has mean NMSE {error}: a perfect model could come that close.")
         }

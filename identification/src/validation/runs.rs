@@ -5,12 +5,15 @@ use excavator_model::recording::{Recording, linear};
 use excavator_model::simulation::{InputSignals, RunError};
 
 use super::compare::beside;
-use super::{Comparison, measured_velocity};
+use super::{Comparison, measured_velocity, normalised_mean_squared_error};
 
 /// Points of the grid on which two runs are aligned: with a run of a minute, one every 15 ms.
 const GRID: usize = 4000;
 /// Least share of the shorter run that both must have.
 const LEAST_OVERLAP: f64 = 0.5;
+
+/// Difference of commands, normalised, below which they are the same: a hand on a lever, or another clock.
+const SAME_COMMANDS: f64 = 0.05;
 
 /// A run beside another one.
 #[derive(Debug, Clone)]
@@ -19,6 +22,15 @@ pub struct Repeat {
     pub comparison: Comparison,
     /// Time that was added to the stamps of the second run, s.
     pub shift: f64,
+    /// Normalised mean squared difference of the commands.
+    pub command_error: f64,
+}
+
+impl Repeat {
+    /// Whether the second run had the same commands, so that it shows how well the machine repeats itself.
+    pub fn has_same_commands(&self) -> bool {
+        self.command_error < SAME_COMMANDS
+    }
 }
 
 /// Compares two runs, the second one shifted so that the commands agree best.
@@ -26,7 +38,10 @@ pub struct Repeat {
 /// # Errors
 /// [`RunError`] when a recording lacks the inputs of the model.
 pub fn compare_runs(model: &Model, run: &Recording, again: &Recording) -> Result<Repeat, RunError> {
-    let shift = alignment(&command(model, run)?, &command(model, again)?);
+    let (first, second) = (command(model, run)?, command(model, again)?);
+    let shift = alignment(&first, &second);
+    let moved: Vec<f64> = first.0.iter().map(|&time| inside(&second, time - shift)).collect();
+    let command_error = normalised_mean_squared_error(&first.1, &moved);
     let mut again = again.clone();
     for (cylinder, velocity) in model.machine.cylinders.iter().zip(measured_velocity(model, &again)?) {
         if let Some(signals) = again.cylinders.iter_mut().find(|signals| signals.name == cylinder.name) {
@@ -35,7 +50,13 @@ pub fn compare_runs(model: &Model, run: &Recording, again: &Recording) -> Result
     }
     let times: Vec<f64> = run.time.iter().map(|time| time - shift).collect();
     let aligned = again.interpolated(&times);
-    Ok(Repeat { comparison: beside(model, run, aligned)?, shift })
+    Ok(Repeat { comparison: beside(model, run, aligned)?, shift, command_error })
+}
+
+/// Value at a time; `NaN` outside.
+fn inside((time, values): &(Vec<f64>, Vec<f64>), at: f64) -> f64 {
+    let range = time.first().copied().unwrap_or(0.0)..=time.last().copied().unwrap_or(0.0);
+    if range.contains(&at) { linear(time, values, at) } else { f64::NAN }
 }
 
 /// Time and what drives the first cylinder: its opening, or its displacement where the model has no valve.
@@ -53,7 +74,7 @@ fn alignment(first: &(Vec<f64>, Vec<f64>), second: &(Vec<f64>, Vec<f64>)) -> f64
     let duration = |signal: &(Vec<f64>, Vec<f64>)| signal.0.last().copied().unwrap_or(0.0);
     let shorter = duration(first).min(duration(second));
     let step = duration(first).max(duration(second)) / GRID as f64;
-    if step <= 0.0 {
+    if shorter <= 0.0 || step <= 0.0 {
         return 0.0;
     }
     let most = (1.0 - LEAST_OVERLAP) * shorter;
@@ -72,17 +93,13 @@ fn alignment(first: &(Vec<f64>, Vec<f64>), second: &(Vec<f64>, Vec<f64>)) -> f64
 /// Mean squared difference where both runs are; infinite where they hardly meet.
 fn distance(first: &(Vec<f64>, Vec<f64>), second: &(Vec<f64>, Vec<f64>), shift: f64) -> f64 {
     let (time, values) = first;
-    let range = second.0.first().copied().unwrap_or(0.0)..=second.0.last().copied().unwrap_or(0.0);
     let stride = time.len().div_ceil(GRID).max(1);
     let (mut sum, mut count) = (0.0, 0_usize);
     for (&at, &value) in time.iter().zip(values).step_by(stride) {
-        let there = at - shift;
-        if range.contains(&there) {
-            let difference = value - linear(&second.0, &second.1, there);
-            if difference.is_finite() {
-                sum += difference * difference;
-                count += 1;
-            }
+        let difference = value - inside(second, at - shift);
+        if difference.is_finite() {
+            sum += difference * difference;
+            count += 1;
         }
     }
     let enough = (LEAST_OVERLAP * time.len().min(second.0.len()) as f64 / stride as f64) as usize;

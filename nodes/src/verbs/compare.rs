@@ -27,8 +27,7 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
     let again =
         arguments.repeat.as_deref().map(|bag| sources::recording(bag, &arguments.mapping, &model)).transpose()?;
     let again = again.map(|again| compare_runs(&model, &recording, &again)).transpose()?;
-    let others: Vec<Beside<'_>> =
-        (against.iter().map(Beside::Model)).chain(again.iter().map(|again| Beside::Run(&again.comparison))).collect();
+    let others: Vec<Beside<'_>> = (against.iter().map(Beside::Model)).chain(again.iter().map(Beside::Run)).collect();
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         print(&comparison_sentence(&comparison, &baselines));
         others.iter().for_each(|other| print(&others_sentence(&comparison, *other)));
