@@ -7,8 +7,8 @@ use super::svg::{Frame, picture, range_of};
 use crate::characterisation::{ClosedValve, DeadZone, Direction, DirectionalGain, Edge, FrictionCurve, Polynomial};
 
 /// Pairs of colours that people with any colour vision tell apart: from closed and from the edge, opening and closing.
-const FIRST: &str = "#0072b2";
-const SECOND: &str = "#d55e00";
+const FIRST: &str = "var(--blue)";
+const SECOND: &str = "var(--orange)";
 /// Points of a curve.
 const POINTS: usize = 60;
 const SIZE: (f64, f64) = (265.0, 205.0);

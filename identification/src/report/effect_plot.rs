@@ -9,9 +9,9 @@ use super::svg::{Frame, picture, range_of};
 use super::words;
 use crate::diagnosis::{Contribution, ContributionBin, Drawn};
 
-const DATA: &str = "#7b4a9a";
-const EFFECT: &str = "#c2571a";
-const NOMINAL: &str = "#8a949c";
+const DATA: &str = "var(--purple)";
+const EFFECT: &str = "var(--brown)";
+const NOMINAL: &str = "var(--grey)";
 
 /// Data, the fitted law and the model without the effect, in the axes of a textbook.
 pub(super) fn effect_plot(machine: &Machine, shown: &Contribution) -> Markup {

@@ -11,11 +11,11 @@ use super::sankey::{Node, Ribbon, sankey};
 use super::words;
 use crate::energy::Totals;
 
-const SOURCE: &str = "#0072b2";
-const LOSS: &str = "#d55e00";
-const CYLINDER: &str = "#009e73";
-const STORED: &str = "#56a0d3";
-const UNEXPLAINED: &str = "#7b4a9a";
+const SOURCE: &str = "var(--blue)";
+const LOSS: &str = "var(--orange)";
+const CYLINDER: &str = "var(--green)";
+const STORED: &str = "var(--sky)";
+const UNEXPLAINED: &str = "var(--purple)";
 
 /// Parts below this share of everything are left out of the picture; the table has them.
 const SMALLEST: f64 = 5e-4;

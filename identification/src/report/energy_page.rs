@@ -13,10 +13,10 @@ use super::units;
 use super::words;
 use crate::energy::{CylinderTraces, EnergyAnalysis, missing_power};
 
-const EXPERIMENTAL: &str = "#2b2f33";
-const NUMERICAL: &str = "#d55e00";
-const ANALYTICAL: &str = "#009e73";
-const PARTS: [&str; 5] = ["#2b2f33", "#0072b2", "#009e73", "#d55e00", "#cc79a7"];
+const EXPERIMENTAL: &str = "var(--ink)";
+const NUMERICAL: &str = "var(--orange)";
+const ANALYTICAL: &str = "var(--green)";
+const PARTS: [&str; 5] = ["var(--ink)", "var(--blue)", "var(--green)", "var(--orange)", "var(--pink)"];
 
 /// Points of all lines of the page.
 const POINTS_OF_A_PAGE: usize = 50_000;
@@ -195,7 +195,7 @@ fn residual_plots(model: &Model, analysis: &EnergyAnalysis) -> Markup {
         @let plot = PowerPlot { group: "ledger", label: "missing", unit: "W", height: 140, last: index + 1 == analysis.places.len(), budget: 1200 };
         h3 { (words::equation(&label)) }
         (plot.markup(&time, &[
-            PowerLine { label: "explained by noise", colour: "#0072b2", width: 1.0, dashed: false, values: &zero, errors: Some(&half) },
+            PowerLine { label: "explained by noise", colour: "var(--blue)", width: 1.0, dashed: false, values: &zero, errors: Some(&half) },
             line("stored without explanation", EXPERIMENTAL, false, &residual),
         ]))
     } }

@@ -5,8 +5,8 @@ use maud::{Markup, html};
 use super::svg::{Frame, picture, range_of};
 use crate::proposal::Proposals;
 
-const DOT: &str = "#7b4a9a";
-const LINE: &str = "#c2571a";
+const DOT: &str = "var(--purple)";
+const LINE: &str = "var(--brown)";
 
 /// Each proposal by its number of parameters and its error, which is drawn by its logarithm; the given model has none.
 pub(super) fn frontier_plot(found: &Proposals) -> Markup {

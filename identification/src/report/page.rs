@@ -34,6 +34,7 @@ pub(super) fn page(kind: &str, title: &str, lead: &Markup, sections: &[Section])
             body {
                 main {
                     header {
+                        button.scheme type="button" hidden { "Light or dark" }
                         p.kind { (kind) }
                         h1 { (title) }
                         (lead)

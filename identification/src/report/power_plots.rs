@@ -55,11 +55,10 @@ impl PowerPlot<'_> {
                     line.values.iter().zip(errors).map(|(value, error)| value + side * SIDES_95 * error).collect()
                 };
                 let number = series.len();
-                let fill = format!("{}33", line.colour);
-                bands.push(format!(r#"{{"high":{number},"low":{},"fill":"{fill}"}}"#, number + 1));
+                bands.push(format!(r#"{{"high":{number},"low":{},"fill":"{}"}}"#, number + 1, line.colour));
                 for (side, label) in [(1.0, "95 %, upper"), (-1.0, "95 %, lower")] {
                     let label = format!("{} {label}", line.label);
-                    series.push(one(&label, "#00000000", 0.0, r#","edge":true"#, &edge(side), &kept));
+                    series.push(one(&label, "transparent", 0.0, r#","edge":true"#, &edge(side), &kept));
                 }
             }
             let style = if line.dashed { r#","dash":[6,3]"# } else { "" };
@@ -68,17 +67,18 @@ impl PowerPlot<'_> {
         let seconds: Vec<String> =
             kept.iter().filter_map(|&index| time.get(index)).map(|t| shortest(&format!("{t:.4}"))).collect();
         let json = format!(
-            r#"{{"group":{},"label":{},"unit":{},"height":{},"last":{},"time":[{}],"bands":[{}],"series":[{}]}}"#,
+            r#"{{"group":{},"label":{},"unit":{},"height":{},"last":{},"gaps":{:?},"time":[{}],"bands":[{}],"series":[{}]}}"#,
             text(self.group),
             text(self.label),
             text(self.unit),
             self.height,
             self.last,
+            thinning::gaps(time, &kept),
             seconds.join(","),
             bands.join(","),
             series.join(",")
         );
-        html! { div.time-plot { script type="application/json" { (PreEscaped(json)) } } }
+        html! { div.time-plot role="group" aria-label=(format!("{} over time", self.label)) { script type="application/json" { (PreEscaped(json)) } } }
     }
 }
 

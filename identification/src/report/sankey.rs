@@ -96,8 +96,8 @@ pub(super) fn sankey(nodes: &[Node], ribbons: &[Ribbon], description: &str) -> M
             @if sizes[index] > 0.0 {
                 @let (x, y, tall) = (left(index), tops[index], (sizes[index] * scale).max(1.0));
                 rect x=(short(x)) y=(short(y)) width=(BAR) height=(short(tall)) fill=(node.colour) {}
-                text.label x=(short(x + BAR + 7.0)) y=(short(y + 0.5 * tall.max(8.0) - 1.0)) { (node.label) }
-                text x=(short(x + BAR + 7.0)) y=(short(y + 0.5 * tall.max(8.0) + 12.0)) { (node.amount) }
+                text.label.on-flow x=(short(x + BAR + 7.0)) y=(short(y + 0.5 * tall.max(8.0) - 1.0)) { (node.label) }
+                text.on-flow x=(short(x + BAR + 7.0)) y=(short(y + 0.5 * tall.max(8.0) + 12.0)) { (node.amount) }
             }
         }
     };

@@ -153,7 +153,7 @@ impl Stages {
     pub fn table(&self) -> Markup {
         html! {
             div.wide { table.data {
-                thead { tr { th { "NMSE on validation" } @for name in &self.names { th.n { (name) } } th.n { "first / last" } } }
+                thead { tr { th { "NMSE on validation" } @for name in &self.names { th.n { (name) } } } }
                 tbody {
                     @for (name, errors) in &self.signals {
                         tr { td { (words::signal(name)) " " code.code-name { (name) } } (error_cells(errors)) }
@@ -166,15 +166,10 @@ impl Stages {
 }
 
 fn error_cells(errors: &[f64]) -> Markup {
-    let falls = match errors {
-        [first, .., last] => super::numbers::ratio(first / last),
-        _ => NOTHING.to_string(),
-    };
     html! {
         @for (index, error) in errors.iter().enumerate() {
             td.n.final[index + 1 == errors.len()] { (significant(*error, 3)) }
         }
-        td.n { (falls) }
     }
 }
 

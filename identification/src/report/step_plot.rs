@@ -7,7 +7,16 @@ use super::svg::{Frame, picture, short};
 use super::words;
 
 /// Colours that people with any colour vision tell apart (Okabe and Ito), darkest first.
-const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b07d00", "#3a97cf", "#7b4a9a", "#6b7680"];
+const COLOURS: [&str; 8] = [
+    "var(--blue)",
+    "var(--orange)",
+    "var(--green)",
+    "var(--pink)",
+    "var(--gold)",
+    "var(--sky)",
+    "var(--purple)",
+    "var(--slate)",
+];
 
 /// Least distance between two labels, px.
 const LABEL_HEIGHT: f64 = 15.0;
@@ -80,7 +89,7 @@ fn label_heights(stages: &Stages, frame: &Frame) -> Vec<(usize, f64)> {
 }
 
 fn colour(number: usize) -> &'static str {
-    COLOURS.get(number % COLOURS.len()).copied().unwrap_or("#2b2f33")
+    COLOURS.get(number % COLOURS.len()).copied().unwrap_or("var(--ink)")
 }
 
 fn marker(number: usize, x: f64, y: f64) -> Markup {

@@ -122,15 +122,19 @@ fn ticks(range: (f64, f64), wanted: usize) -> Vec<f64> {
     (first..=last).take(4 * wanted).map(|index| index as f64 * step).collect()
 }
 
+/// A round step with about `wanted` ticks in the range, and two at least.
 fn tick_step(range: (f64, f64), wanted: usize) -> f64 {
     let rough = (range.1 - range.0) / wanted as f64;
     let power = 10_f64.powf(rough.log10().floor());
-    match rough / power {
+    let usual = match rough / power {
         ratio if ratio <= 1.0 => power,
         ratio if ratio <= 2.0 => 2.0 * power,
         ratio if ratio <= 5.0 => 5.0 * power,
         _ => 10.0 * power,
-    }
+    };
+    let count = |step: f64| (range.1 / step).floor() - (range.0 / step).ceil() + 1.0;
+    let steps = [10.0, 5.0, 2.0, 1.0, 0.5].map(|factor| factor * power);
+    steps.into_iter().find(|&step| step <= usual && count(step) >= 2.0).unwrap_or(usual)
 }
 
 fn tick_text(tick: f64, range: (f64, f64)) -> String {

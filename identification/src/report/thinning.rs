@@ -1,5 +1,10 @@
 //! Fewer points for a plot, without losing what stands out.
 
+use excavator_model::recording::median_interval;
+
+/// Sampling intervals without a sample from which on a line is torn.
+const TORN: f64 = 10.0;
+
 /// Indices of at most about `budget` samples that keep the extremes of every series: the time axis is cut into equal
 /// runs, and of each run the samples where a series is least and greatest stay.
 pub(super) fn indices(series: &[&[f64]], samples: usize, budget: usize) -> Vec<usize> {
@@ -26,9 +31,31 @@ pub(super) fn indices(series: &[&[f64]], samples: usize, budget: usize) -> Vec<u
     kept
 }
 
+/// Places in `kept` after which the clock has a gap, where a line must end.
+pub(super) fn gaps(time: &[f64], kept: &[usize]) -> Vec<usize> {
+    let longest = TORN * median_interval(time);
+    let mut before = Vec::with_capacity(time.len());
+    let mut count = 0_usize;
+    for index in 0..time.len() {
+        count += usize::from(index > 0 && time[index] - time[index - 1] > longest);
+        before.push(count);
+    }
+    let at = |index: usize| before.get(index).copied().unwrap_or(count);
+    let pairs = kept.windows(2).enumerate().filter(|(_, pair)| at(pair[1]) > at(pair[0]));
+    pairs.map(|(place, _)| place).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_gap_of_the_clock_is_found_between_kept_samples() {
+        let time: Vec<f64> = (0..100).map(|k| 0.01 * k as f64 + if k >= 50 { 3.0 } else { 0.0 }).collect();
+        assert_eq!(gaps(&time, &[0, 30, 49, 50, 99]), vec![2]);
+        assert_eq!(gaps(&time, &[0, 40, 70, 99]), vec![1]);
+        assert!(gaps(&time[..50], &[0, 20, 49]).is_empty());
+    }
 
     #[test]
     fn extremes_and_gaps_survive() {

@@ -29,17 +29,17 @@ pub(super) struct Line {
 }
 
 /// The only or the final model.
-pub(super) const MODEL: Line = Line { label: "model", colour: "#0072b2", dashed: false };
+pub(super) const MODEL: Line = Line { label: "model", colour: "var(--blue)", dashed: false };
 /// The model before effects were added.
-pub(super) const BEFORE: Line = Line { label: "before", colour: "#d55e00", dashed: true };
+pub(super) const BEFORE: Line = Line { label: "before", colour: "var(--orange)", dashed: true };
 /// The model with all effects.
-pub(super) const AFTER: Line = Line { label: "after", colour: "#0072b2", dashed: false };
+pub(super) const AFTER: Line = Line { label: "after", colour: "var(--blue)", dashed: false };
 /// A second model beside the first.
-pub(super) const OTHER_MODEL: Line = Line { label: "other model", colour: "#d55e00", dashed: true };
+pub(super) const OTHER_MODEL: Line = Line { label: "other model", colour: "var(--orange)", dashed: true };
 /// A second run of the machine.
-pub(super) const SECOND_RUN: Line = Line { label: "second run", colour: "#7b4a9a", dashed: true };
+pub(super) const SECOND_RUN: Line = Line { label: "second run", colour: "var(--purple)", dashed: true };
 /// The measurement.
-const MEASURED: Line = Line { label: "measured", colour: "#9aa4ad", dashed: false };
+const MEASURED: Line = Line { label: "measured", colour: "var(--measured)", dashed: false };
 
 /// Width of the measured line, px: it lies under the models and must show on both sides of them.
 const MEASURED_WIDTH: f64 = 4.0;
@@ -49,7 +49,7 @@ const MODEL_WIDTH: f64 = 1.4;
 
 /// How to use the plots.
 pub(super) fn hint() -> Markup {
-    html! { p.hint { "Drag across a plot to zoom, double-click to zoom out; all plots of one recording move together. Click a name under a plot to hide its line." } }
+    html! { p.hint { "Drag across a plot to zoom, double-click to zoom out; all plots of one recording move together. Click a name under a plot to hide its line. With the keyboard: Tab to a plot, arrows move the cursor, + and − zoom, 0 shows everything." } }
 }
 
 /// Plots of all signals of one recording under one or more models. `number` tells recordings of a page apart, of which
@@ -139,16 +139,17 @@ impl Plot<'_> {
         let seconds: Vec<String> =
             kept.iter().filter_map(|&index| time.get(index)).map(|t| shortest(&format!("{t:.4}"))).collect();
         let json = format!(
-            r#"{{"group":{},"label":{},"unit":{},"height":{},"last":{},"time":[{}],"series":[{}]}}"#,
+            r#"{{"group":{},"label":{},"unit":{},"height":{},"last":{},"gaps":{:?},"time":[{}],"series":[{}]}}"#,
             text(self.group),
             text(self.label),
             text(self.unit.symbol),
             self.height,
             self.last,
+            thinning::gaps(time, kept),
             seconds.join(","),
             series.join(",")
         );
-        html! { div.time-plot { script type="application/json" { (PreEscaped(json)) } } }
+        html! { div.time-plot role="group" aria-label=(format!("{} over time", self.label)) { script type="application/json" { (PreEscaped(json)) } } }
     }
 }
 

@@ -32,9 +32,9 @@ pub(super) fn unexplained_plot(machine: &Machine, left: &Unexplained) -> Markup 
     let y_label = format!("residual ({})", y_unit.symbol);
     let content = html! {
         (frame.axes(&x_label, &y_label))
-        (frame.band(&band, "#7b4a9a"))
-        (frame.line(&line, "#7b4a9a", false))
-        @for (x, y) in &line { circle cx=(frame.at_x(*x)) cy=(frame.at_y(*y)) r="2.6" fill="#7b4a9a" {} }
+        (frame.band(&band, "var(--purple)"))
+        (frame.line(&line, "var(--purple)", false))
+        @for (x, y) in &line { circle cx=(frame.at_x(*x)) cy=(frame.at_y(*y)) r="2.6" fill="var(--purple)" {} }
     };
     html! {
         p {

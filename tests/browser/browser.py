@@ -2,8 +2,12 @@
 
 import json
 import os
+import select
 import subprocess
 import time
+
+# A reply that takes longer never comes, s.
+PATIENCE = 60.0
 
 
 class Browser:
@@ -67,9 +71,24 @@ class Browser:
         self._ask("HeapProfiler.collectGarbage")
         return self._ask("Runtime.getHeapUsage")["usedSize"]
 
-    def picture(self):
-        """PNG of the page, base64."""
-        return self._ask("Page.captureScreenshot")["data"]
+    def picture(self, whole=False):
+        """PNG of the page, base64; of all of it, or of what the window shows."""
+        return self._ask("Page.captureScreenshot", captureBeyondViewport=whole)["data"]
+
+    def screen(self, width, height, scheme="light"):
+        """A window of this size, on a system with a light or dark scheme."""
+        self._ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self._ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+
+    def press(self, key):
+        """A key, as the keyboard sends it."""
+        for kind in ("keyDown", "keyUp"):
+            text = key if kind == "keyDown" and len(key) == 1 else ""
+            self._ask("Input.dispatchKeyEvent", type=kind, key=key, text=text)
+
+    def print_to_pdf(self):
+        """The page as it is printed, base64."""
+        return self._ask("Page.printToPDF")["data"]
 
     def _ask(self, method, **parameters):
         self._number += 1
@@ -87,6 +106,7 @@ class Browser:
 
     def _receive(self):
         while b"\0" not in self._rest:
+            assert select.select([self._read], [], [], PATIENCE)[0], f"the browser says nothing for {PATIENCE} s"
             more = os.read(self._read, 1 << 16)
             assert more, "the browser has ended"
             self._rest += more
