@@ -21,9 +21,14 @@ fn stored(path: &str) -> String {
 }
 
 #[test]
-fn reference_page_and_schema_are_those_of_the_program() {
-    for (verb, path) in [("reference", "docs/model-file.md"), ("schema", "config/model.schema.json")] {
-        assert!(printed(&["model", verb]) == stored(path), "write {path} anew: excavator model {verb} > {path}");
+fn generated_pages_are_those_of_the_program() {
+    for (words, path) in [
+        (["model", "reference"], "docs/model-file.md"),
+        (["model", "schema"], "config/model.schema.json"),
+        (["manual", "verbs"], "docs/verbs.md"),
+        (["manual", "parameters"], "docs/parameters.md"),
+    ] {
+        assert!(printed(&words) == stored(path), "write {path} anew: excavator {} > {path}", words.join(" "));
     }
 }
 

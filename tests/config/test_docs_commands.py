@@ -62,7 +62,8 @@ def commands(page):
     return found
 
 
-ALL = [(page, words) for page in sorted(DOCS.glob("*.md")) for words in commands(page)]
+# The page of the verbs has usages, and is compared with the program elsewhere.
+ALL = [(page, words) for page in sorted(DOCS.glob("*.md")) if page.name != "verbs.md" for words in commands(page)]
 
 
 def test_there_are_commands():
