@@ -38,6 +38,21 @@ fn everything_at_1_khz_is_recorded_and_balanced() {
 }
 
 #[test]
+fn a_demo_moves_by_itself_and_shows_itself() {
+    let Some(network) = Network::new("demo") else { return };
+    let (_keep, folder) = folder();
+    let bag = folder.join("bag");
+    let up = network.start(&["up", "--demo", "-o", bag.to_str().unwrap(), "-d", "12"]);
+    let (status, log) = up.wait(std::time::Duration::from_secs(60));
+    assert_eq!(status, 0, "{log}");
+    assert!(log.contains("dashboard: http://127.0.0.1:"), "{log}");
+    let states: Vec<ArmState> = messages(&bag, "/arm/state").into_iter().map(|(_, state)| state).collect();
+    let positions = states.iter().map(|state| state.cylinders[0].displacement);
+    let (least, most) = positions.fold((f64::MAX, f64::MIN), |(low, high), at| (low.min(at), high.max(at)));
+    assert!(most - least > 0.02, "{} m in {} states: {log}", most - least, states.len());
+}
+
+#[test]
 fn what_is_played_is_what_was_recorded() {
     let Some(network) = Network::new("play") else { return };
     let (_keep, folder) = folder();

@@ -74,6 +74,10 @@ pub(super) fn sankey(nodes: &[Node], ribbons: &[Ribbon], description: &str) -> M
         let y1 = tops[ribbon.to] + arriving[ribbon.to] + 0.5 * width;
         leaving[ribbon.from] += width;
         arriving[ribbon.to] += width;
+        // What stands above another node of its column joins it by that alone.
+        if nodes[ribbon.from].column == nodes[ribbon.to].column {
+            continue;
+        }
         let middle = 0.5 * (x0 + x1);
         let _ = write!(
             drawing,

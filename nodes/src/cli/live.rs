@@ -78,6 +78,12 @@ pub struct RecordArguments {
 
 #[derive(Debug, Args)]
 pub struct UpArguments {
+    /// Move every cylinder by itself, and show the dashboard.
+    #[arg(long)]
+    pub demo: bool,
+    /// Show the dashboard at this port of this computer; 0: any that is free.
+    #[arg(long, num_args = 0..=1, default_missing_value = "8050", value_name = "PORT")]
+    pub dashboard: Option<u16>,
     /// Bag to write [default: rosbag2_ and the time].
     #[arg(short, long, value_name = "BAG")]
     pub output: Option<PathBuf>,

@@ -1,6 +1,9 @@
-//! `excavator up`: simulator, energy monitor and recorder in one command, each in a process of its own.
+//! `excavator up`: simulator, energy monitor and recorder in one command, each in a process of its own; with a dashboard and a
+//! motion where they are asked for.
 //!
 //! Processes, not threads: a process has one participant and one node, and one of them can fail without the others.
+
+mod motion;
 
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command};
@@ -11,10 +14,17 @@ use nix::unistd::Pid;
 
 use crate::cli::UpArguments;
 use crate::error::VerbError;
+use crate::verbs::print;
+use motion::Motion;
+
 use excavator_ros::{Environment, RosArguments, Signals, end_with_this_process};
 
 /// Time that a part has to end in good order.
 const FAREWELL: Duration = Duration::from_secs(10);
+/// Of the dashboard, where none was asked for by its number: two machines on one computer do not collide.
+const ANY_PORT: u16 = 0;
+/// Model of a simulator that is told none.
+const DEFAULT_MODEL: &str = "zx30u-arm";
 /// Pace of looking whether a part has ended.
 const GLANCE: Duration = Duration::from_millis(100);
 
@@ -28,13 +38,21 @@ pub fn run(arguments: &UpArguments, ros_words: &[String]) -> Result<(), VerbErro
     Environment::read(ros.enclave.as_deref())?;
     let signals = Signals::block()?;
     let program = std::env::current_exe()?;
+    let motion = arguments.demo.then(|| Motion::of(&program, &model_of(&ros))).transpose()?;
     let mut parts = Vec::new();
-    let outcome = start(&program, arguments, ros_words, &mut parts)
+    let outcome = start(&program, arguments, motion.as_ref(), ros_words, &mut parts)
         .and_then(|()| watch(&signals, arguments.duration, &mut parts));
     // The recorder last, so that it hears the end of the others.
     let ends: Vec<Result<(), VerbError>> = parts.iter_mut().rev().map(Part::end).collect();
     outcome?;
     ends.into_iter().collect()
+}
+
+/// The model that the simulator is told to be.
+fn model_of(ros: &RosArguments) -> String {
+    let given = ros.parameters.iter().rev().find(|given| given.name == "model");
+    let named = given.and_then(|given| given.value.as_text()).filter(|name| !name.is_empty());
+    named.unwrap_or(DEFAULT_MODEL).to_string()
 }
 
 struct Part {
@@ -45,6 +63,7 @@ struct Part {
 fn start(
     program: &std::path::Path,
     arguments: &UpArguments,
+    motion: Option<&Motion>,
     ros_words: &[String],
     parts: &mut Vec<Part>,
 ) -> Result<(), VerbError> {
@@ -63,8 +82,19 @@ fn start(
         }
         spawn("recorder", words)?;
     }
+    // With a motion there is something to see.
+    if let Some(port) = arguments.dashboard.or(motion.map(|_| ANY_PORT)) {
+        spawn("dashboard", vec!["dashboard".into(), "--port".into(), port.to_string().into()])?;
+    }
     spawn("energy monitor", vec!["node".into(), "energy-monitor".into()])?;
-    spawn("arm simulator", vec!["node".into(), "arm-simulator".into()])
+    spawn("arm simulator", vec!["node".into(), "arm-simulator".into()])?;
+    match motion {
+        Some(motion) => spawn("player", motion.words()),
+        None => {
+            print("The arm obeys arm/orifice_command. `excavator up --demo` moves it by itself.");
+            Ok(())
+        }
+    }
 }
 
 /// Waits for the end; says which part ended first and how.
