@@ -62,6 +62,14 @@ class Browser:
             assert time.monotonic() < end, f"waited {timeout} s in vain for {what}"
             time.sleep(0.1)
 
+    def show_as(self, width, height, scheme="light"):
+        """Sets the size of the screen and the colour scheme of the system."""
+        self._ask(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 500
+        )
+        feature = {"name": "prefers-color-scheme", "value": scheme}
+        self._ask("Emulation.setEmulatedMedia", features=[feature])
+
     def heap(self):
         """Bytes of JavaScript that are in use after collecting what is not."""
         self._ask("HeapProfiler.collectGarbage")
