@@ -4,11 +4,11 @@ const commands = (function () {
   let shown = "";
 
   /** [kind, word, reason] of the whole machine. */
-  function situation(frame, chosen, lost) {
-    const gates = frame.gates || [];
+  function situation(frame, chosen, lost, isCut) {
+    const gates = frame.gates || [], stopping = gates.find(function (gate) { return gate.stopped_by; });
+    // A gate speaks of a stop also where no state is published.
+    if (stopping && !isCut) return ["stopped", "STOPPED", "by " + stopping.stopped_by];
     if (lost) return ["unknown", "NO DATA", lost];
-    const stopping = gates.find(function (gate) { return gate.stopped_by; });
-    if (stopping) return ["stopped", "STOPPED", "by " + stopping.stopped_by];
     if (!gates.length) return ["unknown", "UNKNOWN", "no node reports who commands the valves"];
     const all = valvesOf(frame), own = all.find(function (valve) { return valve.name === chosen; });
     if (own && own.closed_because) return ["closed", "VALVE CLOSED", "it opens again after a command of 0"];
@@ -29,8 +29,8 @@ const commands = (function () {
     return Array.from(found.values());
   }
 
-  function show(frame, chosen, lost) {
-    const now = situation(frame, chosen, lost), valves = valvesOf(frame);
+  function show(frame, chosen, lost, isCut) {
+    const now = situation(frame, chosen, lost, isCut), valves = valvesOf(frame);
     const own = valves.find(function (valve) { return valve.name === chosen; });
     byId("state").className = now[0];
     say(byId("state-word"), now[1]);

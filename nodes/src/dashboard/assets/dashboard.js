@@ -75,10 +75,13 @@ function reload() {
   }).catch(function () {});
 }
 
+/** Whether no frames come. */
+function isCut() { return !isLive || performance.now() - heardAt > LOST; }
+
 /** Why the values are not those of now, or nothing. */
 function lostBecause() {
   if (!isLive) return "no connection to the dashboard's server";
-  if (performance.now() - heardAt > LOST) return "the dashboard's server is silent";
+  if (isCut()) return "the dashboard's server is silent";
   if (!latest || latest.state_age === null) return "no state was received on arm/state";
   return latest.state_age > 2 ? "last state " + fixed(latest.state_age, 0) + " s ago" : "";
 }
@@ -100,7 +103,7 @@ function write() {
   say(byId("clock"), timeOfDay(Date.now()));
   if (!latest) return;
   store.load(latest.machine, function () { say(byId("name"), picture.name() || "excavator"); if (chosen !== null) reload().then(function () { change(chosen); }); });
-  commands.show(latest, chosen, lost);
+  commands.show(latest, chosen, lost, isCut());
   values.show(latest, chosen);
   energy.show(chosen);
   alarms.show();

@@ -120,9 +120,12 @@ const energy = (function () {
     if (!means.length) { drawRows(byId("flow"), [], 1); return; }
     const pump = mean(function (p) { return p.pump_power; });
     const rows = [["pump", pump, "supply"], ["bypass loss", mean(function (p) { return p.bypass_loss; }), "dissipation"], ["metering loss", mean(function (p) { return p.metering_loss; }), "dissipation"]];
-    Object.keys(means[means.length - 1].cylinders).forEach(function (name) { rows.push(["into cylinder " + name, meanOf(name, "supply"), "stored"]); });
+    Object.keys(means[means.length - 1].cylinders).forEach(function (name) {
+      const power = meanOf(name, "supply");
+      rows.push([(power < 0 ? "from cylinder " : "into cylinder ") + name, power, power < 0 ? "supply" : "stored"]);
+    });
     const whole = rows.reduce(function (most, row) { return Math.max(most, Math.abs(row[1] || 0)); }, 1e-9);
-    rows.forEach(function (row) { row.push(fixed(times(row[1], 1e-3), 2) + " kW"); });
+    rows.forEach(function (row, index) { row.push(fixed(times(index > 2 ? Math.abs(row[1]) : row[1], 1e-3), 2) + " kW"); });
     drawRows(byId("flow"), rows, whole);
   }
 
