@@ -62,7 +62,7 @@ fn the_page_carries_everything_and_asks_nobody_else() {
     let (_, address) = server();
     let page = read_until(&mut get(address, "/"), "</html>");
     assert!(page.starts_with("HTTP/1.1 200") && page.contains("text/html"));
-    for part in ["uPlot", "EventSource", "id=\"flow\"", "id=\"alarms\"", "Permission is hereby granted"] {
+    for part in ["uPlot", "EventSource", "id=\"picture\"", "id=\"alarms\"", "Permission is hereby granted"] {
         assert!(page.contains(part), "{part}");
     }
     assert!(!page.contains("/*SCRIPT*/") && !page.contains("<link") && !page.contains("src="));

@@ -6,6 +6,7 @@ Seconds by default; EXCAVATOR_LONG=1 watches for a minute. EXCAVATOR_PICTURES=FO
 import base64
 import os
 import random
+import re
 import signal
 import socket
 import subprocess
@@ -87,6 +88,49 @@ def wait_for_page(address):
             time.sleep(0.1)
 
 
+def text(browser, name):
+    return browser.value(f"document.getElementById('{name}').textContent")
+
+
+def check_machine(browser):
+    """The arm moves in the picture, the stroke is known, and the page says who commands the valve."""
+    browser.wait_for("document.querySelector('#picture .link.chosen') !== null", "the picture of the arm")
+    points = "document.querySelector('#picture .link.chosen').getAttribute('points')"
+    before = browser.value(points)
+    browser.wait_for(f"{points} !== {before!r}", "a motion in the picture", timeout=10)
+    assert browser.value("document.querySelector('#picture .link.assumed') === null"), "the joint angle is measured"
+    browser.wait_for("document.getElementById('joints').textContent.startsWith('Joint arm: ')", "the joint angle")
+    assert "300 mm" in text(browser, "stroke")
+    browser.wait_for("document.getElementById('state').className === 'commanded'", "the state of the machine")
+    assert "commanded by /" in text(browser, "valve-owner"), text(browser, "valve-owner")
+    assert "commanded by" in text(browser, "valves-box") and "priority" in text(browser, "valves")
+
+
+def check_alarms(browser):
+    """Each alarm has the time at which it came first."""
+    browser.wait_for("document.querySelectorAll('.alarm').length > 0", "an alarm")
+    when = browser.value("document.querySelector('.alarm .when').textContent")
+    assert re.match(r"(before )?\d\d:\d\d:\d\d (warning|error), (active|cleared after)", when), when
+
+
+def check_colours_and_sizes(browser):
+    """The scheme of the system decides about colours, the button overrules it, and no size scrolls sideways."""
+    ground = "getComputedStyle(document.body).backgroundColor"
+    seen = {}
+    for scheme in ("dark", "light"):
+        for width, height in ((390, 844), (1280, 800), (1920, 1080)):
+            browser.screen(width, height, scheme)
+            browser.wait_for(f"innerWidth === {width} && dashboard.theme() === '{scheme}'", f"{width} px, {scheme}")
+            wide = browser.value("document.documentElement.scrollWidth")
+            assert wide <= width, f"the page is {wide} px wide on {width} px"
+        seen[scheme] = browser.value(ground)
+    assert seen["dark"] != seen["light"], seen
+    browser.value("document.getElementById('theme').click()")
+    assert browser.value("dashboard.theme()") == "dark" and browser.value(ground) == seen["dark"]
+    browser.value("document.getElementById('theme').click()")
+    browser.screen(1400, 1000)
+
+
 def test_plots_move_alarms_show_and_nothing_grows(machine, chromium, tmp_path):
     address, processes = machine
     page = wait_for_page(address)
@@ -98,8 +142,11 @@ def test_plots_move_alarms_show_and_nothing_grows(machine, chromium, tmp_path):
     with sleeper, Browser(chromium, tmp_path / "browser") as browser:
         browser.open(address)
         browser.wait_for("window.dashboard && dashboard.points() > 50", "the first two seconds of plots")
-        browser.wait_for("document.querySelectorAll('.alarm').length > 0", "the alarm of the energy monitor")
-        assert "does not explain" in browser.value("document.getElementById('alarms').textContent")
+        says = "document.getElementById('alarms').textContent.includes('does not explain')"
+        browser.wait_for(says, "the alarm of the energy monitor")
+        check_machine(browser)
+        check_alarms(browser)
+        check_colours_and_sizes(browser)
 
         # full plots, so that only what leaks still grows; then the time that is watched
         settled = 32.0 if os.environ.get("EXCAVATOR_LONG") else 4.0
@@ -125,8 +172,8 @@ def test_plots_move_alarms_show_and_nothing_grows(machine, chromium, tmp_path):
             assert all(value is not None for value in other), after["last"]
             assert one[1] != other[1], "a plot stands still"
         assert browser.value("dashboard.points()") <= 750
-        assert browser.value("document.querySelectorAll('#flow path').length") >= 3
-        assert browser.value("document.querySelectorAll('#terms tr').length") >= 3
+        assert browser.value("document.querySelectorAll('#flow .row').length") >= 3
+        assert browser.value("document.querySelectorAll('#terms .row').length") >= 3
         states = browser.value("parseInt(document.getElementById('rate').textContent)")
         assert states > 500, f"{states} states per second"
         # in the short test plots and the history of the server are still filling
@@ -137,4 +184,5 @@ def test_plots_move_alarms_show_and_nothing_grows(machine, chromium, tmp_path):
         processes["simulator"].send_signal(signal.SIGINT)
         processes["simulator"].wait(10)
         browser.wait_for("document.getElementById('alarms').textContent.includes('no states')", "the alarm of silence")
+        browser.wait_for("document.getElementById('state-word').textContent === 'NO DATA'", "old values that look old")
         assert browser.errors == []

@@ -14,6 +14,7 @@ use super::report::Report;
 use super::slew::Wanted;
 use super::source::Source;
 use super::stamp::StampLimits;
+use super::words::{CLOSED_BECAUSE, COMMAND_AGE, COMMANDED_BY, STOPPED_BY};
 use super::writer::{AllowList, Writer};
 use excavator_ros::{
     Diagnostics, Health, Logger, Parameters, Peers, RosError, Supervisor, TopicQos, system_nanoseconds,
@@ -184,11 +185,11 @@ impl Desk {
         let mut values = Vec::new();
         let mut closed = None;
         for valve in &status {
-            values.push((format!("{}: commanded by", valve.name), valve.owner.clone().unwrap_or_else(|| "-".into())));
+            values.push((format!("{}{COMMANDED_BY}", valve.name), valve.owner.clone().unwrap_or_else(|| "-".into())));
             let age = valve.age.map_or("-".into(), |age| format!("{:.3}", age.as_secs_f64()));
-            values.push((format!("{}: age of the last command [s]", valve.name), age));
+            values.push((format!("{}{COMMAND_AGE}", valve.name), age));
             if let Some((reason, since)) = &valve.closed {
-                values.push((format!("{}: closed because", valve.name), reason.clone()));
+                values.push((format!("{}{CLOSED_BECAUSE}", valve.name), reason.clone()));
                 let line = format!("{} is closed because {reason}; an area of 0 has to be commanded first", valve.name);
                 // An operator who has gone home is no reason for a warning all night.
                 let health = if *since < NEWS { Health::Warning } else { Health::Ok };
@@ -197,7 +198,7 @@ impl Desk {
         }
         let values: Vec<(&str, String)> = values.iter().map(|(name, value)| (name.as_str(), value.clone())).collect();
         let (health, message) = match (stopped, closed) {
-            (Some(by), _) => (Health::Warning, format!("stopped by {by}")),
+            (Some(by), _) => (Health::Warning, format!("{STOPPED_BY}{by}")),
             (None, Some(closed)) => closed,
             (None, None) if refused && !commanded => {
                 (Health::Warning, "commands come, and none is followed; \"refusal\" says why".to_string())

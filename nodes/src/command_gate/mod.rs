@@ -25,9 +25,11 @@ mod slew;
 mod source;
 mod stamp;
 mod stop;
+mod words;
 mod writer;
 
 pub(crate) use content::Valve;
 pub(crate) use desk::Desk;
 pub(crate) use parameters::parameters;
 pub(crate) use slew::{Slew, Wanted};
+pub(crate) use words::{CLOSED_BECAUSE, COMMAND_AGE, COMMANDED_BY, STOPPED_BY};

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use excavator_msgs::common::DiagnosticArray;
 use excavator_msgs::{ArmState, CylinderEnergy, EnergyState, OrificeCommand};
@@ -10,6 +10,8 @@ use serde_json::{Map, Value, json};
 use tokio::sync::watch;
 
 use super::bounded::{self, MOST_SHOWN};
+use super::gates;
+use super::machine::{self, Machine};
 
 /// Frames that are kept for a page that opens: half a minute at 25 Hz.
 const HISTORY: usize = 750;
@@ -21,6 +23,10 @@ const MOST_PARTS: usize = 200;
 const MOST_ALARMS: usize = 16;
 /// A part that has not been heard of for so long is not there any more.
 const FORGOTTEN: Duration = Duration::from_secs(10);
+/// A command gate that has not been heard of for so long says nothing about now: it speaks every second.
+const GATE_SILENT: Duration = Duration::from_secs(3);
+/// Command gates that are sent.
+const MOST_GATES: usize = 4;
 /// Time without a state after which that is an alarm.
 const SILENT: Duration = Duration::from_secs(2);
 
@@ -32,11 +38,14 @@ pub struct Board {
 
 #[derive(Default)]
 struct Content {
+    /// Of the nodes that are shown: `left/`, or empty.
+    namespace: String,
+    machine: Machine,
     number: u64,
     states: u64,
     balances: u64,
     state: Option<(ArmState, Instant)>,
-    command: Option<OrificeCommand>,
+    command: Option<(OrificeCommand, Instant)>,
     energy: Option<EnergyState>,
     /// Sums of the powers that came since the last frame.
     powers: Powers,
@@ -74,6 +83,16 @@ impl Default for Board {
 }
 
 impl Board {
+    /// A board of the nodes in a namespace: another namespace is another machine.
+    pub fn in_namespace(namespace: &str) -> Self {
+        let board = Board::default();
+        let name = namespace.trim_matches('/');
+        if !name.is_empty() {
+            board.lock().namespace = format!("{name}/");
+        }
+        board
+    }
+
     fn lock(&self) -> MutexGuard<'_, Content> {
         self.content.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -88,7 +107,7 @@ impl Board {
 
     /// A command.
     pub fn take_command(&self, command: OrificeCommand) {
-        self.lock().command = Some(bounded::command(command));
+        self.lock().command = Some((bounded::command(command), Instant::now()));
     }
 
     /// A balance of the energy monitor.
@@ -111,6 +130,24 @@ impl Board {
             let part = Part { level: status.level, message: status.message, values, heard: Instant::now() };
             content.health.insert(status.name, part);
         }
+    }
+
+    /// A robot description; a browser reads it, nobody here.
+    pub fn take_description(&self, description: String) {
+        self.lock().machine.describe(description);
+    }
+
+    /// A model as text; one that cannot be read is ignored.
+    pub fn take_model(&self, text: &str) {
+        // A large model is read without holding up the frames.
+        if let Some(scales) = machine::scales(text) {
+            self.lock().machine.scale(scales);
+        }
+    }
+
+    /// The robot description and the scales of the cylinders, as JSON.
+    pub fn machine(&self) -> String {
+        self.lock().machine.to_json().to_string()
     }
 
     /// Makes a frame of what there is; pages are sent the newest.
@@ -176,6 +213,17 @@ fn finite(value: f64) -> Value {
     if value.is_finite() { json!(format!("{value:.6e}").parse::<f64>().unwrap_or(value)) } else { Value::Null }
 }
 
+/// Seconds since then, to a hundredth.
+fn age(then: Option<Instant>) -> Value {
+    finite(then.map_or(f64::NAN, |then| (then.elapsed().as_secs_f64() * 100.0).round() / 100.0))
+}
+
+/// The clock of this machine: pages show its times in their own zone.
+fn milliseconds_since_epoch() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_millis()).unwrap_or_default()
+}
+
 impl Content {
     /// Makes room for a part that was heard of: nodes say how they are every second, so what is there comes back.
     fn forget_oldest(&mut self) {
@@ -190,16 +238,36 @@ impl Content {
             Some((state, heard)) => (state.header.stamp.nanoseconds() as f64 * 1e-9, heard.elapsed() > SILENT),
             None => (f64::NAN, true),
         };
+        let measured =
+            |field: fn(&ArmState) -> f64| finite(self.state.as_ref().map_or(f64::NAN, |(state, _)| field(state)));
         json!({
             "number": self.number,
+            "time": milliseconds_since_epoch(),
+            "machine": self.machine.version(),
             "stamp": if stamp.is_finite() { json!(stamp) } else { Value::Null },
             "states": self.states,
             "balances": self.balances,
-            "pump_pressure": finite(self.state.as_ref().map_or(f64::NAN, |(state, _)| state.pump_pressure)),
+            "state_age": age(self.state.as_ref().map(|(_, heard)| *heard)),
+            "command_age": age(self.command.as_ref().map(|(_, heard)| *heard)),
+            "pump_pressure": measured(|state| state.pump_pressure),
+            "oil_temperature": measured(|state| state.oil_temperature),
             "cylinders": self.cylinders(),
+            "gates": self.gates(),
             "powers": self.powers(),
             "alarms": self.alarms(silent),
         })
+    }
+
+    /// What the command gates say: who commands each valve, which are closed and why, and who has stopped the machine.
+    fn gates(&self) -> Vec<Value> {
+        let heard = self.health.iter().filter(|(_, part)| part.heard.elapsed() < GATE_SILENT);
+        heard
+            .filter_map(|(name, part)| {
+                let node = gates::node_of(name, &self.namespace)?;
+                Some(gates::gate(node, &part.message, &part.values))
+            })
+            .take(MOST_GATES)
+            .collect()
     }
 
     fn cylinders(&self) -> Map<String, Value> {
@@ -208,11 +276,12 @@ impl Content {
             .cylinders
             .iter()
             .map(|own| {
-                let command = self.command.as_ref().and_then(|command| {
+                let command = self.command.as_ref().and_then(|(command, _)| {
                     let index = command.names.iter().position(|name| *name == own.name)?;
                     command.areas.get(index).copied()
                 });
                 let numbers = json!({
+                    "joint_angle": finite(own.joint_angle),
                     "displacement": finite(own.displacement), "velocity": finite(own.velocity),
                     "cap_pressure": finite(own.cap_pressure), "rod_pressure": finite(own.rod_pressure),
                     "orifice_area": finite(own.orifice_area), "command": finite(command.unwrap_or(f64::NAN)),
@@ -267,3 +336,7 @@ impl Content {
         alarms
     }
 }
+
+#[cfg(test)]
+#[path = "board_tests.rs"]
+mod tests;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use excavator_msgs::common::DiagnosticArray;
+use excavator_msgs::common::{DiagnosticArray, Text};
 use excavator_msgs::{ArmState, EnergyState, OrificeCommand};
 
 use super::{Board, Hosts, serve};
@@ -32,15 +32,21 @@ pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), Ver
         .map_err(|source| VerbError::Listen { address: format!("{}:{}", arguments.host, arguments.port), source })?;
     let address = listener.local_addr()?;
     let supervisor = Supervisor::start("dashboard", ros, Vec::new())?;
-    let board = Arc::new(Board::default());
+    let board = Arc::new(Board::in_namespace(supervisor.link.identity().namespace()));
     let of = || Arc::clone(&board);
     let (states, commands, energies, parts) = (of(), of(), of(), of());
+    let (descriptions, models) = (of(), of());
     supervisor.link.subscribe("arm/state", newest(50), move |state: ArmState, _| states.take_state(state))?;
     supervisor.link.subscribe("arm/orifice_command", newest(10), move |command: OrificeCommand, _| {
         commands.take_command(command);
     })?;
     supervisor.link.subscribe("arm/energy", newest(50), move |energy: EnergyState, _| energies.take_energy(energy))?;
     supervisor.link.subscribe("/diagnostics", newest(10), move |array: DiagnosticArray, _| parts.take_health(array))?;
+    // Both are published once: whoever comes later is sent the last.
+    supervisor.link.subscribe("robot_description", TopicQos::latched(), move |text: Text, _| {
+        descriptions.take_description(text.data);
+    })?;
+    supervisor.link.subscribe("arm/model", TopicQos::latched(), move |text: Text, _| models.take_model(&text.data))?;
     let stop = supervisor.stop_flag();
     let hosts = Hosts::new(arguments.allow_host.iter().cloned());
     let server = std::thread::spawn(move || serve_frames(listener, board, hosts, &stop));

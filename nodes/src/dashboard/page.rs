@@ -4,7 +4,18 @@ use excavator_identification::report::plotting;
 
 const FRAME: &str = include_str!("assets/dashboard.html");
 const STYLE: &str = include_str!("assets/dashboard.css");
-const SCRIPT: &str = include_str!("assets/dashboard.js");
+/// In the order in which they need each other.
+const SCRIPTS: [&str; 9] = [
+    include_str!("assets/basics.js"),
+    include_str!("assets/kinematics.js"),
+    include_str!("assets/picture.js"),
+    include_str!("assets/values.js"),
+    include_str!("assets/commands.js"),
+    include_str!("assets/energy.js"),
+    include_str!("assets/alarms.js"),
+    include_str!("assets/plots.js"),
+    include_str!("assets/dashboard.js"),
+];
 
 /// The whole page; it asks for nothing but its own stream.
 pub(super) fn page() -> String {
@@ -13,5 +24,5 @@ pub(super) fn page() -> String {
         .replace("/*STYLE*/", &format!("{style}\n{STYLE}"))
         .replace("/*LICENCE*/", &format!("/*\n{}*/", licence.replace("*/", "")))
         .replace("/*UPLOT*/", script)
-        .replace("/*SCRIPT*/", SCRIPT)
+        .replace("/*SCRIPT*/", &SCRIPTS.join("\n"))
 }

@@ -47,7 +47,8 @@ const HEADERS: [(HeaderName, &str); 5] = [
 ];
 
 /// Serves a board until `stop` says so: `/` is the page, `/stream` its frames as server-sent events, `/history` those of
-/// the last half minute. Only requests for one of `hosts` are answered.
+/// the last half minute, `/machine` the robot description and the scales of the cylinders. Only requests for one of `hosts`
+/// are answered.
 ///
 /// # Errors
 /// When the listener cannot be used.
@@ -64,6 +65,7 @@ pub async fn serve(
         .route("/", get(move || std::future::ready(Html(html.clone()))))
         .route("/stream", get(stream))
         .route("/history", get(history))
+        .route("/machine", get(machine))
         .with_state(board);
     let connections = Arc::new(Semaphore::new(MOST_CONNECTIONS));
     let accepting = async {
@@ -134,6 +136,10 @@ async fn history(State(board): State<Arc<Board>>) -> impl IntoResponse {
     let all = std::iter::once(Bytes::from_static(b"[")).chain(separated).chain([Bytes::from_static(b"]")]);
     let body = Body::from_stream(futures::stream::iter(all.map(Ok::<Bytes, Infallible>)));
     ([(header::CONTENT_TYPE, "application/json")], body)
+}
+
+async fn machine(State(board): State<Arc<Board>>) -> impl IntoResponse {
+    ([(header::CONTENT_TYPE, "application/json")], board.machine())
 }
 
 struct Shared(Arc<str>);
