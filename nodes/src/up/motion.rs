@@ -45,7 +45,8 @@ impl Motion {
     /// What the player is started with. The commands go to the namespace of the node.
     pub fn words(&self) -> Vec<OsString> {
         let mut words: Vec<OsString> = vec!["play".into(), self.folder.path().join("motion").into_os_string()];
-        let rest = ["--topics", "/arm/orifice_command", "--remap", "/arm/orifice_command:=arm/orifice_command", "--loop"];
+        let rest =
+            ["--topics", "/arm/orifice_command", "--remap", "/arm/orifice_command:=arm/orifice_command", "--loop"];
         words.extend(rest.map(OsString::from));
         words.extend(["--delay", "2"].map(OsString::from));
         words
