@@ -19,7 +19,7 @@ fn key(entries: [(&str, &str); 2]) -> Markup {
 }
 
 fn dot(frame: &Frame, (x, y): (f64, f64), colour: &str) -> Markup {
-    html! { circle cx=(frame.at_x(x)) cy=(frame.at_y(y)) r="2.2" fill=(colour) fill-opacity="0.8" {} }
+    html! { circle cx=(frame.at_x(x)) cy=(frame.at_y(y)) r="2.2" style={ "fill:" (colour) } fill-opacity="0.8" {} }
 }
 
 fn along(range: (f64, f64)) -> impl Iterator<Item = f64> {
