@@ -31,7 +31,7 @@ pub(super) struct Ribbon {
 }
 
 /// Width of the picture, px, unless labels need more.
-const WIDTH: f64 = 1080.0;
+const WIDTH: f64 = 940.0;
 const BAR: f64 = 13.0;
 /// Between a bar and the label beside it.
 const SPACE: f64 = 7.0;
@@ -42,7 +42,7 @@ const LABEL: f64 = 31.0;
 /// Distance between nodes of a column.
 const GAP: f64 = 10.0;
 /// Least width in which ribbons bend from one column to the next.
-const BEND: f64 = 70.0;
+const BEND: f64 = 60.0;
 /// Height of the largest column without its labels and gaps.
 const FLOW_HEIGHT: f64 = 250.0;
 const TOP: f64 = 4.0;

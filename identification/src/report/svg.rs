@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use maud::{Markup, PreEscaped, html};
 
-use super::numbers::power_of_ten;
+use super::numbers::{exponent_in, power_of_ten};
 
 /// Width of a character of a tick label, px.
 const CHARACTER: f64 = 6.2;
@@ -109,7 +109,10 @@ impl Frame {
 
     fn path(&self, points: impl Iterator<Item = (f64, f64)>) -> String {
         let mut path = String::new();
-        for (x, y) in points.filter(|(x, y)| x.is_finite() && y.is_finite()) {
+        // What lies beside the axes would strike through their labels.
+        let room = 1e-6 * (self.x.1 - self.x.0);
+        let inside = |x: f64| x >= self.x.0 - room && x <= self.x.1 + room;
+        for (x, y) in points.filter(|&(x, y)| inside(x) && y.is_finite()) {
             let y = y.clamp(self.y.0, self.y.1);
             let _ = write!(path, "{},{} ", short(self.at_x(x)), short(self.at_y(y)));
         }
@@ -222,12 +225,11 @@ fn with_power(label: &str, exponent: i32) -> String {
     if exponent == 0 {
         return label.to_string();
     }
-    let power = power_of_ten(exponent);
-    match label.rsplit_once(" (") {
-        Some((name, unit)) if unit.starts_with("10") => format!("{name} ({power} × {unit}"),
-        Some((name, unit)) => format!("{name} ({power} {unit}"),
-        None => format!("{label} ({power})"),
-    }
+    let Some((name, unit)) = label.rsplit_once(" (") else { return format!("{label} ({})", power_of_ten(exponent)) };
+    // A unit may have a power of its own.
+    let own = unit.split_once(' ').and_then(|(power, rest)| Some((exponent_in(power)?, rest)));
+    let (power, unit) = own.map_or((exponent, unit), |(own, rest)| (own + exponent, rest));
+    if power == 0 { format!("{name} ({unit}") } else { format!("{name} ({} {unit}", power_of_ten(power)) }
 }
 
 /// A range that holds all values with some room; around zero and of size one for none.
@@ -282,7 +284,8 @@ mod tests {
         assert_eq!(texts((0.0, 4.1e6)), ["0", "1", "2", "3", "4"]);
         assert_eq!(with_power("error (MPa)", -6), "error (10⁻⁶ MPa)");
         assert_eq!(with_power("opening (mm²), to tank", 3), "opening (10³ mm²), to tank");
-        assert_eq!(with_power("gain (10⁻³ m/(s √Pa))", -3), "gain (10⁻³ × 10⁻³ m/(s √Pa))");
+        assert_eq!(with_power("gain (10⁻³ m/(s √Pa))", -3), "gain (10⁻⁶ m/(s √Pa))");
+        assert_eq!(with_power("flow (10⁻⁶ m³/(s √Pa))", 6), "flow (m³/(s √Pa))");
         assert_eq!(with_power("share ()", 0), "share");
     }
 }

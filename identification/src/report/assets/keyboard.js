@@ -34,14 +34,20 @@
     // Where samples are further apart than a step, the next one.
     if (index === plot.cursor.idx) index = Math.min(time.length - 1, Math.max(0, index + Math.sign(steps)));
     if (time[index] < min || time[index] > max) return;
-    // Every plot of the group by itself: their pixels differ where their widths do.
-    ofGroup(one).forEach(({ plot: other }) => {
-      other.setCursor({ left: other.valToPos(time[index], "x"), top: other.over.clientHeight / 2 }, true, false);
-    });
+    point(one, time[index]);
     announce(one, index);
   }
+  // Every plot of the group by itself: their pixels differ where their widths do.
+  function point(one, time) {
+    ofGroup(one).forEach(({ plot }) => {
+      plot.setCursor({ left: plot.valToPos(time, "x"), top: plot.over.clientHeight / 2 }, true, false);
+    });
+  }
   function show(one, min, max) {
+    const { idx } = one.plot.cursor;
     ofGroup(one).forEach(({ plot }) => plot.setScale("x", { min, max }));
+    // Scales change after this; the cursor then stays at its time and not at its pixel.
+    if (idx != null) queueMicrotask(() => point(one, one.plot.data[0][idx]));
     spoken.textContent = `${number(min)} s to ${number(max)} s`;
   }
   function zoomed(one, factor) {

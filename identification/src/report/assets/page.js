@@ -10,12 +10,14 @@
       if (!read || anchor !== read.id) { link.removeAttribute("aria-current"); return; }
       if (link.hasAttribute("aria-current")) return;
       link.setAttribute("aria-current", "true");
-      const bar = link.parentElement;
       // On a narrow screen the contents are one line that scrolls by itself.
       if (bar.scrollWidth > bar.clientWidth) bar.scrollLeft = link.offsetLeft - bar.clientWidth / 3;
     });
   }
-  if (links.size) {
+  const bar = document.querySelector("nav");
+  if (bar) {
+    // A heading that is jumped to must not end up under the bar, which is as high as its links need.
+    new ResizeObserver(() => document.documentElement.style.setProperty("--bar", `${bar.offsetHeight}px`)).observe(bar);
     let due = false;
     window.addEventListener("scroll", () => {
       if (due) return;

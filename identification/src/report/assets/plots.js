@@ -95,21 +95,27 @@
   function variable(spec) {
     return (_, index) => (index > 0 ? spec.series[index - 1].colour : "transparent");
   }
-  function legend(box, spec) {
+  // Names are buttons that show or hide their lines.
+  function legend(box, spec, plot) {
+    const names = [];
     box.querySelectorAll(".u-legend .u-series").forEach((row, index) => {
       const one = spec.series[index - 1];
       if (!one) return;
       // Edges of bands have no line of their own to hide.
       if (one.edge) { row.style.display = "none"; return; }
-      const name = row.querySelector("th");
+      const name = row.querySelector(".u-label");
       name.tabIndex = 0;
-      name.setAttribute("aria-label", `${one.label}: show or hide`);
+      name.setAttribute("role", "button");
       name.addEventListener("keydown", (event) => {
         if (event.key !== "Enter" && event.key !== " ") return;
         event.preventDefault();
         name.click();
       });
+      names.push([name, index]);
     });
+    const tell = () => names.forEach(([name, index]) => name.setAttribute("aria-pressed", plot.series[index].show));
+    box.querySelector(".u-legend").addEventListener("click", tell);
+    tell();
   }
   function draw(box) {
     const spec = JSON.parse(box.querySelector("script").textContent);
@@ -128,7 +134,7 @@
         points: { size: 6, fill: variable(spec), stroke: variable(spec) },
       },
     }, data, box);
-    legend(box, spec);
+    legend(box, spec, plot);
     plots.push({ plot, box, spec });
   }
   function fit(width) {
