@@ -12,10 +12,11 @@ use crate::validation::{Comparison, SignalComparison};
 const MOST_POINTS: usize = 2000;
 
 /// Points of one series at least, however many there are.
-const FEWEST_POINTS: usize = 400;
+const FEWEST_POINTS: usize = 200;
 
-/// Points that all plots of a page share.
-const POINTS_OF_A_PAGE: usize = 60_000;
+/// Numbers that all plots of a page share, times among them. With about six characters each they leave room for the rest of
+/// a page of one megabyte.
+const NUMBERS_OF_A_PAGE: usize = 75_000;
 
 /// How one model's line looks.
 #[derive(Debug, Clone, Copy)]
@@ -63,8 +64,9 @@ pub(super) fn hint() -> Markup {
 /// there are `recordings`.
 pub(super) fn time_plots(models: &[(Line, &Comparison)], number: usize, recordings: usize) -> Markup {
     let Some((_, first)) = models.first() else { return html! { p.empty { "Nothing to compare." } } };
-    let series = first.signals.len() * recordings * (models.len() + 1);
-    let budget = (POINTS_OF_A_PAGE / series.max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
+    // Of each signal two plots with a time axis each: the measurement and the models, and their errors.
+    let columns = first.signals.len() * recordings * (2 * models.len() + 3);
+    let budget = (NUMBERS_OF_A_PAGE / columns.max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
     html! {
         @if first.signals.is_empty() { p.empty { "This recording measures no output of the model." } }
         @for signal in &first.signals {
