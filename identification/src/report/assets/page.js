@@ -17,7 +17,9 @@
   const bar = document.querySelector("nav");
   if (bar) {
     // A heading that is jumped to must not end up under the bar, which is as high as its links need.
-    new ResizeObserver(() => document.documentElement.style.setProperty("--bar", `${bar.offsetHeight}px`)).observe(bar);
+    const measure = () => document.documentElement.style.setProperty("--bar", `${bar.offsetHeight}px`);
+    measure();
+    new ResizeObserver(measure).observe(bar);
     let due = false;
     window.addEventListener("scroll", () => {
       if (due) return;
