@@ -77,10 +77,15 @@ def test_a_page_follows_the_scheme_of_the_system(page, browser, scheme):
 
 
 def test_the_button_changes_the_scheme(page, browser):
+    """From the scheme of the system to the other one, to the same for good, and back."""
     ground = "getComputedStyle(document.querySelector('main')).backgroundColor"
-    before = browser.value(ground)
-    browser.value("document.querySelector('.scheme').click()")
-    assert browser.value(ground) != before
+    before, after = browser.value(ground), []
+    for _ in range(3):
+        browser.value("document.querySelector('.scheme').click()")
+        after.append(browser.value(ground))
+    assert after[0] != before and after[1:] == [before, before]
+    # the browser remembers the choice for the next page
+    assert browser.value("document.querySelector('.scheme').textContent").endswith("auto")
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -9,11 +9,18 @@ pub(super) const UPLOT_STYLE: &str = include_str!("assets/uPlot.min.css");
 /// Licence of uPlot (MIT), which asks to go with every copy.
 pub(super) const UPLOT_LICENCE: &str = include_str!("assets/uPlot.LICENSE");
 
-/// Style sheet of the pages.
+/// Style sheet of the pages, with the colours of the light scheme.
 pub(super) const PAGE_STYLE: &str = include_str!("assets/report.css");
 
-/// Draws the plots over time.
-pub(super) const PAGE_SCRIPT: &str = include_str!("assets/report.js");
+/// Colours of the dark scheme.
+pub(super) const DARK_STYLE: &str = include_str!("assets/dark.css");
+
+/// Chooses the scheme before anything is drawn.
+pub(super) const SCHEME_SCRIPT: &str = include_str!("assets/scheme.js");
+
+/// What a page does once it is there, in this order: plots over time, their keyboard, contents and printing.
+pub(super) const PAGE_SCRIPTS: [&str; 3] =
+    [include_str!("assets/plots.js"), include_str!("assets/keyboard.js"), include_str!("assets/page.js")];
 
 /// The plotting library without its first comment.
 pub(super) fn uplot_script() -> &'static str {

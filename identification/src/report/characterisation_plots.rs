@@ -19,7 +19,7 @@ fn key(entries: [(&str, &str); 2]) -> Markup {
 }
 
 fn dot(frame: &Frame, (x, y): (f64, f64), colour: &str) -> Markup {
-    html! { circle cx=(frame.at_x(x)) cy=(frame.at_y(y)) r="2.2" fill=(colour) fill-opacity="0.8" {} }
+    html! { circle cx=(frame.at_x(x)) cy=(frame.at_y(y)) r="2.2" style={ "fill:" (colour) } fill-opacity="0.8" {} }
 }
 
 fn along(range: (f64, f64)) -> impl Iterator<Item = f64> {
@@ -69,7 +69,8 @@ pub(super) fn edge_plots(found: &[(Edge, &DeadZone)]) -> Markup {
             };
             @let (opening, closing) = (points(true), points(false));
             @let all = || opening.iter().chain(&closing).flatten();
-            @let frame = Frame { size: SIZE, margins: MARGINS, x: range_of(all().map(|point| point.0)), y: range_of(all().map(|point| point.1)) };
+            @let edges = [zone.opening.value * 1e6, zone.closing.value * 1e6];
+            @let frame = Frame { size: SIZE, margins: MARGINS, x: range_of(all().map(|point| point.0).chain(edges)), y: range_of(all().map(|point| point.1)) };
             (picture(SIZE, &format!("normalised flow through the edge {} against opening", edge.name()), &html! {
                 (frame.axes(&format!("opening (mm²), {}", edge.name()), "flow / √drop (10⁻⁶ m³/(s √Pa))"))
                 @for curve in &opening { (frame.dots(curve, FIRST)) }

@@ -42,7 +42,7 @@ pub(super) fn effect_plot(machine: &Machine, shown: &Contribution) -> Markup {
         (frame.band(&whiskers, DATA))
         (frame.line(&nominal, NOMINAL, true))
         (frame.line(&law, EFFECT, false))
-        @for (x, y) in &data { circle cx=(frame.at_x(*x)) cy=(frame.at_y(*y)) r="2.6" fill=(DATA) {} }
+        @for (x, y) in &data { circle cx=(frame.at_x(*x)) cy=(frame.at_y(*y)) r="2.6" style={ "fill:" (DATA) } {} }
     };
     html! {
         div.key {

@@ -17,6 +17,11 @@ const CYLINDER: &str = "var(--green)";
 const STORED: &str = "var(--sky)";
 const UNEXPLAINED: &str = "var(--purple)";
 
+/// Columns of the picture. Left of the pump stands what gives energy back to its line.
+const PUMP: usize = 1;
+const CYLINDERS: usize = 2;
+const TAKERS: usize = 3;
+
 /// Parts below this share of everything are left out of the picture; the table has them.
 const SMALLEST: f64 = 5e-4;
 
@@ -24,28 +29,30 @@ const SMALLEST: f64 = 5e-4;
 pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
     let mut flow = Flow { nodes: Vec::new(), ribbons: Vec::new(), whole: whole(model, totals) };
     let machine = &model.machine;
-    let pump = matches!(machine.supply, Supply::PumpLine(_)).then(|| flow.node("pump", totals.pump, 0, SOURCE));
+    let pump = matches!(machine.supply, Supply::PumpLine(_)).then(|| flow.node("pump", totals.pump, PUMP, SOURCE));
     let cylinders: Vec<usize> = machine
         .cylinders
         .iter()
         .zip(&totals.cylinders)
-        .map(|(cylinder, own)| flow.node(&format!("into the {} cylinder", cylinder.name), own.supplied, 1, CYLINDER))
+        .map(|(cylinder, own)| {
+            flow.node(&format!("into the {} cylinder", cylinder.name), own.supplied, CYLINDERS, CYLINDER)
+        })
         .collect();
     if let Some(pump) = pump {
         for (index, own) in totals.cylinders.iter().enumerate() {
             flow.pass(pump, cylinders[index], own.supplied);
         }
         for (cylinder, own) in machine.cylinders.iter().zip(&totals.cylinders) {
-            flow.give(pump, &format!("metering, {} valve", cylinder.name), own.metering_loss, 1, LOSS);
+            flow.give(pump, &format!("metering, {} valve", cylinder.name), own.metering_loss, CYLINDERS, LOSS);
         }
         for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
-            flow.give(pump, &words::spoken(&effect.effect), -effect.into_pump_line, 1, LOSS);
+            flow.give(pump, &words::spoken(&effect.effect), -effect.into_pump_line, CYLINDERS, LOSS);
         }
-        flow.give(pump, "stored in the pump line", totals.pump_line, 1, STORED);
-        flow.give(pump, "not explained in the pump line", -totals.pump_residual(), 1, UNEXPLAINED);
+        flow.give(pump, "stored in the pump line", totals.pump_line, CYLINDERS, STORED);
+        flow.give(pump, "not explained in the pump line", -totals.pump_residual(), CYLINDERS, UNEXPLAINED);
     } else {
         for (index, own) in totals.cylinders.iter().enumerate() {
-            let source = flow.node("supplied", own.supplied, 0, SOURCE);
+            let source = flow.node("supplied", own.supplied, PUMP, SOURCE);
             flow.pass(source, cylinders[index], own.supplied);
         }
     }
@@ -55,12 +62,12 @@ pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
         let label = |what: &str| if many { format!("{what}, {}", cylinder.name) } else { what.to_string() };
         for effect in totals.effects.iter().filter(|effect| effect.acts_on != ActsOn::Valve && effect.has_power) {
             if site_name(machine, effect.site) == cylinder.name {
-                flow.give(from, &label(&words::spoken(&effect.effect)), -effect.into_cylinders, 2, LOSS);
+                flow.give(from, &label(&words::spoken(&effect.effect)), -effect.into_cylinders, TAKERS, LOSS);
             }
         }
-        flow.give(from, &label("stored: motion and height"), own.kinetic + own.potential, 2, STORED);
-        flow.give(from, &label("stored: compressed oil"), own.cap_internal + own.rod_internal, 2, STORED);
-        flow.give(from, &label("not explained"), -totals.residual(index), 2, UNEXPLAINED);
+        flow.give(from, &label("stored: motion and height"), own.kinetic + own.potential, TAKERS, STORED);
+        flow.give(from, &label("stored: compressed oil"), own.cap_internal + own.rod_internal, TAKERS, STORED);
+        flow.give(from, &label("not explained"), -totals.residual(index), TAKERS, UNEXPLAINED);
     }
     sankey(&flow.nodes, &flow.ribbons, "flow of energy from the pump to losses and storage")
 }
@@ -93,7 +100,7 @@ impl Flow {
         self.ribbons.push(Ribbon { from, to, amount: amount.abs() });
     }
 
-    /// `amount` from a node to what took it; where that gave instead, from it to the node.
+    /// `amount` from a node to what took it, in `column`; where that gave instead, from it to the node, on whose left it stands.
     fn give(&mut self, node: usize, label: &str, amount: f64, column: usize, colour: &'static str) {
         if !amount.is_finite() || amount.abs() < SMALLEST * self.whole.abs() {
             return;

@@ -48,7 +48,7 @@ pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
     let budget = (POINTS_OF_A_PAGE / lines.max(1)).clamp(300, 1500);
     let each = |of: &dyn Fn(&CylinderTraces, usize) -> Markup| {
         html! { @for (number, trace) in analysis.traces.cylinders.iter().enumerate() {
-            @if analysis.traces.cylinders.len() > 1 { h3 { (trace.name) } }
+            @if analysis.traces.cylinders.len() > 1 { h3 { (words::capitalised(&trace.name)) } }
             (of(trace, number))
         } }
     };
@@ -63,6 +63,7 @@ pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
             title: "Does the ledger close?".into(),
             body: html! {
                 (evidence(&missing))
+                (hint())
                 (residual_plots(model, analysis))
                 (ledger(model, analysis))
                 p.note {
@@ -77,7 +78,7 @@ pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
         Section {
             anchor: "rates",
             title: "Rate of the stored energy".into(),
-            body: html! { (hint()) (each(&|trace, number| rates(model, trace, number, budget))) @if let Some(reason) = &analysis.simulation_failed { p.note { "No numerical results: " (reason) } } },
+            body: html! { (each(&|trace, number| rates(model, trace, number, budget))) @if let Some(reason) = &analysis.simulation_failed { p.note { "No numerical results: " (reason) } } },
         },
         Section {
             anchor: "supply",
@@ -193,7 +194,7 @@ fn residual_plots(model: &Model, analysis: &EnergyAnalysis) -> Markup {
         @let (zero, half) = (vec![0.0; time.len()], column(&|window| 0.5 * window.bands[index]));
         @let label = place.place.equation(model);
         @let plot = PowerPlot { group: "ledger", label: "missing", unit: "W", height: 140, last: index + 1 == analysis.places.len(), budget: 1200 };
-        h3 { (words::equation(&label)) }
+        h3 { (words::capitalised(&words::equation(&label))) }
         (plot.markup(&time, &[
             PowerLine { label: "explained by noise", colour: "var(--blue)", width: 1.0, dashed: false, values: &zero, errors: Some(&half) },
             line("stored without explanation", EXPERIMENTAL, false, &residual),

@@ -30,7 +30,7 @@ pub(super) fn energies(model: &Model, analysis: &EnergyAnalysis) -> Markup {
                     td.n { (significant(line.energy / analysis.totals.duration, 3)) }
                     @if let Some((mean, deviation)) = &cycle {
                         td.n { (mean.get(index).map_or(NOTHING.to_string(), |own| significant(own.energy, 3))) " ± "
-                            (deviation.get(index).filter(|own| !own.derived).map_or(NOTHING.to_string(), |own| significant(own.energy, 2))) }
+                            (deviation.get(index).filter(|own| !own.derived).map_or(NOTHING.to_string(), |own| significant(own.energy.abs(), 2))) }
                     }
                 }
             } }

@@ -112,7 +112,7 @@ fn panel(label: &str, clouds: &[Cloud], y: (f64, f64), y_label: &str) -> Markup 
         (frame.axes(label, y_label))
         @if let [only] = clouds {
             @let stride = only.points.len().div_ceil(DOTS).max(1);
-            (frame.dots(&only.points.iter().copied().step_by(stride).collect::<Vec<_>>(), "#6b7680"))
+            (frame.dots(&only.points.iter().copied().step_by(stride).collect::<Vec<_>>(), "var(--slate)"))
         }
         @for cloud in clouds {
             (frame.band(&cloud.means.iter().map(|&(x, m, s)| (x, m - s, m + s)).collect::<Vec<_>>(), cloud.line.colour))

@@ -33,20 +33,20 @@ pub(super) fn evidence(diagnosis: &Diagnosis) -> Markup {
         @if !diagnosis.unpromising.is_empty() {
             details {
                 summary { "Effects dropped in the screening (" (diagnosis.unpromising.len()) ")" }
-                table.data {
+                div.wide { table.data {
                     thead { tr { th { "Effect" } th { "Where" } th.n { "Improvement that its first steps brought or promised" } } }
                     tbody { @for effect in &diagnosis.unpromising { tr {
                         td { (words::spoken(&effect.effect)) " " code.code-name { (effect.effect) } }
                         td { (effect.place) }
                         td.n { (two_digits(effect.promised_improvement)) }
                     } } }
-                }
+                } }
             }
         }
         @if !diagnosis.failed.is_empty() {
             details {
                 summary { "Effects that could not be fitted (" (diagnosis.failed.len()) ")" }
-                table.data { tbody { @for (name, error) in &diagnosis.failed { tr { td { code { (name) } } td { (error) } } } } }
+                div.wide { table.data { tbody { @for (name, error) in &diagnosis.failed { tr { td { code { (name) } } td { (error) } } } } } }
             }
         }
     }

@@ -32,14 +32,15 @@ pub(super) fn frontier_plot(found: &Proposals) -> Markup {
     let frame = Frame {
         size,
         margins: (64.0, 12.0, 24.0, 40.0),
-        x: (-0.3, most + 0.3),
+        // Wide enough for whole numbers at the ticks.
+        x: (-0.3, most.max(2.0) + 0.3),
         y: range_of(points.iter().map(|point| point.1)),
     };
     let y_label = "logarithm (base 10) of the NMSE on validation";
     let content = html! {
         (frame.axes("parameters of the law", y_label))
         (frame.line(&frontier, LINE, false))
-        @for (x, y) in &points { circle cx=(frame.at_x(*x)) cy=(frame.at_y(*y)) r="3.4" fill=(DOT) {} }
+        @for (x, y) in &points { circle cx=(frame.at_x(*x)) cy=(frame.at_y(*y)) r="3.4" style={ "fill:" (DOT) } {} }
     };
     picture(size, "error against number of parameters", &content)
 }

@@ -62,9 +62,9 @@ pub(super) fn change_of_error([before, after]: [f64; 2]) -> String {
 pub(super) fn percent(fraction: f64) -> String {
     match 100.0 * fraction {
         value if !value.is_finite() => NOTHING.to_string(),
-        value if value < 0.0 && value > -0.05 => "0 %".to_string(),
+        value if value <= 0.0 && value > -0.05 => "0 %".to_string(),
         value if value > 0.0 && value < 0.05 => "< 0.1 %".to_string(),
-        value if value.abs() < 10.0 && value != 0.0 => format!("{} %", with_minus(&format!("{value:.1}"))),
+        value if value.abs() < 10.0 => format!("{} %", with_minus(&format!("{value:.1}"))),
         value => format!("{} %", with_minus(&format!("{value:.0}"))),
     }
 }
@@ -92,6 +92,23 @@ fn with_minus(text: &str) -> String {
 /// 10 to the power of `exponent`.
 pub(super) fn power_of_ten(exponent: i32) -> String {
     format!("10{}", superscript(exponent))
+}
+
+/// The exponent of what [`power_of_ten`] writes.
+pub(super) fn exponent_in(power: &str) -> Option<i32> {
+    const DIGITS: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+    let digits: Option<String> = power
+        .strip_prefix("10")?
+        .chars()
+        .map(|raised| {
+            if raised == '⁻' {
+                return Some('-');
+            }
+            let value = DIGITS.chars().position(|digit| digit == raised)?;
+            char::from_digit(value as u32, 10)
+        })
+        .collect();
+    digits?.parse().ok()
 }
 
 fn superscript(exponent: i32) -> String {
@@ -130,5 +147,8 @@ mod tests {
         assert_eq!(percent(0.0123), "1.2 %");
         assert_eq!(decimal(-0.01), "0.0");
         assert_eq!(percent(0.0001), "< 0.1 %");
+        assert_eq!(percent(-0.0), "0 %");
+        assert_eq!(exponent_in(&power_of_ten(-120)), Some(-120));
+        assert_eq!(exponent_in("100"), None);
     }
 }

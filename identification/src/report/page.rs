@@ -2,10 +2,13 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::assets::{PAGE_SCRIPT, PAGE_STYLE, UPLOT_LICENCE, UPLOT_STYLE, uplot_script};
+use super::assets::{DARK_STYLE, PAGE_SCRIPTS, PAGE_STYLE, SCHEME_SCRIPT, UPLOT_LICENCE, UPLOT_STYLE, uplot_script};
 
 /// A page allows itself nothing but what it carries.
 const CONTENT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+
+/// Where the dark scheme holds until the button of the page says otherwise. Never on paper.
+const DARK_MEDIA: &str = "screen and (prefers-color-scheme: dark)";
 
 /// One part of a page.
 pub(super) struct Section {
@@ -30,16 +33,20 @@ pub(super) fn page(kind: &str, title: &str, lead: &Markup, sections: &[Section])
                 meta name="generator" content=(concat!("excavator ", env!("CARGO_PKG_VERSION")));
                 title { (kind) " · " (title) }
                 style { (PreEscaped(UPLOT_STYLE)) (PreEscaped(PAGE_STYLE)) }
+                style.dark media=(DARK_MEDIA) { (PreEscaped(DARK_STYLE)) }
+                script { (PreEscaped(SCHEME_SCRIPT)) }
             }
             body {
                 main {
                     header {
-                        button.scheme type="button" hidden { "Light or dark" }
+                        button.scheme type="button" hidden { "Colours" }
                         p.kind { (kind) }
                         h1 { (title) }
                         (lead)
-                        @if sections.len() > 1 {
-                            nav { @for section in sections { a href={ "#" (section.anchor) } { (section.title) } } }
+                    }
+                    @if sections.len() > 1 {
+                        nav aria-label="Contents" {
+                            @for section in sections { a href={ "#" (section.anchor) } { (section.title) } }
                         }
                     }
                     @for section in sections {
@@ -51,7 +58,7 @@ pub(super) fn page(kind: &str, title: &str, lead: &Markup, sections: &[Section])
                     footer { "Written by excavator " (env!("CARGO_PKG_VERSION")) ". Everything is in this file; it needs no network." }
                 }
                 script { (PreEscaped(licence)) (PreEscaped(uplot_script())) }
-                script { (PreEscaped(PAGE_SCRIPT)) }
+                @for part in PAGE_SCRIPTS { script { (PreEscaped(part)) } }
             }
         }
     }

@@ -1,10 +1,10 @@
 //! Energies and powers over time, with error bands.
 
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 use super::numbers::SIDES_95;
 use super::thinning;
-use super::time_plots::{array, shortest, text};
+use super::time_plots::{array, plot_box, shortest, text};
 
 /// One line of a plot.
 pub(super) struct PowerLine<'a> {
@@ -78,7 +78,8 @@ impl PowerPlot<'_> {
             bands.join(","),
             series.join(",")
         );
-        html! { div.time-plot role="group" aria-label=(format!("{} over time", self.label)) { script type="application/json" { (PreEscaped(json)) } } }
+        let labels: Vec<&str> = drawn.iter().map(|line| line.label).collect();
+        plot_box(&format!("{} over time: {}", self.label, labels.join(", ")), &json)
     }
 }
 

@@ -21,6 +21,15 @@ const COLOURS: [&str; 8] = [
 /// Least distance between two labels, px.
 const LABEL_HEIGHT: f64 = 15.0;
 
+/// Width of a character of a label, px.
+const CHARACTER: f64 = 6.4;
+
+const WIDTH: f64 = 900.0;
+/// Space for the numbers of the axis.
+const LEFT: f64 = 64.0;
+/// Space for the names of the lines.
+const RIGHT: f64 = 200.0;
+
 /// One line per signal, the error on a logarithmic scale.
 pub(super) fn step_plot(stages: &Stages) -> Markup {
     let positive =
@@ -30,21 +39,23 @@ pub(super) fn step_plot(stages: &Stages) -> Markup {
     }
     let low = positive().copied().fold(f64::INFINITY, f64::min).log10().floor();
     let high = positive().copied().fold(0.0, f64::max).log10().ceil().max(low + 1.0);
-    let size = (900.0, 300.0);
     let last = (stages.names.len() - 1) as f64;
-    let frame = Frame { size, margins: (64.0, 200.0, 26.0, 34.0), x: (-0.15, last + 0.1), y: (low, high) };
+    let rows = rows_of_names(&stages.names);
+    let bottom = 20.0 + LABEL_HEIGHT * rows as f64;
+    let size = (WIDTH, 266.0 + bottom);
+    let frame = Frame { size, margins: (LEFT, RIGHT, 26.0, bottom), x: (-0.15, last + 0.1), y: (low, high) };
     let decades = (low as i32)..=(high as i32);
     let content = html! {
         text.label x="2" y="12" { "NMSE on validation, logarithmic" }
         @for decade in decades {
             @let y = short(frame.at_y(f64::from(decade)));
-            line.grid x1="64" x2=(size.0 - 200.0) y1=(y) y2=(y) {}
-            text x="58" y=(y + 3.5) text-anchor="end" { (decade_text(decade)) }
+            line.grid x1=(LEFT) x2=(size.0 - RIGHT) y1=(y) y2=(y) {}
+            text x=(LEFT - 6.0) y=(y + 3.5) text-anchor="end" { (decade_text(decade)) }
         }
         @for (index, name) in stages.names.iter().enumerate() {
             @let x = short(frame.at_x(index as f64));
-            line.grid x1=(x) x2=(x) y1="26" y2=(size.1 - 34.0) {}
-            text.label x=(x) y=(size.1 - 14.0) text-anchor="middle" { (name) }
+            line.grid x1=(x) x2=(x) y1="26" y2=(size.1 - bottom) {}
+            text.label x=(x) y=(size.1 - bottom + 5.0 + LABEL_HEIGHT * (1 + index % rows) as f64) text-anchor="middle" { (name) }
         }
         @for (number, (_, errors)) in stages.signals.iter().enumerate() {
             @let points = points(errors);
@@ -52,12 +63,20 @@ pub(super) fn step_plot(stages: &Stages) -> Markup {
             @for (x, y) in &points { (marker(number, frame.at_x(*x), frame.at_y(*y))) }
         }
         @for (number, y) in label_heights(stages, &frame) {
-            text.label x=(size.0 - 188.0) y=(short(y + 4.0)) style={ "fill:" (colour(number)) } {
+            (marker(number, size.0 - RIGHT + 18.0, y))
+            text.label x=(size.0 - RIGHT + 28.0) y=(short(y + 4.0)) {
                 (stages.signals.get(number).map_or(String::new(), |(name, _)| words::signal(name)))
             }
         }
     };
     picture(size, "error of each signal at each step", &content)
+}
+
+/// Rows in which the names of the steps stand, so that they do not touch.
+fn rows_of_names(names: &[String]) -> usize {
+    let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    let spacing = (WIDTH - LEFT - RIGHT) / names.len() as f64;
+    ((longest as f64 * CHARACTER / spacing).ceil() as usize).clamp(1, 4)
 }
 
 fn points(errors: &[f64]) -> Vec<(f64, f64)> {
@@ -96,10 +115,10 @@ fn marker(number: usize, x: f64, y: f64) -> Markup {
     let (x, y) = (short(x), short(y));
     html! {
         @match number % 4 {
-            0 => circle cx=(x) cy=(y) r="4" fill=(colour(number)) {},
-            1 => rect x=(x - 3.5) y=(y - 3.5) width="7" height="7" fill=(colour(number)) {},
-            2 => polygon points=(format!("{x},{} {},{} {},{}", y - 5.0, x - 4.5, y + 3.5, x + 4.5, y + 3.5)) fill=(colour(number)) {},
-            _ => polygon points=(format!("{x},{} {},{y} {x},{} {},{y}", y - 5.0, x + 5.0, y + 5.0, x - 5.0)) fill=(colour(number)) {},
+            0 => circle cx=(x) cy=(y) r="4" style={ "fill:" (colour(number)) } {},
+            1 => rect x=(x - 3.5) y=(y - 3.5) width="7" height="7" style={ "fill:" (colour(number)) } {},
+            2 => polygon points=(format!("{x},{} {},{} {},{}", y - 5.0, x - 4.5, y + 3.5, x + 4.5, y + 3.5)) style={ "fill:" (colour(number)) } {},
+            _ => polygon points=(format!("{x},{} {},{y} {x},{} {},{y}", y - 5.0, x + 5.0, y + 5.0, x - 5.0)) style={ "fill:" (colour(number)) } {},
         }
     }
 }

@@ -221,6 +221,13 @@ fn comparison_has_every_signal_and_its_error() {
     let gap = plots.iter().find(|plot| plot["label"] == "cap pressure").unwrap();
     assert!(gap["series"][0]["values"].as_array().unwrap().iter().any(serde_json::Value::is_null));
     assert!(page.contains("valve opening (mm²)") && page.contains("error (MPa)"));
+    // Plots can be reached by keyboard and say what they show; so do pictures.
+    let reachable = r#"<div class="time-plot" tabindex="0" role="application""#;
+    assert_eq!(page.matches(reachable).count(), plots.len());
+    assert!(page.contains(r#"aria-label="Arm cap pressure error over time: measured − model""#));
+    assert_eq!(page.matches("<svg").count(), page.matches(r#"role="img"><title>"#).count());
+    assert!(page.contains(r##"<nav aria-label="Contents"><a href="#measures">"##));
+    assert!(page.contains(r#"<style class="dark" media="screen and (prefers-color-scheme: dark)">"#));
 }
 
 #[test]

@@ -12,10 +12,11 @@ use crate::validation::{Comparison, SignalComparison};
 const MOST_POINTS: usize = 2000;
 
 /// Points of one series at least, however many there are.
-const FEWEST_POINTS: usize = 400;
+const FEWEST_POINTS: usize = 200;
 
-/// Points that all plots of a page share.
-const POINTS_OF_A_PAGE: usize = 60_000;
+/// Numbers that all plots of a page share, times among them. With about six characters each they leave room for the rest of
+/// a page of one megabyte.
+const NUMBERS_OF_A_PAGE: usize = 75_000;
 
 /// How one model's line looks.
 #[derive(Debug, Clone, Copy)]
@@ -49,15 +50,23 @@ const MODEL_WIDTH: f64 = 1.4;
 
 /// How to use the plots.
 pub(super) fn hint() -> Markup {
-    html! { p.hint { "Drag across a plot to zoom, double-click to zoom out; all plots of one recording move together. Click a name under a plot to hide its line. With the keyboard: Tab to a plot, arrows move the cursor, + and − zoom, 0 shows everything." } }
+    html! {
+        p.hint {
+            "Drag across a plot to zoom, double-click to zoom out; all plots of one recording move together. Click a name under "
+            "a plot to hide its line. With the keyboard: Tab goes to a plot, ← and → move the cursor (with Shift in larger steps), "
+            "+ and − zoom around it, and 0 or Escape shows everything."
+        }
+        noscript { p.empty { "The plots over time are drawn by the script of this page, which is switched off here." } }
+    }
 }
 
 /// Plots of all signals of one recording under one or more models. `number` tells recordings of a page apart, of which
 /// there are `recordings`.
 pub(super) fn time_plots(models: &[(Line, &Comparison)], number: usize, recordings: usize) -> Markup {
     let Some((_, first)) = models.first() else { return html! { p.empty { "Nothing to compare." } } };
-    let series = first.signals.len() * recordings * (models.len() + 1);
-    let budget = (POINTS_OF_A_PAGE / series.max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
+    // Of each signal two plots with a time axis each: the measurement and the models, and their errors.
+    let columns = first.signals.len() * recordings * (2 * models.len() + 3);
+    let budget = (NUMBERS_OF_A_PAGE / columns.max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
     html! {
         @if first.signals.is_empty() { p.empty { "This recording measures no output of the model." } }
         @for signal in &first.signals {
@@ -102,8 +111,9 @@ fn signal_plots(models: &[(Line, &Comparison)], name: &str, group: &str, budget:
     lines.extend(simulated.iter().copied());
     let errors: Vec<(Line, &[f64])> = errors.iter().map(|(line, values)| (*line, values.as_slice())).collect();
     let quantity = words::spoken(name.rsplit('.').next().unwrap_or(name));
-    let upper = Plot { group, label: &quantity, unit, height: 230, last: false, error: false };
-    let lower = Plot { group, label: "error", unit, height: 150, last: true, error: true };
+    let title = words::signal(name);
+    let upper = Plot { group, title: &title, label: &quantity, unit, height: 230, last: false, error: false };
+    let lower = Plot { group, title: &title, label: "error", unit, height: 150, last: true, error: true };
     html! {
         (upper.markup(time, &lines, &kept))
         (lower.markup(time, &errors, &kept))
@@ -113,6 +123,8 @@ fn signal_plots(models: &[(Line, &Comparison)], name: &str, group: &str, budget:
 /// One plot as the page's script wants it.
 struct Plot<'a> {
     group: &'a str,
+    /// The signal, for those who do not see the plot.
+    title: &'a str,
     label: &'a str,
     unit: Unit<'a>,
     height: usize,
@@ -122,13 +134,17 @@ struct Plot<'a> {
 
 impl Plot<'_> {
     fn markup(&self, time: &[f64], lines: &[(Line, &[f64])], kept: &[usize]) -> Markup {
+        let labels: Vec<String> = lines
+            .iter()
+            .map(|(line, _)| if self.error { format!("measured − {}", line.label) } else { line.label.to_string() })
+            .collect();
         let series: Vec<String> = lines
             .iter()
-            .map(|(line, values)| {
-                let label = if self.error { format!("measured − {}", line.label) } else { line.label.to_string() };
+            .zip(&labels)
+            .map(|((line, values), label)| {
                 format!(
                     r#"{{"label":{},"colour":"{}","width":{}{},"values":{}}}"#,
-                    text(&label),
+                    text(label),
                     line.colour,
                     if line.label == MEASURED.label { MEASURED_WIDTH } else { MODEL_WIDTH },
                     if line.dashed { r#","dash":[6,3]"# } else { "" },
@@ -149,7 +165,18 @@ impl Plot<'_> {
             seconds.join(","),
             series.join(",")
         );
-        html! { div.time-plot role="group" aria-label=(format!("{} over time", self.label)) { script type="application/json" { (PreEscaped(json)) } } }
+        let what = if self.error { "error over time" } else { "over time" };
+        plot_box(&format!("{} {what}: {}", self.title, labels.join(", ")), &json)
+    }
+}
+
+/// The box that the page's script draws `json` into. The keyboard moves its cursor, so it is a widget with a focus, and
+/// `description` says what it shows.
+pub(super) fn plot_box(description: &str, json: &str) -> Markup {
+    html! {
+        div.time-plot tabindex="0" role="application" aria-roledescription="plot" aria-label=(description) {
+            script type="application/json" { (PreEscaped(json)) }
+        }
     }
 }
 
@@ -163,17 +190,18 @@ pub(super) fn array(values: &[f64], factor: f64, kept: &[usize]) -> String {
     let entries: Vec<String> = kept
         .iter()
         .map(|&index| match values.get(index).map(|value| value * factor) {
-            Some(value) if value.is_finite() => {
-                format!("{value:.4e}").parse::<f64>().map_or_else(|_| "null".to_string(), |rounded| rounded.to_string())
-            }
+            Some(value) if value.is_finite() => shortest(&format!("{value:.4e}")),
             _ => "null".to_string(),
         })
         .collect();
     format!("[{}]", entries.join(","))
 }
 
+/// The same number in as few characters as JSON has for it: plain digits of 1e-30 would fill a line.
 pub(super) fn shortest(decimal: &str) -> String {
-    decimal.parse::<f64>().map_or_else(|_| "null".to_string(), |value| value.to_string())
+    let Ok(value) = decimal.parse::<f64>() else { return "null".to_string() };
+    let (plain, scientific) = (value.to_string(), format!("{value:e}"));
+    if scientific.len() < plain.len() { scientific } else { plain }
 }
 
 #[cfg(test)]
@@ -184,8 +212,9 @@ mod tests {
     fn values_are_short_and_gaps_are_null() {
         assert_eq!(
             array(&[1.234_567_8, f64::NAN, f64::INFINITY, -0.000_012_345_67], 1.0, &[0, 1, 2, 3]),
-            "[1.2346,null,null,-0.000012346]"
+            "[1.2346,null,null,-1.2346e-5]"
         );
+        assert_eq!(array(&[1e-30, 0.0, 1500.0, -2e9], 1.0, &[0, 1, 2, 3]), "[1e-30,0,1500,-2e9]");
         assert_eq!(text("a</script>\""), r#""a\u003c/script>\"""#);
     }
 }

@@ -34,7 +34,7 @@ pub(super) fn unexplained_plot(machine: &Machine, left: &Unexplained) -> Markup 
         (frame.axes(&x_label, &y_label))
         (frame.band(&band, "var(--purple)"))
         (frame.line(&line, "var(--purple)", false))
-        @for (x, y) in &line { circle cx=(frame.at_x(*x)) cy=(frame.at_y(*y)) r="2.6" fill="var(--purple)" {} }
+        @for (x, y) in &line { circle cx=(frame.at_x(*x)) cy=(frame.at_y(*y)) r="2.6" style="fill:var(--purple)" {} }
     };
     html! {
         p {

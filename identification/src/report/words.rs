@@ -32,7 +32,11 @@ pub(super) fn equation(name: &str) -> String {
 
 /// `arm.cap_pressure` -> "Arm cap pressure".
 pub(super) fn signal(name: &str) -> String {
-    let text = spoken(&name.replace('.', " "));
+    capitalised(&spoken(&name.replace('.', " ")))
+}
+
+/// "force balance of the arm" -> "Force balance of the arm", for a heading.
+pub(super) fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }
