@@ -1,6 +1,5 @@
 """The commands of the docs: every one of them parses, and those of the first pages run, in order, in an empty folder."""
 
-import os
 import re
 import shlex
 import shutil
@@ -32,15 +31,6 @@ PLACEHOLDERS = {
 # Pages whose offline commands run. A command with live nodes is for tests/rclpy.
 RUN = ["start.md", "your-data.md", "verdict.md", "laws.md"]
 LIVE = {"node", "play", "record", "up", "dashboard"}
-
-
-@pytest.fixture
-def excavator():
-    """The program, as `tests/run` builds it."""
-    binary = os.environ.get("EXCAVATOR_BINARY")
-    if not binary:
-        pytest.skip("EXCAVATOR_BINARY does not say where the program is")
-    return binary
 
 
 def commands(page):

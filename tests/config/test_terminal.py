@@ -17,15 +17,6 @@ SAMPLES = pathlib.Path(__file__).resolve().parents[2] / "bags" / "samples" / "hi
 BAG = f"{SAMPLES / 'validation'}"
 
 
-@pytest.fixture
-def excavator():
-    """The program, as `tests/run` builds it."""
-    binary = os.environ.get("EXCAVATOR_BINARY")
-    if not binary:
-        pytest.skip("EXCAVATOR_BINARY does not say where the program is")
-    return binary
-
-
 def on_a_terminal(words, folder):
     """What a program prints on a terminal of 80 columns; it must succeed."""
     ours, theirs = pty.openpty()
