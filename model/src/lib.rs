@@ -9,6 +9,7 @@
 //! everywhere, pressures are gauge. This crate reads no files, knows no ROS and does no statistics.
 
 pub mod check;
+pub mod display;
 pub mod document;
 pub mod effects;
 pub mod energy;

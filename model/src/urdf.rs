@@ -7,8 +7,7 @@
 
 use std::fmt::Write;
 
-use crate::Model;
-use crate::machine::{Cylinder, Linkage, Mechanism, Supply};
+use crate::machine::{Cylinder, Linkage, Machine, Mechanism, Supply};
 
 /// Pressure that limits of forces are computed from, Pa: what relief valves of mobile machines are set to.
 const RELIEF_PRESSURE: f64 = 25e6;
@@ -21,10 +20,9 @@ const SLENDERNESS: f64 = 0.1;
 /// Height of the first joint above the ground, m.
 const JOINT_HEIGHT: f64 = 0.7;
 
-/// The description of a model's machine.
-pub fn urdf(model: &Model) -> String {
-    let machine = &model.machine;
-    let mut writer = Writer { text: String::new(), model };
+/// The description of a machine.
+pub fn urdf(machine: &Machine) -> String {
+    let mut writer = Writer { text: String::new(), machine };
     let _ = write!(
         writer.text,
         "<?xml version=\"1.0\"?>\n<!-- Made from the model: excavator model urdf -->\n<robot name=\"{}\">\n  \
@@ -45,13 +43,13 @@ pub fn urdf(model: &Model) -> String {
 
 struct Writer<'m> {
     text: String,
-    model: &'m Model,
+    machine: &'m Machine,
 }
 
 impl Writer<'_> {
     /// One link that turns, on a link that is held.
     fn held_link(&mut self, base_angle: f64) {
-        let Some(cylinder) = self.model.machine.cylinders.first() else { return };
+        let Some(cylinder) = self.machine.cylinders.first() else { return };
         let held = match cylinder.linkage {
             Linkage::Triangle { foot_arm, .. } => foot_arm,
             Linkage::Direct | Linkage::Gear { .. } => NO_LENGTH,
@@ -69,7 +67,7 @@ impl Writer<'_> {
 
     /// Links one after the other; a swing first where there is one.
     fn chain(&mut self) {
-        let machine = &self.model.machine;
+        let machine = self.machine;
         let chain = machine.mechanism.chain();
         let (mut parent, mut origin) = ("base_link".to_string(), [0.4, 0.0, JOINT_HEIGHT]);
         for (number, cylinder) in machine.cylinders.iter().enumerate() {
@@ -90,7 +88,7 @@ impl Writer<'_> {
 
     /// Every load on an axis of its own, beside each other.
     fn beside_each_other(&mut self, kind: &str, axis: &str, size: [f64; 3]) {
-        for (number, cylinder) in self.model.machine.cylinders.iter().enumerate() {
+        for (number, cylinder) in self.machine.cylinders.iter().enumerate() {
             self.joint(number, kind, "base_link", [0.5, number as f64, JOINT_HEIGHT], axis);
             self.link(&cylinder.name, "orange", [0.0; 3], size);
         }
@@ -114,7 +112,7 @@ impl Writer<'_> {
 
     /// The joint of a cylinder, between a link and that of its own name.
     fn joint(&mut self, number: usize, kind: &str, parent: &str, origin: [f64; 3], axis: &str) {
-        let cylinder = &self.model.machine.cylinders[number];
+        let cylinder = &self.machine.cylinders[number];
         let (name, parent) = (escaped(&cylinder.name), escaped(parent));
         let _ = write!(
             self.text,
@@ -133,7 +131,7 @@ impl Writer<'_> {
         let (shortest, longest) =
             levers.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), lever| (low.min(*lever), high.max(*lever)));
         let effort = cylinder.chambers.map_or(0.0, |chambers| RELIEF_PRESSURE * chambers.cap_area * longest);
-        let rate = match (self.model.machine.supply, cylinder.chambers) {
+        let rate = match (self.machine.supply, cylinder.chambers) {
             (Supply::PumpLine(line), Some(chambers)) => line.flow / chambers.rod_area.min(chambers.cap_area) / shortest,
             _ => USUAL_RATE,
         };

@@ -34,6 +34,7 @@ pub use arm_bridge::can::fuzzing;
 use std::process::ExitCode;
 
 use clap::FromArgMatches;
+use excavator_model::display::PressureUnit;
 
 /// Runs the command line of this process.
 pub fn run_command_line() -> ExitCode {
@@ -43,6 +44,7 @@ pub fn run_command_line() -> ExitCode {
         let arguments = parsed.and_then(|found| cli::Arguments::from_arg_matches(&found));
         let arguments = arguments.unwrap_or_else(|refusal| refuse(&refusal));
         arguments.verbosity().choose();
+        PressureUnit::from(arguments.units).show();
         verbs::run(arguments.verb, &ros, excavator_ros::ros_words(&all))?;
         verbs::all_was_printed()
     });

@@ -29,6 +29,8 @@ PLACEHOLDERS = {
     "$REPO": REPOSITORY,
 }
 # Pages whose offline commands run. A command with live nodes is for tests/rclpy.
+# Verbs whose screen ends with the command that comes next.
+LEADS_ON = {"demo", "info", "compare", "diagnose", "identify", "energy", "refine"}
 RUN = ["start.md", "your-data.md", "verdict.md", "laws.md"]
 LIVE = {"node", "play", "record", "up", "dashboard"}
 
@@ -74,6 +76,21 @@ def test_the_commands_of_a_page_run(excavator, tmp_path, name):
     own = [words for words in commands(DOCS / name) if words[1] not in LIVE]
     assert own
     for words in own:
-        words = [str(PLACEHOLDERS.get(word, word)) for word in words[1:]]
-        result = subprocess.run([excavator, *words], cwd=tmp_path, capture_output=True, text=True)
-        assert result.returncode == 0, f"{' '.join(words)}\n{result.stdout}\n{result.stderr}"
+        run(excavator, [str(PLACEHOLDERS.get(word, word)) for word in words[1:]], tmp_path)
+
+
+def test_the_commands_of_the_readme_run_in_an_empty_folder(excavator, tmp_path):
+    lines = re.findall(r"^    cargo run --release -- (\S.*?)(?:\s+#.*)?$", (REPOSITORY / "README.md").read_text(), re.MULTILINE)
+    assert lines
+    for line in lines:
+        run(excavator, shlex.split(line), tmp_path)
+
+
+def run(excavator, words, folder):
+    """Runs a command, which must succeed and, where its verb promises that, end with the next one."""
+    result = subprocess.run([excavator, *words], cwd=folder, capture_output=True, text=True)
+    assert result.returncode == 0, f"{' '.join(words)}\n{result.stdout}\n{result.stderr}"
+    # With JSON on standard output there is no screen.
+    if words[0] in LEADS_ON and "-" not in words:
+        last = result.stdout.rstrip().rsplit("\n\n", 1)[-1]
+        assert last.startswith("Next, ") and "\n    excavator " in last, f"{' '.join(words)} ends with\n{last}"

@@ -19,8 +19,6 @@ DOCS = ROOT / "docs"
 SUMMARY = DOCS / "SUMMARY.md"
 WORDS = ROOT / "tests" / "docs" / "words.txt"
 OUTSIDE = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md"]
-# Written by the program, with a link to the schema.
-MAY_LEAVE_THE_BOOK = {"model-file.md"}
 
 LINK = re.compile(r"!?\[[^\]]*\]\(\s*<?([^)\s>]+)>?[^)]*\)")
 CODE = re.compile(r"(`+)(.+?)\1")
@@ -86,8 +84,7 @@ def link_fault(path, target):
     goal = (path.parent / name).resolve() if name else path
     if not goal.is_relative_to(ROOT) or not goal.exists():
         return f"{target} does not exist"
-    leaves = path.is_relative_to(DOCS) and not goal.is_relative_to(DOCS)
-    if leaves and path.name not in MAY_LEAVE_THE_BOOK:
+    if path.is_relative_to(DOCS) and not goal.is_relative_to(DOCS):
         return f"{target} is not in the book; write its path as code"
     if anchor and goal.suffix == ".md" and anchor not in anchors(goal):
         return f"{target}: no such heading"

@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use excavator_model::document::toml_fault;
 use serde::{Deserialize, Serialize};
 
 use super::conversion::Conversion;
@@ -340,11 +341,7 @@ impl FromStr for TopicMap {
     type Err = MapError;
 
     fn from_str(text: &str) -> Result<Self, MapError> {
-        let map: TopicMap = toml::from_str(text).map_err(|error| {
-            let line = error.span().map(|span| text.get(..span.start).unwrap_or_default().matches('\n').count() + 1);
-            let line = line.map_or(String::new(), |line| format!("line {line}: "));
-            MapError::Syntax(format!("{line}{}", error.message().replace('\n', " ")))
-        })?;
+        let map: TopicMap = toml::from_str(text).map_err(|error| MapError::Syntax(toml_fault(text, &error)))?;
         map.check()?;
         Ok(map)
     }

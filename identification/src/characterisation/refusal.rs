@@ -1,5 +1,7 @@
 //! Why a procedure has no result: which signal or which manoeuvre is missing, with numbers.
 
+use excavator_model::display::pressure_text;
+
 /// A recording does not suit a procedure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Refusal {
@@ -50,7 +52,7 @@ pub enum Refusal {
     },
     /// Pressures of the closed valve do not say anything.
     #[error(
-        "in {holds} holds with closed valve (the longest {longest:.2} s) the {side} pressure changes by {change:.0} Pa at most: coefficients come out no better than {relative_error:.0} % of their value. Hold longer, and begin with the chamber near pump pressure and near tank pressure"
+        "in {holds} holds with closed valve (the longest {longest:.2} s) the {side} pressure changes by {} at most: coefficients come out no better than {relative_error:.0} % of their value. Hold longer, and begin with the chamber near pump pressure and near tank pressure", pressure_text(*change)
     )]
     TransientsTooSmall {
         /// Which chamber.

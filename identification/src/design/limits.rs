@@ -1,5 +1,6 @@
 //! What a manoeuvre must not leave.
 
+use excavator_model::display::pressure_text;
 use excavator_model::machine::Machine;
 
 /// Limits of a manoeuvre. There is no lowest pressure: a chamber that is pulled faster than the valve fills it touches the
@@ -41,7 +42,7 @@ pub enum Violation {
         limit: f64,
     },
     /// A pressure too high.
-    #[error("a pressure comes to {found:.3e} Pa; the limit is {limit:.3e} Pa")]
+    #[error("a pressure comes to {}; the limit is {}", pressure_text(*found), pressure_text(*limit))]
     Pressure {
         /// Pressure, Pa.
         found: f64,

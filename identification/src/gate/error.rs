@@ -1,5 +1,7 @@
 //! Why a recording cannot be used.
 
+use excavator_model::display::pressure_text;
+
 /// Shortest recording that says anything on a machine of the reference size, s: a stroke of a tenth of the cylinder.
 pub(super) const SHORTEST: f64 = 0.5;
 
@@ -136,7 +138,8 @@ pub enum GateError {
     },
     /// A pressure goes beyond the range of its sensor.
     #[error(
-        "{source_name}: {signal} is cut off at {value:.4e} Pa, for {longest:.2} s at most and {share:.1} % of the time; the sensor's range is too small for this recording"
+        "{source_name}: {signal} is cut off at {}, for {longest:.2} s at most and {share:.1} % of the time; the sensor's range is too small for this recording",
+        pressure_text(*value)
     )]
     Clipped {
         /// The recording.

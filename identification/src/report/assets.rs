@@ -18,9 +18,18 @@ pub(super) const DARK_STYLE: &str = include_str!("assets/dark.css");
 /// Chooses the scheme before anything is drawn.
 pub(super) const SCHEME_SCRIPT: &str = include_str!("assets/scheme.js");
 
-/// What a page does once it is there, in this order: plots over time, their keyboard, contents and printing.
-pub(super) const PAGE_SCRIPTS: [&str; 3] =
-    [include_str!("assets/plots.js"), include_str!("assets/keyboard.js"), include_str!("assets/page.js")];
+/// What a page does once it is there, in this order: plots over time, their keyboard, the moving machine, contents and printing.
+pub(super) const PAGE_SCRIPTS: [&str; 5] = [
+    include_str!("assets/plots.js"),
+    include_str!("assets/keyboard.js"),
+    KINEMATICS,
+    include_str!("assets/moving_machine.js"),
+    include_str!("assets/page.js"),
+];
+
+/// Reads a robot description (URDF) in a browser and places its links in the plane of the arm: `readRobot`, `placeLinks`,
+/// `outline` and what they need, as functions of a script.
+pub const KINEMATICS: &str = include_str!("assets/kinematics.js");
 
 /// The plotting library without its first comment.
 pub(super) fn uplot_script() -> &'static str {

@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::numbers::SIDES_95;
 use super::svg::{Frame, picture, range_of};
+use super::units;
 use crate::characterisation::{ClosedValve, DeadZone, Direction, DirectionalGain, Edge, FrictionCurve, Polynomial};
 
 /// Pairs of colours that people with any colour vision tell apart: from closed and from the edge, opening and closing.
@@ -94,19 +95,20 @@ fn direction_note(found: &[(Edge, &DeadZone)]) -> &'static str {
 /// Chamber pressures while the valve is closed.
 pub(super) fn transient_plots(found: &ClosedValve) -> Markup {
     let pump = found.holds.iter().map(|hold| hold.pump_pressure).sum::<f64>() / found.holds.len() as f64;
+    let unit = units::pressure();
     let sides = [("cap pressure", true, &found.cap), ("rod pressure", false, &found.rod)];
     html! {
         (key([(FIRST, "pressures after the valve closes"), (SECOND, "static gain times pump pressure")]))
         div.panels { @for (name, cap, side) in sides {
             @let curves: Vec<Vec<(f64, f64)>> = found.holds.iter().map(|hold| {
                 let pressure = if cap { &hold.cap_pressure } else { &hold.rod_pressure };
-                hold.time.iter().zip(pressure).map(|(&t, &p)| (t, p * 1e-6)).collect()
+                hold.time.iter().zip(pressure).map(|(&t, &p)| (t, p * unit.factor)).collect()
             }).collect();
-            @let level = side.as_ref().ok().map(|side| side.static_gain.value * pump * 1e-6);
+            @let level = side.as_ref().ok().map(|side| side.static_gain.value * pump * unit.factor);
             @let all = || curves.iter().flatten();
             @let frame = Frame { size: SIZE, margins: MARGINS, x: range_of(all().map(|p| p.0)), y: range_of(all().map(|p| p.1).chain(level)) };
             (picture(SIZE, &format!("{name} while the valve is closed"), &html! {
-                (frame.axes("time since closed and settled (s)", &format!("{name} (MPa)")))
+                (frame.axes("time since closed and settled (s)", &format!("{name} ({})", unit.symbol)))
                 @for curve in &curves { (frame.line(curve, FIRST, false)) }
                 @if let Some(level) = level { (frame.line(&[(frame.x.0, level), (frame.x.1, level)], SECOND, true)) }
             }))

@@ -195,8 +195,8 @@ fn variables<'a>(model: &Model, name: &str, recording: &'a Recording) -> Vec<Var
         push("speed", units::of_speed(Some(cylinder)), &signals.velocity);
         if cylinder.chambers.is_some() && own.is_some() {
             match name.ends_with("rod_pressure") {
-                true => push("rod pressure", units::MEGAPASCAL, &signals.rod_pressure),
-                false => push("cap pressure", units::MEGAPASCAL, &signals.cap_pressure),
+                true => push("rod pressure", units::pressure(), &signals.rod_pressure),
+                false => push("cap pressure", units::pressure(), &signals.cap_pressure),
             }
         }
         if own.is_some() || !several {
@@ -205,7 +205,7 @@ fn variables<'a>(model: &Model, name: &str, recording: &'a Recording) -> Vec<Var
     }
     if own.is_none() {
         let values = Cow::Borrowed(recording.pump_pressure.as_slice());
-        found.push(Variable { label: "pump pressure".to_string(), unit: units::MEGAPASCAL, values });
+        found.push(Variable { label: "pump pressure".to_string(), unit: units::pressure(), values });
     }
     found
 }

@@ -18,6 +18,7 @@ mod energy_tables;
 mod error_plots;
 mod evidence_tables;
 mod frontier_plot;
+mod machine_picture;
 mod named_text;
 mod numbers;
 mod page;
@@ -42,7 +43,7 @@ mod words;
 #[cfg(test)]
 mod tests;
 
-pub use assets::plotting;
+pub use assets::{KINEMATICS, plotting};
 pub use characterisation_page::characterisation_page;
 pub use comparison_page::{Beside, comparison_page};
 pub use comparison_text::{comparison_sentence, others_sentence};

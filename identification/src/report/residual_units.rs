@@ -14,7 +14,7 @@ pub(super) fn unit_of_variable(machine: &Machine, equation: &str, variable: &str
         "speed" => units::of_speed(cylinder),
         "position" => units::of_position(cylinder),
         "time" => units::SECOND,
-        _ => units::MEGAPASCAL,
+        _ => units::pressure(),
     }
 }
 

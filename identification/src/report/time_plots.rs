@@ -3,6 +3,7 @@
 use excavator_model::recording::is_measured;
 use maud::{Markup, PreEscaped, html};
 
+use super::machine_picture::machine_picture;
 use super::thinning;
 use super::units::{self, Unit};
 use super::{numbers, words};
@@ -66,13 +67,15 @@ pub(super) fn time_plots(models: &[(Line, &Comparison)], number: usize, recordin
     let Some((_, first)) = models.first() else { return html! { p.empty { "Nothing to compare." } } };
     // Of each signal two plots with a time axis each: the measurement and the models, and their errors.
     let columns = first.signals.len() * recordings * (2 * models.len() + 3);
+    let group = format!("recording-{number}");
     let budget = (NUMBERS_OF_A_PAGE / columns.max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
     html! {
         @if first.signals.is_empty() { p.empty { "This recording measures no output of the model." } }
+        (machine_picture(models, &group))
         @for signal in &first.signals {
             div.signal {
                 h3 { (words::signal(&signal.name)) small { code { (signal.name) } " · " (caption(models, signal)) } }
-                (signal_plots(models, &signal.name, &format!("recording-{number}"), budget))
+                (signal_plots(models, &signal.name, &group, budget))
             }
         }
     }

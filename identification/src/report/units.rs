@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use excavator_model::display::PressureUnit;
 use excavator_model::machine::{CommandUnit, Cylinder, Machine, Mechanism};
 
 /// A unit for display.
@@ -21,8 +22,6 @@ const fn unit(factor: f64, symbol: &str) -> Unit<'_> {
 pub(super) const MILLIMETRE: Unit<'static> = unit(1e3, "mm");
 /// Speeds.
 pub(super) const MILLIMETRE_PER_SECOND: Unit<'static> = unit(1e3, "mm/s");
-/// Pressures.
-pub(super) const MEGAPASCAL: Unit<'static> = unit(1e-6, "MPa");
 /// Openings.
 pub(super) const SQUARE_MILLIMETRE: Unit<'static> = unit(1e6, "mm²");
 /// Forces of cylinders.
@@ -31,6 +30,12 @@ pub(super) const KILONEWTON: Unit<'static> = unit(1e-3, "kN");
 pub(super) const LITRE_PER_MINUTE: Unit<'static> = unit(6e4, "l/min");
 /// Times.
 pub(super) const SECOND: Unit<'static> = unit(1.0, "s");
+
+/// Pressures, in the unit of the person's choice.
+pub(super) fn pressure() -> Unit<'static> {
+    let shown = PressureUnit::shown();
+    unit(shown.factor(), shown.symbol())
+}
 
 /// Angles of joints.
 const DEGREE: Unit<'static> = unit(180.0 / PI, "°");
@@ -71,7 +76,7 @@ pub(super) fn of_signal(machine: &Machine, name: &str) -> Unit<'static> {
         "rod_force" => KILONEWTON,
         "pump_flow" => LITRE_PER_MINUTE,
         "oil_temperature" => unit(1.0, "°C"),
-        pressure if pressure.ends_with("pressure") => MEGAPASCAL,
+        name if name.ends_with("pressure") => pressure(),
         _ => unit(1.0, "SI"),
     }
 }
@@ -82,7 +87,7 @@ pub(super) fn of_parameter(si: &str) -> Unit<'_> {
         "m" => MILLIMETRE,
         "m2" => SQUARE_MILLIMETRE,
         "m/s" => MILLIMETRE_PER_SECOND,
-        "Pa" => MEGAPASCAL,
+        "Pa" => pressure(),
         "s" => unit(1e3, "ms"),
         "-" => unit(1.0, ""),
         "kg m2" => unit(1.0, "kg m²"),

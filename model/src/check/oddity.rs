@@ -1,6 +1,7 @@
 //! Numbers of a model that can be read, but hardly be true.
 
 use super::{Trial, oscillations, trial};
+use crate::display::pressure_text;
 use crate::machine::{Chambers, CommandUnit, Cylinder, Linkage};
 use crate::{Model, ModelEffect, Parameter};
 
@@ -77,7 +78,7 @@ pub enum Oddity {
     },
     /// Pressures that burst hoses.
     #[error(
-        "{cylinder}: with its valve fully open its pressure reaches {pressure:.1e} Pa; check areas, mass and supply"
+        "{cylinder}: with its valve fully open its pressure reaches {}; check areas, mass and supply", pressure_text(*pressure)
     )]
     Pressure {
         /// The cylinder.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{DocumentError, syntax};
+use super::{DocumentError, toml_fault};
 use crate::effects::{AnyEffect, Catalogue};
 use crate::formula::{FormulaText, Law};
 
@@ -21,7 +21,7 @@ struct CatalogueText {
 /// [`DocumentError`] in one line that points at the place in the formula.
 pub fn parse_catalogue(name: &str, text: &str, catalogue: &Catalogue) -> Result<Catalogue, DocumentError> {
     let parsed: CatalogueText = toml::from_str(text)
-        .map_err(|error| DocumentError::Catalogue { name: name.to_string(), reason: syntax(text, &error) })?;
+        .map_err(|error| DocumentError::Catalogue { name: name.to_string(), reason: toml_fault(text, &error) })?;
     if parsed.formula.is_empty() {
         let reason = "it has no [[formula]]".to_string();
         return Err(DocumentError::Catalogue { name: name.to_string(), reason });

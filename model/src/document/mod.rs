@@ -5,6 +5,7 @@
 mod built_in;
 mod catalogue_text;
 mod cylinder_text;
+mod fault;
 mod machine_text;
 mod model_text;
 mod quantity;
@@ -13,6 +14,7 @@ mod schema;
 
 pub use built_in::{BUILT_IN, built_in};
 pub use catalogue_text::{catalogue_text, parse_catalogue};
+pub use fault::toml_fault;
 pub use model_text::{parse, to_text};
 pub use reference::reference;
 pub use schema::schema;
@@ -89,15 +91,3 @@ pub enum DocumentError {
 }
 
 const BUILT_IN_NAMES: &str = "zx30u-arm, zx30u, zx30u-bucket, zx30u-excavator, servo-bench, emps";
-
-/// Longest message of the reader of TOML that is passed on, characters: it may quote what it does not know.
-const LONGEST_MESSAGE: usize = 200;
-
-/// What the reader of TOML says, in one line, with the place.
-fn syntax(text: &str, error: &toml::de::Error) -> String {
-    let message: String = error.message().trim().replace('\n', ", ").chars().take(LONGEST_MESSAGE).collect();
-    let Some(before) = error.span().and_then(|span| text.get(..span.start)) else { return message };
-    let line = before.matches('\n').count() + 1;
-    let column = before.rsplit('\n').next().map_or(0, |last| last.chars().count()) + 1;
-    format!("line {line}, column {column}: {message}")
-}

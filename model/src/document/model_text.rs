@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::catalogue_text::with_formulas;
 use super::machine_text::MachineText;
-use super::{DocumentError, syntax};
+use super::{DocumentError, toml_fault};
 use crate::effects::{Catalogue, Kind, ParameterCard};
 use crate::formula::FormulaText;
 use crate::model::{site_name, site_named};
@@ -81,7 +81,7 @@ fn first_format() -> u32 {
 /// [`DocumentError`] in one line that says which number is wrong.
 pub fn parse(name: &str, text: &str, catalogue: &Catalogue) -> Result<Model, DocumentError> {
     let parsed: ModelText = toml::from_str(text)
-        .map_err(|error| DocumentError::Syntax { name: name.to_string(), reason: syntax(text, &error) })?;
+        .map_err(|error| DocumentError::Syntax { name: name.to_string(), reason: toml_fault(text, &error) })?;
     if parsed.format > FORMAT {
         return Err(DocumentError::Inconsistent {
             name: name.to_string(),

@@ -27,6 +27,8 @@ pub(super) trait Measure {
     const UNIT: &'static str;
     /// What it may be.
     const MUST: Must;
+    /// Largest magnitude: no machine comes near it, so a larger number has another unit than it says.
+    const LARGEST: f64;
 }
 
 /// What a known constant may be.
@@ -40,27 +42,30 @@ pub(super) enum Must {
 }
 
 macro_rules! measures {
-    ($($name:ident $unit:literal $must:ident;)*) => {$(
+    ($($name:ident $unit:literal $must:ident $largest:literal;)*) => {$(
         #[derive(Debug, Clone, PartialEq)]
         pub(super) struct $name;
         impl Measure for $name {
             const UNIT: &'static str = $unit;
             const MUST: Must = Must::$must;
+            const LARGEST: f64 = $largest;
         }
     )*};
 }
 
+// The largest pistons are those of presses, 2 m2; the longest links those of draglines, 100 m; the largest motors turn winches,
+// 0.01 m3/rad.
 measures! {
-    Acceleration "m/s2" NotBeNegative;
-    Angle "rad" BeFinite;
-    Area "m2" BePositive;
-    Flow "m3/s" BePositive;
-    Length "m" BePositive;
-    Position "m" BeFinite;
-    MotorVolume "m3/rad" BePositive;
-    Pressure "Pa" BePositive;
-    TankPressure "Pa" BeAboveVacuum;
-    Volume "m3" BePositive;
+    Acceleration "m/s2" NotBeNegative 1000.0;
+    Angle "rad" BeFinite 1000.0;
+    Area "m2" BePositive 10.0;
+    Flow "m3/s" BePositive 100.0;
+    Length "m" BePositive 1000.0;
+    Position "m" BeFinite 1000.0;
+    MotorVolume "m3/rad" BePositive 1.0;
+    Pressure "Pa" BePositive 1e9;
+    TankPressure "Pa" BeAboveVacuum 1e9;
+    Volume "m3" BePositive 1000.0;
 }
 
 /// Gauge pressure of a vacuum, Pa.
@@ -88,12 +93,12 @@ impl Must {
         }
     }
 
-    fn schema(self) -> Schema {
+    fn schema(self, largest: f64) -> Schema {
         match self {
-            Must::BePositive => json_schema!({ "type": "number", "exclusiveMinimum": 0.0 }),
-            Must::NotBeNegative => json_schema!({ "type": "number", "minimum": 0.0 }),
-            Must::BeAboveVacuum => json_schema!({ "type": "number", "minimum": VACUUM }),
-            Must::BeFinite => json_schema!({ "type": "number" }),
+            Must::BePositive => json_schema!({ "type": "number", "exclusiveMinimum": 0.0, "maximum": largest }),
+            Must::NotBeNegative => json_schema!({ "type": "number", "minimum": 0.0, "maximum": largest }),
+            Must::BeAboveVacuum => json_schema!({ "type": "number", "minimum": VACUUM, "maximum": largest }),
+            Must::BeFinite => json_schema!({ "type": "number", "minimum": -largest, "maximum": largest }),
         }
     }
 }
@@ -114,14 +119,18 @@ impl<M: Measure> Quantity<M> {
                 expected: M::UNIT.to_string(),
             });
         }
-        if M::MUST.allows(self.value) {
+        let must = if !M::MUST.allows(self.value) {
+            M::MUST.words()
+        } else if self.value.abs() > M::LARGEST {
+            format!("at most {} {}; is the number in another unit?", M::LARGEST, M::UNIT)
+        } else {
             return Ok(self.value);
-        }
+        };
         Err(DocumentError::Impossible {
             name: name.to_string(),
             quantity: quantity.to_string(),
             value: self.value,
-            must: M::MUST.words(),
+            must,
         })
     }
 }
@@ -139,7 +148,7 @@ impl<M: Measure> JsonSchema for Quantity<M> {
         json_schema!({
             "type": "object",
             "properties": {
-                "value": M::MUST.schema(),
+                "value": M::MUST.schema(M::LARGEST),
                 "unit": { "const": M::UNIT },
                 "source": { "type": "string", "description": "where the number comes from" },
             },

@@ -25,7 +25,7 @@ const HEAD: &str = "\
 
 A model is a machine plus a list of physical effects, in one TOML file. This page is written by `excavator model reference` from the
 code that reads the file. `excavator model schema` writes the same as a JSON schema, which is also
-[`config/model.schema.json`](../config/model.schema.json): an editor that knows TOML completes and checks with it. `excavator model
+`config/model.schema.json`: an editor that knows TOML completes and checks with it. `excavator model
 check FILE` reads a file, tries the machine, and tells what is odd about its numbers.
 
 A constant with a unit is `{ value = 0.5, unit = \"m\", source = \"drawing 12\" }`. The unit must be the one of this page; `source` may be

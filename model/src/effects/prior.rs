@@ -1,5 +1,7 @@
 //! What is known of a nuisance parameter before a recording is read.
 
+use crate::display::pressure_text;
+
 /// A normal distribution of a nuisance parameter about the value at which its effect changes nothing: its first start value.
 ///
 /// A nuisance parameter says how a recording was made or how the equations round a corner. It is estimated with every model, and what
@@ -105,6 +107,7 @@ pub(super) fn for_people(value: f64, unit: &str) -> String {
         "m/s" => format!("{:.1} mm/s", 1e3 * value),
         "m2" => format!("{:.3} mm2", 1e6 * value),
         "-" => format!("{:.2} %", 1e2 * value),
+        "Pa" => pressure_text(value),
         unit => format!("{value:.3} {unit}"),
     }
 }

@@ -4,6 +4,7 @@ use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 
 use excavator_bags::{ReadLimits, read_regular_text};
+use excavator_model::document::toml_fault;
 use serde::Deserialize;
 
 use super::signals::Treatment;
@@ -267,8 +268,7 @@ impl Description {
     }
 
     fn parse(text: &str) -> Result<Self, String> {
-        let description: Description =
-            toml::from_str(text).map_err(|error| error.message().lines().collect::<Vec<_>>().join(" "))?;
+        let description: Description = toml::from_str(text).map_err(|error| toml_fault(text, &error))?;
         if !(0.1..=2000.0).contains(&description.rate) {
             return Err(format!("rate = {} is outside 0.1 to 2000 Hz", description.rate));
         }

@@ -59,7 +59,7 @@ pub fn run(arguments: &RosArguments) -> Result<(), VerbError> {
     let desk = Desk::open(&supervisor, valves(&model), "arm/state")?;
     // What is published now reaches everybody who comes later.
     let _ = outlets.model.publish(Text { data: to_text(&model)? });
-    let _ = outlets.description.publish(Text { data: urdf(&model) });
+    let _ = outlets.description.publish(Text { data: urdf(&model.machine) });
     let stop = supervisor.stop_flag();
     let lifecycle = supervisor.lifecycle()?;
     let simulation = Simulation {

@@ -7,6 +7,8 @@ mod offline;
 
 use clap::{Parser, Subcommand};
 
+use excavator_model::display::PressureUnit;
+
 use crate::verbosity::Verbosity;
 
 pub use live::*;
@@ -29,6 +31,29 @@ pub struct Arguments {
     /// Print errors only.
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub quiet: bool,
+    /// Unit in which pressures are shown, in the terminal and on pages. JSON and files are always in SI units.
+    #[arg(long, global = true, value_name = "UNIT", default_value = "MPa", ignore_case = true)]
+    pub units: Units,
+}
+
+/// Unit in which pressures are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Units {
+    /// Megapascal.
+    #[value(name = "MPa")]
+    Megapascal,
+    /// Bar.
+    #[value(name = "bar")]
+    Bar,
+}
+
+impl From<Units> for PressureUnit {
+    fn from(units: Units) -> Self {
+        match units {
+            Units::Megapascal => PressureUnit::Megapascal,
+            Units::Bar => PressureUnit::Bar,
+        }
+    }
 }
 
 impl Arguments {

@@ -1,13 +1,13 @@
 //! The page, with everything in it.
 
-use excavator_identification::report::plotting;
+use excavator_identification::report::{KINEMATICS, plotting};
 
 const FRAME: &str = include_str!("assets/dashboard.html");
 const STYLE: &str = include_str!("assets/dashboard.css");
 /// In the order in which they need each other.
 const SCRIPTS: [&str; 9] = [
     include_str!("assets/basics.js"),
-    include_str!("assets/kinematics.js"),
+    KINEMATICS,
     include_str!("assets/picture.js"),
     include_str!("assets/values.js"),
     include_str!("assets/commands.js"),

@@ -6,6 +6,7 @@ use comfy_table::Cell;
 use excavator_bags::map::{Origin, TopicMap, read_signals};
 use excavator_bags::table::Table as DataTable;
 use excavator_bags::{BagError, BagInfo, ColumnInfo, SignalsInfo, TableInfo, Timing, info};
+use excavator_model::display::PressureUnit;
 use excavator_model::document::{BUILT_IN, built_in};
 use serde_json::{Value, json};
 
@@ -254,7 +255,7 @@ fn display_unit(name: &str) -> (f64, &'static str) {
         "rod_force" => (1.0, "N"),
         "pump_flow" => (60_000.0, "l/min"),
         "oil_temperature" => (1.0, "degC"),
-        _ => (1e-5, "bar"),
+        _ => (PressureUnit::shown().factor(), PressureUnit::shown().symbol()),
     }
 }
 

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use excavator_model::check::{Oddity, Oscillation, Trial, oddities, oscillations, trial};
+use excavator_model::display::PressureUnit;
 use excavator_model::document::{reference, schema};
 use excavator_model::machine::{Cylinder, Drive, Supply};
 use excavator_model::{Model, addition_name, site_name, urdf};
@@ -22,7 +23,7 @@ pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {
         ModelVerb::Check(arguments) => check(arguments),
         ModelVerb::Valve(arguments) => valve_test::run(arguments),
         ModelVerb::Urdf(choice) => {
-            print_text(urdf(&sources::model(choice)?).trim_end());
+            print_text(urdf(&sources::model(choice)?.machine).trim_end());
             Ok(())
         }
         ModelVerb::Schema(own) => {
@@ -74,7 +75,11 @@ fn describe(model: &Model) {
     print(&format!("{}: {}", machine.name, machine.description));
     let supply = match machine.supply {
         Supply::PumpLine(line) => format!("pump line, {} l/min", number(6e4 * line.flow)),
-        Supply::PressureSource(source) => format!("supply at {} MPa", number(1e-6 * source.pressure)),
+        Supply::PressureSource(source) => format!(
+            "supply at {} {}",
+            number(PressureUnit::shown().factor() * source.pressure),
+            PressureUnit::shown().symbol()
+        ),
         Supply::None => "no oil".to_string(),
     };
     let unknown = model.unknown_parameters().len();
@@ -123,7 +128,9 @@ fn of_trial(cylinder: &Cylinder, trial: Option<&Trial>) -> String {
     } else {
         format!("it extends at {} mm/s and retracts at {} mm/s", number(1e3 * extending), number(1e3 * retracting))
     };
-    format!("{what}; with {drive} for {duration} s {speeds}, at {:.1} to {:.1} MPa", 1e-6 * least, 1e-6 * most)
+    let unit = PressureUnit::shown();
+    let [least, most] = [least, most].map(|pressure| unit.factor() * pressure);
+    format!("{what}; with {drive} for {duration} s {speeds}, at {least:.1} to {most:.1} {}", unit.symbol())
 }
 
 fn of_oscillations(oscillations: &[Oscillation]) -> Option<String> {

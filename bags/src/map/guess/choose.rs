@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeSet, HashSet};
 
+use excavator_model::display::pressure_text;
 use excavator_model::recording::has_noise;
 
 use super::super::signal::{SignalKind, SignalName};
@@ -260,13 +261,21 @@ fn add_places_of_pressures(candidates: &[Candidate], shapes: &[Option<Shape>], p
         [SignalKind::CapPressure, SignalKind::RodPressure].into_iter().filter(|&kind| !has(kind)).collect();
     if loose.len() > open.len() && !has(SignalKind::PumpPressure) {
         let (candidate, mean) = loose.remove(0);
-        add(candidate, SignalKind::PumpPressure, format!("highest of the pressures, {} Pa on average", short(mean)));
+        add(
+            candidate,
+            SignalKind::PumpPressure,
+            format!("highest of the pressures, {} on average", pressure_text(mean)),
+        );
     }
     if loose.len() > open.len()
         && !has(SignalKind::TankPressure)
         && let Some((candidate, mean)) = loose.pop()
     {
-        add(candidate, SignalKind::TankPressure, format!("lowest of the pressures, {} Pa on average", short(mean)));
+        add(
+            candidate,
+            SignalKind::TankPressure,
+            format!("lowest of the pressures, {} on average", pressure_text(mean)),
+        );
     }
     // In the order of the data: people write the cap side first.
     loose.sort_by_key(|&(candidate, _)| candidate);
@@ -275,7 +284,7 @@ fn add_places_of_pressures(candidates: &[Candidate], shapes: &[Option<Shape>], p
             break;
         }
         let kind = open.remove(0);
-        let why = format!("a pressure of {} Pa on average; which chamber is only the order: check", short(mean));
+        let why = format!("a pressure of {} on average; which chamber is only the order: check", pressure_text(mean));
         add(candidate, kind, why);
     }
     pairs.extend(found);

@@ -1,7 +1,7 @@
 // Plots over time by keyboard: the cursor, and the part of the recording that is shown.
 (function () {
   "use strict";
-  const { plots, number, withUnit } = timePlots;
+  const { plots, number, withUnit, point } = timePlots;
   // Steps of the cursor across what is shown, and steps at once with the shift key.
   const STEPS = 200;
   const LARGE = 10;
@@ -34,20 +34,14 @@
     // Where samples are further apart than a step, the next one.
     if (index === plot.cursor.idx) index = Math.min(time.length - 1, Math.max(0, index + Math.sign(steps)));
     if (time[index] < min || time[index] > max) return;
-    point(one, time[index]);
+    point(one.spec.group, time[index]);
     announce(one, index);
-  }
-  // Every plot of the group by itself: their pixels differ where their widths do.
-  function point(one, time) {
-    ofGroup(one).forEach(({ plot }) => {
-      plot.setCursor({ left: plot.valToPos(time, "x"), top: plot.over.clientHeight / 2 }, true, false);
-    });
   }
   function show(one, min, max) {
     const { idx } = one.plot.cursor;
     ofGroup(one).forEach(({ plot }) => plot.setScale("x", { min, max }));
     // Scales change after this; the cursor then stays at its time and not at its pixel.
-    if (idx != null) queueMicrotask(() => point(one, one.plot.data[0][idx]));
+    if (idx != null) queueMicrotask(() => point(one.spec.group, one.plot.data[0][idx]));
     spoken.textContent = `${number(min)} s to ${number(max)} s`;
   }
   function zoomed(one, factor) {

@@ -128,7 +128,7 @@
     const plot = new uPlot({
       bands: (spec.bands || []).map((band) => ({ series: [band.high + 1, band.low + 1], fill: () => translucent(band.fill) })),
       width: box.clientWidth || 1000, height: spec.height, series: series(spec), axes: axes(spec, quantity), padding: [8, 12, 0, 0],
-      scales: { x: { time: false } }, legend: { live: true, markers: { dash: dashed, stroke: variable(spec) } },
+      scales: { x: { time: false } }, hooks: { setCursor: [tellOf(spec)] }, legend: { live: true, markers: { dash: dashed, stroke: variable(spec) } },
       cursor: {
         sync: { key: spec.group, setSeries: false }, drag: { x: true, y: false },
         points: { size: 6, fill: variable(spec), stroke: variable(spec) },
@@ -136,6 +136,21 @@
     }, data, box);
     legend(box, spec, plot);
     plots.push({ plot, box, spec });
+  }
+  // Who wants to know where the cursor of a group is, by group.
+  const listeners = new Map();
+  function onCursor(group, listener) { listeners.set(group, (listeners.get(group) || []).concat(listener)); }
+  function tellOf(spec) {
+    return ({ cursor, data }) => {
+      const time = cursor.idx == null || cursor.left < 0 ? null : data[0][cursor.idx];
+      if (time != null) (listeners.get(spec.group) || []).forEach((listener) => listener(time));
+    };
+  }
+  // Moves the cursor of each plot of a group by itself: their pixels differ where their widths do.
+  function point(group, time) {
+    plots.filter(({ spec }) => spec.group === group).forEach(({ plot }) => {
+      plot.setCursor({ left: plot.valToPos(time, "x"), top: plot.over.clientHeight / 2 }, true, false);
+    });
   }
   function fit(width) {
     plots.forEach(({ plot, box, spec }) => plot.setSize({ width: width || box.clientWidth || 1000, height: spec.height }));
@@ -148,5 +163,5 @@
   let waiting;
   window.addEventListener("resize", () => { clearTimeout(waiting); waiting = setTimeout(() => fit(), 100); });
 
-  globalThis.timePlots = { plots, fit, number, withUnit };
+  globalThis.timePlots = { plots, fit, number, withUnit, onCursor, point };
 })();

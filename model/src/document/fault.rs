@@ -1,0 +1,62 @@
+//! What is wrong with a TOML text, with its place.
+
+/// Longest message of the reader of TOML that is passed on, characters: it may quote what it does not know.
+const LONGEST_MESSAGE: usize = 200;
+
+/// Longest piece of the faulty line that is shown, characters.
+const LONGEST_LINE: usize = 72;
+
+/// What the reader of TOML says of `text`, with line and column, and under it the line with a mark at the place.
+pub fn toml_fault(text: &str, error: &toml::de::Error) -> String {
+    let message: String = error.message().trim().replace('\n', ", ").chars().take(LONGEST_MESSAGE).collect();
+    let Some(span) = error.span() else { return message };
+    let (Some(before), Some(from)) = (text.get(..span.start), text.get(span.start..)) else { return message };
+    let number = before.matches('\n').count() + 1;
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    let left = before.get(start..).unwrap_or_default();
+    let right = from.lines().next().unwrap_or_default();
+    let column = left.chars().count() + 1;
+    // Of a long line, what is around the place.
+    let skipped = (column - 1).saturating_sub(LONGEST_LINE / 2);
+    let shown: String = left.chars().chain(right.chars()).skip(skipped).take(LONGEST_LINE).map(visible).collect();
+    let blanks = " ".repeat(column - 1 - skipped);
+    let marked = text.get(span).map_or(1, |marked| marked.lines().next().unwrap_or_default().chars().count());
+    let marks = "^".repeat(marked.clamp(1, (LONGEST_LINE - blanks.len()).max(1)));
+    let margin = " ".repeat(number.to_string().len());
+    let shown = shown.trim_end();
+    format!("line {number}, column {column}: {message}\n{margin} |\n{number} | {shown}\n{margin} | {blanks}{marks}")
+}
+
+/// A character that takes one column of a terminal and does nothing else there.
+fn visible(character: char) -> char {
+    if character.is_control() { ' ' } else { character }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::toml_fault;
+
+    fn fault(text: &str) -> String {
+        toml_fault(text, &toml::from_str::<toml::Table>(text).unwrap_err())
+    }
+
+    #[test]
+    fn the_line_is_shown_with_a_mark_at_the_place() {
+        let said = fault("a = 1\narea = 38 mm2\nb = 2\n");
+        let lines: Vec<&str> = said.lines().collect();
+        assert!(lines[0].starts_with("line 2, column "), "{said}");
+        assert_eq!(lines[2], "2 | area = 38 mm2");
+        assert!(lines[3].trim_start_matches([' ', '|']).starts_with('^'), "{said}");
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_the_place_and_control_characters_do_nothing() {
+        let text = format!("a = \"{}\" \u{1b} x", "é".repeat(5000));
+        let said = fault(&text);
+        assert!(said.lines().all(|line| line.chars().count() <= 300), "{said}");
+        assert!(!said.contains('\u{1b}'));
+        assert!(said.lines().last().unwrap().ends_with('^'));
+        assert!(fault("a = ").lines().count() == 4 && fault("[").lines().count() == 4);
+    }
+}
