@@ -15,10 +15,11 @@ PAGE = ROOT / "docs" / "faults.md"
 GROUPS = ["Commands", "Network", "Remote goals", "Files", "Recorder", "Pages and bridges"]
 INTRODUCTION = """# Faults that the tests try
 
-Each row is a test in `tests/hostile` or `tests/rclpy`. The first column says what a careless user, a broken program or a stranger does. The
-last column has the figures of one run on a machine with two cores. Some faults are tried by the long tests only (`tests/run --long`).
+After reading this page, you know how the program reacts to misuse, broken programs and attacks. Each row is a test in `tests/hostile` or
+`tests/rclpy`. The first column states the action of a careless user, a broken program or a stranger. The last column gives the figures of
+one run on a machine with two cores. Some faults are tried by the long tests only (`tests/run --long`).
 
-`tests/run` collects the rows and checks that this page has all of them. `python3 tests/hostile/table.py` writes the page again.
+`tests/run` collects the rows and checks that this page has all of them. `python3 tests/hostile/table.py` rewrites the page.
 """
 
 
