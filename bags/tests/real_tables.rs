@@ -154,7 +154,7 @@ fn tables_beside_the_data_are_brought_onto_its_times() {
     let apart = error(&map("offset = 500.0"));
     assert!(apart.contains("daq.csv has no time in common") && apart.contains("from 500.000 s"), "{apart}");
     let dated = error(&map("clock.start = \"2026-05-04T09:30:00Z\""));
-    assert!(dated.contains("only the file says when it was") && dated.contains("offset"), "{dated}");
+    assert!(dated.contains("only the file has dates") && dated.contains("offset"), "{dated}");
     let placed = map("clock.start = \"2026-05-04T09:30:00Z\"\noffset = 0.1");
     assert!(near(folder.read("drive.csv", &placed).unwrap().0.cylinders[0].cap_pressure[10], 1e7));
     let elsewhere = error(&(map("") + "file = \"b.csv\"\n"));

@@ -56,9 +56,9 @@ pub enum VerbError {
     Profile(#[from] ProfileError),
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: std::io::Error },
-    #[error("{wrong} of the laws, each at one place, {} a problem", if *wrong == 1 { "has" } else { "have" })]
+    #[error("{wrong} {} a problem; see the list above", if *wrong == 1 { "law has" } else { "laws have" })]
     Laws { wrong: usize },
-    #[error("{oddities} {} odd in {name}", if *oddities == 1 { "thing is" } else { "things are" })]
+    #[error("{name} has {oddities} implausible {}; see the list above", if *oddities == 1 { "value" } else { "values" })]
     OddModel { name: String, oddities: usize },
     #[error("valve test: {0}")]
     ValveTest(String),
@@ -91,7 +91,7 @@ pub enum VerbError {
     #[error("{} has no tie: {found}; name rivals with --between", path.display())]
     NoTie { path: PathBuf, found: String },
     #[error(
-        "no manoeuvre within the limits is expected to be enough, no profile is written: {0}; try a longer --duration or a smaller --stroke-margin"
+        "no profile is written, because no manoeuvre within the limits is expected to suffice: {0}; try a longer --duration or a smaller --stroke-margin"
     )]
     NothingSeparates(String),
     #[error("{}: {reason}; a part is BAG@FROM..TO, in seconds after the first sample", path.display())]

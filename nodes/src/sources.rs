@@ -106,8 +106,8 @@ pub fn telling_recording(path: &Path, extent: Extent, map: &Mapping, model: &Mod
 fn choice(used: &Recording, chosen: &Chosen) -> String {
     let starts: Vec<String> = chosen.starts.iter().map(|start| format!("{start:.0}")).collect();
     format!(
-        "{:.0} of {:.0} s are used: the stretches of {:.0} s from {} s, which together tell most about the parameters (as much time at random \
-         would widen their intervals {:.1} times); --whole uses all",
+        "{:.0} of {:.0} s are used: the most informative stretches of {:.0} s, from {} s (stretches at random would give intervals {:.1} times \
+         as wide); --whole uses all",
         used.recorded_time(),
         chosen.duration,
         chosen.stretch,

@@ -131,8 +131,8 @@ pub enum MapError {
     },
     /// Of two files only one says when it was.
     #[error(
-        "{} and the data cannot be joined: only {} says when it was; give [[join]] `offset`, s from the first row of the data to \
-         its own",
+        "{} and the data cannot be joined, because only {} has dates; give [[join]] `offset`, the time in s from the first row of \
+         the data to the first row of the file",
         file.display(),
         if *is_dated { "the file" } else { "the data" }
     )]
@@ -160,7 +160,7 @@ pub enum MapError {
     },
     /// Files that follow each other, of which two are of the same time.
     #[error(
-        "{} and {} overlap by {overlap:.3} s: one after the other they are no recording; import one with --join and the other",
+        "{} and {} overlap by {overlap:.3} s, so they are not consecutive pieces of one recording; if they were recorded at the same time, join one to the other with --join",
         first.display(),
         second.display()
     )]

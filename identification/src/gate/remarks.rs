@@ -76,7 +76,7 @@ pub enum Remark {
     },
     /// A command that was measured.
     #[error(
-        "{cylinder}.orifice_command has noise, so it was measured: as a command it is held between samples, as orifice_area it would run straight"
+        "{cylinder}.orifice_command has noise, so it was measured; map it to orifice_area, which is interpolated between samples, while a command is held"
     )]
     MeasuredCommand {
         /// The cylinder.
@@ -84,8 +84,8 @@ pub enum Remark {
     },
     /// A cylinder that the model does not have moves.
     #[error(
-        "cylinder {cylinder} moves by {range:.3} m and is not in {machine}: it takes oil and swings what it carries; use a model that has it, or \
-         record while it rests"
+        "cylinder {cylinder} moves by {range:.3} m but is not in {machine}; it draws oil and moves the links that it carries; use a model that \
+         includes it, or record while it is at rest"
     )]
     OtherCylinderMoves {
         /// The cylinder.

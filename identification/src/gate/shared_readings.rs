@@ -7,8 +7,8 @@ use excavator_model::recording::Recording;
 /// Readings that recordings which should be apart have in common.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
-    "{} % of the readings of {validation} are in {identification} too: what was fitted is no evidence; give another recording, or other parts of one \
-     (BAG@FROM..TO)", share.round()
+    "{} % of the readings of {validation} are also in {identification}; fitted data cannot serve as evidence; give another recording, or another part of \
+     this one (BAG@FROM..TO)", share.round()
 )]
 pub struct SharedReadings {
     /// The recording that is fitted.

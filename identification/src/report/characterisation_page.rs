@@ -66,8 +66,8 @@ fn gains(one: &Characterisation) -> Markup {
                 } }
             } }
             p.note {
-                "Gain: flow over opening and root of the pressure drop in steady stretches ([B] Eq. 11, with the opening as area law). Counted from closed, the dead zone "
-                "bends it; counted from the edge, what is left is the area law itself. Bands are 95 %."
+                "Gain: flow divided by opening and by the root of the pressure drop, in steady stretches ([B] Eq. 11, with the opening as area law). If the opening "
+                "is measured from closed, the dead zone bends the gain. Measured from the edge of the dead zone, it shows the area law alone. Bands are 95 %."
             }
         }
         @for (edge, gain) in &one.gains { @if let Err(refusal) = gain { (refused(edge.name(), refusal)) } }
@@ -124,8 +124,8 @@ fn dead_zones(one: &Characterisation) -> Markup {
                 } } }
             } }
             p.note {
-                "Where flow over root of the pressure drop rises from zero while the valve opens, and falls to zero while it closes; ± 95 %. Where the opening is the "
-                "command and not the spool's, a lag of the valve (the equal lag) looks like hysteresis: run the same test at another speed to separate the two."
+                "The edges are the openings at which the normalised flow leaves zero while the valve opens and reaches zero while it closes; ± 95 %. If the opening is "
+                "a command, a lag of the valve (column “equal lag”) looks like hysteresis. Repeat the test at another speed to separate the two."
             }
         }
         @for (edge, zone) in &one.dead_zones { @if let Err(refusal) = zone { (refused(edge.name(), refusal)) } }
@@ -148,7 +148,8 @@ fn leakage(one: &Characterisation) -> Markup {
             } }
             p.note {
                 (found.holds.len()) " times with closed valve; the piston creeps " (significant(1e3 * creep(found), 2)) " mm at most, which the balance takes into account. "
-                "Time constants and static gains are for a held piston at mid-stroke; one that its load moves settles where flows and load agree. All rests on a bulk modulus of " (significant(found.bulk_modulus * 1e-9, 3)) " GPa, the model's. ± 95 %."
+                "Time constants and static gains apply to a piston held at mid-stroke. If the load moves the piston, it settles where flows and load balance. "
+                "All values depend on the bulk modulus of the model, " (significant(found.bulk_modulus * 1e-9, 3)) " GPa. ± 95 %."
             }
             @if let Err(refusal) = &found.cap { (refused("Cap side", refusal)) }
             @if let Err(refusal) = &found.rod { (refused("Rod side", refusal)) }
@@ -191,7 +192,7 @@ fn friction_table(curve: &FrictionCurve) -> Markup {
             }
         } }
         p.note {
-            (curve.points.len()) " steady stretches, load " @if curve.from_load_cell { "from the load cell" } @else { "from the model, times a share fitted along" }
+            (curve.points.len()) " steady stretches, load " @if curve.from_load_cell { "from the load cell" } @else { "from the model, scaled by a fitted factor" }
             ". " (curve.reason) ". Points lie " (significant(curve.scatter, 2)) " N from the curve (root mean square); the band is 95 %."
         }
     }

@@ -47,7 +47,7 @@ pub fn others_sentence(comparison: &Comparison, other: Beside<'_>) -> String {
         Beside::Model(_) => format!("The other model is not closer: mean NMSE {error}."),
         Beside::Run(run) if !run.has_same_commands() => {
             format!(
-                "The second run had other commands: its mean NMSE of {error} does not show how well the machine repeats itself."
+                "The commands of the second run differ, so its mean NMSE of {error} does not measure repeatability."
             )
         }
         Beside::Run(_) if its < own => {

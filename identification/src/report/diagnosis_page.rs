@@ -62,7 +62,7 @@ fn missing_power(missing: &[(String, Vec<MissingPower>)]) -> Markup {
             (energy_tables::evidence(found))
         }
         p.note {
-            "The energy ledger of the refitted model on what was measured: energy stored at each equation, less the power that the model says flows in. "
+            "The energy ledger of the refitted model compares the measured change of stored energy in each equation with the modelled power inflow. "
             code { "excavator energy" } " has the figures."
         }
     }

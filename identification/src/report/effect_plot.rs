@@ -76,12 +76,12 @@ fn explanation(shown: &Contribution) -> Markup {
             "nominal friction, plus what the equation lacks when the effect is taken out of the fitted model"
         }
         Drawn::Opening => {
-            "the opening that the flow corresponds to: the commanded one, plus what the equation lacks when the effect is \
-             taken out of the fitted model, divided by flow per opening"
+            "the opening that the flow implies: the commanded opening plus the residual of the equation without the effect, \
+             divided by the flow per opening"
         }
     };
     html! {
         "From the " (equation) " (" code { (shown.equation) } ") on the validation recordings. Dots: " (what) ". Where the dots "
-        "leave the line of the model with the effect, this effect is not all."
+        "leave the line of the model with the effect, more physics is missing."
     }
 }

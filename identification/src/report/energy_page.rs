@@ -67,11 +67,10 @@ pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
                 (residual_plots(model, analysis))
                 (ledger(model, analysis))
                 p.note {
-                    "At each equation of the model: the energy that is stored there, less the power that the model says flows in, averaged over windows of "
-                    "0.4 s. Negative: power goes missing. Noise moves it as much as repeats with added sensor noise say, parameters as much as their standard errors, "
-                    "and slopes are no sharper than the parabolas through the measurements; "
-                    "1 % of the power that flows through is always allowed for."
-                    @if !analysis.parameters_have_errors { " The parameters of this model carry no standard errors, so they are taken for exact: identify it first." }
+                    "The residual of each equation is the rate of the stored energy minus the modelled power inflow, averaged over windows of 0.4 s. "
+                    "A negative residual means that power is missing. The limit has four parts: sensor noise (from repeats with added noise), standard errors of the parameters, "
+                    "smoothing by parabolas, and 1 % of the power that passes through."
+                    @if !analysis.parameters_have_errors { " The parameters of this model have no standard errors, so they are treated as exact. Identify the model first." }
                 }
             },
         },
@@ -124,8 +123,8 @@ fn rates(model: &Model, trace: &CylinderTraces, number: usize, budget: usize) ->
         (lower.markup(&trace.time, &[line("valve opening", PARTS[1], false, &opening)]))
         @if let Some(phase) = &trace.phase {
             p.note {
-                "At " (significant(phase.frequency, 3)) " Hz the analytical rate lags behind the experimental one by " (degrees(phase.analytical))
-                ", the numerical one by " (degrees(phase.numerical)) "; less than 90° is asked for. The band is the 95 % interval from sensor noise. "
+                "At " (significant(phase.frequency, 3)) " Hz, the analytical rate lags the experimental rate by " (degrees(phase.analytical))
+                ", and the numerical rate by " (degrees(phase.numerical)) ". The limit is 90°. The band is the 95 % interval from sensor noise. "
                 "Experimental: slope of the energy stored in the measured state. Analytical: supply and dissipation at the measured state. Numerical: the same at the simulated state."
             }
         }

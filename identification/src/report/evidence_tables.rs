@@ -23,8 +23,8 @@ pub(super) fn evidence(diagnosis: &Diagnosis) -> Markup {
         p.note {
             "Each effect of the catalogue was added to the model, and all parameters were fitted again to the identification recordings. "
             "The mean NMSE is that of the whole validation recordings, simulated from their first states, as in every comparison. The log error "
-            "ratio compares squared error, over stretches of a few seconds, with noise variance in blocks of half a second: 0 is noise alone, 0.7 twice its variance. Improvement: by how much an effect "
-            "lowers it. Significance: the improvement on all recordings, in standard errors from stretch to stretch. First in: share of 500 "
+            "ratio compares the squared error with the noise variance in blocks of 0.5 s: 0 is noise alone, 0.7 is twice its variance. Improvement: the fall of this "
+            "ratio when the effect is added. Significance: the improvement on all recordings, in standard errors from stretch to stretch. First in: share of 500 "
             "resampled recordings in which the hypothesis is the best of all."
         }
         @if !rejected.is_empty() {
@@ -111,8 +111,7 @@ pub(super) fn regimes(map: &[Share]) -> Markup {
                 } }
             } }
             p.note {
-                "How much each equation fails to close, in units of sensor noise, squared, with the parameters of the "
-                "refitted model." @if map.len() > MOST_REGIMES { " The smallest shares are left out." }
+                "Squared residual of each equation in units of sensor noise, for the refitted model." @if map.len() > MOST_REGIMES { " The smallest shares are left out." }
             }
         }
     }

@@ -35,21 +35,21 @@ fn named_sentence(added: &[String], named: &NamedVerdict, errors: [f64; 2]) -> S
     let told = match named.kind {
         Kind::MissingEffect => format!("{became}. That explains what the model was missing."),
         Kind::Adequate => {
-            format!("The model was adequate without {it}: the remaining error is no evidence for {it}.")
+            format!("The model was already adequate without {it}, so there is no evidence for {it}.")
         }
         Kind::Unexplained if named.helps => {
-            format!("{became}. Something is still missing; `excavator diagnose` looks for it.")
+            format!("{became}. Something is still missing; run `excavator diagnose` to find it.")
         }
         Kind::Unexplained if named.improvement < 0.0 => {
-            format!("That does not help. {became}. Something else is missing; `excavator diagnose` looks for it.")
+            format!("That does not help. {became}. Something else is missing; run `excavator diagnose` to find it.")
         }
         Kind::Unexplained => format!(
-            "That does not help. {became}, which is no more than chance. Something else is missing; `excavator diagnose` looks for it."
+            "That does not help. {became}. This change is not significant. Something else is missing; run `excavator diagnose` to find it."
         ),
     };
     match (names.is_empty(), named.kind) {
         (false, _) => format!("{asked} {told}"),
-        (true, Kind::Unexplained) => format!("{asked} Something is missing; `excavator diagnose` looks for it."),
+        (true, Kind::Unexplained) => format!("{asked} Something is missing; run `excavator diagnose` to find it."),
         (true, _) => format!("{asked} The model is adequate."),
     }
 }
@@ -74,7 +74,7 @@ mod tests {
         assert!(half.contains("7.39 times smaller). Something is still missing"));
         let right = told(&["valve_dead_zone@arm", "hose_loss@arm"], Kind::MissingEffect, 5.0, true);
         assert!(right.contains("With them") && right.contains("148 times smaller") && right.contains("explains"));
-        assert!(told(&["payload@arm"], Kind::Adequate, 0.0, false).contains("was adequate without it"));
+        assert!(told(&["payload@arm"], Kind::Adequate, 0.0, false).contains("was already adequate without it"));
         assert!(told(&[], Kind::Unexplained, 0.0, false).contains("Something is missing"));
     }
 }

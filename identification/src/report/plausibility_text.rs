@@ -21,8 +21,8 @@ pub fn implausible_sentence(given: &Model, found: &Model) -> Option<String> {
         told.push(format!("{} more", all.len() - LISTED));
     }
     Some(format!(
-        "Hard to believe: {}. Unless the numbers of the model file are guesses, check the units of the recorded pressures and openings, and the \
-         areas and lengths in the model file: wrong ones are fitted as well as right ones.",
+        "Hard to believe: {}. Check the units of the recorded pressures and openings, and the areas and lengths in the model file, \
+         unless these are guesses. A wrong unit or area can fit as well as the right one.",
         words::list(&told, "and")
     ))
 }

@@ -56,7 +56,7 @@ pub fn guess_sentence(guess: &Guess) -> String {
     };
     let numbers: Vec<String> = text.parameters.iter().map(number).collect();
     format!(
-        "Of single terms, {} = {} at the {} promises most, with {}; it was not fitted or judged.",
+        "The most promising single term is {} = {} at the {}, with {}. It has not been fitted or judged.",
         words::spoken(&text.acts_on),
         text.formula,
         guess.place,

@@ -28,7 +28,7 @@ pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
         div.wide { table.data {
             thead { tr {
                 th { "Signal" } th.n { "NMSE" } th.n { "FIT" } th.n { "Phase delay" } th.n { "RMS error" } th.n { "Largest error" }
-                th.n { "Error like its past" } th.n { "Error like the input" }
+                th.n { "Error autocorrelation" } th.n { "Correlation with the input" }
             } }
             tbody {
                 @for comparison in comparisons {
@@ -55,8 +55,8 @@ pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
             "NMSE: squared error over the signal's own variance; 0 is perfect, 1 is no better than its mean. "
             "FIT = 100 (1 − √NMSE) %. Phase delay: by how much the model lags behind the measurement at the frequency of "
             "the excitation" (frequencies(comparisons)) "; negative where it leads. "
-            "Error like its past, like the input: where the correlation over lags of up to 2 s is largest, if chance does "
-            "not explain it. The error of a model that lacks nothing is noise and has neither."
+            "Error autocorrelation and correlation with the input: the largest value over lags of up to 2 s, if it is "
+            "significant. The error of a complete model is noise and shows neither."
         }
     }
 }

@@ -289,7 +289,7 @@ fn an_adequate_model_says_why() {
     let small = adequate(Reason::SmallError { relative_error: 1e-4, limit: 1.5e-4 });
     assert!(sentence(&small).contains("too small to act on"));
     let inputs = adequate(Reason::WithinInputs { log_error_ratio: 0.1, limit: 0.2 });
-    assert!(sentence(&inputs).contains("readings of the inputs"));
+    assert!(sentence(&inputs).contains("noise and sampling of the inputs"));
 }
 
 #[test]
@@ -311,7 +311,10 @@ fn a_structural_alternative_is_told_with_the_command_that_adds_it() {
     let trials = vec![trial(&["displacement_sensor_offset"], 2.0), trial(&["joint_spring"], 2.0)];
     let level = Reason::StructuralAlternative { hypothesis: 2, is_preferred: false };
     let left = sentence(&diagnosis(Kind::Unexplained, trials, &[1], vec![level]));
-    assert!(left.contains("displacement sensor offset at the arm cylinder from how the machine is built"), "{left}");
+    assert!(
+        left.contains("displacement sensor offset at the arm cylinder from a structural property of the machine"),
+        "{left}"
+    );
     assert!(
         left.contains(
             "With joint spring at the arm cylinder the mean NMSE falls from 0.100 to 0.0135 (7.39 times smaller)"
@@ -381,28 +384,28 @@ fn nuisances_are_told_once_they_are_known() {
     found.trials[0].fit.model = known.clone();
     let sentence = verdict_sentence(&model(), &found);
     assert!(
-        sentence.contains("The spool sensor is not read together") && sentence.contains("0.45 ms after"),
+        sentence.contains("The spool sensor is sampled at a different time") && sentence.contains("0.45 ms later"),
         "{sentence}"
     );
     let offset = Catalogue::built_in().find("spool_sensor_offset").unwrap();
     found.trials[0].fit.model = known.with_effect(&offset, Site::Cylinder(0)).unwrap();
     found_value(&mut found.trials[0].fit.model, 7e-8);
     let both = verdict_sentence(&model(), &found);
-    assert!(both.contains("0.45 ms after") && both.contains("does not read zero where its valve is closed"), "{both}");
+    assert!(both.contains("0.45 ms later") && both.contains("does not read zero where its valve is closed"), "{both}");
     assert!(both.contains("reads 0.070 mm2 there"), "{both}");
     let reversal = Catalogue::built_in().find("friction_reversal").unwrap();
     found.trials[0].fit.model = known.with_effect(&reversal, Site::Cylinder(0)).unwrap();
     found_value(&mut found.trials[0].fit.model, 2.14e-3);
     let sentence = verdict_sentence(&model(), &found);
-    assert!(sentence.contains("Friction reverses over another speed") && sentence.contains("2.1 mm/s"), "{sentence}");
+    assert!(
+        sentence.contains("regularisation velocity of friction differs") && sentence.contains("2.1 mm/s"),
+        "{sentence}"
+    );
     let corner = Catalogue::built_in().find("friction_corner").unwrap();
     found.trials[0].fit.model = known.with_effect(&corner, Site::Cylinder(0)).unwrap();
     found_value(&mut found.trials[0].fit.model, -1.2);
     let sentence = verdict_sentence(&model(), &found);
-    assert!(
-        sentence.contains("reverses along another curve than the usual one (that of the arm a softer one)"),
-        "{sentence}"
-    );
+    assert!(sentence.contains("has another sharpness than the default (arm: softer)"), "{sentence}");
     let plain = built_in("zx30u-arm").unwrap();
     let is_along = |family| matches!(family, Family::Recording | Family::Rounding);
     for physics in Catalogue::built_in().iter().filter(|physics| is_along(physics.card().family)) {
@@ -444,6 +447,6 @@ fn a_refined_model_tells_the_nuisances_since_the_given_one() {
         found_value(model, 2.14e-3);
     }
     let page = refinement_page(&refinement);
-    assert!(page.contains("Friction reverses over another speed than usual"));
+    assert!(page.contains("The regularisation velocity of friction differs"));
     assert_eq!(page.matches("nuisance<").count(), 1);
 }

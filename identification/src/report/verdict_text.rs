@@ -45,15 +45,14 @@ fn adequate(machine: &str, diagnosis: &Diagnosis) -> String {
         text += &match reason {
             Reason::WithinNoise { .. } => " The remaining error is sensor noise.".to_string(),
             Reason::ExceptMoments { share_of_time } => format!(
-                " In {} of the time the model is off by more than that; record more of these moments to learn what happens then.",
+                " In {} of the time, the error of the model is larger. Record more of these moments to find the cause.",
                 percent(*share_of_time)
             ),
             Reason::SmallError { .. } => {
                 " The remaining error is about a hundredth of each signal's own size, too small to act on.".to_string()
             }
             Reason::WithinInputs { .. } => {
-                " The remaining error is no more than the readings of the inputs cause, by their noise and by what happens between samples."
-                    .to_string()
+                " The remaining error is within the range that noise and sampling of the inputs can cause.".to_string()
             }
             _ => String::new(),
         };
@@ -107,7 +106,7 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
         Some(_) => {
             let rivals: Vec<String> = diagnosis.verdict.set.iter().map(|&number| names_of(diagnosis, number)).collect();
             format!(
-                "Something is missing in {machine}, and these recordings cannot tell {} from how the machine is built.",
+                "Something is missing in {machine}. These recordings do not distinguish {} from a structural property of the machine.",
                 words::list(&rivals, "or")
             )
         }
@@ -161,7 +160,7 @@ fn construction(diagnosis: &Diagnosis) -> String {
     let command: Vec<String> =
         trial.additions.iter().map(|addition| format!("--add {}", addition.name(&trial.fit.model))).collect();
     format!(
-        " With {} the mean NMSE {}. A diagnosis cannot see how a machine is built: if this one has that, add it with `excavator refine \
+        " With {} the mean NMSE {}. Recordings do not show whether the machine has this part. If it does, add it with `excavator refine \
          {}`.",
         names_of(diagnosis, number),
         change_with(diagnosis, trial),
@@ -203,7 +202,7 @@ fn nuisances(given: &Model, last: &Model) -> Vec<String> {
     let mut kinds: Vec<([&str; 2], Vec<String>)> = Vec::new();
     for effect in nuisances_shown(given, last) {
         let Some(Finding { sentences, value }) = effect.finding() else { continue };
-        let value = format!("that of the {} {value}", site_name(&last.machine, effect.site));
+        let value = format!("{}: {value}", site_name(&last.machine, effect.site));
         match kinds.iter_mut().find(|(known, _)| *known == sentences) {
             Some((_, values)) => values.push(value),
             None => kinds.push((sentences, vec![value])),
@@ -211,7 +210,7 @@ fn nuisances(given: &Model, last: &Model) -> Vec<String> {
     }
     let sentence = |(sentences, values): &([&str; 2], Vec<String>)| {
         let sentence = sentences[usize::from(values.len() > 1)];
-        format!("{sentence} ({}); the fit takes this into account.", words::list(values, "and"))
+        format!("{sentence} ({}). The fit takes this into account.", values.join("; "))
     };
     kinds.iter().map(sentence).collect()
 }

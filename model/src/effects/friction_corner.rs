@@ -59,10 +59,10 @@ impl Physics for FrictionCorner {
     fn finding(&self, parameters: &[(f64, &str)]) -> Option<Finding> {
         let (sharpness, _) = *parameters.first()?;
         let sentences = [
-            "Friction reverses along another curve than the usual one",
-            "Friction reverses along other curves than the usual one",
+            "The sign function of friction has another sharpness than the default",
+            "The sign functions of friction have another sharpness than the default",
         ];
-        Some(Finding { sentences, value: (if sharpness > 0.0 { "a sharper one" } else { "a softer one" }).to_string() })
+        Some(Finding { sentences, value: (if sharpness > 0.0 { "sharper" } else { "softer" }).to_string() })
     }
 
     fn has_power(&self) -> bool {

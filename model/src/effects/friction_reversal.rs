@@ -61,9 +61,11 @@ impl Physics for FrictionReversal {
 
     fn finding(&self, parameters: &[(f64, &str)]) -> Option<Finding> {
         let &[(speed, unit)] = parameters else { return None };
-        let sentences =
-            ["Friction reverses over another speed than usual", "Friction reverses over other speeds than usual"];
-        Some(Finding { sentences, value: format!("over {}", for_people(speed, unit)) })
+        let sentences = [
+            "The regularisation velocity of friction differs from its default",
+            "The regularisation velocities of friction differ from their default",
+        ];
+        Some(Finding { sentences, value: for_people(speed, unit) })
     }
 
     fn has_power(&self) -> bool {

@@ -73,12 +73,12 @@ impl Physics for SpoolSensorLead {
     fn finding(&self, parameters: &[(f64, &str)]) -> Option<Finding> {
         let (time, _) = *parameters.first()?;
         let sentences = [
-            "The spool sensor is not read together with the other instruments",
-            "The spool sensors are not read together with the other instruments",
+            "The spool sensor is sampled at a different time from the other sensors",
+            "The spool sensors are sampled at a different time from the other sensors",
         ];
         Some(Finding {
             sentences,
-            value: format!("{:.2} ms {}", 1e3 * time.abs(), if time > 0.0 { "before" } else { "after" }),
+            value: format!("{:.2} ms {}", 1e3 * time.abs(), if time > 0.0 { "earlier" } else { "later" }),
         })
     }
 

@@ -91,7 +91,7 @@ pub enum Problem {
         found: String,
     },
     /// A power of something with a unit whose exponent is not a number.
-    #[error("something in {0} can be raised only to a number, whose unit is then known")]
+    #[error("a quantity in {0} can be raised only to a constant number, because the unit of the result must be known")]
     VariableExponent(String),
     /// The formula has another unit than its row.
     #[error("the formula is in {found}, but {row} is in {wanted}")]

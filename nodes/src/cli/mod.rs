@@ -84,7 +84,7 @@ pub enum Verb {
     Energy(EnergyArguments),
     /// Find out which physical effect the model is missing.
     Diagnose(DiagnoseArguments),
-    /// Propose laws, as formulas, for what a model is missing and no catalogue has.
+    /// Propose laws outside the catalogue, as formulas, for the physics that a model is missing.
     Propose(ProposeArguments),
     /// Propose a manoeuvre that separates tied effects, or shows a parameter, within the machine's limits.
     Design(DesignArguments),

@@ -46,9 +46,7 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
     }
     let (identification, validation) = (&recordings[0], &recordings[1]);
 
-    print(
-        "\n2  The model of the data sheet against the recordings: identify, look where it fails, try every effect ...",
-    );
+    print("\n2  Fitting the data-sheet model to the recordings, and trying every effect ...");
     let model = built_in("zx30u-arm")?;
     let progress = Progress::new();
     let when = jiff::Timestamp::now().to_string();

@@ -168,7 +168,7 @@ fn for_parameter(
         return Ok(());
     }
     Err(VerbError::NothingSeparates(format!(
-        "{} = {} {} would keep a standard error of {} (a fit reports {})",
+        "the expected standard error of {} = {} {} is {} (a fit to the trial run reports {})",
         design.name,
         number(design.value),
         design.unit,

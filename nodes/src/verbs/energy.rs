@@ -54,7 +54,7 @@ fn next(arguments: &EnergyArguments, closes: bool, duration: f64) -> NextStep {
             .mapping(&arguments.mapping);
     }
     NextStep::diagnosis_of_halves(
-        "find out which effect takes it",
+        "find the effect that causes the missing power",
         &arguments.model,
         &arguments.bag,
         duration,
@@ -87,7 +87,7 @@ fn show(model: &Model, analysis: &EnergyAnalysis, missing: &[MissingPower]) {
     let over = format!("{:.1} s of {}", analysis.duration, analysis.source);
     match missing.first() {
         None => print(&format!(
-            "The ledger of {} closes over {over}: noise explains the rest of every equation.",
+            "The ledger of {} closes over {over}: every residual is within the noise.",
             model.machine.name
         )),
         Some(first) => {
@@ -115,7 +115,9 @@ fn show(model: &Model, analysis: &EnergyAnalysis, missing: &[MissingPower]) {
     }
     print(&ledger_table(model, analysis).to_string());
     if !analysis.parameters_have_errors {
-        print("The model's parameters carry no standard errors and are taken for exact. Identify it first.");
+        print(
+            "The parameters of the model have no standard errors, so they are treated as exact. Identify the model first.",
+        );
     }
     for evidence in missing.iter().skip(1) {
         print(&format!("{}: {}", evidence.equation, evidence.sentence));

@@ -159,7 +159,9 @@ fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
     let unit = model.parameters().nth(profile.index).map_or("", |(_, parameter)| &*parameter.card.unit);
     let name = &names[profile.index];
     let mut text = match (profile.lower, profile.upper) {
-        (None, None) => format!("{name} is not identifiable from these recordings: every possible value fits as well"),
+        (None, None) => {
+            format!("{name} is not identifiable from these recordings: all values in its range fit equally well")
+        }
         (Some(lower), None) => {
             format!("{name} is at least {} {unit} (95 %); every larger value fits as well", number(lower))
         }
@@ -171,7 +173,7 @@ fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
         }
     };
     if let Some((other, correlation)) = profile.companion {
-        text += &format!("; when it is moved, {} takes its place (correlation {correlation:.2})", names[other]);
+        text += &format!("; {} compensates for changes of it (correlation {correlation:.2})", names[other]);
     }
     text
 }

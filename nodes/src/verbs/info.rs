@@ -187,7 +187,7 @@ fn clock_problems(timing: &Timing) -> Vec<String> {
     if stamps.median_delay.abs() > NOTABLE_DELAY {
         let side = if stamps.median_delay > 0.0 { "after" } else { "before" };
         lines.push(format!(
-            "messages were logged {} {side} their stamps ({} to {}): late, or two clocks",
+            "messages were logged {} {side} their stamps ({} to {}): they arrived late, or the clocks differ",
             seconds(stamps.median_delay.abs()),
             seconds(least),
             seconds(most)

@@ -60,8 +60,11 @@ fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
             let each = findings.iter().take(MOST_FINDINGS);
             each.map(|one| format!("{} {:.0} %", one.name, 100.0 * one.share)).collect::<Vec<_>>().join(", ")
         };
-        print(&format!("Single terms promise most in: {} of the best.", list(&found.survey.rows)));
-        print(&format!("Lost without the variable: {}.", list(&found.survey.variables)));
+        print(&format!(
+            "Predicted improvement of the best single term in each equation, relative to the best of all: {}.",
+            list(&found.survey.rows)
+        ));
+        print(&format!("Predicted improvement lost without each variable: {}.", list(&found.survey.variables)));
     }
     let Some(first) = found.proposals.first() else { return };
     let file = arguments.output.clone().unwrap_or_else(|| PathBuf::from("laws.toml"));

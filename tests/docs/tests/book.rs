@@ -30,7 +30,8 @@ fn fault(page: &Path, html: &str, target: &str) -> Option<String> {
         return Some(format!("{}: {target} does not exist", page.display()));
     }
     let text = if name.is_empty() { html.to_string() } else { fs::read_to_string(&goal).unwrap_or_default() };
-    let known = anchor.is_empty() || goal.extension().is_none_or(|kind| kind != "html") || anchors(&text).contains(anchor);
+    let known =
+        anchor.is_empty() || goal.extension().is_none_or(|kind| kind != "html") || anchors(&text).contains(anchor);
     (!known).then(|| format!("{}: {target}: no such heading", page.display()))
 }
 
