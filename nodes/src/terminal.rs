@@ -7,6 +7,7 @@ use std::borrow::Cow;
 use std::io::IsTerminal;
 
 pub use excavator_bags::printable;
+use excavator_bags::printable_with_excerpt;
 
 use crate::output::filled;
 use crate::verbosity::Verbosity;
@@ -32,9 +33,9 @@ pub fn text(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// A line on standard error: why something failed.
+/// A line on standard error: why something failed. Under it may stand the faulty line of a file.
 pub fn complain(line: &str) {
-    eprintln!("{}", printable(line));
+    eprintln!("{}", printable_with_excerpt(line));
 }
 
 /// A line on standard error that is worth knowing, unless nothing is to be said.

@@ -47,7 +47,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
                     print(&format!("note: {note}"));
                 }
             }
-            Err(error) => print(&format!("signals: none read: {}{}", error, advice(error))),
+            Err(error) => print(&format!("signals: none read: {}{}", first_line(error), advice(error))),
         }
         if let Ok((signals, _)) = &signals {
             print_next(&next(arguments, signals));
@@ -243,6 +243,11 @@ fn show_signals(signals: &SignalsInfo) {
             (missing, _) => print(&format!("{name}: needs {}", missing.join(", "))),
         }
     }
+}
+
+/// A message without the faulty line of a file under it.
+fn first_line(error: &BagError) -> String {
+    error.to_string().lines().next().unwrap_or_default().to_string()
 }
 
 /// Factor from SI, and the unit in which people read such a signal.

@@ -53,12 +53,20 @@
     return { measured, deviations };
   }
   // What is drawn of the machine at one sample: an outline for each box of each link.
-  function outlines(robot, positions) {
+  function outlines(robot, positions, links) {
     const poses = placeLinks(robot, positions);
-    return Array.from(robot.links, ([name, boxes]) => boxes.map((corners) => outline(corners.map((corner) => {
+    const drawn = Array.from(robot.links).filter(([name]) => !links || links.has(name));
+    return drawn.map(([name, boxes]) => boxes.map((corners) => outline(corners.map((corner) => {
       const at = place(poses.get(name), corner);
       return [at[0], -at[2]];
     })))).flat();
+  }
+  // Links that a recorded joint moves: only they can deviate.
+  function moved(spec, robot) {
+    const names = new Set(spec.joints.map((joint) => joint.name));
+    const links = new Set();
+    robot.joints.forEach((joint) => { if (names.has(joint.name) || links.has(joint.parent)) links.add(joint.child); });
+    return links;
   }
   function pointsText(points) { return points.map((p) => `${p[0].toFixed(4)},${p[1].toFixed(4)}`).join(" "); }
   function frameOf(spec, robot) {
@@ -142,9 +150,9 @@
     });
     view.style.setProperty("--thin", `${0.004 * size}px`);
     const bodies = [{ name: "measured", model: null, factor: 1 }]
-      .concat(spec.models.map((model, index) => ({ name: "model", model: index, factor, ...model })));
+      .concat(spec.models.map((model, index) => ({ name: "model", model: index, factor, links: moved(spec, robot), ...model })));
     bodies.forEach((body) => {
-      body.parts = outlines(robot, positionsAt(spec, 0, null, 1)).map(() => {
+      body.parts = outlines(robot, positionsAt(spec, 0, null, 1), body.links).map(() => {
         const part = shape("polygon", { class: body.dashed ? `${body.name} dashed` : body.name });
         if (body.colour) part.style.stroke = body.colour;
         view.append(part);
@@ -161,7 +169,7 @@
       if (sample === shown) return;
       shown = sample;
       bodies.forEach((body) => {
-        const parts = outlines(robot, positionsAt(spec, sample, body.model, body.factor));
+        const parts = outlines(robot, positionsAt(spec, sample, body.model, body.factor), body.links);
         body.parts.forEach((part, index) => part.setAttribute("points", pointsText(parts[index])));
       });
       const off = spec.models.map((model, index) => `${model.label} ${millimetres(path.deviations[index][sample])}`);
