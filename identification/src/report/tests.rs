@@ -201,7 +201,21 @@ fn plots(page: &str) -> Vec<serde_json::Value> {
     page.split("<script type=\"application/json\">")
         .skip(1)
         .map(|part| serde_json::from_str(part.split("</script>").next().unwrap()).unwrap())
+        .filter(|shown: &serde_json::Value| shown.get("series").is_some())
         .collect()
+}
+
+#[test]
+fn the_machine_moves_as_measured_and_as_simulated() {
+    let page = comparison_page(&model(), &[comparison(0.1)], &[], &[]);
+    let (_, after) = page.split_once("<div class=\"machine\"><script type=\"application/json\">").unwrap();
+    let shown: serde_json::Value = serde_json::from_str(after.split("</script>").next().unwrap()).unwrap();
+    let joint = &shown["joints"][0];
+    let samples = shown["time"].as_array().unwrap().len();
+    assert!(samples > 1 && joint["name"].as_str().unwrap().ends_with("_joint"));
+    assert_eq!(joint["reference"].as_array().unwrap().len(), samples);
+    assert_eq!(joint["models"][0].as_array().unwrap().len(), samples);
+    assert!(shown["robot"].as_str().unwrap().contains("<robot"));
 }
 
 #[test]
