@@ -239,7 +239,7 @@ fn comparison_has_every_signal_and_its_error() {
     let reachable = r#"<div class="time-plot" tabindex="0" role="application""#;
     assert_eq!(page.matches(reachable).count(), plots.len());
     assert!(page.contains(r#"aria-label="Arm cap pressure error over time: measured − model""#));
-    assert_eq!(page.matches("<svg").count(), page.matches(r#"role="img"><title>"#).count());
+    assert_eq!(page.matches("<svg ").count(), page.matches(r#"role="img"><title>"#).count());
     assert!(page.contains(r##"<nav aria-label="Contents"><a href="#measures">"##));
     assert!(page.contains(r#"<style class="dark" media="screen and (prefers-color-scheme: dark)">"#));
 }
