@@ -92,5 +92,7 @@ def run(excavator, words, folder):
     assert result.returncode == 0, f"{' '.join(words)}\n{result.stdout}\n{result.stderr}"
     # With JSON on standard output there is no screen.
     if words[0] in LEADS_ON and "-" not in words:
-        last = result.stdout.rstrip().rsplit("\n\n", 1)[-1]
-        assert last.startswith("Next, ") and "\n    excavator " in last, f"{' '.join(words)} ends with\n{last}"
+        _, _, last = result.stdout.rpartition("\nNext, ")
+        why, *command = last.rstrip().splitlines()
+        told = why.endswith(":") and command and command[0].startswith("  excavator ")
+        assert told and all(line.startswith("  ") for line in command), f"{' '.join(words)} ends with\n{last}"
