@@ -92,7 +92,7 @@ fn readings_beyond_anything_possible_are_told() {
 fn a_cylinder_that_the_model_does_not_have_is_told_where_it_moves() {
     is_told(
         |recording| recording.cylinders[1].displacement[1000..].fill(0.3),
-        &["cylinder boom moves by 0.200 m and is not in zx30u-arm"],
+        &["cylinder boom moves by 0.200 m but is not in zx30u-arm"],
     );
 }
 
