@@ -83,7 +83,9 @@ fn table_without_map(arguments: &InfoArguments) -> Result<(), VerbError> {
         print(&rows.to_string());
         print(&format!("clock: {}", info.clock));
         info.notes.iter().for_each(|note| print(&format!("note: {note}")));
-        print("signals: none, for want of a map; `excavator import --guess` proposes one");
+        print("signals: none; a map says which column is which signal");
+        let guess = NextStep::new("let the program propose a map", "import").word("--guess");
+        print_next(&guess.word(arguments.bag.display().to_string()).path("-o", Path::new("map.toml")));
     }
     match &arguments.json.json {
         Some(file) => write_json(file, &serde_json::to_value(&info)?, arguments.overwriting),
