@@ -5,6 +5,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use rosbag2::dynamic::FieldPath;
+use rosbag2::{ReadLimits, read_regular_text};
 use serde::{Deserialize, Serialize};
 
 use super::conversion::Conversion;
@@ -14,10 +16,8 @@ use super::leave_out::LeaveOut;
 use super::named::NamedColumn;
 use super::quantity::Quantity;
 use super::signal::SignalName;
-use crate::dynamic::FieldPath;
-use crate::regular_file::read_regular_text;
+use crate::BagError;
 use crate::table::TableFormat;
-use crate::{BagError, ReadLimits};
 
 /// Which field of which topic, or which column of which table, is which signal.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -266,7 +266,7 @@ impl TopicMap {
     /// The map in the file at `path`; the files of its definitions are looked for beside it.
     ///
     /// # Errors
-    /// [`BagError::Io`], [`BagError::Map`].
+    /// [`rosbag2::Error::Io`], [`BagError::Map`].
     pub fn read(path: &Path) -> Result<TopicMap, BagError> {
         let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
         let mut map: TopicMap =

@@ -3,7 +3,7 @@
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{ReadLimits, read_regular_text};
+use rosbag2::{ReadLimits, read_regular_text};
 use serde::Deserialize;
 
 use super::signals::Treatment;
