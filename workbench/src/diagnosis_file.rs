@@ -1,0 +1,147 @@
+//! What `excavator diagnose --json` wrote, read back.
+
+use std::path::{Path, PathBuf};
+
+use excavator_bags::{ReadLimits, read_regular_text};
+use excavator_identification::design::Sensors;
+use excavator_model::{Model, ModelError};
+use serde::Deserialize;
+
+use crate::WorkError;
+
+#[derive(Debug, Deserialize)]
+struct Value {
+    name: String,
+    value: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Candidate {
+    effect: String,
+    cylinder: String,
+    tied_with_first: bool,
+    #[serde(default)]
+    refitted: Vec<Value>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Nuisance {
+    effect: String,
+    cylinder: String,
+}
+
+#[derive(Debug, Deserialize)]
+struct Instrument {
+    name: String,
+    noise: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Text {
+    verdict: String,
+    candidates: Vec<Candidate>,
+    #[serde(default)]
+    rejected: Vec<Candidate>,
+    #[serde(default)]
+    refitted: Vec<Value>,
+    #[serde(default)]
+    instruments: Vec<Instrument>,
+    #[serde(default)]
+    nuisances: Vec<Nuisance>,
+}
+
+/// A diagnosis as far as a design needs it: rivals by name (`EFFECT@PLACE`, `none`) with the values of all parameters that
+/// were fitted with them.
+#[derive(Debug)]
+pub struct DiagnosisFile {
+    path: PathBuf,
+    verdict: String,
+    tied: Vec<String>,
+    named: Vec<String>,
+    fitted: Vec<(String, Vec<(String, f64)>)>,
+    noise: Vec<(String, f64)>,
+    nuisances: Vec<String>,
+}
+
+impl DiagnosisFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`WorkError::Bag`], [`WorkError::DiagnosisSyntax`].
+    pub fn read(path: &Path) -> Result<Self, WorkError> {
+        DiagnosisFile::of_text(path, &read_regular_text(path, ReadLimits::DEFAULT.document)?)
+    }
+
+    /// Reads the text of a file; `path` is for messages.
+    ///
+    /// # Errors
+    /// [`WorkError::DiagnosisSyntax`].
+    pub fn of_text(path: &Path, text: &str) -> Result<Self, WorkError> {
+        let text: Text = serde_json::from_str(text)
+            .map_err(|error| WorkError::DiagnosisSyntax { path: path.to_path_buf(), reason: error.to_string() })?;
+        let name = |candidate: &Candidate| format!("{}@{}", candidate.effect, candidate.cylinder);
+        let mut fitted: Vec<(String, Vec<(String, f64)>)> = vec![("none".into(), values(&text.refitted))];
+        fitted.extend(text.candidates.iter().chain(&text.rejected).map(|one| (name(one), values(&one.refitted))));
+        Ok(DiagnosisFile {
+            path: path.to_path_buf(),
+            verdict: text.verdict,
+            tied: text.candidates.iter().filter(|candidate| candidate.tied_with_first).map(name).collect(),
+            named: text.candidates.iter().map(name).collect(),
+            fitted,
+            nuisances: text.nuisances.iter().map(|one| format!("{}@{}", one.effect, one.cylinder)).collect(),
+            noise: text.instruments.into_iter().filter_map(|one| Some((one.name, one.noise?))).collect(),
+        })
+    }
+
+    /// Names of the tied candidates, best first.
+    ///
+    /// # Errors
+    /// [`WorkError::NoTie`] when there are fewer than two.
+    pub fn tied(&self) -> Result<Vec<String>, WorkError> {
+        if self.tied.len() > 1 {
+            return Ok(self.tied.clone());
+        }
+        let found = match self.named.first() {
+            Some(first) => format!("it names {first} alone"),
+            None => format!("its verdict is {} without a candidate", self.verdict),
+        };
+        Err(WorkError::NoTie { path: self.path.clone(), found })
+    }
+
+    /// Whether the diagnosis has fitted values for this rival.
+    pub fn has(&self, rival: &str) -> bool {
+        !self.values(rival).is_empty()
+    }
+
+    /// Contract names and values of the parameters fitted with this rival; empty where there are none.
+    pub fn values(&self, rival: &str) -> &[(String, f64)] {
+        self.fitted.iter().find(|(name, _)| name == rival).map_or(&[], |(_, values)| values)
+    }
+
+    /// `model` with the nuisance effects that were estimated: rivals whose values come from the diagnosis have them too.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the model has no such place.
+    pub fn with_nuisances(&self, model: &Model) -> Result<Model, ModelError> {
+        let mut extended = model.clone();
+        for name in &self.nuisances {
+            for (physics, site) in model.parse_addition(name)? {
+                if !model.has(&physics.card().name, site) {
+                    extended = extended.with_effect(&physics, site)?;
+                }
+            }
+        }
+        Ok(extended)
+    }
+
+    /// Replaces the usual sensors by those of the diagnosis, where it tells them.
+    pub fn noise_into(&self, sensors: &mut Sensors) {
+        if !self.noise.is_empty() {
+            sensors.noise.clone_from(&self.noise);
+        }
+    }
+}
+
+fn values(list: &[Value]) -> Vec<(String, f64)> {
+    list.iter().filter_map(|one| Some((one.name.clone(), one.value?))).collect()
+}
