@@ -21,6 +21,7 @@ class Browser:
         flags = [
             "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run",
             "--disable-component-update", "--disable-sync", "--enable-precise-memory-info", "--window-size=1400,1000",
+            "--hide-scrollbars",  # as on a phone: they take no room
             f"--user-data-dir={folder}", "--remote-debugging-pipe", "about:blank",
         ]  # fmt: skip
         self._process = subprocess.Popen(
