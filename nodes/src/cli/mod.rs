@@ -92,7 +92,7 @@ pub enum Verb {
         /// Shell.
         shell: clap_complete::Shell,
     },
-    /// Man pages and pages of the docs that are made of the command line.
+    /// Man pages, schemas, and pages of the docs that are made of the program.
     #[command(subcommand, hide = true)]
     Manual(ManualVerb),
     /// The simulated machine of an arm simulator, which starts it.
@@ -100,7 +100,7 @@ pub enum Verb {
     Machine,
 }
 
-/// What is made of the command line.
+/// What is made of the program.
 #[derive(Debug, Subcommand)]
 pub enum ManualVerb {
     /// Write man pages, one for each verb.
@@ -109,8 +109,16 @@ pub enum ManualVerb {
         #[arg(long, value_name = "FOLDER")]
         to: std::path::PathBuf,
     },
+    /// Write the JSON schema of each result of `--json`.
+    Schemas {
+        /// Folder to write them to.
+        #[arg(long, value_name = "FOLDER")]
+        to: std::path::PathBuf,
+    },
     /// Print the page of the verbs, in Markdown.
     Verbs,
     /// Print the page of the nodes' parameters, in Markdown.
     Parameters,
+    /// Print the page of the results of `--json`, in Markdown.
+    Results,
 }

@@ -3,6 +3,7 @@
 mod man;
 mod parameters;
 mod parameters_page;
+mod results_page;
 mod verbs_page;
 
 use clap::{Command, CommandFactory};
@@ -11,6 +12,7 @@ use crate::cli::Arguments;
 
 pub use man::write_man_pages;
 pub use parameters_page::parameters_page;
+pub use results_page::{results_page, write_schemas};
 pub use verbs_page::verbs_page;
 
 /// The command line. The help of each node lists its parameters.
