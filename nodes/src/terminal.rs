@@ -33,17 +33,24 @@ pub fn text(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// A line on standard error: why something failed. Under it may stand the faulty line of a file.
+/// Why something failed, on standard error: one line, which is broken where that is a terminal. Under it may stand the faulty line
+/// of a file, with a mark that has to stay under its place.
 pub fn complain(line: &str) {
-    eprintln!("{}", printable_with_excerpt(line));
+    let text = printable_with_excerpt(line);
+    let (message, excerpt) = text.find('\n').map_or((&*text, ""), |end| text.split_at(end));
+    eprintln!("{}{excerpt}", filled(message, width_of_errors()));
 }
 
 /// A line on standard error that is worth knowing, unless nothing is to be said.
 pub fn remark(line: &str) {
     if Verbosity::chosen() > Verbosity::Quiet {
-        let width = std::io::stderr().is_terminal().then(|| width().unwrap_or(80));
-        eprintln!("{}", filled(&printable(line), width));
+        eprintln!("{}", filled(&printable(line), width_of_errors()));
     }
+}
+
+/// Columns for what is told on standard error; `None` where that is no terminal.
+fn width_of_errors() -> Option<usize> {
+    std::io::stderr().is_terminal().then(|| width().unwrap_or(80))
 }
 
 /// Columns of the terminal; `None` where standard output is none.

@@ -13,16 +13,10 @@ use crate::characterisation::{
 /// A page with gains, dead zones, leakage and friction of every cylinder, with 95 % bands, and why what is not there could
 /// not be measured.
 pub fn characterisation_page(model: &Model, sources: &[String], found: &[Characterisation]) -> String {
-    let results = |one: &Characterisation| {
-        let edges = one.gains.iter().filter(|(_, gain)| gain.is_ok()).count()
-            + one.dead_zones.iter().filter(|(_, zone)| zone.is_ok()).count();
-        let leaks = one.leakage.iter().flat_map(|leakage| [&leakage.cap, &leakage.rod]).filter(|side| side.is_ok());
-        edges + leaks.count() + usize::from(one.friction.is_ok())
-    };
     let lead = html! {
         p.about { (model.machine.description) " · " (sources.join(", ")) }
         div.tiles {
-            (tile(&found.iter().map(results).sum::<usize>().to_string(), "results"))
+            (tile(&found.iter().map(Characterisation::results).sum::<usize>().to_string(), "results"))
             (tile(&sources.len().to_string(), if sources.len() == 1 { "recording" } else { "recordings" }))
         }
     };
