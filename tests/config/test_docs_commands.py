@@ -28,9 +28,9 @@ PLACEHOLDERS = {
     "OTHER": "zx30u-arm",
     "$REPO": REPOSITORY,
 }
-# Pages whose offline commands run. A command with live nodes is for tests/rclpy.
 # Verbs whose screen ends with the command that comes next.
 LEADS_ON = {"demo", "info", "compare", "diagnose", "identify", "energy", "refine"}
+# Pages whose offline commands run. A command with live nodes is for tests/rclpy.
 RUN = ["start.md", "your-data.md", "verdict.md", "laws.md"]
 LIVE = {"node", "play", "record", "up", "dashboard"}
 
