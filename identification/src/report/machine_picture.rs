@@ -5,19 +5,23 @@ use excavator_model::recording::{Recording, is_measured};
 use excavator_model::urdf;
 use maud::{Markup, PreEscaped, html};
 
-use super::time_plots::{Line, array, shortest, text};
+use super::time_plots::{Line, shortest, text};
 use crate::validation::Comparison;
 
 /// Positions of one joint at most: a motion of a minute is smooth with ten in a second.
 const MOST_POSITIONS: usize = 600;
 
-/// Significant digits of a joint position do not matter below this, rad or m. It keeps the page small.
-const RESOLUTION: f64 = 1e-6;
+/// Decimals of a joint position in rad or m: a deviation of a micrometre can be drawn enlarged.
+const DECIMALS: usize = 6;
 
 /// The box in which the script of the page draws the machine of `models` at the cursor of the plots of `group`; nothing
-/// where no joint moves in the plane that is drawn.
+/// where no joint moves in the plane that is drawn, or where its position is no output that was compared: an imposed motion
+/// cannot deviate.
 pub(super) fn machine_picture(models: &[(Line, &Comparison)], group: &str) -> Markup {
     let Some((_, first)) = models.first() else { return html! {} };
+    if !drawn(first).any(|cylinder| is_compared(first, cylinder)) {
+        return html! {};
+    }
     let time = &first.measured.time;
     let kept = evenly(time.len());
     let joints: Vec<String> = drawn(first).filter_map(|cylinder| joint_json(cylinder, models, &kept)).collect();
@@ -50,6 +54,12 @@ fn drawn(comparison: &Comparison) -> impl Iterator<Item = &Cylinder> {
     cylinders.filter(|(number, _)| !machine.mechanism.is_upright(*number)).map(|(_, cylinder)| cylinder)
 }
 
+/// Whether the position of a cylinder was compared.
+fn is_compared(comparison: &Comparison, cylinder: &Cylinder) -> bool {
+    let names = ["joint_angle", "displacement"].map(|quantity| format!("{}.{quantity}", cylinder.name));
+    comparison.signals.iter().any(|signal| names.contains(&signal.name))
+}
+
 /// Indices of at most [`MOST_POSITIONS`] samples, first and last among them.
 fn evenly(samples: usize) -> Vec<usize> {
     let count = samples.min(MOST_POSITIONS);
@@ -64,15 +74,17 @@ fn joint_json(cylinder: &Cylinder, models: &[(Line, &Comparison)], kept: &[usize
     let measured = positions(&models.first()?.1.measured, cylinder);
     let known = measured.is_some();
     let reference = measured.or_else(|| simulated.first().cloned())?;
-    let rounded = |values: &[f64]| -> String {
-        let values: Vec<f64> = values.iter().map(|value| (value / RESOLUTION).round() * RESOLUTION).collect();
-        array(&values, 1.0, kept)
+    let list = |values: &[f64]| -> String {
+        let kept = kept.iter().map(|&index| values.get(index).filter(|value| value.is_finite()));
+        let entries =
+            kept.map(|value| value.map_or("null".to_string(), |value| shortest(&format!("{value:.DECIMALS$}"))));
+        entries.collect::<Vec<_>>().join(",")
     };
     Some(format!(
-        r#"{{"name":{},"measured":{known},"reference":{},"models":[{}]}}"#,
+        r#"{{"name":{},"measured":{known},"reference":[{}],"models":[{}]}}"#,
         text(&format!("{}_joint", cylinder.name)),
-        rounded(&reference),
-        simulated.iter().map(|values| rounded(values)).collect::<Vec<_>>().join(",")
+        list(&reference),
+        simulated.iter().map(|values| format!("[{}]", list(values))).collect::<Vec<_>>().join(",")
     ))
 }
 

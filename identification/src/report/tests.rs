@@ -216,6 +216,10 @@ fn the_machine_moves_as_measured_and_as_simulated() {
     assert_eq!(joint["reference"].as_array().unwrap().len(), samples);
     assert_eq!(joint["models"][0].as_array().unwrap().len(), samples);
     assert!(shown["robot"].as_str().unwrap().contains("<robot"));
+    // A motion that is an input of the model cannot deviate.
+    let mut imposed = comparison(0.1);
+    imposed.signals.retain(|signal| !signal.name.ends_with("displacement") && !signal.name.ends_with("joint_angle"));
+    assert!(!comparison_page(&model(), &[imposed], &[], &[]).contains("<div class=\"machine\">"));
 }
 
 #[test]
