@@ -28,15 +28,17 @@ pub fn printable(text: &str) -> Cow<'_, str> {
 pub fn printable_with_excerpt(text: &str) -> Cow<'_, str> {
     let lines: Vec<&str> = text.rsplitn(4, '\n').collect();
     let [mark, faulty, blank, message] = lines.as_slice() else { return printable(text) };
-    let margin = |line: &str| line.split_once('|').map(|(margin, _)| margin.trim().to_string());
-    let is_number = |margin: &str| !margin.is_empty() && margin.chars().all(|digit| digit.is_ascii_digit());
-    let is_excerpt = margin(blank).is_some_and(|margin| margin.is_empty())
-        && margin(faulty).is_some_and(|margin| is_number(&margin))
-        && margin(mark).is_some_and(|margin| margin.is_empty());
+    let is_number = |text: &str| !text.is_empty() && text.chars().all(|digit| digit.is_ascii_digit());
+    let is_excerpt = margin(blank) == Some("") && margin(faulty).is_some_and(is_number) && margin(mark) == Some("");
     if !is_excerpt {
         return printable(text);
     }
     Cow::Owned([*message, *blank, *faulty, *mark].map(printable).join("\n"))
+}
+
+/// What stands before the bar of a line of an excerpt.
+fn margin(line: &str) -> Option<&str> {
+    line.split_once('|').map(|(margin, _)| margin.trim())
 }
 
 /// Controls, and the marks that change the direction of the text around them (Unicode Standard Annex 9) or end a line.

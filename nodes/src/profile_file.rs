@@ -48,7 +48,7 @@ impl ProfileFile {
     /// Reads a file and checks it against a machine.
     ///
     /// # Errors
-    /// [`VerbError`] in one line that says which number or name is wrong.
+    /// [`VerbError`], which says which number or name is wrong, or shows the line that is no TOML.
     pub fn read(path: &Path, machine: &Machine) -> Result<Self, VerbError> {
         let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
         let syntax = |reason: String| VerbError::ProfileSyntax { path: path.to_path_buf(), reason };

@@ -18,7 +18,7 @@ struct CatalogueText {
 /// `catalogue` with the formula effects of a catalogue file. `name` is the file's, for messages.
 ///
 /// # Errors
-/// [`DocumentError`] in one line that points at the place in the formula.
+/// [`DocumentError`], which points at the place in the formula, or shows the line that is no TOML.
 pub fn parse_catalogue(name: &str, text: &str, catalogue: &Catalogue) -> Result<Catalogue, DocumentError> {
     let parsed: CatalogueText = toml::from_str(text)
         .map_err(|error| DocumentError::Catalogue { name: name.to_string(), reason: toml_fault(text, &error) })?;

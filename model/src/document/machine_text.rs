@@ -33,7 +33,7 @@ pub(super) struct MachineText {
 enum MechanismText {
     /// One link that turns about a joint whose base is held.
     SingleLink {
-        /// Angle at which everything before the joint is held; the link hangs straight down where it and the joint's angle add up to zero.
+        /// Angle at which everything before the joint is held. The link hangs down where it and the joint's angle cancel.
         base_angle: Quantity<Angle>,
     },
     /// Two links, the second on the end of the first, in one vertical plane.

@@ -78,7 +78,7 @@ fn first_format() -> u32 {
 /// Reads a model from its text. It may have the effects of `catalogue` and those that its own text brings along. `name` is the file's or the built-in model's, for messages.
 ///
 /// # Errors
-/// [`DocumentError`] in one line that says which number is wrong.
+/// [`DocumentError`], which says which number is wrong, or shows the line that is no TOML.
 pub fn parse(name: &str, text: &str, catalogue: &Catalogue) -> Result<Model, DocumentError> {
     let parsed: ModelText = toml::from_str(text)
         .map_err(|error| DocumentError::Syntax { name: name.to_string(), reason: toml_fault(text, &error) })?;

@@ -69,7 +69,7 @@ impl Udp {
     /// Whether the layout can be read, and who may send it.
     ///
     /// # Errors
-    /// What is wrong, in one line.
+    /// What is wrong, and under it the line if that is no TOML.
     fn check(&self) -> Result<(), String> {
         let fields = self.fields.iter().map(|field| (field.treatment.signal.as_str(), field.at, field.kind.length()));
         let sequence = self.sequence.iter().map(|field| ("sequence", field.at, field.kind.length()));

@@ -36,8 +36,8 @@ pub struct Mapping {
     /// Use a recording although this check refuses it; the refusal says its name. Repeat it for several.
     #[arg(long, value_name = "CHECK", value_parser = PossibleValuesParser::new(OVERRULABLE), hide_possible_values = true)]
     pub accept: Vec<String>,
-    /// Compare with the model only where this condition holds, as in "abs(v) > 0.002" (formula language, SI units). The rest is
-    /// simulated but not compared. Repeat the option to combine conditions.
+    /// Compare only where this formula holds, as in "abs(v) > 0.002" (SI units). The rest is simulated, not compared. Repeat to
+    /// combine.
     #[arg(long = "where", value_name = "CONDITION")]
     pub conditions: Vec<String>,
 }
