@@ -24,7 +24,7 @@ use excavator_ros::RosError;
 pub enum VerbError {
     #[error(transparent)]
     Bag(#[from] BagError),
-    #[error(transparent)]
+    #[error("{}", _0.with_excerpt())]
     Document(#[from] DocumentError),
     #[error("--where \"{text}\": {error}")]
     Condition { text: String, error: Box<FormulaError> },

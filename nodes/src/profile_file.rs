@@ -52,7 +52,7 @@ impl ProfileFile {
     pub fn read(path: &Path, machine: &Machine) -> Result<Self, VerbError> {
         let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
         let syntax = |reason: String| VerbError::ProfileSyntax { path: path.to_path_buf(), reason };
-        let file: ProfileFile = toml::from_str(&text).map_err(|error| syntax(toml_fault(&text, &error)))?;
+        let file: ProfileFile = toml::from_str(&text).map_err(|error| syntax(toml_fault(&text, &error).to_string()))?;
         if !(1.0..=100_000.0).contains(&file.rate) {
             return Err(syntax(format!("rate = {} must be between 1 and 100000 samples per second", file.rate)));
         }

@@ -341,7 +341,8 @@ impl FromStr for TopicMap {
     type Err = MapError;
 
     fn from_str(text: &str) -> Result<Self, MapError> {
-        let map: TopicMap = toml::from_str(text).map_err(|error| MapError::Syntax(toml_fault(text, &error)))?;
+        let map: TopicMap =
+            toml::from_str(text).map_err(|error| MapError::Syntax(toml_fault(text, &error).to_string()))?;
         map.check()?;
         Ok(map)
     }

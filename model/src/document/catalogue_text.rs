@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{DocumentError, toml_fault};
+use super::{DocumentError, TomlFault, toml_fault};
 use crate::effects::{AnyEffect, Catalogue};
 use crate::formula::{FormulaText, Law};
 
@@ -18,13 +18,15 @@ struct CatalogueText {
 /// `catalogue` with the formula effects of a catalogue file. `name` is the file's, for messages.
 ///
 /// # Errors
-/// [`DocumentError`], which points at the place in the formula, or shows the line that is no TOML.
+/// [`DocumentError`] in one line that points at the place in the formula.
 pub fn parse_catalogue(name: &str, text: &str, catalogue: &Catalogue) -> Result<Catalogue, DocumentError> {
-    let parsed: CatalogueText = toml::from_str(text)
-        .map_err(|error| DocumentError::Catalogue { name: name.to_string(), reason: toml_fault(text, &error) })?;
+    let parsed: CatalogueText = toml::from_str(text).map_err(|error| {
+        let TomlFault { message, excerpt } = toml_fault(text, &error);
+        DocumentError::Catalogue { name: name.to_string(), reason: message, excerpt }
+    })?;
     if parsed.formula.is_empty() {
         let reason = "it has no [[formula]]".to_string();
-        return Err(DocumentError::Catalogue { name: name.to_string(), reason });
+        return Err(DocumentError::Catalogue { name: name.to_string(), reason, excerpt: String::new() });
     }
     with_formulas(name, catalogue, &parsed.formula)
 }
@@ -34,8 +36,11 @@ pub fn parse_catalogue(name: &str, text: &str, catalogue: &Catalogue) -> Result<
 /// # Errors
 /// [`DocumentError::Catalogue`] for a number that TOML does not have.
 pub fn catalogue_text(formulas: Vec<FormulaText>) -> Result<String, DocumentError> {
-    let unwritable =
-        |error: toml::ser::Error| DocumentError::Catalogue { name: "catalogue".to_string(), reason: error.to_string() };
+    let unwritable = |error: toml::ser::Error| DocumentError::Catalogue {
+        name: "catalogue".to_string(),
+        reason: error.to_string(),
+        excerpt: String::new(),
+    };
     toml::to_string(&CatalogueText { formula: formulas }).map_err(unwritable)
 }
 

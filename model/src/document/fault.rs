@@ -6,11 +6,28 @@ const LONGEST_MESSAGE: usize = 200;
 /// Longest piece of the faulty line that is shown, characters.
 const LONGEST_LINE: usize = 72;
 
-/// What the reader of TOML says of `text`, with line and column, and under it the line with a mark at the place.
-pub fn toml_fault(text: &str, error: &toml::de::Error) -> String {
+/// What is wrong with a TOML text. Shown, the excerpt stands under the message.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TomlFault {
+    /// What the reader of TOML says, in one line that begins with line and column.
+    pub message: String,
+    /// The faulty line with a mark at the place: three lines, or none where the place is unknown. For the person at the terminal;
+    /// a stranger on the network may learn no text of a file.
+    pub excerpt: String,
+}
+
+impl std::fmt::Display for TomlFault {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(&self.message)?;
+        if self.excerpt.is_empty() { Ok(()) } else { write!(formatter, "\n{}", self.excerpt) }
+    }
+}
+
+/// What the reader of TOML says of `text`.
+pub fn toml_fault(text: &str, error: &toml::de::Error) -> TomlFault {
     let message: String = error.message().trim().replace('\n', ", ").chars().take(LONGEST_MESSAGE).collect();
-    let Some(span) = error.span() else { return message };
-    let (Some(before), Some(from)) = (text.get(..span.start), text.get(span.start..)) else { return message };
+    let place = error.span().and_then(|span| Some((text.get(..span.start)?, text.get(span.start..)?, span)));
+    let Some((before, from, span)) = place else { return TomlFault { message, excerpt: String::new() } };
     let number = before.matches('\n').count() + 1;
     let start = before.rfind('\n').map_or(0, |end| end + 1);
     let left = before.get(start..).unwrap_or_default();
@@ -24,7 +41,10 @@ pub fn toml_fault(text: &str, error: &toml::de::Error) -> String {
     let marks = "^".repeat(marked.clamp(1, (LONGEST_LINE - blanks.len()).max(1)));
     let margin = " ".repeat(number.to_string().len());
     let shown = shown.trim_end();
-    format!("line {number}, column {column}: {message}\n{margin} |\n{number} | {shown}\n{margin} | {blanks}{marks}")
+    TomlFault {
+        message: format!("line {number}, column {column}: {message}"),
+        excerpt: format!("{margin} |\n{number} | {shown}\n{margin} | {blanks}{marks}"),
+    }
 }
 
 /// A character that takes one column of a terminal and does nothing else there.
@@ -38,7 +58,7 @@ mod tests {
     use super::toml_fault;
 
     fn fault(text: &str) -> String {
-        toml_fault(text, &toml::from_str::<toml::Table>(text).unwrap_err())
+        toml_fault(text, &toml::from_str::<toml::Table>(text).unwrap_err()).to_string()
     }
 
     #[test]

@@ -14,7 +14,7 @@ mod schema;
 
 pub use built_in::{BUILT_IN, built_in};
 pub use catalogue_text::{catalogue_text, parse_catalogue};
-pub use fault::toml_fault;
+pub use fault::{TomlFault, toml_fault};
 pub use model_text::{parse, to_text};
 pub use reference::reference;
 pub use schema::schema;
@@ -27,16 +27,20 @@ pub enum DocumentError {
     Syntax {
         /// File or built-in name.
         name: String,
-        /// What the reader says.
+        /// What the reader says, in one line.
         reason: String,
+        /// The faulty line and a mark under it; empty where there is none.
+        excerpt: String,
     },
     /// Not TOML, or not of a catalogue's form.
     #[error("{name} is not a catalogue file: {reason}")]
     Catalogue {
         /// File name.
         name: String,
-        /// What the reader says.
+        /// What the reader says, in one line.
         reason: String,
+        /// The faulty line and a mark under it; empty where there is none.
+        excerpt: String,
     },
     /// A number has another unit than it must have.
     #[error("{name}: {quantity} is given in \"{found}\", but must be in \"{expected}\"")]
@@ -91,3 +95,15 @@ pub enum DocumentError {
 }
 
 const BUILT_IN_NAMES: &str = "zx30u-arm, zx30u, zx30u-bucket, zx30u-excavator, servo-bench, emps";
+
+impl DocumentError {
+    /// The message, and under it the faulty line of the text where there is one: for the person whose file it is.
+    pub fn with_excerpt(&self) -> String {
+        match self {
+            DocumentError::Syntax { excerpt, .. } | DocumentError::Catalogue { excerpt, .. } if !excerpt.is_empty() => {
+                format!("{self}\n{excerpt}")
+            }
+            _ => self.to_string(),
+        }
+    }
+}

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::catalogue_text::with_formulas;
 use super::machine_text::MachineText;
-use super::{DocumentError, toml_fault};
+use super::{DocumentError, TomlFault, toml_fault};
 use crate::effects::{Catalogue, Kind, ParameterCard};
 use crate::formula::FormulaText;
 use crate::model::{site_name, site_named};
@@ -78,10 +78,12 @@ fn first_format() -> u32 {
 /// Reads a model from its text. It may have the effects of `catalogue` and those that its own text brings along. `name` is the file's or the built-in model's, for messages.
 ///
 /// # Errors
-/// [`DocumentError`], which says which number is wrong, or shows the line that is no TOML.
+/// [`DocumentError`] in one line that says which number is wrong.
 pub fn parse(name: &str, text: &str, catalogue: &Catalogue) -> Result<Model, DocumentError> {
-    let parsed: ModelText = toml::from_str(text)
-        .map_err(|error| DocumentError::Syntax { name: name.to_string(), reason: toml_fault(text, &error) })?;
+    let parsed: ModelText = toml::from_str(text).map_err(|error| {
+        let TomlFault { message, excerpt } = toml_fault(text, &error);
+        DocumentError::Syntax { name: name.to_string(), reason: message, excerpt }
+    })?;
     if parsed.format > FORMAT {
         return Err(DocumentError::Inconsistent {
             name: name.to_string(),
@@ -210,8 +212,11 @@ pub fn to_text(model: &Model) -> Result<String, DocumentError> {
             .collect(),
         history: model.history.clone(),
     };
-    let text = toml::to_string(&text)
-        .map_err(|error| DocumentError::Syntax { name: model.machine.name.clone(), reason: error.to_string() })?;
+    let text = toml::to_string(&text).map_err(|error| DocumentError::Syntax {
+        name: model.machine.name.clone(),
+        reason: error.to_string(),
+        excerpt: String::new(),
+    })?;
     // A file that cannot be read again is worse than none.
     parse(&model.machine.name, &text, &model.catalogue)?;
     Ok(text)

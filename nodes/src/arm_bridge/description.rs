@@ -268,7 +268,7 @@ impl Description {
     }
 
     fn parse(text: &str) -> Result<Self, String> {
-        let description: Description = toml::from_str(text).map_err(|error| toml_fault(text, &error))?;
+        let description: Description = toml::from_str(text).map_err(|error| toml_fault(text, &error).to_string())?;
         if !(0.1..=2000.0).contains(&description.rate) {
             return Err(format!("rate = {} is outside 0.1 to 2000 Hz", description.rate));
         }

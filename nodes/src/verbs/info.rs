@@ -47,7 +47,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
                     print(&format!("note: {note}"));
                 }
             }
-            Err(error) => print(&format!("signals: none read: {}{}", first_line(error), advice(error))),
+            Err(error) => print(&format!("signals: none read: {}{}", first_line(&error.to_string()), advice(error))),
         }
         if let Ok((signals, _)) = &signals {
             print_next(&next(arguments, signals));
@@ -248,8 +248,8 @@ fn show_signals(signals: &SignalsInfo) {
 }
 
 /// A message without the faulty line of a file under it.
-fn first_line(error: &BagError) -> String {
-    error.to_string().lines().next().unwrap_or_default().to_string()
+fn first_line(message: &str) -> &str {
+    message.lines().next().unwrap_or_default()
 }
 
 /// Factor from SI, and the unit in which people read such a signal.
