@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::dynamic::LayoutError;
 use crate::limits::LimitError;
 use crate::map::MapError;
-use crate::{printable, printable_with_excerpt};
+use crate::printable;
 
 /// A bag that cannot be read or written at all. Damage that can be read around is no error but a
 /// [`Damage`](crate::Damage) in the report.
@@ -205,7 +205,7 @@ pub enum BagError {
         source: LayoutError,
     },
     /// A topic map, or what it asks for, is wrong.
-    #[error("{}", printable_with_excerpt(&_0.to_string()))]
+    #[error("{}", printable(&_0.to_string()))]
     Map(#[from] MapError),
     /// A table that cannot be read.
     #[error("{}: {}", shown(path), printable(reason))]

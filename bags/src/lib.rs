@@ -51,7 +51,7 @@ pub use info::{
     TopicInfo, info,
 };
 pub use limits::{Limit, LimitError, ReadLimits};
-pub use printable::{printable, printable_with_excerpt};
+pub use printable::printable;
 pub use qos::{Durability, History, Qos, Reliability};
 pub use raw_messages::{RawMessage, RawMessages, Topic};
 pub use reading::{Gap, ReadReport, StateTable, read_recording, read_recording_in_blocks};

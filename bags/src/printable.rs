@@ -23,24 +23,6 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(escaped)
 }
 
-/// The same for a message that may end with the faulty line of a file and a mark under it: those three lines stay lines.
-#[must_use]
-pub fn printable_with_excerpt(text: &str) -> Cow<'_, str> {
-    let lines: Vec<&str> = text.rsplitn(4, '\n').collect();
-    let [mark, faulty, blank, message] = lines.as_slice() else { return printable(text) };
-    let is_number = |text: &str| !text.is_empty() && text.chars().all(|digit| digit.is_ascii_digit());
-    let is_excerpt = margin(blank) == Some("") && margin(faulty).is_some_and(is_number) && margin(mark) == Some("");
-    if !is_excerpt {
-        return printable(text);
-    }
-    Cow::Owned([*message, *blank, *faulty, *mark].map(printable).join("\n"))
-}
-
-/// What stands before the bar of a line of an excerpt.
-fn margin(line: &str) -> Option<&str> {
-    line.split_once('|').map(|(margin, _)| margin.trim())
-}
-
 /// Controls, and the marks that change the direction of the text around them (Unicode Standard Annex 9) or end a line.
 fn acts_on_terminals(character: char) -> bool {
     character.is_control()
@@ -56,15 +38,6 @@ mod tests {
         for name in ["/arm/state", "Drück [bar]", "шток", "圧力"] {
             assert!(matches!(printable(name), Cow::Borrowed(same) if same == name), "{name}");
         }
-    }
-
-    #[test]
-    fn only_the_lines_of_an_excerpt_stay_lines() {
-        let fault = "m.toml: line 2, column 5: a string\n  |\n2 | a = b\n  |     ^";
-        assert_eq!(printable_with_excerpt(fault), fault);
-        assert_eq!(printable_with_excerpt("a\nb"), r"a\u{a}b");
-        assert_eq!(printable_with_excerpt("a\nb\nc\nd"), r"a\u{a}b\u{a}c\u{a}d");
-        assert_eq!(printable_with_excerpt("x\ny\n  |\n2 | \u{1b}\n  | ^"), "x\\u{a}y\n  |\n2 | \\u{1b}\n  | ^");
     }
 
     #[test]

@@ -10,7 +10,7 @@ use excavator_identification::fit::FitError;
 use excavator_identification::gate::GateError;
 use excavator_identification::refinement::RefineError;
 use excavator_identification::regression::RegressionError;
-use excavator_model::document::DocumentError;
+use excavator_model::document::{DocumentError, TomlFault};
 use excavator_model::effects::UnknownEffect;
 use excavator_model::formula::FormulaError;
 use excavator_model::simulation::{ProfileError, RunError};
@@ -24,7 +24,7 @@ use excavator_ros::RosError;
 pub enum VerbError {
     #[error(transparent)]
     Bag(#[from] BagError),
-    #[error("{}", _0.with_excerpt())]
+    #[error(transparent)]
     Document(#[from] DocumentError),
     #[error("--where \"{text}\": {error}")]
     Condition { text: String, error: Box<FormulaError> },
@@ -66,8 +66,8 @@ pub enum VerbError {
     NewModel(String),
     #[error("--catalogue {}: {reason}", path.display())]
     Catalogue { path: PathBuf, reason: String },
-    #[error("{} is not a profile: {reason}", path.display())]
-    ProfileSyntax { path: PathBuf, reason: String },
+    #[error("{} is not a profile: {}", path.display(), fault.message)]
+    ProfileSyntax { path: PathBuf, fault: TomlFault },
     #[error("cannot write the profile: {0}")]
     ProfileWrite(String),
     #[error("profile: {machine} has no cylinder \"{cylinder}\"; it has {known}")]
@@ -121,6 +121,16 @@ impl VerbError {
     }
 
     /// 2 for wrong usage, 1 for everything that failed.
+    /// The faulty line of a file with a mark at the place; empty where there is none.
+    pub fn excerpt(&self) -> &str {
+        match self {
+            VerbError::Document(error) => error.excerpt(),
+            VerbError::Bag(BagError::Map(error)) => error.excerpt(),
+            VerbError::ProfileSyntax { fault, .. } => &fault.excerpt,
+            _ => "",
+        }
+    }
+
     pub fn exit_code(&self) -> u8 {
         match self {
             VerbError::Ros(RosError::Arguments(_)) | VerbError::Design(DesignError::Alone { .. }) => 2,

@@ -51,7 +51,7 @@ pub fn run_command_line() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            terminal::complain(&format!("excavator: {error}"));
+            terminal::complain(&format!("excavator: {error}"), error.excerpt());
             ExitCode::from(error.exit_code())
         }
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use excavator_bags::{ReadLimits, read_regular_text};
-use excavator_model::document::toml_fault;
+use excavator_model::document::{TomlFault, toml_fault};
 use excavator_model::machine::Machine;
 use excavator_model::simulation::{Profile, Segment};
 use serde::{Deserialize, Serialize};
@@ -48,11 +48,12 @@ impl ProfileFile {
     /// Reads a file and checks it against a machine.
     ///
     /// # Errors
-    /// [`VerbError`], which says which number or name is wrong, or shows the line that is no TOML.
+    /// [`VerbError`] in one line that says which number or name is wrong.
     pub fn read(path: &Path, machine: &Machine) -> Result<Self, VerbError> {
         let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
-        let syntax = |reason: String| VerbError::ProfileSyntax { path: path.to_path_buf(), reason };
-        let file: ProfileFile = toml::from_str(&text).map_err(|error| syntax(toml_fault(&text, &error).to_string()))?;
+        let wrong = |fault: TomlFault| VerbError::ProfileSyntax { path: path.to_path_buf(), fault };
+        let syntax = |reason: String| wrong(reason.into());
+        let file: ProfileFile = toml::from_str(&text).map_err(|error| wrong(toml_fault(&text, &error)))?;
         if !(1.0..=100_000.0).contains(&file.rate) {
             return Err(syntax(format!("rate = {} must be between 1 and 100000 samples per second", file.rate)));
         }

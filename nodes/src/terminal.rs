@@ -7,7 +7,6 @@ use std::borrow::Cow;
 use std::io::IsTerminal;
 
 pub use excavator_bags::printable;
-use excavator_bags::printable_with_excerpt;
 
 use crate::output::filled;
 use crate::verbosity::Verbosity;
@@ -33,9 +32,10 @@ pub fn text(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// A line on standard error: why something failed. Under it may stand the faulty line of a file.
-pub fn complain(line: &str) {
-    eprintln!("{}", printable_with_excerpt(line));
+/// A line on standard error: why something failed. Under it stands `excerpt`, the faulty line of a file, unless that is empty.
+pub fn complain(line: &str, excerpt: &str) {
+    eprintln!("{}", printable(line));
+    excerpt.lines().for_each(|line| eprintln!("{}", printable(line)));
 }
 
 /// A line on standard error that is worth knowing, unless nothing is to be said.

@@ -32,6 +32,30 @@ fn generated_pages_are_those_of_the_program() {
     }
 }
 
+#[test]
+fn the_faulty_line_of_a_file_stands_under_the_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let faulty = folder.path().join("faulty.toml");
+    std::fs::write(&faulty, "format = 2\narea = 38 mm2 \u{1b}[2J\n").unwrap();
+    let path = faulty.to_str().unwrap();
+    let bag = format!("{REPOSITORY}/bags/samples/hidden-law/validation");
+    let simulate = ["simulate", "--model", "zx30u-arm", "--input", path, "-o", "out"];
+    for words in [
+        &["model", "check", path][..],
+        &["compare", "--model", "zx30u-arm", "--bag", &bag, "--map", path],
+        &["effects", "--catalogue", path],
+        &simulate,
+    ] {
+        let failed = Command::cargo_bin("excavator").unwrap().args(words).assert().failure();
+        let said = String::from_utf8(failed.get_output().stderr.clone()).unwrap();
+        let lines: Vec<&str> = said.lines().collect();
+        assert!(lines[0].contains("line 2, column") && !lines[0].contains("area ="), "{words:?}: {said}");
+        assert_eq!(lines.len(), 4, "{words:?}: {said}");
+        assert!(lines[2].starts_with("2 | area = 38 mm2") && lines[3].ends_with('^'), "{words:?}: {said}");
+        assert!(!said.contains('\u{1b}'), "{words:?}: {said}");
+    }
+}
+
 /// Every model file of the repository and, where they are, of other people.
 fn model_files() -> Vec<std::path::PathBuf> {
     let folder = Path::new(REPOSITORY).join("config");

@@ -297,7 +297,7 @@ impl TopicMap {
     /// # Errors
     /// [`MapError::Syntax`] when a number is none that TOML can hold.
     pub fn to_text(&self) -> Result<String, MapError> {
-        toml::to_string(self).map_err(|error| MapError::Syntax(error.to_string()))
+        toml::to_string(self).map_err(|error| MapError::Syntax(error.to_string().into()))
     }
 
     fn check(&self) -> Result<(), MapError> {
@@ -341,8 +341,7 @@ impl FromStr for TopicMap {
     type Err = MapError;
 
     fn from_str(text: &str) -> Result<Self, MapError> {
-        let map: TopicMap =
-            toml::from_str(text).map_err(|error| MapError::Syntax(toml_fault(text, &error).to_string()))?;
+        let map: TopicMap = toml::from_str(text).map_err(|error| MapError::Syntax(toml_fault(text, &error)))?;
         map.check()?;
         Ok(map)
     }

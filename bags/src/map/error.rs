@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use excavator_model::document::TomlFault;
 use excavator_model::formula::FormulaError;
 use thiserror::Error;
 
@@ -12,8 +13,8 @@ use crate::dynamic::{LayoutError, PathError};
 #[derive(Debug, Error)]
 pub enum MapError {
     /// No map in the text.
-    #[error("the map is not understood: {0}")]
-    Syntax(String),
+    #[error("the map is not understood: {}", _0.message)]
+    Syntax(TomlFault),
     /// The map in a file is wrong.
     #[error("{}: {source}", path.display())]
     InFile {
@@ -302,4 +303,15 @@ pub enum MapError {
 fn listed(files: &[PathBuf]) -> String {
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     if names.is_empty() { "no file".to_string() } else { names.join(", ") }
+}
+
+impl MapError {
+    /// The faulty line of the map with a mark at the place; empty where there is none. It is for the person whose file it is.
+    pub fn excerpt(&self) -> &str {
+        match self {
+            MapError::Syntax(fault) => &fault.excerpt,
+            MapError::InFile { source, .. } => source.excerpt(),
+            _ => "",
+        }
+    }
 }

@@ -6,7 +6,7 @@ const LONGEST_MESSAGE: usize = 200;
 /// Longest piece of the faulty line that is shown, characters.
 const LONGEST_LINE: usize = 72;
 
-/// What is wrong with a TOML text. Shown, the excerpt stands under the message.
+/// What is wrong with a TOML text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TomlFault {
     /// What the reader of TOML says, in one line that begins with line and column.
@@ -16,10 +16,10 @@ pub struct TomlFault {
     pub excerpt: String,
 }
 
-impl std::fmt::Display for TomlFault {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str(&self.message)?;
-        if self.excerpt.is_empty() { Ok(()) } else { write!(formatter, "\n{}", self.excerpt) }
+impl From<String> for TomlFault {
+    /// A fault without a place.
+    fn from(message: String) -> Self {
+        TomlFault { message, excerpt: String::new() }
     }
 }
 
@@ -27,7 +27,7 @@ impl std::fmt::Display for TomlFault {
 pub fn toml_fault(text: &str, error: &toml::de::Error) -> TomlFault {
     let message: String = error.message().trim().replace('\n', ", ").chars().take(LONGEST_MESSAGE).collect();
     let place = error.span().and_then(|span| Some((text.get(..span.start)?, text.get(span.start..)?, span)));
-    let Some((before, from, span)) = place else { return TomlFault { message, excerpt: String::new() } };
+    let Some((before, from, span)) = place else { return message.into() };
     let number = before.matches('\n').count() + 1;
     let start = before.rfind('\n').map_or(0, |end| end + 1);
     let left = before.get(start..).unwrap_or_default();
@@ -55,10 +55,11 @@ fn visible(character: char) -> char {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use super::toml_fault;
+    use super::{TomlFault, toml_fault};
 
     fn fault(text: &str) -> String {
-        toml_fault(text, &toml::from_str::<toml::Table>(text).unwrap_err()).to_string()
+        let TomlFault { message, excerpt } = toml_fault(text, &toml::from_str::<toml::Table>(text).unwrap_err());
+        format!("{message}\n{excerpt}")
     }
 
     #[test]

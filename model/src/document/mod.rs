@@ -97,13 +97,11 @@ pub enum DocumentError {
 const BUILT_IN_NAMES: &str = "zx30u-arm, zx30u, zx30u-bucket, zx30u-excavator, servo-bench, emps";
 
 impl DocumentError {
-    /// The message, and under it the faulty line of the text where there is one: for the person whose file it is.
-    pub fn with_excerpt(&self) -> String {
+    /// The faulty line of the text with a mark at the place; empty where there is none. It is for the person whose file it is.
+    pub fn excerpt(&self) -> &str {
         match self {
-            DocumentError::Syntax { excerpt, .. } | DocumentError::Catalogue { excerpt, .. } if !excerpt.is_empty() => {
-                format!("{self}\n{excerpt}")
-            }
-            _ => self.to_string(),
+            DocumentError::Syntax { excerpt, .. } | DocumentError::Catalogue { excerpt, .. } => excerpt,
+            _ => "",
         }
     }
 }

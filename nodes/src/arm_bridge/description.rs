@@ -69,7 +69,7 @@ impl Udp {
     /// Whether the layout can be read, and who may send it.
     ///
     /// # Errors
-    /// What is wrong, and under it the line if that is no TOML.
+    /// What is wrong, in one line.
     fn check(&self) -> Result<(), String> {
         let fields = self.fields.iter().map(|field| (field.treatment.signal.as_str(), field.at, field.kind.length()));
         let sequence = self.sequence.iter().map(|field| ("sequence", field.at, field.kind.length()));
@@ -268,7 +268,7 @@ impl Description {
     }
 
     fn parse(text: &str) -> Result<Self, String> {
-        let description: Description = toml::from_str(text).map_err(|error| toml_fault(text, &error).to_string())?;
+        let description: Description = toml::from_str(text).map_err(|error| toml_fault(text, &error).message)?;
         if !(0.1..=2000.0).contains(&description.rate) {
             return Err(format!("rate = {} is outside 0.1 to 2000 Hz", description.rate));
         }

@@ -47,7 +47,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
                     print(&format!("note: {note}"));
                 }
             }
-            Err(error) => print(&format!("signals: none read: {}{}", first_line(&error.to_string()), advice(error))),
+            Err(error) => print(&format!("signals: none read: {}{}", error, advice(error))),
         }
         if let Ok((signals, _)) = &signals {
             print_next(&next(arguments, signals));
@@ -245,11 +245,6 @@ fn show_signals(signals: &SignalsInfo) {
             (missing, _) => print(&format!("{name}: needs {}", missing.join(", "))),
         }
     }
-}
-
-/// A message without the faulty line of a file under it.
-fn first_line(message: &str) -> &str {
-    message.lines().next().unwrap_or_default()
 }
 
 /// Factor from SI, and the unit in which people read such a signal.

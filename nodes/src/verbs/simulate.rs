@@ -41,7 +41,7 @@ pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
 }
 
 fn with_profile(model: &Model, path: &Path) -> Result<Recording, VerbError> {
-    let syntax = |reason: String| VerbError::ProfileSyntax { path: path.to_path_buf(), reason };
+    let syntax = |reason: String| VerbError::ProfileSyntax { path: path.to_path_buf(), fault: reason.into() };
     let file = ProfileFile::read(path, &model.machine)?;
     for remark in file.remarks(&model.machine) {
         terminal::remark(&format!("{}: {remark}", path.display()));

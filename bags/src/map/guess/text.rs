@@ -72,7 +72,7 @@ fn push_signal(text: &mut String, guessed: &GuessedSignal) -> Result<(), MapErro
 }
 
 fn toml_lines<T: serde::Serialize>(value: &T) -> Result<Vec<String>, MapError> {
-    let text = toml::to_string(value).map_err(|error| MapError::Syntax(error.to_string()))?;
+    let text = toml::to_string(value).map_err(|error| MapError::Syntax(error.to_string().into()))?;
     Ok(text.lines().map(str::to_string).collect())
 }
 
