@@ -72,27 +72,29 @@ struct Machine<'m, 's> {
 /// Follows orders until the stream ends. Returns the moment at which the node went with a valve open; `None` where all were
 /// closed.
 fn follow(stream: &mut UnixStream, machine: &mut Machine<'_, '_>, wall_period: Duration) -> Option<Instant> {
-    // Samples that the machine went on by without an order, while its node did nothing.
-    let mut alone: u32 = 0;
+    // Samples that the machine went on by without an order and that no order has paid for yet.
+    let mut unpaid: u32 = 0;
+    let mut is_alone = false;
     let mut lease = LONGEST_ALONE;
     loop {
         // A machine whose node hangs goes on at its own pace.
-        let patience = if alone == 0 { lease.max(5 * wall_period) } else { wall_period };
+        let patience = if is_alone { wall_period } else { lease.max(5 * wall_period) };
         if stream.set_read_timeout(Some(patience)).is_err() {
             return Some(Instant::now());
         }
         match receive::<Order>(stream) {
             Ok(order) => {
                 lease = Duration::try_from_secs_f64(order.lease).unwrap_or_default();
-                let samples = order.samples.saturating_sub(alone).max(1);
-                alone = 0;
-                machine.obey(&order, samples);
+                // The node may count the time that it lost only in the order after this one.
+                let paid = unpaid.min(order.samples);
+                (unpaid, is_alone) = (unpaid - paid, false);
+                machine.obey(&order, order.samples - paid);
                 if send(stream, &machine.answer(order.oil_temperature)).is_err() {
                     break;
                 }
             }
             Err(TalkError::Broken(error)) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
-                alone = alone.saturating_add(1);
+                (unpaid, is_alone) = (unpaid.saturating_add(1), true);
                 machine.step_closing();
             }
             Err(_) => break,

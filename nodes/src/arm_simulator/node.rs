@@ -159,7 +159,7 @@ impl Simulation<'_> {
         let mut reported = Instant::now();
         let mut counts = Counts::default();
         let mut wanted = Vec::new();
-        let (mut samples, mut is_shut) = (1, false);
+        let (mut samples, mut known, mut is_shut) = (1, 0, false);
         let every = |target: f64| ((rate / target).round() as u64).max(1);
         let (joints_every, clock_every) = (every(JOINT_STATES_RATE), every(CLOCK_RATE));
         self.logger.info(format!("{} at {rate} Hz, speed {speed}", self.model.machine.name));
@@ -180,6 +180,9 @@ impl Simulation<'_> {
             counts.limited = answer.limited;
             let mut state = answer.state;
             let stamp = clock.stamp(answer.samples, answer.sampled_at);
+            // A machine that went on alone waits until this program's time has caught up with it.
+            let publishes = is_active && answer.samples > known;
+            known = answer.samples;
             state.header.stamp = stamp;
             state.header.frame_id.clone_from(&frame);
             if self.outlets.clock.is_some() {
@@ -191,11 +194,11 @@ impl Simulation<'_> {
                 let _ = outlet.publish(Clock { clock: stamp });
             }
             let joints = (sample % joints_every == 0).then(|| joint_state(&state, answer.joint_rates));
-            if is_active && sensors.measure(&mut state, &settings.quality) {
+            if publishes && sensors.measure(&mut state, &settings.quality) {
                 // Refusals are counted by the outlet and reported below.
                 let _ = self.outlets.state.publish(state);
             }
-            if let Some(joints) = joints.filter(|_| is_active) {
+            if let Some(joints) = joints.filter(|_| publishes) {
                 let _ = self.outlets.joints.publish(joints);
             }
             if reported.elapsed() >= REPORT {

@@ -17,6 +17,8 @@ const LASTING: i64 = 1_000_000_000;
 pub(super) struct Stamps {
     period: i64,
     last: Option<(u64, i64)>,
+    /// What the clock showed at the last sample, ns.
+    last_clock: i64,
     /// Since when the clock has been ahead by more than a jump, ns on the clock.
     ahead_since: Option<i64>,
 }
@@ -24,7 +26,7 @@ pub(super) struct Stamps {
 impl Stamps {
     /// Samples `period` nanoseconds apart.
     pub fn new(period: i64) -> Self {
-        Stamps { period, last: None, ahead_since: None }
+        Stamps { period, last: None, last_clock: i64::MIN, ahead_since: None }
     }
 
     /// Stamp of the sample with this number, taken when the system's clock shows `clock` (ns), and whether it is a new beginning.
@@ -37,6 +39,7 @@ impl Stamps {
             }
         };
         self.last = Some((sample, stamp));
+        self.last_clock = clock;
         (stamp, jumped)
     }
 
@@ -47,7 +50,9 @@ impl Stamps {
             self.ahead_since = None;
         }
         let since = (ahead > JUMP).then(|| *self.ahead_since.get_or_insert(clock));
-        let has_jumped = ahead < -JUMP || since.is_some_and(|since| !(0..LASTING).contains(&(clock - since)));
+        // Stamps go back only when the clock itself does. Samples that were made up for too eagerly are no reason.
+        let set_back = ahead < -JUMP && clock < self.last_clock;
+        let has_jumped = set_back || since.is_some_and(|since| !(0..LASTING).contains(&(clock - since)));
         if has_jumped {
             self.ahead_since = None;
             return (clock, true);
@@ -102,6 +107,18 @@ mod tests {
         let last = (0..10_000_i64).map(|sample| stamps.stamp(sample.unsigned_abs(), drifting(sample)).0).last();
         assert!(last.is_some_and(|stamp| (stamp - drifting(9_999)).abs() < 2_000));
         assert_eq!(stamps.stamp(10_000, -5_000_000_000), (-5_000_000_000, true));
+    }
+
+    /// The first sample was stamped late, and the next ones followed at once.
+    #[test]
+    fn stamps_do_not_go_back_while_the_clock_does_not() {
+        let mut stamps = Stamps::new(PERIOD);
+        let mut previous = stamps.stamp(0, 400 * PERIOD).0;
+        for sample in 1..2000_i64 {
+            let (stamp, jumped) = stamps.stamp(sample.unsigned_abs(), sample.max(401) * PERIOD);
+            assert!(!jumped && stamp > previous, "at sample {sample}");
+            previous = stamp;
+        }
     }
 
     #[test]
