@@ -40,7 +40,7 @@ use excavator_model::display::PressureUnit;
 pub fn run_command_line() -> ExitCode {
     let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let outcome = excavator_ros::RosArguments::parse(&all).map_err(error::VerbError::from).and_then(|(ros, words)| {
-        let parsed = manual::command().try_get_matches_from(words);
+        let parsed = manual::command_within(terminal::width()).try_get_matches_from(words);
         let arguments = parsed.and_then(|found| cli::Arguments::from_arg_matches(&found));
         let arguments = arguments.unwrap_or_else(|refusal| refuse(&refusal));
         arguments.verbosity().choose();

@@ -32,18 +32,23 @@ pub fn text(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// A line on standard error: why something failed. Under it stands `excerpt`, the faulty line of a file, unless that is empty.
+/// A line on standard error: why something failed; it is broken where that is a terminal. Under it stands `excerpt`, the faulty line
+/// of a file with a mark that has to stay under its place, unless that is empty.
 pub fn complain(line: &str, excerpt: &str) {
-    eprintln!("{}", printable(line));
+    eprintln!("{}", filled(&printable(line), width_of_errors()));
     excerpt.lines().for_each(|line| eprintln!("{}", printable(line)));
 }
 
 /// A line on standard error that is worth knowing, unless nothing is to be said.
 pub fn remark(line: &str) {
     if Verbosity::chosen() > Verbosity::Quiet {
-        let width = std::io::stderr().is_terminal().then(|| width().unwrap_or(80));
-        eprintln!("{}", filled(&printable(line), width));
+        eprintln!("{}", filled(&printable(line), width_of_errors()));
     }
+}
+
+/// Columns for what is told on standard error; `None` where that is no terminal.
+fn width_of_errors() -> Option<usize> {
+    std::io::stderr().is_terminal().then(|| width().unwrap_or(80))
 }
 
 /// Columns of the terminal; `None` where standard output is none.

@@ -21,6 +21,7 @@ class Browser:
         flags = [
             "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run",
             "--disable-component-update", "--disable-sync", "--enable-precise-memory-info", "--window-size=1400,1000",
+            "--hide-scrollbars",  # as on a phone: they take no room
             f"--user-data-dir={folder}", "--remote-debugging-pipe", "about:blank",
         ]  # fmt: skip
         self._process = subprocess.Popen(
@@ -71,14 +72,20 @@ class Browser:
         self._ask("HeapProfiler.collectGarbage")
         return self._ask("Runtime.getHeapUsage")["usedSize"]
 
-    def picture(self, whole=False):
-        """PNG of the page, base64; of all of it, or of what the window shows."""
-        return self._ask("Page.captureScreenshot", captureBeyondViewport=whole)["data"]
+    def picture(self, whole=False, clip=None):
+        """PNG of the page, base64; of all of it, of its upper `clip` = (width, height), or of what the window shows."""
+        area = {"clip": dict(x=0, y=0, width=clip[0], height=clip[1], scale=1)} if clip else {}
+        return self._ask("Page.captureScreenshot", captureBeyondViewport=whole or clip is not None, **area)["data"]
 
-    def screen(self, width, height, scheme="light"):
-        """A window of this size, on a system with a light or dark scheme."""
+    def screen(self, width, height, scheme="light", media=""):
+        """A window of this size, on a system with a light or dark scheme; media="print" shows what a printer gets."""
         self._ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
-        self._ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        features = [{"name": "prefers-color-scheme", "value": scheme}]
+        self._ask("Emulation.setEmulatedMedia", media=media, features=features)
+
+    def before_every_page(self, script):
+        """Runs a script in every page that is opened from now on, before its own."""
+        self._ask("Page.addScriptToEvaluateOnNewDocument", source=script)
 
     def press(self, key):
         """A key, as the keyboard sends it."""
@@ -87,8 +94,8 @@ class Browser:
             self._ask("Input.dispatchKeyEvent", type=kind, key=key, text=text)
 
     def print_to_pdf(self):
-        """The page as it is printed, base64."""
-        return self._ask("Page.printToPDF")["data"]
+        """The page as it is printed, base64; paper as the page asks for it."""
+        return self._ask("Page.printToPDF", preferCSSPageSize=True, printBackground=False)["data"]
 
     def _ask(self, method, **parameters):
         self._number += 1

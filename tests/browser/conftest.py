@@ -1,4 +1,4 @@
-"""Fixtures of the test of the dashboard in a real browser."""
+"""The program, a browser, and every page of the program opened in it."""
 
 import os
 import shutil
@@ -9,6 +9,9 @@ import pytest
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
+
+from browser import Browser  # noqa: E402
+from pages import PAGES, READY, WIDE, write  # noqa: E402
 
 
 @pytest.fixture(scope="session")
@@ -32,3 +35,49 @@ def chromium():
     if found is None:
         pytest.skip("no Chromium here: install it (Debian: apt-get install chromium) or set CHROMIUM to its path")
     return found
+
+
+@pytest.fixture(scope="session")
+def axe():
+    """Source of axe-core; the test skips where there is none."""
+    folder = os.environ.get("EXCAVATOR_AXE")
+    if not folder:
+        pytest.skip("EXCAVATOR_AXE does not say where axe-core is (npm install axe-core)")
+    return (Path(folder) / "axe.min.js").read_text()
+
+
+@pytest.fixture(scope="session")
+def pictures():
+    """Where pictures are kept, made where it is missing; None where nobody asked for them."""
+    given = os.environ.get("EXCAVATOR_PICTURES")
+    if not given:
+        return None
+    Path(given).mkdir(parents=True, exist_ok=True)
+    return Path(given)
+
+
+@pytest.fixture(scope="session")
+def pages(excavator, tmp_path_factory):
+    """The folder with all pages, written by the program."""
+    folder = tmp_path_factory.mktemp("pages")
+    write(excavator, folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def browser(chromium, tmp_path_factory):
+    """A browser for all pages. It notes text of canvases, so that tests can look at it."""
+    with Browser(chromium, tmp_path_factory.mktemp("profile")) as opened:
+        opened.before_every_page((HERE / "probe.js").read_text())
+        yield opened
+
+
+@pytest.fixture(params=PAGES)
+def page(request, pages, browser):
+    """Name of a page that is open in a wide window; nothing may fail in it."""
+    browser.errors.clear()
+    browser.screen(*WIDE)
+    browser.open((pages / f"{request.param}.html").as_uri())
+    browser.wait_for(READY, f"the page of {request.param}")
+    yield request.param
+    assert browser.errors == []

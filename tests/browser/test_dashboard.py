@@ -3,7 +3,6 @@
 Seconds by default; EXCAVATOR_LONG=1 watches for a minute. EXCAVATOR_PICTURES=FOLDER keeps a picture of the page.
 """
 
-import base64
 import os
 import random
 import re
@@ -16,6 +15,7 @@ from pathlib import Path
 
 import pytest
 from browser import Browser
+from pages import photograph
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 WATCHED = 60.0 if os.environ.get("EXCAVATOR_LONG") else 12.0
@@ -132,7 +132,7 @@ def check_colours_and_sizes(browser):
     browser.screen(1400, 1000)
 
 
-def test_plots_move_alarms_show_and_nothing_grows(machine, chromium, tmp_path):
+def test_plots_move_alarms_show_and_nothing_grows(machine, chromium, pictures, tmp_path):
     address, processes = machine
     page = wait_for_page(address)
     assert "https://" not in page.replace("https://github.com/leeoniya/uPlot", ""), "the page asks the network for something"
@@ -165,8 +165,8 @@ def test_plots_move_alarms_show_and_nothing_grows(machine, chromium, tmp_path):
             f"{rate:.1f} frames per second over {seconds:.0f} s; heap {heap / 1e6:.2f} -> {heap_after / 1e6:.2f} MB, "
             f"server {server:.1f} -> {server_after:.1f} MB; {told}"
         )
-        if folder := os.environ.get("EXCAVATOR_PICTURES"):
-            Path(folder, "dashboard.png").write_bytes(base64.b64decode(browser.picture()))
+        if pictures:
+            photograph(browser, pictures / "dashboard.png", whole=False)
 
         assert 10 < rate < 35, "frames per second"
         for one, other in zip(before["last"], after["last"], strict=True):

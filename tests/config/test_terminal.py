@@ -1,65 +1,102 @@
-"""What people see on a terminal of 80 columns: no line is wider."""
+"""What people see on a terminal of 80 columns: of every verb its help, what it prints, and what it says when something is wrong."""
 
 import os
-import pathlib
-import pty
-import select
-import struct
-import subprocess
-
-import fcntl
-import termios
+import re
 
 import pytest
+from recipes import LIVE, OFFLINE, prepare, verbs
+from terminal import lines_of, on_a_terminal, untidy
 
-COLUMNS = 80
-SAMPLES = pathlib.Path(__file__).resolve().parents[2] / "bags" / "samples" / "hidden-law"
-BAG = f"{SAMPLES / 'validation'}"
-
-
-def on_a_terminal(words, folder):
-    """What a program prints on a terminal of 80 columns; it must succeed."""
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 40, COLUMNS, 0, 0))
-    process = subprocess.Popen(words, stdout=theirs, stderr=subprocess.DEVNULL, stdin=theirs, cwd=folder)
-    os.close(theirs)
-    output = b""
-    while True:
-        ready, _, _ = select.select([ours], [], [], 120)
-        assert ready, "nothing for two minutes"
-        try:
-            piece = os.read(ours, 65536)
-        except OSError:
-            break
-        if not piece:
-            break
-        output += piece
-    assert process.wait() == 0, output.decode()
-    return output.decode()
+WORKS = [(verb, words) for verb, recipe in OFFLINE.items() for words in recipe.works]
+# Some words, the first of which may be the name of a machine, and a full stop.
+SENTENCE = re.compile(r"\w\S*(\s+\S+){3,}?[^.]\.(\s|$)")
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["info", BAG],
-        ["compare", "--model", "zx30u-arm", "--bag", BAG],
-        ["compare", "--verbose", "--model", "zx30u-arm", "--bag", BAG],
-        ["identify", "--verbose", "--model", "zx30u-arm", "--bag", BAG],
-        ["energy", "--model", "zx30u-arm", "--bag", BAG],
-        ["characterise", "--model", "zx30u-arm", BAG],
-        ["diagnose", "--verbose", "--model", "zx30u-arm", "--identification", f"{BAG}@..10", "--validation", f"{BAG}@10.."],
-        ["refine", "--add", "stribeck_friction@arm", "hose_loss@arm", "--model", "zx30u-arm", "--identification", f"{BAG}@..10",
-         "--validation", f"{BAG}@10..", "-o", "refined.toml"],
-        ["effects"],
-        ["effects", "valve_dead_zone"],
-        ["model", "check", "zx30u-arm"],
-    ],
-    ids=lambda words: " ".join(words[:2]),
-)
-def test_no_line_is_wider_than_the_terminal(excavator, tmp_path, words):
-    output = on_a_terminal([excavator, *words], tmp_path)
-    lines = [line.replace("\x1b[1m", "").replace("\x1b[0m", "") for line in output.replace("\r", "").split("\n")]
-    # A path or a number cannot be broken.
-    wide = [line for line in lines if len(line) > COLUMNS and " " in line.strip() and str(SAMPLES) not in line]
-    assert not wide, "\n".join(wide)
-    assert len(lines) > 3
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Where the commands run: each writes files of its own."""
+    if not os.environ.get("EXCAVATOR_BINARY"):
+        pytest.skip("EXCAVATOR_BINARY does not say where the program is")
+    place = tmp_path_factory.mktemp("terminal")
+    prepare(os.environ["EXCAVATOR_BINARY"], place)
+    return place
+
+
+@pytest.fixture(scope="module")
+def printed(folder):
+    """What a command prints; each runs once."""
+    kept = {}
+
+    def ask(words):
+        key = tuple(words)
+        if key not in kept:
+            status, kept[key] = on_a_terminal([os.environ["EXCAVATOR_BINARY"], *words], folder)
+            assert status == 0, f"{words}\n{kept[key]}"
+        return kept[key]
+
+    return ask
+
+
+def name(words):
+    return " ".join(words[:3])
+
+
+def test_every_verb_has_a_recipe(excavator):
+    """A new verb cannot be forgotten here: the program lists them, and each is live or has its recipe."""
+    listed = verbs(excavator)
+    assert len(listed) > 20
+    assert sorted(listed) == sorted([*LIVE, *OFFLINE])
+
+
+@pytest.mark.parametrize("verb", ["", *LIVE, *OFFLINE])
+def test_help_fits(excavator, tmp_path, verb):
+    status, output = on_a_terminal([excavator, *verb.split(), "--help"], tmp_path)
+    assert status == 0 and "Usage:" in output
+    assert untidy(output, of_clap=True) == []
+
+
+@pytest.mark.parametrize(("verb", "words"), WORKS, ids=[name(words) for _, words in WORKS])
+def test_output_fits(printed, verb, words):
+    if OFFLINE[verb].data:
+        pytest.skip(f"prints {OFFLINE[verb].data}, as it is")
+    output = printed(words)
+    assert len(lines_of(output)) > 1
+    assert untidy(output) == []
+
+
+@pytest.mark.parametrize("verb", OFFLINE)
+def test_a_complaint_fits(excavator, folder, verb):
+    """What is wrong is told on as many lines as it takes."""
+    status, output = on_a_terminal([excavator, *OFFLINE[verb].fails], folder, complaints=True)
+    assert status in (1, 2) and output.strip()
+    assert untidy(output) == []
+
+
+@pytest.mark.parametrize("verb", [*LIVE, *OFFLINE])
+def test_a_wrong_option_is_told_in_lines_that_fit(excavator, tmp_path, verb):
+    status, output = on_a_terminal([excavator, *verb.split(), "--no-such-option"], tmp_path, complaints=True)
+    assert status == 2 and "--no-such-option" in output
+    assert untidy(output, of_clap=True) == []
+
+
+@pytest.mark.parametrize(("verb", "words"), WORKS, ids=[name(words) for _, words in WORKS])
+def test_output_begins_with_a_sentence(printed, verb, words):
+    """Before any table or list, a sentence says what came out."""
+    if OFFLINE[verb].data:
+        pytest.skip(f"prints {OFFLINE[verb].data}")
+    text = "\n".join(lines_of(printed(words)))
+    start = re.split(r"\n\n|\n[┌│ ]", text)[0]
+    assert SENTENCE.match(start), start
+
+
+@pytest.mark.parametrize(("verb", "words"), WORKS, ids=[name(words) for _, words in WORKS])
+def test_output_ends_with_the_next_command(excavator, printed, verb, words):
+    """The last thing on the screen is a command of this program, or there is a reason why there is none."""
+    text = "\n".join(lines_of(printed(words))).rstrip()
+    found = re.search(r"(?:^|\n)Next, [^\n]*(?:\n[^\n ][^\n]*)*:\n  excavator (\S+)(?: (\S+))?[^\n]*(?:\n      [^\n]*)*\Z", text)
+    if OFFLINE[verb].data or OFFLINE[verb].last:
+        assert not found, f"{verb} has a next command, and its recipe says that there is none"
+        return
+    assert found, text[-600:]
+    known = verbs(excavator)
+    assert found.group(1) in known or f"{found.group(1)} {found.group(2)}" in known

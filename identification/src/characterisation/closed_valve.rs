@@ -15,6 +15,8 @@ const CLOSED: f64 = 0.02;
 const LEAST_HOLD: f64 = 0.5;
 /// Holds that are needed: with less than two a common error of a hold cannot be seen.
 const NEEDED: usize = 3;
+/// Standard errors below zero at which a coefficient is no leakage: fewer than one in 700 of those with none is so far below.
+const OPPOSED: f64 = 3.0;
 /// Standard error over value above which a coefficient says nothing.
 const USELESS: f64 = 0.5;
 
@@ -144,6 +146,16 @@ fn chamber(
     // The scale of stored oil rests on the bulk modulus; the share of the balance that it decides is at most all of it.
     let scale = bulk_error / bulk_modulus;
     let covariance = covariance + values * values.transpose() * (scale * scale);
+    let opposed = (0..2).find(|&at| values[at] < -OPPOSED * covariance[(at, at)].sqrt());
+    if let Some(at) = opposed {
+        return Err(Refusal::OpposedLeakage {
+            side: if side == Side::Cap { "cap" } else { "rod" },
+            path: if at == 0 { "from the pump into" } else { "to tank out of" },
+            value: values[at],
+            error: covariance[(at, at)].sqrt(),
+        });
+    }
+    let values = at_least_zero(values, &covariance);
     let estimate = |at: usize| Estimate { value: values[at], error: covariance[(at, at)].sqrt() };
     let (from_pump, to_tank) = (estimate(0), estimate(1));
     let best = from_pump.relative_error().min(to_tank.relative_error());
@@ -168,6 +180,16 @@ fn chamber(
         },
         residual,
     })
+}
+
+/// Oil leaks from the higher pressure to the lower one. A coefficient that noise alone puts below zero is zero, and the other one is what
+/// the balances say with that.
+fn at_least_zero(values: Vector2<f64>, covariance: &Matrix2<f64>) -> Vector2<f64> {
+    let Some(at) = (0..2).find(|&at| values[at] < 0.0) else { return values };
+    let other = 1 - at;
+    let mut bounded = Vector2::zeros();
+    bounded[other] = (values[other] - covariance[(other, at)] / covariance[(at, at)] * values[at]).max(0.0);
+    bounded
 }
 
 /// Coefficients, covariance and root mean square residual; the covariance is the larger of what the scatter of single

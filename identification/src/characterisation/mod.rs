@@ -57,6 +57,19 @@ pub struct Characterisation {
     pub friction: Result<FrictionCurve, Refusal>,
 }
 
+impl Characterisation {
+    /// Results of recordings that suit every procedure: two for each edge, one for each of two chambers, and friction.
+    pub const MOST_RESULTS: usize = 2 * Edge::ALL.len() + 3;
+
+    /// Results: gains and dead zones of edges, leakages of chambers, friction.
+    pub fn results(&self) -> usize {
+        let edges = self.gains.iter().filter(|(_, gain)| gain.is_ok()).count()
+            + self.dead_zones.iter().filter(|(_, zone)| zone.is_ok()).count();
+        let leaks = self.leakage.iter().flat_map(|leakage| [&leakage.cap, &leakage.rod]).filter(|side| side.is_ok());
+        edges + leaks.count() + usize::from(self.friction.is_ok())
+    }
+}
+
 /// All procedures on every cylinder of `model`.
 pub fn characterise(model: &Model, recordings: &[&Recording]) -> Vec<Characterisation> {
     (0..model.machine.cylinders.len()).map(|cylinder| characterise_cylinder(model, cylinder, recordings)).collect()

@@ -2,6 +2,11 @@
 
 use excavator_model::display::pressure_text;
 
+/// "1 hold", "2 holds".
+fn counted(number: usize, one: &str, more: &str) -> String {
+    format!("{number} {}", if number == 1 { one } else { more })
+}
+
 /// A recording does not suit a procedure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Refusal {
@@ -34,7 +39,8 @@ pub enum Refusal {
     },
     /// The valve is hardly ever closed for long enough.
     #[error(
-        "{found} holds with closed valve (opening within {limit:.1e} m2) of at least {least:.2} s, the longest {longest:.2} s; {needed} are needed. Close the valve for {suggested:.0} s and longer, after moves in both directions"
+        "{} with closed valve (opening within {limit:.1e} m2) of at least {least:.2} s, the longest {longest:.2} s; {needed} are needed. Close the valve for {suggested:.0} s and longer, after moves in both directions",
+        counted(*found, "hold", "holds")
     )]
     TooFewHolds {
         /// Holds that are long enough.
@@ -66,6 +72,30 @@ pub enum Refusal {
         /// Standard error over value of the better coefficient, %.
         relative_error: f64,
     },
+    /// Oil would flow from the lower pressure to the higher one.
+    #[error(
+        "leakage {path} the {side} side comes out negative, {value:.1e} ± {:.1e} m3/(s Pa): something else moves oil while the valve is closed. Check the signs and the order of the pressures, and whether a load-holding valve or another consumer acts", 1.96 * error
+    )]
+    OpposedLeakage {
+        /// Which chamber.
+        side: &'static str,
+        /// Which way.
+        path: &'static str,
+        /// Coefficient, m³/(s Pa).
+        value: f64,
+        /// Its standard error, m³/(s Pa).
+        error: f64,
+    },
+    /// Flow through an edge begins before the opening and ends before it.
+    #[error(
+        "flow begins at {:.2} mm2 while the valve opens and ends at {:.2} mm2 while it closes: flow leads the opening. Check that pressures and openings share one clock", 1e6 * begins, 1e6 * ends
+    )]
+    FlowLeads {
+        /// Opening at which flow begins, m².
+        begins: f64,
+        /// Opening at which it ends, m².
+        ends: f64,
+    },
     /// The opening does not run slowly through the edge.
     #[error(
         "{found_opening} opening and {found_closing} closing runs of the valve from below {low:.0} % to above {high:.0} % of its largest opening, within {slowest:.0} s and not faster than in {fastest:.2} s; {needed} of each are needed. Run sines of 0.3 Hz or slow trapezoids to this side"
@@ -88,7 +118,8 @@ pub enum Refusal {
     },
     /// Not enough steady stretches at this edge.
     #[error(
-        "{found} steady stretches at {openings} different openings; {needed} at {needed_openings} are needed, each {least:.2} s at constant opening and speed after {settling:.2} s of settling ({longest:.2} s is the longest time at constant opening to this side). Run trapezoids of many amplitudes to this side"
+        "{} at {}; {needed} at {needed_openings} are needed, each {least:.2} s at constant opening and speed after {settling:.2} s of settling ({longest:.2} s is the longest time at constant opening to this side). Run trapezoids of many amplitudes to this side",
+        counted(*found, "steady stretch", "steady stretches"), counted(*openings, "opening", "different openings")
     )]
     TooFewSteadyStretches {
         /// Stretches found.
@@ -108,7 +139,8 @@ pub enum Refusal {
     },
     /// Not enough speeds.
     #[error(
-        "{found} steady stretches, {extending} extending and {retracting} retracting, at {speeds} different speeds of one direction at most, the fastest {ratio:.1} times the slowest; {needed} stretches, {needed_speeds} speeds and {needed_ratio:.0} times are needed{both}. Each takes {least:.2} s at constant speed after {settling:.2} s of settling"
+        "{}, {extending} extending and {retracting} retracting, at most {} in one direction, the fastest {ratio:.1} times the slowest; {needed} stretches, {needed_speeds} speeds and {needed_ratio:.0} times are needed{both}. Each takes {least:.2} s at constant speed after {settling:.2} s of settling",
+        counted(*found, "steady stretch", "steady stretches"), counted(*speeds, "speed", "different speeds")
     )]
     TooFewSpeeds {
         /// Stretches found.

@@ -1,6 +1,7 @@
 //! What the procedures of \[B\] found, on one page.
 
 use excavator_model::Model;
+use excavator_model::display::PressureUnit;
 use maud::{Markup, html};
 
 use super::characterisation_plots::{edge_plots, friction_plot, gain_plots, transient_plots};
@@ -13,16 +14,10 @@ use crate::characterisation::{
 /// A page with gains, dead zones, leakage and friction of every cylinder, with 95 % bands, and why what is not there could
 /// not be measured.
 pub fn characterisation_page(model: &Model, sources: &[String], found: &[Characterisation]) -> String {
-    let results = |one: &Characterisation| {
-        let edges = one.gains.iter().filter(|(_, gain)| gain.is_ok()).count()
-            + one.dead_zones.iter().filter(|(_, zone)| zone.is_ok()).count();
-        let leaks = one.leakage.iter().flat_map(|leakage| [&leakage.cap, &leakage.rod]).filter(|side| side.is_ok());
-        edges + leaks.count() + usize::from(one.friction.is_ok())
-    };
     let lead = html! {
         p.about { (model.machine.description) " · " (sources.join(", ")) }
         div.tiles {
-            (tile(&found.iter().map(results).sum::<usize>().to_string(), "results"))
+            (tile(&found.iter().map(Characterisation::results).sum::<usize>().to_string(), "results"))
             (tile(&sources.len().to_string(), if sources.len() == 1 { "recording" } else { "recordings" }))
         }
     };
@@ -47,7 +42,7 @@ pub fn characterisation_page(model: &Model, sources: &[String], found: &[Charact
 }
 
 fn refused(what: &str, refusal: &Refusal) -> Markup {
-    html! { p.empty { (what) ": not from these recordings. " (refusal) "." } }
+    html! { p.empty { (what) ": not from these recordings, because " (refusal) "." } }
 }
 
 fn gains(one: &Characterisation) -> Markup {
@@ -132,14 +127,21 @@ fn dead_zones(one: &Characterisation) -> Markup {
     }
 }
 
+/// A leakage coefficient as people say it, per pressure of this process's unit: displayed value of 1 m³/(s Pa), and the unit.
+pub fn leakage_unit() -> (f64, String) {
+    let pressure = PressureUnit::shown();
+    (60e6 / pressure.factor(), format!("ml/(min {})", pressure.symbol()))
+}
+
 fn leakage(one: &Characterisation) -> Markup {
+    let (_, unit) = leakage_unit();
     match &one.leakage {
         Err(refusal) => refused("Leakage", refusal),
         Ok(found) => html! {
             (transient_plots(found))
             div.wide { table.data {
                 thead { tr {
-                    th { "Chamber" } th.n { "From the pump, m³/(s Pa)" } th.n { "To tank, m³/(s Pa)" } th.n { "Time constant, s" } th.n { "Static gain" }
+                    th { "Chamber" } th.n { "From the pump, " (unit) } th.n { "To tank, " (unit) } th.n { "Time constant, s" } th.n { "Static gain" }
                 } }
                 tbody {
                     @if let Ok(side) = &found.cap { (leakage_row("cap side: C1, C2", side)) }
@@ -163,9 +165,13 @@ fn creep(found: &ClosedValve) -> f64 {
 
 fn leakage_row(name: &str, side: &ChamberLeakage) -> Markup {
     let text = |estimate: crate::characterisation::Estimate| with_margin(estimate.value, SIDES_95 * estimate.error);
+    let (factor, _) = leakage_unit();
+    let leak = |estimate: crate::characterisation::Estimate| {
+        with_margin(factor * estimate.value, SIDES_95 * factor * estimate.error)
+    };
     html! { tr {
         td { (name) }
-        td.n { (text(side.from_pump)) } td.n { (text(side.to_tank)) } td.n { (text(side.time_constant)) } td.n { (text(side.static_gain)) }
+        td.n { (leak(side.from_pump)) } td.n { (leak(side.to_tank)) } td.n { (text(side.time_constant)) } td.n { (text(side.static_gain)) }
     } }
 }
 

@@ -64,5 +64,17 @@ fn worst_sentence(signal: &SignalComparison) -> String {
     let when = signal.phases.iter().find(most).map_or_else(String::new, |share| {
         format!(", {} of it while the piston is {}", percent(share.of_error), share.phase)
     });
-    format!("The largest error is in {} (NMSE {}){when}.", signal.name, significant(signal.normalised_error, 3))
+    format!(
+        "The largest error is in {} (NMSE {}){when}.",
+        spoken(&signal.name),
+        significant(signal.normalised_error, 3)
+    )
+}
+
+/// "arm.cap_pressure" as a person says it: the cap pressure of arm.
+fn spoken(signal: &str) -> String {
+    match signal.split_once('.') {
+        Some((part, quantity)) => format!("the {} of {part}", quantity.replace('_', " ")),
+        None => format!("the {}", signal.replace('_', " ")),
+    }
 }

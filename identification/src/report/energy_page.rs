@@ -123,16 +123,20 @@ fn rates(model: &Model, trace: &CylinderTraces, number: usize, budget: usize) ->
         (lower.markup(&trace.time, &[line("valve opening", PARTS[1], false, &opening)]))
         @if let Some(phase) = &trace.phase {
             p.note {
-                "At " (significant(phase.frequency, 3)) " Hz, the analytical rate lags the experimental rate by " (degrees(phase.analytical))
-                ", and the numerical rate by " (degrees(phase.numerical)) ". The limit is 90°. The band is the 95 % interval from sensor noise. "
+                "At " (significant(phase.frequency, 3)) " Hz, the analytical rate " (against(phase.analytical))
+                " the experimental rate, and the numerical rate " (against(phase.numerical)) " it. The limit is 90°. The band is the 95 % interval from sensor noise. "
                 "Experimental: slope of the energy stored in the measured state. Analytical: supply and dissipation at the measured state. Numerical: the same at the simulated state."
             }
         }
     }
 }
 
-fn degrees(lag: Option<f64>) -> String {
-    lag.map_or("an unknown angle".to_string(), |lag| format!("{}°", decimal(lag)))
+/// How a rate stands against another: by how many degrees it lags or leads.
+fn against(lag: Option<f64>) -> String {
+    match lag {
+        None => "has no measured phase against".to_string(),
+        Some(lag) => format!("{} by {}°", if lag < 0.0 { "leads" } else { "lags" }, decimal(lag.abs())),
+    }
 }
 
 /// \[A\] Figure 11.

@@ -88,7 +88,11 @@ fn class_of(candidate: &Candidate<'_>) -> &'static str {
 }
 
 fn two_digits(value: f64) -> String {
-    if value.is_finite() { format!("{value:.2}").replace('-', "−") } else { super::numbers::NOTHING.to_string() }
+    match format!("{value:.2}").as_str() {
+        _ if !value.is_finite() => super::numbers::NOTHING.to_string(),
+        "-0.00" => "0.00".to_string(),
+        text => text.replace('-', "−"),
+    }
 }
 
 /// Where the residual is, as bars.

@@ -44,7 +44,7 @@ mod words;
 mod tests;
 
 pub use assets::{KINEMATICS, plotting};
-pub use characterisation_page::characterisation_page;
+pub use characterisation_page::{characterisation_page, leakage_unit};
 pub use comparison_page::{Beside, comparison_page};
 pub use comparison_text::{comparison_sentence, others_sentence};
 pub use diagnosis_page::diagnosis_page;

@@ -18,9 +18,6 @@ const MOST_TICKS: usize = 5;
 /// Width up to which a picture fits on a narrow screen, px.
 const NARROW: f64 = 360.0;
 
-/// Part of its width below which a larger picture is not shrunk: its text would be too small to read.
-const LEAST_SCALE: f64 = 0.82;
-
 /// A rectangle of data drawn into a rectangle of the page.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
@@ -123,9 +120,8 @@ impl Frame {
 /// The picture around what is drawn. A large one scrolls on a narrow screen.
 pub(super) fn picture(size: (f64, f64), description: &str, content: &Markup) -> Markup {
     let (width, height) = (short(size.0), short(size.1));
-    let least = (LEAST_SCALE * width).round();
     let drawing = html! {
-        svg.figure viewBox=(format!("0 0 {width} {height}")) width=(width) height=(height) style=(format!("--least:{least}px")) role="img" {
+        svg.figure viewBox=(format!("0 0 {width} {height}")) width=(width) height=(height) role="img" {
             title { (description) }
             (content)
         }

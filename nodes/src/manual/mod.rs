@@ -8,6 +8,7 @@ mod verbs_page;
 use clap::{Command, CommandFactory};
 
 use crate::cli::Arguments;
+use crate::output::filled;
 
 pub use man::write_man_pages;
 pub use parameters_page::parameters_page;
@@ -24,6 +25,37 @@ pub fn command() -> Command {
     })
 }
 
+/// The command line for a terminal of this many columns: no usage is wider.
+pub fn command_within(width: Option<usize>) -> Command {
+    let mut all = command();
+    if let Some(width) = width {
+        all.build();
+        break_usages(&mut all, width);
+    }
+    all
+}
+
+/// Breaks usages before options and choices; clap breaks all other text by itself.
+fn break_usages(command: &mut Command, width: usize) {
+    command.get_subcommands_mut().for_each(|verb| break_usages(verb, width));
+    let usage = command.render_usage().to_string();
+    if usage.chars().count() <= width || usage.contains('\n') {
+        return;
+    }
+    // An option stays with its value.
+    let usage = usage.trim_start_matches(USAGE).replace("|--", " | --").replace(" <", &format!("{TIE}<"));
+    let usage = usage.replace(&format!("{TIE}<-"), " <-");
+    let lines = filled(&usage, Some(width.saturating_sub(USAGE.len())));
+    let indented = lines.replace('\n', &format!("\n{}", " ".repeat(USAGE.len()))).replace(TIE, " ");
+    *command = std::mem::take(command).override_usage(indented);
+}
+
+/// What clap writes before a usage.
+const USAGE: &str = "Usage: ";
+
+/// Stands for a blank at which no line is broken.
+const TIE: char = '\u{1}';
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -31,6 +63,18 @@ mod tests {
     #[test]
     fn the_command_line_is_sound() {
         command().debug_assert();
+    }
+
+    #[test]
+    fn no_usage_is_wider_than_the_terminal() {
+        let mut all = command_within(Some(80));
+        for verb in all.get_subcommands_mut() {
+            let usage = verb.render_usage().to_string();
+            assert!(usage.lines().all(|line| line.chars().count() <= 80), "{usage}");
+        }
+        let design = all.find_subcommand_mut("design").map(|design| design.render_usage().to_string());
+        let design = design.unwrap_or_default();
+        assert!(design.lines().count() > 1 && design.contains("--model <MODEL>"), "{design}");
     }
 
     #[test]

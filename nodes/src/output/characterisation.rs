@@ -4,6 +4,7 @@ use comfy_table::{Cell, Table};
 use excavator_identification::characterisation::{
     ChamberLeakage, Characterisation, Edge, Estimate, FrictionCurve, Polynomial, Refusal,
 };
+use excavator_identification::report::leakage_unit;
 use serde_json::{Map, Value, json};
 
 use super::json::finite;
@@ -31,14 +32,15 @@ pub fn characterisation_table(found: &Characterisation) -> Table {
     }
     for (edge, zone) in &found.dead_zones {
         let Ok(zone) = zone else { continue };
-        row(format!("dead zone {}", edge.name()), zone.dead_zone, "m2");
-        row(format!("hysteresis {}", edge.name()), zone.hysteresis, "m2");
+        row(format!("dead zone {}", edge.name()), scaled(zone.dead_zone, 1e6), "mm2");
+        row(format!("hysteresis {}", edge.name()), scaled(zone.hysteresis, 1e6), "mm2");
     }
     if let Ok(leakage) = &found.leakage {
+        let (factor, unit) = leakage_unit();
         let sides = [("cap side", &leakage.cap), ("rod side", &leakage.rod)];
         for (name, side) in sides.iter().filter_map(|(name, side)| Some((name, side.as_ref().ok()?))) {
-            row(format!("leakage pump to {name}"), side.from_pump, "m3/(s Pa)");
-            row(format!("leakage {name} to tank"), side.to_tank, "m3/(s Pa)");
+            row(format!("leakage pump to {name}"), scaled(side.from_pump, factor), &unit);
+            row(format!("leakage {name} to tank"), scaled(side.to_tank, factor), &unit);
             row(format!("time constant {name}"), side.time_constant, "s");
             row(format!("static gain {name}"), side.static_gain, "-");
         }
@@ -81,6 +83,10 @@ pub fn refusals(found: &Characterisation) -> Vec<String> {
         tell("friction".into(), refusal);
     }
     told.into_iter().map(|(names, refusal)| format!("no {}: {refusal}", names.join(", "))).collect()
+}
+
+fn scaled(estimate: Estimate, factor: f64) -> Estimate {
+    Estimate { value: factor * estimate.value, error: factor * estimate.error }
 }
 
 fn estimate(estimate: Estimate) -> Value {

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use excavator_identification::characterisation::characterise;
+use excavator_identification::characterisation::{Characterisation, characterise};
 use excavator_identification::report::characterisation_page;
 use excavator_model::recording::Recording;
 
-use super::print;
+use super::{print, print_next};
 use crate::cli::CharacteriseArguments;
 use crate::error::VerbError;
-use crate::output::{characterisation_json, characterisation_table, refusals, write_json};
+use crate::output::{NextStep, characterisation_json, characterisation_table, refusals, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -23,10 +23,15 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
     let found = characterise(&model, &recordings);
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         for one in &found {
-            print(&format!("{} of {}", one.cylinder, model.machine.name));
+            let (results, all) = (one.results(), Characterisation::MOST_RESULTS);
+            print(&format!(
+                "These recordings show {results} of {all} results for {} of {}.",
+                one.cylinder, model.machine.name
+            ));
             print(&characterisation_table(one).to_string());
             refusals(one).iter().for_each(|line| print(line));
         }
+        print_next(&next(arguments));
     }
     if let Some(path) = &arguments.report {
         let sources: Vec<String> = recordings.iter().map(|recording| recording.source.clone()).collect();
@@ -36,4 +41,12 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
         write_json(path, &characterisation_json(&found), arguments.overwriting)?;
     }
     Ok(())
+}
+
+/// A fit takes the whole recordings, and not only what the procedures can use.
+fn next(arguments: &CharacteriseArguments) -> NextStep {
+    let step = NextStep::new("fit all parameters to the same recordings", "identify");
+    let step = step.same_model(&arguments.model).word("--bag");
+    let step = arguments.bags.iter().fold(step, |step, bag| step.word(bag.display().to_string()));
+    step.mapping(&arguments.mapping)
 }

@@ -20,9 +20,11 @@ pub fn run(files: &[PathBuf], model: &str) -> Result<(), VerbError> {
         model: model.to_string(),
         own: OwnEffects { catalogue: files.to_vec() },
     })?;
-    let (mut laws, mut wrong) = (0, 0);
+    let laws = model.catalogue.iter().filter(|physics| physics.formula().is_some()).count();
+    let what = if laws == 1 { "law is" } else { "laws are" };
+    print(&format!("{laws} {what} checked over the range of {}.\n", model.machine.name));
+    let mut wrong = 0;
     for physics in model.catalogue.iter().filter(|physics| physics.formula().is_some()) {
-        laws += 1;
         let sites = model.free_sites(physics);
         if sites.is_empty() {
             print(&format!("{}: {} has no place for it\n", physics.card().name, model.machine.name));
@@ -92,6 +94,7 @@ fn show(model: &Model, effect: &ModelEffect, checked: &Checked) {
 
 /// Prints what formulas may use.
 pub fn language() {
+    print("A formula may use what stands here.");
     print("acts_on");
     for row in &ROWS {
         print(&format!("  {:24} {:6} {}", row.name, row.unit, row.meaning));

@@ -54,6 +54,7 @@ fn place(acts_on: ActsOn) -> &'static str {
 fn list(all: &[AnyEffect]) {
     let longest =
         |text: fn(&Card) -> &str| all.iter().map(|effect| text(effect.card()).len() as u16).max().unwrap_or_default();
+    print(&format!("{} effects are in the catalogue; `excavator effects NAME` describes one.", all.len()));
     for (family, title) in [
         (Family::Base, "In the nominal model"),
         (Family::Recording, "Instruments and recording: estimated with every model, never a verdict"),
@@ -67,7 +68,6 @@ fn list(all: &[AnyEffect]) {
         let rows: Vec<[&str; 3]> = own.map(|card| [&*card.name, place(card.acts_on), &*card.summary]).collect();
         print(&effect_table(&rows, longest(|card| &card.name), longest(|card| place(card.acts_on))).trim_fmt());
     }
-    print("`excavator effects NAME` describes one.");
 }
 
 /// The parameters of an effect on the machine where it looks most usual.
@@ -79,7 +79,8 @@ fn parameters(effect: &dyn Effect) -> Result<&[ParameterCard], VerbError> {
 
 fn page(effect: &dyn Effect) -> Result<(), VerbError> {
     let card = effect.card();
-    print(&format!("{} ({})\n{}\n", card.name, place(card.acts_on), card.summary));
+    print(&format!("{}\n", card.summary));
+    print(&format!("{:12}{} ({})", "name", card.name, place(card.acts_on)));
     for (title, text) in [
         ("equation", &card.equation),
         ("source", &card.source),

@@ -81,10 +81,10 @@ fn import(arguments: &ImportArguments, bag: &Path) -> Result<(), VerbError> {
         recording.signals().into_iter().filter(|(_, values)| is_measured(values)).map(|(name, _)| name).collect();
     let pieces = if arguments.data.len() > 1 { format!("{} files, ", arguments.data.len()) } else { String::new() };
     print(&format!(
-        "{}: {pieces}{} samples, {:.2} s, {}",
-        bag.display(),
+        "Imported {pieces}{} samples in {:.2} s into {}. Signals: {}.",
         recording.len(),
         recording.duration(),
+        bag.display(),
         measured.join(", ")
     ));
     print_next(&NextStep::new("see what it is good for", "info").word(bag.display().to_string()));

@@ -36,8 +36,13 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     let bag = bag?;
     let signals = signals.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        if let Some(bag) = &bag {
-            show_bag(bag);
+        match (&bag, &signals) {
+            (Some(bag), _) => show_bag(bag),
+            (None, Ok((signals, _))) => {
+                let (path, samples) = (path.display(), signals.samples);
+                print(&format!("The table {path} has {samples} samples in {:.2} s.", signals.duration));
+            }
+            (None, Err(_)) => (),
         }
         match &signals {
             Ok((signals, report)) => {
@@ -47,10 +52,12 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
                     print(&format!("note: {note}"));
                 }
             }
-            Err(error) => print(&format!("signals: none read: {}{}", error, advice(error))),
+            Err(error) => print(&format!("signals: none read: {error}")),
         }
-        if let Ok((signals, _)) = &signals {
-            print_next(&next(arguments, signals));
+        match &signals {
+            Ok((signals, _)) => print_next(&next(arguments, signals)),
+            Err(error) if is_foreign(error) => print_next(&guess(path)),
+            Err(_) => (),
         }
     }
     if let Some(file) = &arguments.json.json {
@@ -69,7 +76,8 @@ fn table_without_map(arguments: &InfoArguments) -> Result<(), VerbError> {
     let info = TableInfo::read(&arguments.bag)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         let most = info.columns.iter().map(|column| column.rows).max().unwrap_or_default();
-        print(&format!("{}: {most} rows, {} columns", arguments.bag.display(), info.columns.len()));
+        let (path, columns) = (arguments.bag.display(), info.columns.len());
+        print(&format!("The table {path} has {most} rows, {columns} columns and no map."));
         let mut rows = table(&["column", "from", "to", "unit", "not measured"]);
         for column in &info.columns {
             rows.add_row([
@@ -84,8 +92,7 @@ fn table_without_map(arguments: &InfoArguments) -> Result<(), VerbError> {
         print(&format!("clock: {}", info.clock));
         info.notes.iter().for_each(|note| print(&format!("note: {note}")));
         print("signals: none; a map says which column is which signal");
-        let guess = NextStep::new("let the program propose a map", "import").word("--guess");
-        print_next(&guess.word(arguments.bag.display().to_string()).path("-o", Path::new("map.toml")));
+        print_next(&guess(&arguments.bag));
     }
     match &arguments.json.json {
         Some(file) => write_json(file, &serde_json::to_value(&info)?, arguments.overwriting),
@@ -106,14 +113,15 @@ fn share(missing: f64) -> String {
     if missing == 0.0 { String::new() } else { format!("{:.1} %", 100.0 * missing) }
 }
 
-/// What to do about a bag of other people.
-fn advice(error: &BagError) -> &'static str {
-    match error {
-        BagError::NoTopic { .. } | BagError::WrongType { .. } => {
-            "; `excavator import --guess` proposes a map of its topics"
-        }
-        _ => "",
-    }
+/// Whether a bag has other people's topics.
+fn is_foreign(error: &BagError) -> bool {
+    matches!(error, BagError::NoTopic { .. } | BagError::WrongType { .. })
+}
+
+/// Which signals are in other people's data, nobody has said.
+fn guess(data: &Path) -> NextStep {
+    let step = NextStep::new("let the program propose a map", "import").word("--guess");
+    step.word(data.display().to_string()).path("-o", Path::new("map.toml"))
 }
 
 fn to_json(bag: Option<&BagInfo>, signals: &Result<&SignalsInfo, &BagError>) -> Result<Value, VerbError> {
@@ -132,7 +140,7 @@ fn show_bag(bag: &BagInfo) {
     let start = bag.start.and_then(|start| i64::try_from(start / 1_000_000).ok());
     let start = start.and_then(|start| jiff::Timestamp::from_millisecond(start).ok());
     print(&format!(
-        "{}: {} messages in {:.2} s{}, {} in {}",
+        "The bag {} has {} messages in {:.2} s{}: {} in {}.",
         bag.path.display(),
         bag.message_count,
         bag.duration,

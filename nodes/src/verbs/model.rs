@@ -46,6 +46,12 @@ fn check(arguments: &ModelCheckArguments) -> Result<(), VerbError> {
         (0..model.machine.cylinders.len()).map(|cylinder| trial(&model, cylinder).ok().flatten()).collect();
     let (oscillations, odd) = (oscillations(&model), oddities(&model));
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
+        let name = &model.machine.name;
+        print(&match odd.len() {
+            0 => format!("No number is suspicious in {name}."),
+            1 => format!("One number is suspicious in {name}."),
+            more => format!("{more} numbers are suspicious in {name}."),
+        });
         describe(&model);
         for (cylinder, trial) in model.machine.cylinders.iter().zip(&trials) {
             print(&of_trial(cylinder, trial.as_ref()));
@@ -57,9 +63,6 @@ fn check(arguments: &ModelCheckArguments) -> Result<(), VerbError> {
             .iter()
             .for_each(|name| print(&format!("note: no [[effects]] entry uses formula {name}")));
         odd.iter().for_each(|oddity| print(&format!("suspicious: {oddity}")));
-        if odd.is_empty() {
-            print("No number is suspicious.");
-        }
     }
     if let Some(path) = &arguments.json.json {
         write_json(path, &to_json(&model, &trials, &oscillations, &odd), arguments.overwriting)?;

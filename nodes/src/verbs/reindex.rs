@@ -2,12 +2,14 @@
 
 use excavator_bags::{Reindexed, ReindexedFile, printable, reindex};
 
-use super::print;
+use super::{print, print_next};
 use crate::cli::ReindexArguments;
 use crate::error::VerbError;
+use crate::output::NextStep;
 
 pub fn run(arguments: &ReindexArguments) -> Result<(), VerbError> {
     let done = reindex(&arguments.bag, arguments.keep)?;
+    print(&summary(&done));
     for file in &done.files {
         print(&sentence(file));
         for damage in &file.damage {
@@ -17,7 +19,7 @@ pub fn run(arguments: &ReindexArguments) -> Result<(), VerbError> {
             print(&format!("  the original is now {}", printable(&original.display().to_string())));
         }
     }
-    print(&summary(&done));
+    print_next(&NextStep::new("see what is in it", "info").word(arguments.bag.display().to_string()));
     Ok(())
 }
 
@@ -37,7 +39,8 @@ fn summary(done: &Reindexed) -> String {
     let (messages, topics, files) = (done.messages(), done.topics, done.files.len());
     let metadata = done.metadata.as_ref().map_or(String::new(), |path| {
         let path = path.display().to_string();
-        format!("; {} written", printable(&path))
+        format!(" {} is written.", printable(&path))
     });
-    format!("{messages} messages in {topics} topics and {files} files, {lost} bytes lost{metadata}")
+    let files = if files == 1 { "one file".to_string() } else { format!("{files} files") };
+    format!("{messages} messages in {topics} topics and {files} can be read, and {lost} bytes are lost.{metadata}")
 }

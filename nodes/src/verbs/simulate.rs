@@ -30,11 +30,11 @@ pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
     let options = WriteOptions { replace: arguments.overwriting.force, ..WriteOptions::default() };
     write_recording(&arguments.output, &simulated, &Topics::default(), &options)?;
     print(&format!(
-        "{}: {} samples, {:.1} s of {}",
-        arguments.output.display(),
-        simulated.len(),
+        "Simulated {:.1} s of {}: {} samples in {}.",
         simulated.duration(),
-        model.machine.name
+        model.machine.name,
+        simulated.len(),
+        arguments.output.display()
     ));
     print_next(&NextStep::new("see what is in it", "info").word(arguments.output.display().to_string()));
     Ok(())

@@ -9,10 +9,10 @@ use excavator_model::machine::{CommandUnit, Drive};
 use excavator_model::{Model, ModelError};
 
 use super::new_model::number;
-use super::print;
+use super::{print, print_next};
 use crate::cli::ValveTestArguments;
 use crate::error::VerbError;
-use crate::output::number as in_digits;
+use crate::output::{NextStep, number as in_digits};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -50,11 +50,15 @@ pub fn run(arguments: &ValveTestArguments) -> Result<(), VerbError> {
     };
     let source = format!("static test {}", arguments.table.display());
     put(&mut model, place, &[positive, negative], full_command, &source)?;
+    print(&format!("{} readings of {} tell what the valve of {name} is.", readings.len(), arguments.table.display()));
     for (side, edge) in [("input above zero", positive), ("input below zero", negative)] {
         print(&of_edge(&name, side, &edge, unit));
     }
     outputs::write(&arguments.output, &to_text(&model)?, arguments.overwriting)?;
     print(&format!("written: {}", arguments.output.display()));
+    let output = arguments.output.display().to_string();
+    let step = NextStep::new("try the machine", "model").word("check").word(output);
+    print_next(&arguments.model.own.catalogue.iter().fold(step, |step, own| step.path("--catalogue", own)));
     Ok(())
 }
 

@@ -52,12 +52,13 @@
   wide.forEach((box) => watcher.observe(box));
   reach();
 
-  // Width of plots on A4, px.
+  // Width of plots on A4, px, and the part of their height with which two signals share a page.
   const PAPER = 680;
+  const LOW = 0.8;
   let folded = [];
   window.addEventListener("beforeprint", () => {
     scheme.print();
-    timePlots.fit(PAPER);
+    timePlots.fit(PAPER, LOW);
     folded = Array.from(document.querySelectorAll("details:not([open])"));
     folded.forEach((one) => { one.open = true; });
   });

@@ -152,8 +152,9 @@
       plot.setCursor({ left: plot.valToPos(time, "x"), top: plot.over.clientHeight / 2 }, true, false);
     });
   }
-  function fit(width) {
-    plots.forEach(({ plot, box, spec }) => plot.setSize({ width: width || box.clientWidth || 1000, height: spec.height }));
+  // Plots as wide as their boxes, or as wide and with such a part of their height as is asked for.
+  function fit(width, share = 1) {
+    plots.forEach(({ plot, box, spec }) => plot.setSize({ width: width || box.clientWidth || 1000, height: share * spec.height }));
   }
 
   document.querySelectorAll(".time-plot").forEach((box) => {

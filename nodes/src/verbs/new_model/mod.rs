@@ -9,9 +9,10 @@ use std::path::Path;
 
 use excavator_model::template::model_text;
 
-use super::print;
+use super::{print, print_next};
 use crate::cli::NewModelArguments;
 use crate::error::VerbError;
+use crate::output::NextStep;
 use crate::outputs::{self, Inputs};
 
 pub fn run(arguments: &NewModelArguments) -> Result<(), VerbError> {
@@ -32,11 +33,12 @@ pub fn run(arguments: &NewModelArguments) -> Result<(), VerbError> {
         Some(path) if path != Path::new("-") => {
             outputs::write(path, &text, arguments.overwriting)?;
             print(&format!(
-                "{0}: a model of {1} with starts for the parameters of cylinder \"{2}\"; `excavator model check {0}` tries it",
-                path.display(),
+                "A model of {} with starts for the parameters of cylinder \"{}\" is in {}.",
                 arguments.name,
-                arguments.part
+                arguments.part,
+                path.display()
             ));
+            print_next(&NextStep::new("try the machine", "model").word("check").word(path.display().to_string()));
             Ok(())
         }
         _ => outputs::standard_output(&text),
