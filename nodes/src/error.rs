@@ -23,7 +23,9 @@ use excavator_ros::RosError;
 #[allow(missing_docs)]
 pub enum VerbError {
     #[error(transparent)]
-    Bag(#[from] BagError),
+    Recording(#[from] BagError),
+    #[error(transparent)]
+    Bag(#[from] rosbag2::Error),
     #[error(transparent)]
     Document(#[from] DocumentError),
     #[error("--where \"{text}\": {error}")]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{ReadLimits, read_regular_text};
+use rosbag2::{ReadLimits, read_regular_text};
 use excavator_identification::refinement::Refinement;
 use excavator_identification::report::refinement_sentence;
 use excavator_model::Model;

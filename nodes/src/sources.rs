@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use excavator_bags::map::read_recording_or_mapped;
-use excavator_bags::{ReadLimits, ReadReport, read_regular_text};
+use excavator_bags::ReadReport;
+use rosbag2::{ReadLimits, read_regular_text};
 use excavator_identification::gate;
 use excavator_identification::selection::Chosen;
 use excavator_model::Model;

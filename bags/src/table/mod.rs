@@ -19,8 +19,9 @@ mod xlsx;
 use std::io::Cursor;
 use std::path::Path;
 
-use crate::regular_file::{open_regular, read_regular};
-use crate::{BagError, ReadLimits};
+use rosbag2::{ReadLimits, open_regular, read_regular};
+
+use crate::BagError;
 use fault::TableFault;
 
 pub use dates::parse_date;
@@ -86,7 +87,7 @@ impl Table {
     /// Reads a table.
     ///
     /// # Errors
-    /// [`BagError::Io`], [`BagError::NotARegularFile`], [`BagError::BadTable`], [`BagError::Limit`].
+    /// [`rosbag2::Error::Io`], [`rosbag2::Error::NotARegularFile`], [`BagError::BadTable`], [`rosbag2::Error::Limit`].
     pub fn read(path: &Path, format: &TableFormat) -> Result<Table, BagError> {
         Table::read_within(path, format, &ReadLimits::DEFAULT)
     }
@@ -110,8 +111,8 @@ impl Table {
             text::parse(&mut file, length, format, limits)
         };
         table.map_err(|fault| match fault {
-            TableFault::Limit(source) => BagError::Limit { path: path.to_path_buf(), source },
-            TableFault::Io(error) => BagError::io("read", path)(error),
+            TableFault::Limit(source) => rosbag2::Error::Limit { path: path.to_path_buf(), source }.into(),
+            TableFault::Io(error) => rosbag2::Error::io("read", path)(error).into(),
             TableFault::Text(reason) => BagError::BadTable { path: path.to_path_buf(), reason },
         })
     }

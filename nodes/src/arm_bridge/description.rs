@@ -3,8 +3,8 @@
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{ReadLimits, read_regular_text};
 use excavator_model::document::toml_fault;
+use rosbag2::{ReadLimits, read_regular_text};
 use serde::Deserialize;
 
 use super::signals::Treatment;

@@ -33,12 +33,12 @@ pub enum BagCompression {
     Zstd,
 }
 
-impl From<BagCompression> for excavator_bags::Compression {
+impl From<BagCompression> for rosbag2::Compression {
     fn from(compression: BagCompression) -> Self {
         match compression {
-            BagCompression::None => excavator_bags::Compression::None,
-            BagCompression::Lz4 => excavator_bags::Compression::Lz4,
-            BagCompression::Zstd => excavator_bags::Compression::Zstd,
+            BagCompression::None => rosbag2::Compression::None,
+            BagCompression::Lz4 => rosbag2::Compression::Lz4,
+            BagCompression::Zstd => rosbag2::Compression::Zstd,
         }
     }
 }

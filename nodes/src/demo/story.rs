@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
+use rosbag2::WriteOptions;
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, refine};
 use excavator_identification::report::{refinement_page, verdict_sentence};

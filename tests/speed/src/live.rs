@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use excavator_bags::RawMessages;
+use rosbag2::RawMessages;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 

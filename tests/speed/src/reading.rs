@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use excavator_bags::{RawMessages, Topics, read_recording};
+use excavator_bags::{Topics, read_recording};
+use rosbag2::RawMessages;
 
 use crate::clock::best_of;
 use crate::figures::{Group, Run};

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
+use rosbag2::WriteOptions;
 use excavator_blind::cases::{Case, Sort, Wish};
 use excavator_blind::scoring::make;
 use excavator_model::recording::Recording;
