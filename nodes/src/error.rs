@@ -7,7 +7,7 @@ use excavator_identification::design::DesignError;
 use excavator_identification::diagnosis::DiagnosisError;
 use excavator_identification::energy::EnergyError;
 use excavator_identification::fit::FitError;
-use excavator_identification::gate::GateError;
+use excavator_identification::checks::CheckError;
 use excavator_identification::refinement::RefineError;
 use excavator_identification::regression::RegressionError;
 use excavator_model::document::{DocumentError, TomlFault};
@@ -31,7 +31,7 @@ pub enum VerbError {
     #[error("--where \"{text}\": {error}")]
     Condition { text: String, error: Box<FormulaError> },
     #[error("{}", refusal(.0))]
-    Gate(#[from] GateError),
+    Check(#[from] CheckError),
     #[error(transparent)]
     Regression(#[from] RegressionError),
     #[error(transparent)]
@@ -142,7 +142,7 @@ impl VerbError {
 }
 
 /// A refusal, with how to overrule it.
-fn refusal(error: &GateError) -> String {
+fn refusal(error: &CheckError) -> String {
     let how = error.name().map(|name| format!("; if this is right, say --accept {name}"));
     format!("{error}{}", how.unwrap_or_default())
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use excavator_bags::map::read_recording_or_mapped;
 use excavator_bags::ReadReport;
 use rosbag2::{ReadLimits, read_regular_text};
-use excavator_identification::gate;
+use excavator_identification::checks;
 use excavator_identification::selection::Chosen;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse, parse_catalogue};
@@ -129,7 +129,7 @@ fn checked(
     for problem in report.problems() {
         remark(&format!("{}: {problem}", path.display()));
     }
-    for overruled in gate::check(model, &recording, &map.accept)? {
+    for overruled in checks::check(model, &recording, &map.accept)? {
         remark(&format!("accepted: {overruled}"));
     }
     let holes = input_holes(model, &recording);
@@ -143,7 +143,7 @@ fn checked(
         ));
         recording = recording.at(&holes.known);
     }
-    for found in gate::remarks(model, &recording) {
+    for found in checks::remarks(model, &recording) {
         remark(&format!("{}: {found}", path.display()));
     }
     let kept = map.conditions.iter().map(|text| (text, true));
@@ -231,7 +231,7 @@ pub fn fitted_and_judging(
     let identification = telling_recordings(&paths.identification, paths.extent, &paths.mapping, model)?;
     let validation = telling_recordings(&paths.validation, paths.extent, &paths.mapping, model)?;
     let (fitted, judging): (Vec<_>, Vec<_>) = (identification.iter().collect(), validation.iter().collect());
-    for shared in gate::shared_readings(&fitted, &judging) {
+    for shared in checks::shared_readings(&fitted, &judging) {
         remark(&shared.to_string());
     }
     Ok((identification, validation))
