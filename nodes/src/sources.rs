@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::map::read_recording_or_mapped;
 use excavator_bags::ReadReport;
-use rosbag2::{ReadLimits, read_regular_text};
+use excavator_bags::map::read_recording_or_mapped;
 use excavator_identification::checks;
 use excavator_identification::selection::Chosen;
 use excavator_model::Model;
@@ -14,7 +13,9 @@ use excavator_model::formula::Condition;
 use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::input_holes;
+#[cfg(feature = "live")]
 use excavator_ros::{Parameter, Value};
+use rosbag2::{ReadLimits, read_regular_text};
 
 use crate::cli::{self, Extent, Mapping};
 use crate::error::VerbError;
@@ -33,12 +34,14 @@ pub fn another_model(name: &str, first: &cli::ModelChoice) -> Result<Model, Verb
 }
 
 /// The parameter by which a node gets its model, where it does not take the one that is published.
+#[cfg(feature = "live")]
 pub fn model_parameter() -> Parameter {
     let meaning = "built-in model or model file (.toml); empty: the model on arm/model";
     Parameter::new("model", Value::String(String::new()), meaning).read_only()
 }
 
 /// The same with the effects of the program and of its own file.
+#[cfg(feature = "live")]
 pub fn model_named(name: &str) -> Result<Model, VerbError> {
     model_with(name, &Catalogue::built_in())
 }

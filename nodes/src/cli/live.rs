@@ -82,6 +82,7 @@ pub struct UpArguments {
     #[arg(long)]
     pub demo: bool,
     /// Show the dashboard at this port of this computer; 0: any that is free.
+    #[cfg(feature = "dashboard")]
     #[arg(long, num_args = 0..=1, default_missing_value = "8050", value_name = "PORT")]
     pub dashboard: Option<u16>,
     /// Bag to write [default: rosbag2_ and the time].
@@ -95,6 +96,7 @@ pub struct UpArguments {
     pub duration: Option<f64>,
 }
 
+#[cfg(feature = "dashboard")]
 #[derive(Debug, Args)]
 pub struct DashboardArguments {
     /// Port of the page; 0: any that is free.
