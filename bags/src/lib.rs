@@ -35,3 +35,7 @@ pub use own_messages::{own_definitions, topic_to_write};
 pub use reading::{Gap, ReadReport, StateTable, read_recording, read_recording_in_blocks};
 pub use topics::Topics;
 pub use write_recording::write_recording;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

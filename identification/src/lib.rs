@@ -19,3 +19,7 @@ pub mod search;
 pub mod selection;
 pub mod validation;
 pub mod value_marks;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

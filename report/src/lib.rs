@@ -55,3 +55,7 @@ pub use proposal_page::{proposal_page, result as law_result};
 pub use proposal_text::{guess_sentence, proposal_sentence, remarks as law_remarks};
 pub use refinement_page::refinement_page;
 pub use verdict_text::{NONE_TRIED, verdict_sentence};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -74,6 +74,8 @@ pub use qos::{Durability, History, Qos, Reliability};
 pub use raw_messages::{RawMessage, RawMessages, Topic};
 pub use regular_file::{open_regular, read_regular, read_regular_text};
 pub use reindex::{Reindexed, ReindexedFile, reindex};
-pub use writing::{
-    BagWriter, Compression, GoneFile, Staging, TopicId, TopicToWrite, WriteOptions, check_replaceable,
-};
+pub use writing::{BagWriter, Compression, GoneFile, Staging, TopicId, TopicToWrite, WriteOptions, check_replaceable};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -257,7 +257,7 @@ mod tests {
 
     use super::*;
 
-    const EXAMPLE: &[u8] = include_bytes!("../../../config/can/excavator.dbc");
+    const EXAMPLE: &[u8] = include_bytes!("../../tests/can/excavator.dbc");
     /// Random signals and frames with what PyPI's cantools reads from them; made by the script beside the file.
     const VECTORS: &str = include_str!("../../tests/can/vectors.json");
 
