@@ -11,7 +11,8 @@ mod support;
 use std::path::{Path, PathBuf};
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use excavator_bags::{RawMessages, Topics, WriteOptions, read_recording, write_recording};
+use excavator_bags::{Topics, read_recording, write_recording};
+use rosbag2::{RawMessages, WriteOptions};
 
 fn bare(file: &Path) -> usize {
     let bytes = std::fs::read(file).unwrap();

@@ -1,15 +1,12 @@
-//! Bags to recordings and back.
-//!
-//! A bag is a rosbag2 folder (`metadata.yaml` beside MCAP or SQLite3 files, also compressed with zstd) or a bare `.mcap`
-//! or `.db3` file. There are three levels:
+//! Bags and tables to recordings and back.
 //!
 //! - [`read_recording`] and [`write_recording`]: `/arm/state` and `/arm/orifice_command` as a
 //!   [`Recording`](excavator_model::recording::Recording), with a [`ReadReport`] of everything that was not perfect.
-//! - [`RawMessages`] and [`BagWriter`]: the bytes of any topic, for recorders, players and repairs.
-//! - [`info`]: what is in a bag, per topic.
+//! - [`map`]: other people's topics and columns as the signals of a recording; [`table`]: columns of numbers from files;
+//!   [`can`]: signals in CAN frames.
+//! - [`SignalsInfo`]: which signals there are, and what they are good for.
 //!
-//! Damage is read around, never hidden: a file that was cut is read to the cut, a chunk with a wrong checksum is left
-//! out, and each [`Damage`] says where, how many bytes, and up to which time the data is there.
+//! The bags themselves, their raw messages, damage and repair are those of the crate [`rosbag2`].
 //!
 //! ```no_run
 //! use excavator_bags::{Topics, read_recording};
@@ -23,41 +20,22 @@
 //! ```
 
 pub mod can;
-pub mod cdr;
-mod container;
-pub mod dynamic;
 mod error;
 mod info;
-mod limits;
-mod location;
 pub mod map;
-mod metadata;
-mod printable;
-mod qos;
-mod raw_messages;
+mod own_messages;
 mod reading;
-mod regular_file;
-mod reindex;
-mod storage;
 pub mod table;
 mod topics;
-mod writing;
-pub mod yaml;
+mod write_recording;
 
-pub use container::{Damage, DamageKind};
 pub use error::BagError;
-pub use info::{
-    BagInfo, ColumnInfo, EquationInfo, SignalInfo, SignalsInfo, SignalsTally, StampTiming, TableInfo, Timing,
-    TopicInfo, info,
-};
-pub use limits::{Limit, LimitError, ReadLimits};
-pub use printable::printable;
-pub use qos::{Durability, History, Qos, Reliability};
-pub use raw_messages::{RawMessage, RawMessages, Topic};
+pub use info::{ColumnInfo, EquationInfo, SignalInfo, SignalsInfo, SignalsTally, TableInfo};
+pub use own_messages::{own_definitions, topic_to_write};
 pub use reading::{Gap, ReadReport, StateTable, read_recording, read_recording_in_blocks};
-pub use regular_file::{open_regular, read_regular, read_regular_text};
-pub use reindex::{Reindexed, ReindexedFile, reindex};
 pub use topics::Topics;
-pub use writing::{
-    BagWriter, Compression, GoneFile, TopicId, TopicToWrite, WriteOptions, check_replaceable, write_recording,
-};
+pub use write_recording::write_recording;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

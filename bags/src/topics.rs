@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use excavator_msgs::{ArmState, Message};
+use rosbag2::RawMessages;
 
-use crate::{BagError, RawMessages};
+use crate::BagError;
 
 /// The topics' names in the namespace of their machine.
 const STATE: &str = "arm/state";

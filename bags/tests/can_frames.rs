@@ -7,8 +7,8 @@ mod support;
 use std::path::{Path, PathBuf};
 
 use excavator_bags::map::{TopicMap, guess, read_mapped};
-use excavator_bags::{BagWriter, TopicToWrite, WriteOptions, cdr};
 use excavator_msgs::Header;
+use rosbag2::{BagWriter, TopicToWrite, WriteOptions, cdr};
 use serde::Serialize;
 
 /// `can_msgs/msg/Frame`.

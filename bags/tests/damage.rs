@@ -6,9 +6,10 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{BagError, BagWriter, Compression, DamageKind, ReadReport, Topics, WriteOptions, read_recording};
+use excavator_bags::{BagError, ReadReport, Topics, read_recording};
 use excavator_model::recording::Recording;
 use mcap::records::ChunkIndex;
+use rosbag2::{BagWriter, Compression, DamageKind, WriteOptions};
 use support::{add, assert_equal, mcap_file, recording, state, write_small_chunks};
 
 const SAMPLES: usize = 3000;

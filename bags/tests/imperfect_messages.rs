@@ -6,9 +6,10 @@ mod support;
 
 use std::path::Path;
 
-use excavator_bags::{BagError, BagWriter, Gap, Qos, ReadReport, TopicToWrite, Topics, WriteOptions, read_recording};
+use excavator_bags::{BagError, Gap, ReadReport, Topics, read_recording, topic_to_write};
 use excavator_model::recording::Recording;
 use excavator_msgs::{ArmState, Message, OrificeCommand};
+use rosbag2::{BagWriter, Qos, WriteOptions};
 use support::{add, command, state};
 
 const STATE: &str = "/arm/state";
@@ -111,7 +112,7 @@ fn without_the_topic_of_states_those_that_exist_are_named() {
 #[test]
 fn a_topic_without_messages_is_an_error_of_its_own() {
     let error = error(|bag| {
-        bag.add_topic(&TopicToWrite::of::<ArmState>(STATE, Qos::reliable(1))).unwrap();
+        bag.add_topic(&topic_to_write::<ArmState>(STATE, Qos::reliable(1))).unwrap();
         add(bag, COMMAND, &command(1, &[], &[]));
     });
     assert!(matches!(&error, BagError::NoMessages { damage, .. } if damage.is_empty()), "{error}");
@@ -127,7 +128,7 @@ fn another_type_on_the_topic_is_an_error() {
 #[test]
 fn another_definition_of_the_type_is_an_error_that_names_the_field() {
     let error = error(|bag| {
-        let mut topic = TopicToWrite::of::<ArmState>(STATE, Qos::reliable(1));
+        let mut topic = topic_to_write::<ArmState>(STATE, Qos::reliable(1));
         topic.schema = topic.schema.replace("float64 pump_flow", "float32 pump_flow");
         let id = bag.add_topic(&topic).unwrap();
         bag.write(id, 0, 0, &[0, 1, 0, 0]).unwrap();
@@ -139,7 +140,7 @@ fn another_definition_of_the_type_is_an_error_that_names_the_field() {
 #[test]
 fn one_message_that_cannot_be_decoded_is_left_out_and_all_are_an_error() {
     let broken = |bag: &mut BagWriter| {
-        let id = bag.add_topic(&TopicToWrite::of::<ArmState>(STATE, Qos::reliable(1))).unwrap();
+        let id = bag.add_topic(&topic_to_write::<ArmState>(STATE, Qos::reliable(1))).unwrap();
         bag.write(id, 0, 0, &[0, 1, 0, 0, 1, 2, 3]).unwrap();
     };
     let (recording, report) = read(|bag| {
@@ -156,8 +157,8 @@ fn one_message_that_cannot_be_decoded_is_left_out_and_all_are_an_error() {
 fn a_topic_cannot_change_its_type_while_writing() {
     let (_folder, _path) = bag(|bag| {
         add(bag, STATE, &state(1, &[]));
-        let error = bag.add_topic(&TopicToWrite::of::<OrificeCommand>(STATE, Qos::reliable(1))).unwrap_err();
-        assert!(matches!(error, BagError::TopicConflict { .. }), "{error}");
+        let error = bag.add_topic(&topic_to_write::<OrificeCommand>(STATE, Qos::reliable(1))).unwrap_err();
+        assert!(matches!(error, rosbag2::Error::TopicConflict { .. }), "{error}");
     });
 }
 
@@ -165,20 +166,22 @@ fn a_topic_cannot_change_its_type_while_writing() {
 fn paths_that_are_no_bags_say_so() {
     let folder = tempfile::tempdir().unwrap();
     let read = |path: &Path| read_recording(path, &Topics::default()).unwrap_err();
-    assert!(matches!(read(&folder.path().join("nothing")), BagError::DoesNotExist { .. }));
-    assert!(matches!(read(folder.path()), BagError::NotABag { .. }));
+    assert!(matches!(read(&folder.path().join("nothing")), BagError::Bag(rosbag2::Error::DoesNotExist { .. })));
+    assert!(matches!(read(folder.path()), BagError::Bag(rosbag2::Error::NotABag { .. })));
     let text = folder.path().join("text.mcap");
     std::fs::write(&text, "not a bag").unwrap();
-    assert!(matches!(read(&text), BagError::NotABag { .. }));
+    assert!(matches!(read(&text), BagError::Bag(rosbag2::Error::NotABag { .. })));
     let database = folder.path().join("database.db3");
     std::fs::write(&database, "SQLite format 3\0").unwrap();
     let error = read(&database);
-    assert!(matches!(error, BagError::NotABag { .. }), "{error}");
+    assert!(matches!(error, BagError::Bag(rosbag2::Error::NotABag { .. })), "{error}");
     assert!(error.to_string().contains("is a SQLite3 file that cannot be read"), "{error}");
     let metadata = folder.path().join("metadata.yaml");
     std::fs::write(&metadata, "rosbag2_bagfile_information: [").unwrap();
-    assert!(matches!(read(folder.path()), BagError::BadMetadata { .. }));
+    assert!(matches!(read(folder.path()), BagError::Bag(rosbag2::Error::BadMetadata { .. })));
     let text = "rosbag2_bagfile_information:\n  storage_identifier: mcap\n  relative_file_paths: [gone.mcap]\n";
     std::fs::write(&metadata, text).unwrap();
-    assert!(matches!(read(folder.path()), BagError::MissingFile { file, .. } if file == "gone.mcap"));
+    assert!(
+        matches!(read(folder.path()), BagError::Bag(rosbag2::Error::MissingFile { file, .. }) if file == "gone.mcap")
+    );
 }

@@ -7,8 +7,9 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use excavator_bags::{Topics, WriteOptions, read_recording, write_recording};
+use excavator_bags::{Topics, read_recording, write_recording};
 use excavator_model::recording::Recording;
+use rosbag2::WriteOptions;
 use serde_json::Value;
 use support::{mcap_file, recording};
 

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use excavator_bags::map::{TopicMap, read_mapped};
-use excavator_bags::{RawMessages, Topics, read_recording};
+use excavator_bags::{Topics, read_recording};
+use rosbag2::RawMessages;
 use support::assert_equal;
 
 /// An interpreter that has rosbags, or `None` with a line that says what is skipped.

@@ -7,9 +7,10 @@ mod support;
 use std::path::PathBuf;
 
 use excavator_bags::map::{MapError, Origin, TopicMap, read_mapped, read_recording_or_mapped};
-use excavator_bags::{BagError, BagWriter, ReadReport, TopicToWrite, WriteOptions, cdr};
+use excavator_bags::{BagError, ReadReport};
 use excavator_model::recording::Recording;
 use excavator_msgs::Header;
+use rosbag2::{BagWriter, TopicToWrite, WriteOptions, cdr};
 use serde::Serialize;
 
 #[derive(Serialize)]

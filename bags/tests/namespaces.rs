@@ -6,7 +6,8 @@ mod support;
 use std::path::Path;
 
 use excavator_bags::map::{Origin, read_recording_or_mapped, read_signals};
-use excavator_bags::{BagError, BagWriter, Topics, WriteOptions};
+use excavator_bags::{BagError, Topics};
+use rosbag2::{BagWriter, WriteOptions};
 
 /// A bag in which each machine's arm has been somewhere else: the stamp of its only state.
 fn bag(folder: &Path, namespaces: &[&str]) -> std::path::PathBuf {

@@ -4,7 +4,8 @@
 
 mod support;
 
-use excavator_bags::{Compression, Topics, info, read_recording};
+use excavator_bags::{Topics, read_recording};
+use rosbag2::{Compression, info};
 use support::{Numbers, recording, write_small_chunks};
 
 /// Broken bags per compression.

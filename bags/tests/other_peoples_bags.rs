@@ -4,8 +4,9 @@
 
 mod support;
 
-use excavator_bags::{DamageKind, RawMessages, Topics, info, read_recording};
+use excavator_bags::{Topics, read_recording};
 use excavator_model::recording::is_measured;
+use rosbag2::{DamageKind, RawMessages, info};
 use support::shared;
 
 #[test]

@@ -4,8 +4,9 @@
 
 mod support;
 
-use excavator_bags::{BagError, Compression, Topics, WriteOptions, info, read_recording, write_recording};
+use excavator_bags::{BagError, Topics, read_recording, write_recording};
 use excavator_model::recording::Recording;
+use rosbag2::{Compression, WriteOptions, info};
 use support::{assert_equal, mcap_file, recording, write_small_chunks};
 
 #[test]
@@ -67,7 +68,7 @@ fn an_existing_folder_is_not_overwritten() {
     let bag = folder.path().join("bag");
     std::fs::create_dir(&bag).unwrap();
     let error = write_recording(&bag, &recording(3), &Topics::default(), &WriteOptions::default()).unwrap_err();
-    assert!(matches!(error, BagError::AlreadyExists { .. }), "{error}");
+    assert!(matches!(error, BagError::Bag(rosbag2::Error::AlreadyExists { .. })), "{error}");
     assert_eq!(std::fs::read_dir(&bag).unwrap().count(), 0);
 }
 

@@ -7,8 +7,9 @@ mod support;
 use std::path::{Path, PathBuf};
 
 use excavator_bags::map::{TopicMap, read_mapped};
-use excavator_bags::{Topics, WriteOptions, read_recording, write_recording};
+use excavator_bags::{Topics, read_recording, write_recording};
 use excavator_model::recording::{Recording, is_measured};
+use rosbag2::WriteOptions;
 use support::{assert_equal, shared};
 
 fn map(name: &str) -> TopicMap {

@@ -7,9 +7,10 @@ mod support;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use excavator_bags::BagError;
 use excavator_bags::map::{TopicMap, guess, read_mapped};
 use excavator_bags::table::{Table, TableFormat, Values, parse_date};
-use excavator_bags::{BagError, ReadLimits};
+use rosbag2::ReadLimits;
 use support::Numbers;
 use zip::write::SimpleFileOptions;
 
@@ -117,7 +118,7 @@ fn what_exhausts_is_refused_before_it_is_read() {
         let path = folder.path().join("bomb.xlsx");
         std::fs::write(&path, bytes).unwrap();
         let error = Table::read_within(&path, &TableFormat::default(), &ReadLimits::untrusted()).unwrap_err();
-        assert!(matches!(error, BagError::Limit { .. }), "{error}");
+        assert!(matches!(error, BagError::Bag(rosbag2::Error::Limit { .. })), "{error}");
         error.to_string()
     };
     // Text that packs to a thousandth, in a cell, and as texts of nothing.

@@ -6,10 +6,9 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{
-    BagError, DamageKind, RawMessages, ReadReport, Topics, WriteOptions, info, read_recording, write_recording,
-};
+use excavator_bags::{BagError, ReadReport, Topics, read_recording, write_recording};
 use excavator_model::recording::Recording;
+use rosbag2::{DamageKind, RawMessages, WriteOptions, info};
 use support::{Numbers, assert_equal, recording, to_sqlite};
 
 const SAMPLES: usize = 1500;

@@ -2,21 +2,24 @@
 //! which physical effect it is missing.
 //!
 //! Data flows one way: recording -> regression -> model -> simulation -> hypotheses -> scores -> verdict ->
-//! refinement -> report. This crate reads no files and knows no ROS.
+//! refinement. This crate reads no files and knows no ROS; the pages with its results are those of `excavator-report`.
 
 pub mod characterisation;
+pub mod checks;
 pub mod decision;
 pub mod design;
 pub mod diagnosis;
 pub mod energy;
 pub mod fit;
-pub mod gate;
 pub mod plausibility;
 pub mod proposal;
 pub mod refinement;
 pub mod regression;
-pub mod report;
 pub mod search;
 pub mod selection;
 pub mod validation;
 pub mod value_marks;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

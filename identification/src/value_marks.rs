@@ -56,7 +56,7 @@ pub fn remedies(model: &Model, fitted: &[usize]) -> Vec<(Vec<String>, Text)> {
 }
 
 /// [`value_mark`] of a parameter of one of the model's effects.
-pub(crate) fn mark(model: &Model, effect: &ModelEffect, parameter: &Parameter) -> Option<ValueMark> {
+pub fn mark(model: &Model, effect: &ModelEffect, parameter: &Parameter) -> Option<ValueMark> {
     let card = &parameter.card;
     // Nuisances are about zero as often as not, and nobody acts on them.
     if parameter.known || card.prior.is_some() {

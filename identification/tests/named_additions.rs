@@ -7,7 +7,6 @@ use common::{off_the_data_sheet, steered, with};
 use excavator_identification::decision::Kind;
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Reason, Refinement, refine};
-use excavator_identification::report::refinement_sentence;
 use excavator_identification::search::Addition;
 use excavator_model::Model;
 use excavator_model::document::built_in;
@@ -47,10 +46,8 @@ fn what_explains_nothing_is_told() {
     let machine = Machine::record(&with(&arm, "valve_dead_zone", Site::Cylinder(0), &[4e-6, 4e-6]));
     let wrong = machine.refined(&["external_contact"]);
     assert_eq!((wrong.verdict(), helps(&wrong)), (Kind::Unexplained, false));
-    assert!(refinement_sentence(&wrong).contains("That does not help"), "{}", refinement_sentence(&wrong));
     let right = machine.refined(&["valve_dead_zone"]);
     assert_eq!(right.verdict(), Kind::MissingEffect);
-    assert!(refinement_sentence(&right).contains("explains what the model was missing"));
 }
 
 #[test]
@@ -59,10 +56,9 @@ fn one_of_two_is_half_an_answer() {
     let dead_zone = with(&arm, "valve_dead_zone", Site::Cylinder(0), &[6e-6, 6e-6]);
     let machine = Machine::record(&with(&dead_zone, "asymmetric_friction", Site::Cylinder(0), &[400.0, 0.0]));
     let half = machine.refined(&["valve_dead_zone"]);
-    assert_eq!((half.verdict(), helps(&half)), (Kind::Unexplained, true), "{}", refinement_sentence(&half));
-    assert!(refinement_sentence(&half).contains("Something is still missing"));
+    assert_eq!((half.verdict(), helps(&half)), (Kind::Unexplained, true), "{:?}", half.reason);
     let both = machine.refined(&["valve_dead_zone", "asymmetric_friction"]);
-    assert_eq!(both.verdict(), Kind::MissingEffect, "{}", refinement_sentence(&both));
+    assert_eq!(both.verdict(), Kind::MissingEffect, "{:?}", both.reason);
 }
 
 #[test]
@@ -70,5 +66,4 @@ fn where_nothing_is_missing_nothing_is_explained() {
     let machine = Machine::record(&off_the_data_sheet("zx30u-arm", 0.1));
     let superfluous = machine.refined(&["stribeck_friction"]);
     assert_eq!((superfluous.verdict(), helps(&superfluous)), (Kind::Adequate, false));
-    assert!(refinement_sentence(&superfluous).contains("was already adequate without it"));
 }

@@ -27,3 +27,7 @@ mod urdf;
 pub use errors::{ModelError, SignalError};
 pub use model::{HistoryEntry, Model, ModelEffect, Parameter, addition_name, site_name, site_named};
 pub use urdf::urdf;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -30,3 +30,7 @@ pub use message::Message;
 pub use orifice_command::OrificeCommand;
 pub use time::Time;
 pub use type_description::{FieldDescription, FieldType, IndividualTypeDescription, TypeDescription};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

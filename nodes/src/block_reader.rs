@@ -28,7 +28,7 @@ pub fn read_beside<T>(
     work: impl FnOnce(Receiver<Recording>) -> T,
 ) -> Result<(ReadReport, T), BagError> {
     if !path.exists() {
-        return Err(BagError::DoesNotExist { path: path.to_path_buf() });
+        return Err(rosbag2::Error::DoesNotExist { path: path.to_path_buf() }.into());
     }
     let topics = Topics::in_bag(path, namespace)?;
     let (sender, blocks) = sync_channel(waiting);

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{ReadLimits, read_regular_text};
 use excavator_identification::design::Sensors;
 use excavator_model::{Model, ModelError};
+use rosbag2::{ReadLimits, read_regular_text};
 use serde::Deserialize;
 
 use crate::error::VerbError;

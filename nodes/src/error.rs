@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use excavator_bags::BagError;
+use excavator_identification::checks::CheckError;
 use excavator_identification::design::DesignError;
 use excavator_identification::diagnosis::DiagnosisError;
 use excavator_identification::energy::EnergyError;
 use excavator_identification::fit::FitError;
-use excavator_identification::gate::GateError;
 use excavator_identification::refinement::RefineError;
 use excavator_identification::regression::RegressionError;
 use excavator_model::document::{DocumentError, TomlFault};
@@ -16,6 +16,7 @@ use excavator_model::formula::FormulaError;
 use excavator_model::simulation::{ProfileError, RunError};
 use excavator_model::{ModelError, SignalError};
 
+#[cfg(feature = "live")]
 use excavator_ros::RosError;
 
 /// Why a verb failed.
@@ -23,13 +24,15 @@ use excavator_ros::RosError;
 #[allow(missing_docs)]
 pub enum VerbError {
     #[error(transparent)]
-    Bag(#[from] BagError),
+    Recording(#[from] BagError),
+    #[error(transparent)]
+    Bag(#[from] rosbag2::Error),
     #[error(transparent)]
     Document(#[from] DocumentError),
     #[error("--where \"{text}\": {error}")]
     Condition { text: String, error: Box<FormulaError> },
     #[error("{}", refusal(.0))]
-    Gate(#[from] GateError),
+    Check(#[from] CheckError),
     #[error(transparent)]
     Regression(#[from] RegressionError),
     #[error(transparent)]
@@ -50,6 +53,7 @@ pub enum VerbError {
     Model(#[from] ModelError),
     #[error(transparent)]
     UnknownEffect(#[from] UnknownEffect),
+    #[cfg(feature = "live")]
     #[error(transparent)]
     Ros(#[from] RosError),
     #[error(transparent)]
@@ -72,16 +76,20 @@ pub enum VerbError {
     ProfileWrite(String),
     #[error("profile: {machine} has no cylinder \"{cylinder}\"; it has {known}")]
     ProfileCylinder { machine: String, cylinder: String, known: String },
+    #[cfg(feature = "dashboard")]
     #[error("cannot offer a page at {address}: {source}; choose another --port or --host")]
     Listen { address: String, source: std::io::Error },
     #[error("cannot write JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error("{0}")]
     Terminal(#[from] std::io::Error),
+    #[cfg(feature = "live")]
     #[error("the {part} ended by itself: {status}")]
     PartEnded { part: &'static str, status: String },
+    #[cfg(feature = "live")]
     #[error("{0}")]
     Machine(String),
+    #[cfg(feature = "live")]
     #[error("the {part} did not end in good order: {status}; it has said why above")]
     PartFailed { part: &'static str, status: String },
     #[error("no bag is given; name at least one recording")]
@@ -104,6 +112,7 @@ pub enum VerbError {
     Link { path: PathBuf },
     #[error("{} appeared while this command ran and is not overwritten; the result is in {}", path.display(), kept.display())]
     Appeared { path: PathBuf, kept: PathBuf },
+    #[cfg(feature = "live")]
     #[error("files of the recording were deleted or moved while it was written: {files}; the rest is in {}", bag.display())]
     RecordingGone { bag: PathBuf, files: String },
     #[error("cannot print the result: {0}")]
@@ -133,14 +142,16 @@ impl VerbError {
 
     pub fn exit_code(&self) -> u8 {
         match self {
-            VerbError::Ros(RosError::Arguments(_)) | VerbError::Design(DesignError::Alone { .. }) => 2,
+            #[cfg(feature = "live")]
+            VerbError::Ros(RosError::Arguments(_)) => 2,
+            VerbError::Design(DesignError::Alone { .. }) => 2,
             _ => 1,
         }
     }
 }
 
 /// A refusal, with how to overrule it.
-fn refusal(error: &GateError) -> String {
+fn refusal(error: &CheckError) -> String {
     let how = error.name().map(|name| format!("; if this is right, say --accept {name}"));
     format!("{error}{}", how.unwrap_or_default())
 }

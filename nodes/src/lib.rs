@@ -1,33 +1,47 @@
 //! The program `excavator`: verbs over recordings, and the made-up machine of its demo.
 
+#[cfg(feature = "live")]
 mod arm_bridge;
+#[cfg(feature = "live")]
 mod arm_simulator;
+#[cfg(feature = "live")]
 mod arm_state;
 mod block_reader;
 mod cli;
+#[cfg(feature = "live")]
 mod command_gate;
+#[cfg(feature = "dashboard")]
 pub mod dashboard;
 pub mod demo;
 mod diagnosis_file;
+#[cfg(feature = "live")]
 mod energy_monitor;
 mod error;
+#[cfg(feature = "live")]
 mod identification_node;
+#[cfg(feature = "live")]
 mod joint_controller;
 mod long_recording;
 mod manual;
+mod missing;
 mod output;
 mod outputs;
+#[cfg(feature = "live")]
 mod play;
 mod profile_file;
+#[cfg(feature = "live")]
 mod record;
 mod recording_part;
+mod ros_words;
 mod saved_diagnosis;
 mod sources;
 mod terminal;
+#[cfg(feature = "live")]
 mod up;
 mod verbosity;
 mod verbs;
 
+#[cfg(feature = "can")]
 #[doc(hidden)]
 pub use arm_bridge::can::fuzzing;
 
@@ -39,13 +53,13 @@ use excavator_model::display::PressureUnit;
 /// Runs the command line of this process.
 pub fn run_command_line() -> ExitCode {
     let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
-    let outcome = excavator_ros::RosArguments::parse(&all).map_err(error::VerbError::from).and_then(|(ros, words)| {
+    let outcome = ros_words::RosWords::split(&all).and_then(|(ros, words)| {
         let parsed = manual::command_within(terminal::width()).try_get_matches_from(words);
         let arguments = parsed.and_then(|found| cli::Arguments::from_arg_matches(&found));
         let arguments = arguments.unwrap_or_else(|refusal| refuse(&refusal));
         arguments.verbosity().choose();
         PressureUnit::from(arguments.units).show();
-        verbs::run(arguments.verb, &ros, excavator_ros::ros_words(&all))?;
+        verbs::run(arguments.verb, &ros)?;
         verbs::all_was_printed()
     });
     match outcome {
@@ -59,6 +73,10 @@ pub fn run_command_line() -> ExitCode {
 
 /// Ends the program with what is wrong in the command line, or with its help. Names in it may be those of files of others.
 fn refuse(refusal: &clap::Error) -> ! {
+    if let Some(reason) = missing::reason(refusal) {
+        terminal::complain(&format!("excavator: {reason}"));
+        std::process::exit(refusal.exit_code());
+    }
     let is_odd = |word: std::ffi::OsString| terminal::printable(&word.to_string_lossy()) != word.to_string_lossy();
     if std::env::args_os().any(is_odd) {
         // Without colours, in which a name could hide.

@@ -28,7 +28,7 @@ const WAITING: usize = 1;
 /// recording itself).
 ///
 /// # Errors
-/// [`VerbError::Bag`] where there is no recording, [`VerbError::Part`], and [`VerbError::Regression`] where a long one lacks inputs.
+/// [`VerbError::Recording`] where there is no recording, [`VerbError::Part`], and [`VerbError::Regression`] where a long one lacks inputs.
 pub fn recording_or_stretches(
     path: &Path,
     origin: Origin<'_>,

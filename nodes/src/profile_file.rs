@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use excavator_bags::{ReadLimits, read_regular_text};
 use excavator_model::document::{TomlFault, toml_fault};
 use excavator_model::machine::Machine;
 use excavator_model::simulation::{Profile, Segment};
+use rosbag2::{ReadLimits, read_regular_text};
 use serde::{Deserialize, Serialize};
 
 use crate::error::VerbError;

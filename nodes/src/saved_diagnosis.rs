@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{ReadLimits, read_regular_text};
 use excavator_identification::refinement::Refinement;
-use excavator_identification::report::refinement_sentence;
 use excavator_model::Model;
 use excavator_model::document::{self, to_text};
 use excavator_model::effects::Catalogue;
+use excavator_report::refinement_sentence;
+use rosbag2::{ReadLimits, read_regular_text};
 use serde::{Deserialize, Serialize};
 
 use crate::cli::{Extent, Mapping, Recordings};

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use excavator_bags::ReadReport;
 use excavator_bags::map::read_recording_or_mapped;
-use excavator_bags::{ReadLimits, ReadReport, read_regular_text};
-use excavator_identification::gate;
+use excavator_identification::checks;
 use excavator_identification::selection::Chosen;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse, parse_catalogue};
@@ -13,7 +13,9 @@ use excavator_model::formula::Condition;
 use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::input_holes;
+#[cfg(feature = "live")]
 use excavator_ros::{Parameter, Value};
+use rosbag2::{ReadLimits, read_regular_text};
 
 use crate::cli::{self, Extent, Mapping};
 use crate::error::VerbError;
@@ -32,12 +34,14 @@ pub fn another_model(name: &str, first: &cli::ModelChoice) -> Result<Model, Verb
 }
 
 /// The parameter by which a node gets its model, where it does not take the one that is published.
+#[cfg(feature = "live")]
 pub fn model_parameter() -> Parameter {
     let meaning = "built-in model or model file (.toml); empty: the model on arm/model";
     Parameter::new("model", Value::String(String::new()), meaning).read_only()
 }
 
 /// The same with the effects of the program and of its own file.
+#[cfg(feature = "live")]
 pub fn model_named(name: &str) -> Result<Model, VerbError> {
     model_with(name, &Catalogue::built_in())
 }
@@ -128,7 +132,7 @@ fn checked(
     for problem in report.problems() {
         remark(&format!("{}: {problem}", path.display()));
     }
-    for overruled in gate::check(model, &recording, &map.accept)? {
+    for overruled in checks::check(model, &recording, &map.accept)? {
         remark(&format!("accepted: {overruled}"));
     }
     let holes = input_holes(model, &recording);
@@ -142,7 +146,7 @@ fn checked(
         ));
         recording = recording.at(&holes.known);
     }
-    for found in gate::remarks(model, &recording) {
+    for found in checks::remarks(model, &recording) {
         remark(&format!("{}: {found}", path.display()));
     }
     let kept = map.conditions.iter().map(|text| (text, true));
@@ -230,7 +234,7 @@ pub fn fitted_and_judging(
     let identification = telling_recordings(&paths.identification, paths.extent, &paths.mapping, model)?;
     let validation = telling_recordings(&paths.validation, paths.extent, &paths.mapping, model)?;
     let (fitted, judging): (Vec<_>, Vec<_>) = (identification.iter().collect(), validation.iter().collect());
-    for shared in gate::shared_readings(&fitted, &judging) {
+    for shared in checks::shared_readings(&fitted, &judging) {
         remark(&shared.to_string());
     }
     Ok((identification, validation))

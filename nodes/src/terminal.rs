@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 use std::io::IsTerminal;
 
-pub use excavator_bags::printable;
+pub use rosbag2::printable;
 
 use crate::output::filled;
 use crate::verbosity::Verbosity;

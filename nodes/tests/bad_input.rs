@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 
 use common::{assert_one_clear_line, complaint, excavator};
 use excavator::demo::{manoeuvre, plant, sealed::Sealed};
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
 use excavator_model::recording::Recording;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use rosbag2::WriteOptions;
 
 /// A short recording of an arm that swings, written as a bag after `change`.
 fn bag(folder: &Path, name: &str, change: impl Fn(&mut Recording)) -> PathBuf {

@@ -7,7 +7,7 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{assert_one_clear_line, complaint, excavator, json};
-use excavator_bags::{Topics, WriteOptions, read_recording, write_recording};
+use excavator_bags::{Topics, read_recording, write_recording};
 use excavator_identification::characterisation::{Characterisation, Estimate, Refusal, characterise};
 use excavator_model::Model;
 use excavator_model::document::{built_in, to_text};
@@ -16,6 +16,7 @@ use excavator_model::recording::Recording;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
+use rosbag2::WriteOptions;
 
 /// Noise of displacement, chamber pressures, spool and load cell: m, Pa, m², N.
 const NOISE: [f64; 4] = [2e-5, 2e3, 1e-7, 10.0];

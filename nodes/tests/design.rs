@@ -6,13 +6,14 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{assert_one_clear_line, complaint, excavator, json};
-use excavator_bags::{Topics, WriteOptions, read_recording, write_recording};
+use excavator_bags::{Topics, read_recording, write_recording};
 use excavator_model::Model;
 use excavator_model::document::{built_in, to_text};
 use excavator_model::recording::Recording;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
+use rosbag2::WriteOptions;
 use serde_json::Value;
 
 /// A machine with a hidden effect, and the parameters of the model's own up to 12 % off.

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use common::{assert_one_clear_line, excavator, json, shared};
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
 use excavator_identification::energy::{EnergySettings, analyse, missing_power};
 use excavator_model::document::built_in;
 use excavator_model::recording::Recording;
@@ -16,6 +16,7 @@ use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
+use rosbag2::WriteOptions;
 use serde_json::Value;
 
 /// Identifies the nominal model on a case's first recording, and gives the ledgers of both.

@@ -4,13 +4,14 @@
 mod common;
 
 use common::{assert_one_clear_line, excavator, json};
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
 use excavator_model::document::built_in;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
+use rosbag2::WriteOptions;
 
 /// Eight minutes of the arm at 500 Hz, which is two blocks of a reader, with noise: mostly small slow swings, now and then large ones.
 fn eight_minutes() -> Recording {

@@ -6,8 +6,9 @@ mod common;
 use std::path::Path;
 
 use common::{assert_one_clear_line, complaint, excavator};
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
 use excavator_model::recording::Recording;
+use rosbag2::WriteOptions;
 
 /// A swinging arm, and a second cylinder that rests, after `change`.
 fn swinging(change: impl Fn(&mut Recording)) -> Recording {

@@ -9,8 +9,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use excavator_bags::cdr;
 use ros2_client::{Gid, RmwRequestId};
+use rosbag2::cdr;
 use rustdds::bytes::Bytes;
 use rustdds::discovery::DiscoveredReaderData;
 use rustdds::no_key::{DataWriter, SimpleDataReader};

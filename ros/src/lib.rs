@@ -107,3 +107,7 @@ pub use security::Security;
 pub use services::{service_mapping, service_qos};
 pub use signals::{Signals, end_with_this_process};
 pub use supervisor::Supervisor;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

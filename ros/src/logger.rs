@@ -2,11 +2,11 @@
 
 use excavator_msgs::Time;
 use excavator_msgs::common::Log;
+use rosbag2::printable;
 
 use super::clock::system_nanoseconds;
 use super::log_file::LogFile;
 use super::{Level, Link, Outlet, RosArguments, RosError, TopicQos};
-use excavator_bags::printable;
 
 /// Log lines that late joiners of `/rosout` get, and for how long, s: as rcl has it.
 const ROSOUT: TopicQos = TopicQos { depth: 1000, lifespan: Some(10), ..TopicQos::latched() };

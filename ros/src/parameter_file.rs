@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use excavator_bags::yaml::{self, Yaml};
-use excavator_bags::{ReadLimits, read_regular_text};
+use rosbag2::yaml::{self, Yaml};
+use rosbag2::{ReadLimits, read_regular_text};
 
 use super::value_text::from_yaml;
 use super::{NodeIdentity, RosError, Value};

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::net::{IpAddr, SocketAddr};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use excavator_bags::cdr;
+use rosbag2::cdr;
 use rustdds::discovery::DiscoveredWriterData;
 use rustdds::policy::{Durability, History, Reliability};
 use rustdds::{QosPolicyBuilder, RTPSEntity};

@@ -12,10 +12,10 @@
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
-use excavator_bags::cdr;
 use ros2_client::Gid;
 use ros2_client::builtin_topics::ros_discovery;
 use ros2_client::entities_info::ParticipantEntitiesInfo;
+use rosbag2::cdr;
 use rustdds::bytes::Bytes;
 use rustdds::no_key::{DataWriter, SimpleDataReader};
 use rustdds::{DomainParticipant, RTPSEntity, Timestamp, TopicKind};

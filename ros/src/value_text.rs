@@ -1,7 +1,7 @@
 //! Parameter values as people write them: YAML.
 
-use excavator_bags::ReadLimits;
-use excavator_bags::yaml::{self, Yaml};
+use rosbag2::ReadLimits;
+use rosbag2::yaml::{self, Yaml};
 
 use super::Value;
 

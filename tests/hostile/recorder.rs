@@ -99,11 +99,11 @@ fn is_closed(path: &Path) -> bool {
 
 /// Messages of the state in a bag that is closed, described and in good order: as many as its metadata say.
 fn states_of_whole(bag: &Path) -> usize {
-    let report = excavator_bags::info(bag).unwrap();
+    let report = rosbag2::info(bag).unwrap();
     assert!(report.problems.is_empty(), "{:?}", report.problems);
     let states = messages::<ArmState>(bag, "/arm/state").len();
     let metadata = std::fs::read_to_string(bag.join("metadata.yaml")).unwrap();
-    let total = excavator_bags::RawMessages::open(bag).unwrap().filter(Result::is_ok).count();
+    let total = rosbag2::RawMessages::open(bag).unwrap().filter(Result::is_ok).count();
     assert!(metadata.contains(&format!("\n  message_count: {total}\n")), "{total} in {metadata}");
     states
 }
@@ -144,7 +144,7 @@ fn a_recorder_whose_file_is_deleted_says_so_and_goes_on() {
 
 /// What is in the messages of a bag that is being written, as text.
 fn text_of(bag: &Path) -> String {
-    let Ok(found) = excavator_bags::RawMessages::open(bag) else { return String::new() };
+    let Ok(found) = rosbag2::RawMessages::open(bag) else { return String::new() };
     found.flatten().map(|message| String::from_utf8_lossy(&message.data).into_owned()).collect()
 }
 

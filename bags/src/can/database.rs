@@ -3,11 +3,12 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use super::bits::{Bits, Coding};
-use crate::{ReadLimits, read_regular};
 use can_dbc::{
     ByteOrder, Dbc, Message, MessageId, MultiplexIndicator, NumericValue, Signal, SignalExtendedValueType, ValueType,
 };
+use rosbag2::{ReadLimits, read_regular};
+
+use super::bits::{Bits, Coding};
 
 /// Longest DBC file that is read, bytes: those of whole vehicles have one or two megabytes.
 const LONGEST: u64 = 16 << 20;
@@ -256,7 +257,7 @@ mod tests {
 
     use super::*;
 
-    const EXAMPLE: &[u8] = include_bytes!("../../../config/can/excavator.dbc");
+    const EXAMPLE: &[u8] = include_bytes!("../../tests/can/excavator.dbc");
     /// Random signals and frames with what PyPI's cantools reads from them; made by the script beside the file.
     const VECTORS: &str = include_str!("../../tests/can/vectors.json");
 

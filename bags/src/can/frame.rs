@@ -1,8 +1,9 @@
 //! CAN frames in the messages of a topic: `can_msgs/msg/Frame`, and others with the same fields.
 
+use rosbag2::cdr::CdrError;
+use rosbag2::dynamic::{Layout, PathError, Selector};
+
 use super::Identifier;
-use crate::cdr::CdrError;
-use crate::dynamic::{Layout, PathError, Selector};
 
 /// Bits of an identifier of 11 and of 29 bits: some drivers leave their flags above these.
 const STANDARD: u32 = 0x7ff;

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use excavator_model::document::toml_fault;
+use rosbag2::dynamic::FieldPath;
+use rosbag2::{ReadLimits, read_regular_text};
 use serde::{Deserialize, Serialize};
 
 use super::conversion::Conversion;
@@ -15,10 +17,8 @@ use super::leave_out::LeaveOut;
 use super::named::NamedColumn;
 use super::quantity::Quantity;
 use super::signal::SignalName;
-use crate::dynamic::FieldPath;
-use crate::regular_file::read_regular_text;
+use crate::BagError;
 use crate::table::TableFormat;
-use crate::{BagError, ReadLimits};
 
 /// Which field of which topic, or which column of which table, is which signal.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -267,7 +267,7 @@ impl TopicMap {
     /// The map in the file at `path`; the files of its definitions are looked for beside it.
     ///
     /// # Errors
-    /// [`BagError::Io`], [`BagError::Map`].
+    /// [`rosbag2::Error::Io`], [`BagError::Map`].
     pub fn read(path: &Path) -> Result<TopicMap, BagError> {
         let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
         let mut map: TopicMap =

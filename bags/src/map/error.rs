@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use excavator_model::document::TomlFault;
 use excavator_model::formula::FormulaError;
+use rosbag2::dynamic::{LayoutError, PathError};
 use thiserror::Error;
 
 use super::unit::Dimension;
-use crate::dynamic::{LayoutError, PathError};
 
 /// A topic map that cannot be used, or does not fit the data.
 #[derive(Debug, Error)]

@@ -3,16 +3,18 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use rosbag2::cdr::CdrError;
+use rosbag2::dynamic::{Definitions, FieldPath, Kind, Layout, Selector};
+use rosbag2::{RawMessage, RawMessages, Topic};
+
 use super::assemble::{Input, Samples};
 use super::conversion::Conversion;
 use super::document::Stamp;
 use super::error::MapError;
 use super::wanted::Wanted;
+use crate::BagError;
 use crate::can::{DataFrame, Database, FrameReader, Identifier, Place};
-use crate::cdr::CdrError;
-use crate::dynamic::{Definitions, FieldPath, Kind, Layout, Selector};
 use crate::reading::ReadReport;
-use crate::{BagError, RawMessage, RawMessages, Topic};
 
 /// One topic from which signals are taken.
 #[derive(Default)]
@@ -118,7 +120,7 @@ impl<'m> MappedTopic<'m> {
     fn prepare(&mut self, path: &Path, topic: &Arc<Topic>, extra: &Definitions) -> Result<(), BagError> {
         if topic.message_encoding != "cdr" {
             let (path, format) = (path.to_path_buf(), topic.message_encoding.clone());
-            return Err(BagError::UnsupportedSerialization { path, topic: self.name.to_string(), format });
+            return Err(rosbag2::Error::UnsupportedSerialization { path, topic: self.name.to_string(), format }.into());
         }
         let layout = Layout::of_topic(topic, extra)
             .map_err(|source| MapError::Layout { topic: self.name.to_string(), source })?;
@@ -232,7 +234,7 @@ struct StampReader {
 }
 
 impl StampReader {
-    fn prepare(&mut self, layout: &Layout) -> Result<(), crate::dynamic::PathError> {
+    fn prepare(&mut self, layout: &Layout) -> Result<(), rosbag2::dynamic::PathError> {
         self.selector = match &self.policy {
             Stamp::Log => None,
             Stamp::Auto if !has_header(layout) => None,

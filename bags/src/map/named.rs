@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use excavator_model::formula::ColumnFormula;
+use rosbag2::dynamic::FieldPath;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -11,7 +12,6 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::conversion::Conversion;
 use super::document::{ColumnName, Resampling, Stamp, check_place, check_times};
 use super::error::MapError;
-use crate::dynamic::FieldPath;
 
 /// What a name in a formula stands for: a column of a table, or a field of a topic.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]

@@ -87,7 +87,7 @@ fn add_joins(data: &Path, map: Option<&mut TopicMap>, joins: &[PathBuf]) -> Resu
     let Some(map) = map else { return Err(MapError::JoinWithoutMap { file: first.clone() }.into()) };
     let folder = data.parent().unwrap_or(Path::new("."));
     for join in joins {
-        let file = std::path::absolute(join).map_err(BagError::io("find", join))?;
+        let file = std::path::absolute(join).map_err(rosbag2::Error::io("find", join))?;
         let known = |other: &Join| std::path::absolute(folder.join(&other.file)).is_ok_and(|other| other == file);
         if !map.join.iter().any(known) {
             map.join.push(Join::of(&file));

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use excavator_model::recording::Recording;
+use rosbag2::RawMessages;
 
 use super::assemble::{Input, Samples, assemble, constants};
 use super::document::TopicMap;
@@ -12,13 +13,12 @@ use super::mapped_topic::MappedTopic;
 use super::table_clock::{Dating, EPOCH_SECONDS};
 use super::wanted::{Wanted, wanted};
 use crate::can::Database;
-use crate::dynamic::Definitions;
 use crate::reading::{ReadReport, TopicCounts, truncated_after};
-use crate::{BagError, RawMessages};
+use crate::{BagError, own_definitions};
 
 /// Reads the signals of a map from a bag. Also says whether its stamps are times of day.
 pub(super) fn read_bag(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport, Dating), BagError> {
-    let mut extra = Definitions::default();
+    let mut extra = own_definitions().clone();
     for file in &map.definitions {
         extra.add_file(file)?;
     }

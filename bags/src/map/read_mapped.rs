@@ -21,9 +21,9 @@ use crate::{BagError, Topics};
 /// that are missing at a time, are `NaN`. What was dropped, sorted, damaged or missing is in the report.
 ///
 /// # Errors
-/// [`BagError::Map`] when the map does not fit the data; all of [`RawMessages::open`](crate::RawMessages::open);
+/// [`BagError::Map`] when the map does not fit the data; all of [`RawMessages::open`](rosbag2::RawMessages::open);
 /// [`BagError::NoTopic`], [`BagError::NoMessages`], [`BagError::Undecodable`] for a mapped topic;
-/// [`BagError::BadTable`], [`BagError::BadDefinition`].
+/// [`BagError::BadTable`], [`rosbag2::Error::BadDefinition`].
 pub fn read_mapped(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport), BagError> {
     read_dated(path, map).map(|(recording, report, _)| (recording, report))
 }
@@ -84,7 +84,7 @@ const BLOCK: usize = 20_000;
 /// The map in the given file, else the one beside the data, if there is one.
 pub(super) fn map_of(data: &Path, map: Option<&Path>) -> Result<Option<TopicMap>, BagError> {
     if !data.exists() {
-        return Err(BagError::DoesNotExist { path: data.to_path_buf() });
+        return Err(rosbag2::Error::DoesNotExist { path: data.to_path_buf() }.into());
     }
     map.map(Path::to_path_buf).or_else(|| TopicMap::beside(data)).map(|map| TopicMap::read(&map)).transpose()
 }

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use excavator_msgs::OrificeCommand;
+use rosbag2::cdr::{self, CdrError};
 
 use super::content::Content;
 use super::same_shape::{Numbers, Shape};
-use crate::cdr::{self, CdrError};
 
 /// The shape of the last command.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@
 pub(super) const ENCAPSULATION: usize = 4;
 /// Encapsulation of plain little-endian CDR; options in the last two bytes.
 const LITTLE_ENDIAN: [u8; 2] = [0x00, 0x01];
-/// As in [`crate::cdr::decode`]: what is left over must be padding.
+/// As in [`rosbag2::cdr::decode`]: what is left over must be padding.
 const PADDING_LIMIT: usize = 7;
 
 /// The bytes after the encapsulation, from which alignment counts, and how many of them have been read.

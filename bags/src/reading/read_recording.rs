@@ -6,6 +6,8 @@ use std::sync::Arc;
 
 use excavator_model::recording::Recording;
 use excavator_msgs::{ArmState, Message, OrificeCommand};
+use rosbag2::cdr::CdrError;
+use rosbag2::{Damage, RawMessage, RawMessages, Topic};
 
 use super::command_decoder::CommandDecoder;
 use super::command_track::CommandTrack;
@@ -13,8 +15,7 @@ use super::report::ReadReport;
 use super::state_decoder::StateDecoder;
 use super::state_table::StateTable;
 use super::topic_check;
-use crate::cdr::CdrError;
-use crate::{BagError, Damage, RawMessage, RawMessages, Topic, Topics};
+use crate::{BagError, Topics};
 
 /// Reads the bag at `path` (a rosbag2 folder or a bare `.mcap` file) as a recording.
 ///
@@ -24,9 +25,9 @@ use crate::{BagError, Damage, RawMessage, RawMessages, Topic, Topics};
 ///
 /// # Errors
 /// All of [`RawMessages::open`]; [`BagError::NoTopic`] and [`BagError::NoMessages`] for the state topic;
-/// [`BagError::WrongType`], [`BagError::OtherDefinition`], [`BagError::UnsupportedSerialization`] for either topic;
-/// [`BagError::Undecodable`] when not one message of a topic can be decoded; [`BagError::Limit`] for a bag whose values need more
-/// memory than [`ReadLimits`](crate::ReadLimits) allow.
+/// [`BagError::WrongType`], [`BagError::OtherDefinition`], [`rosbag2::Error::UnsupportedSerialization`] for either topic;
+/// [`BagError::Undecodable`] when not one message of a topic can be decoded; [`rosbag2::Error::Limit`] for a bag whose values need more
+/// memory than [`ReadLimits`](rosbag2::ReadLimits) allow.
 pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadReport), BagError> {
     let mut recording = Recording::default();
     let report = read_recording_in_blocks(path, topics, usize::MAX, |whole| {

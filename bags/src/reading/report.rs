@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::{Damage, printable};
+use rosbag2::{Damage, printable};
 
 /// A pause in the state messages.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -107,7 +107,7 @@ impl ReadReport {
 
     /// Chunks left out because of a wrong checksum or broken content.
     pub fn bad_chunks(&self) -> usize {
-        self.damage.iter().filter(|damage| matches!(damage.kind, crate::DamageKind::BadChunk { .. })).count()
+        self.damage.iter().filter(|damage| matches!(damage.kind, rosbag2::DamageKind::BadChunk { .. })).count()
     }
 
     /// One line for people about each kind of imperfection; empty for a perfect bag.

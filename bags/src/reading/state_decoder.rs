@@ -8,10 +8,10 @@
 use std::ops::Range;
 
 use excavator_msgs::{ArmState, CylinderState, Header};
+use rosbag2::cdr::{self, CdrError};
 
 use super::content::Content;
 use super::same_shape::{Numbers, Shape};
-use crate::cdr::{self, CdrError};
 
 /// The last message that was not read in place, and its shape.
 #[derive(Debug)]

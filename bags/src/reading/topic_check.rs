@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use excavator_msgs::{Message, definitions, layout};
+use rosbag2::{Limit, ReadLimits, Topic};
 
-use crate::{BagError, Limit, ReadLimits, Topic};
+use crate::BagError;
 
 /// Checks type, serialization and definition of a topic before its first message is decoded.
 ///
@@ -18,7 +19,7 @@ pub(super) fn check<M: Message>(path: &Path, topic: &Topic) -> Result<(), BagErr
     }
     if topic.message_encoding != "cdr" {
         let format = topic.message_encoding.clone();
-        return Err(BagError::UnsupportedSerialization { path: path(), topic: name(), format });
+        return Err(rosbag2::Error::UnsupportedSerialization { path: path(), topic: name(), format }.into());
     }
     match difference(M::TYPE_NAME, topic) {
         Some(difference) => {

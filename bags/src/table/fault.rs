@@ -1,8 +1,7 @@
 //! Why a table cannot be read.
 
+use rosbag2::LimitError;
 use thiserror::Error;
-
-use crate::limits::LimitError;
 
 /// Why a table cannot be read.
 #[derive(Debug, Error)]

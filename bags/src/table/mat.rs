@@ -1,8 +1,9 @@
 //! MATLAB files of versions 4, 6 and 7 as tables: every real numeric vector is a column.
 
+use rosbag2::{Limit, LimitError, ReadLimits};
+
 use super::fault::TableFault;
 use super::{Column, Table, Values, mat4, mat5};
-use crate::limits::{Limit, LimitError, ReadLimits};
 
 /// A numeric variable.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,9 @@
 //! MATLAB version 4: a header of five integers, a name, the numbers (MAT-File Format, chapter 2).
 
+use rosbag2::ReadLimits;
+
 use super::fault::TableFault;
 use super::mat::{Budget, Number, Variable};
-use crate::limits::ReadLimits;
 
 const HEADER: usize = 20;
 /// No variable has a longer name; a longer one is no file of this format.

@@ -2,9 +2,10 @@
 
 use std::io::Read;
 
+use rosbag2::{LimitError, ReadLimits};
+
 use super::fault::TableFault;
 use super::mat::{Budget, Number, Variable};
-use crate::limits::{LimitError, ReadLimits};
 
 const HEADER: usize = 128;
 /// Structs within structs that are looked into.

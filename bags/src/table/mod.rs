@@ -4,23 +4,32 @@ mod cell;
 mod dates;
 mod fault;
 mod format;
+#[cfg(feature = "tables")]
 mod guard;
 mod heading;
+#[cfg(feature = "tables")]
 mod mat;
+#[cfg(feature = "tables")]
 mod mat4;
+#[cfg(feature = "tables")]
 mod mat5;
+#[cfg(feature = "tables")]
 mod parquet;
 mod preamble;
 mod sampling;
 mod text;
 mod text_lines;
+#[cfg(feature = "tables")]
 mod xlsx;
 
 use std::io::Cursor;
 use std::path::Path;
 
-use crate::regular_file::{open_regular, read_regular};
-use crate::{BagError, ReadLimits};
+#[cfg(feature = "tables")]
+use rosbag2::read_regular;
+use rosbag2::{ReadLimits, open_regular};
+
+use crate::BagError;
 use fault::TableFault;
 
 pub use dates::parse_date;
@@ -86,7 +95,8 @@ impl Table {
     /// Reads a table.
     ///
     /// # Errors
-    /// [`BagError::Io`], [`BagError::NotARegularFile`], [`BagError::BadTable`], [`BagError::Limit`].
+    /// [`rosbag2::Error::Io`], [`rosbag2::Error::NotARegularFile`], [`BagError::BadTable`], [`rosbag2::Error::Limit`];
+    /// [`rosbag2::Error::NeedsFeature`] for a spreadsheet, MATLAB or Parquet file without the feature `tables`.
     pub fn read(path: &Path, format: &TableFormat) -> Result<Table, BagError> {
         Table::read_within(path, format, &ReadLimits::DEFAULT)
     }
@@ -96,22 +106,16 @@ impl Table {
     /// # Errors
     /// As [`Table::read`].
     pub fn read_within(path: &Path, format: &TableFormat, limits: &ReadLimits) -> Result<Table, BagError> {
-        let has_extension = |wanted| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted));
-        // What is held as a whole beside its values may be as large as they.
-        let whole = || read_regular(path, limits.memory);
-        let table = if has_extension("mat") {
-            mat::parse(&whole()?, limits)
-        } else if has_extension("parquet") || has_extension("pq") {
-            parquet::parse(whole()?.into(), limits)
-        } else if has_extension("xlsx") || has_extension("xlsm") {
-            xlsx::parse(whole()?, format, limits)
-        } else {
-            let (mut file, length) = open_regular(path)?;
-            text::parse(&mut file, length, format, limits)
+        let table = match Packed::of(path) {
+            Some(packed) => packed.read(path, format, limits)?,
+            None => {
+                let (mut file, length) = open_regular(path)?;
+                text::parse(&mut file, length, format, limits)
+            }
         };
         table.map_err(|fault| match fault {
-            TableFault::Limit(source) => BagError::Limit { path: path.to_path_buf(), source },
-            TableFault::Io(error) => BagError::io("read", path)(error),
+            TableFault::Limit(source) => rosbag2::Error::Limit { path: path.to_path_buf(), source }.into(),
+            TableFault::Io(error) => rosbag2::Error::io("read", path)(error).into(),
             TableFault::Text(reason) => BagError::BadTable { path: path.to_path_buf(), reason },
         })
     }
@@ -129,6 +133,7 @@ impl Table {
     ///
     /// # Errors
     /// What is wrong, in one line.
+    #[cfg(feature = "tables")]
     pub fn from_mat(bytes: &[u8]) -> Result<Table, String> {
         mat::parse(bytes, &ReadLimits::DEFAULT).map_err(|fault| fault.to_string())
     }
@@ -137,6 +142,7 @@ impl Table {
     ///
     /// # Errors
     /// What is wrong, in one line.
+    #[cfg(feature = "tables")]
     pub fn from_xlsx(bytes: Vec<u8>, format: &TableFormat) -> Result<Table, String> {
         xlsx::parse(bytes, format, &ReadLimits::DEFAULT).map_err(|fault| fault.to_string())
     }
@@ -145,7 +151,55 @@ impl Table {
     ///
     /// # Errors
     /// What is wrong, in one line.
+    #[cfg(feature = "tables")]
     pub fn from_parquet(bytes: Vec<u8>) -> Result<Table, String> {
         parquet::parse(bytes.into(), &ReadLimits::DEFAULT).map_err(|fault| fault.to_string())
+    }
+}
+
+/// The kinds of tables that are no text, by the extensions of their files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Packed {
+    Mat,
+    Parquet,
+    Xlsx,
+}
+
+impl Packed {
+    /// What the extension says; `None` for text.
+    fn of(path: &Path) -> Option<Packed> {
+        let extension = path.extension()?.to_string_lossy().to_lowercase();
+        match extension.as_str() {
+            "mat" => Some(Packed::Mat),
+            "parquet" | "pq" => Some(Packed::Parquet),
+            "xlsx" | "xlsm" => Some(Packed::Xlsx),
+            _ => None,
+        }
+    }
+
+    #[cfg(feature = "tables")]
+    fn read(
+        self,
+        path: &Path,
+        format: &TableFormat,
+        limits: &ReadLimits,
+    ) -> Result<Result<Table, TableFault>, BagError> {
+        // What is held as a whole beside its values may be as large as they.
+        let whole = read_regular(path, limits.memory)?;
+        Ok(match self {
+            Packed::Mat => mat::parse(&whole, limits),
+            Packed::Parquet => parquet::parse(whole.into(), limits),
+            Packed::Xlsx => xlsx::parse(whole, format, limits),
+        })
+    }
+
+    #[cfg(not(feature = "tables"))]
+    fn read(self, path: &Path, _: &TableFormat, _: &ReadLimits) -> Result<Result<Table, TableFault>, BagError> {
+        let what = match self {
+            Packed::Mat => ".mat",
+            Packed::Parquet => ".parquet",
+            Packed::Xlsx => ".xlsx",
+        };
+        Err(rosbag2::Error::NeedsFeature { path: path.to_path_buf(), what, feature: "tables" }.into())
     }
 }

@@ -3,12 +3,13 @@
 use std::borrow::Cow;
 use std::io::{Read, Seek};
 
+use rosbag2::ReadLimits;
+
 use super::cell::{self, Cells, Suffix, is_missing, number};
 use super::dates::parse_date;
 use super::fault::TableFault;
 use super::text_lines::{self, Line, Rows};
 use super::{Column, Table, TableFormat, heading, preamble};
-use crate::limits::ReadLimits;
 use crate::map::Unit;
 
 /// Lines from which the dialect is told, and what is before the table.

@@ -4,8 +4,9 @@ use std::cell::Cell;
 use std::io::{BufRead, BufReader, Error, Read, Result, Seek, SeekFrom};
 use std::rc::Rc;
 
+use rosbag2::{Limit, LimitError};
+
 use super::fault::TableFault;
-use crate::limits::{Limit, LimitError};
 
 /// A line and where it begins.
 pub(super) struct Line {

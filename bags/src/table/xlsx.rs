@@ -4,10 +4,10 @@
 use std::io::{Cursor, Read};
 
 use calamine::{DataRef, ExcelDateTime, Reader, SheetType, Xlsx, XlsxError};
+use rosbag2::{Limit, ReadLimits};
 
 use super::fault::TableFault;
 use super::{Table, TableFormat, guard, text};
-use crate::limits::{Limit, ReadLimits};
 
 /// Bytes in memory for each byte of shared texts: an empty one is `<si/>`, and a `String`.
 const SHARED_TEXT_EXPANSION: u64 = 8;

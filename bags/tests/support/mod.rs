@@ -4,11 +4,10 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{
-    BagWriter, Compression, Qos, RawMessages, TopicToWrite, Topics, WriteOptions, cdr, write_recording,
-};
+use excavator_bags::{Topics, topic_to_write, write_recording};
 use excavator_model::recording::Recording;
 use excavator_msgs::{ArmState, CylinderState, Header, Message, OrificeCommand, Time};
+use rosbag2::{BagWriter, Compression, Qos, RawMessages, WriteOptions, cdr};
 
 /// Start of all made-up recordings, ns since the epoch.
 pub const START: i64 = 1_790_000_000_000_024_320;
@@ -100,7 +99,7 @@ pub fn header(nanoseconds: i64) -> Header {
 
 /// Writes one message at log time 0: what counts are the stamps.
 pub fn add<M: Message>(bag: &mut BagWriter, topic: &str, message: &M) {
-    let id = bag.add_topic(&TopicToWrite::of::<M>(topic, Qos::reliable(10))).unwrap();
+    let id = bag.add_topic(&topic_to_write::<M>(topic, Qos::reliable(10))).unwrap();
     bag.write(id, 0, 0, &cdr::encode(message).unwrap()).unwrap();
 }
 

@@ -28,8 +28,7 @@ pub use effort::Effort;
 pub(crate) use given::fit_given;
 pub(crate) use named::score_named;
 pub use pool::{Pool, Unpromising};
-#[cfg(test)]
-pub(crate) use scoring::{begin as scores_of_given, score};
+pub use scoring::{begin as scores_of_given, score};
 pub(crate) use scoring::{misfit, side};
 pub use search::search;
 pub use trial::Trial;

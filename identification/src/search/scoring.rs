@@ -12,8 +12,8 @@ use crate::decision::scores::{
 };
 use crate::fit::{Fit, nuisances_shown};
 
-/// Scores that hold the given model only.
-pub(crate) fn begin(given: &Trial, identification: &[&Recording], validation: &[&Recording]) -> Scores {
+/// Scores that hold the given model only, as it was tried without additions on recordings that it was fitted to and on others.
+pub fn begin(given: &Trial, identification: &[&Recording], validation: &[&Recording]) -> Scores {
     Scores {
         format: FORMAT,
         machine: given.fit.model.machine.name.clone(),
@@ -48,8 +48,9 @@ pub(crate) fn side(fit: &Fit, recordings: &[&Recording]) -> Side {
     }
 }
 
-/// The row of a trial; `given` is the model without additions.
-pub(crate) fn score(trial: &Trial, given: &Model, identification: &[&Recording]) -> Hypothesis {
+/// The row of scores of a trial: errors on both sides, and what is known of each added effect. `given` is the model without additions,
+/// `identification` the recordings that the trial was fitted to.
+pub fn score(trial: &Trial, given: &Model, identification: &[&Recording]) -> Hypothesis {
     let model = &trial.fit.model;
     let effect = |effect: &ModelEffect| EffectScore {
         effect: effect.name().to_string(),

@@ -6,12 +6,12 @@ use crate::effects::{Catalogue, nearest};
 
 /// Names and texts of the built-in models.
 pub static BUILT_IN: &[(&str, &str)] = &[
-    ("zx30u-arm", include_str!("../../../config/zx30u-arm.toml")),
-    ("zx30u", include_str!("../../../config/zx30u.toml")),
-    ("zx30u-bucket", include_str!("../../../config/zx30u-bucket.toml")),
-    ("zx30u-excavator", include_str!("../../../config/zx30u-excavator.toml")),
-    ("servo-bench", include_str!("../../../config/servo-bench.toml")),
-    ("emps", include_str!("../../../config/emps.toml")),
+    ("zx30u-arm", include_str!("machines/zx30u-arm.toml")),
+    ("zx30u", include_str!("machines/zx30u.toml")),
+    ("zx30u-bucket", include_str!("machines/zx30u-bucket.toml")),
+    ("zx30u-excavator", include_str!("machines/zx30u-excavator.toml")),
+    ("servo-bench", include_str!("machines/servo-bench.toml")),
+    ("emps", include_str!("machines/emps.toml")),
 ];
 
 /// The built-in model of this name.

@@ -3,8 +3,8 @@
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{ReadLimits, read_regular_text};
 use excavator_model::document::toml_fault;
+use rosbag2::{ReadLimits, read_regular_text};
 use serde::Deserialize;
 
 use super::signals::Treatment;
@@ -172,6 +172,7 @@ impl NumberKind {
 /// Frames of one CAN bus.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "can"), expect(dead_code, reason = "checked, and then refused"))]
 pub(super) struct Can {
     /// DBC file, seen from the description.
     pub dbc: PathBuf,
@@ -201,6 +202,7 @@ pub(super) enum LogPace {
 
 /// One signal of a CAN bus.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
+#[cfg_attr(not(feature = "can"), expect(dead_code, reason = "checked, and then refused"))]
 pub(super) struct CanSignal {
     /// Name of the message in the DBC file.
     pub message: String,

@@ -46,11 +46,16 @@
 //! Signals are `CYLINDER.` with `joint_angle`, `displacement`, `velocity`, `cap_pressure`, `rod_pressure`,
 //! `orifice_area` or `rod_force`, and `pump_pressure`, `tank_pressure`, `pump_flow`, `oil_temperature`.
 
+#[cfg(feature = "can")]
 pub mod can;
+#[cfg(feature = "can")]
 mod can_source;
 mod datagram;
 mod description;
+mod frame_counts;
 mod limits;
+#[cfg(not(feature = "can"))]
+mod no_can;
 mod node;
 mod publisher;
 mod sequence;

@@ -7,8 +7,11 @@ use std::time::Duration;
 
 use excavator_msgs::common::{FluidPressure, JointState};
 
+#[cfg(feature = "can")]
 use super::can_source::CanSource;
 use super::description::{Description, JointField, TopicKind, TopicSource};
+#[cfg(not(feature = "can"))]
+use super::no_can::CanSource;
 use super::publisher::{Publisher, Refused, lock};
 use super::signals::Signals;
 use super::udp_source::UdpSource;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use excavator_msgs::common::JointState;
 use excavator_msgs::{ArmState, Time};
 
-use super::can::Counts;
+use super::frame_counts::Counts;
 use super::signals::{Fault, Signals};
 use crate::arm_state::joint_state;
 use excavator_ros::{Diagnostics, Health, Lifecycle, Outlet, Pace, PublishError, RosClock};

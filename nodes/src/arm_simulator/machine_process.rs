@@ -11,8 +11,8 @@ use std::os::unix::net::UnixStream;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use excavator_bags::cdr;
 use excavator_msgs::ArmState;
+use rosbag2::cdr;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 

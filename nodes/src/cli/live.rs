@@ -33,12 +33,12 @@ pub enum BagCompression {
     Zstd,
 }
 
-impl From<BagCompression> for excavator_bags::Compression {
+impl From<BagCompression> for rosbag2::Compression {
     fn from(compression: BagCompression) -> Self {
         match compression {
-            BagCompression::None => excavator_bags::Compression::None,
-            BagCompression::Lz4 => excavator_bags::Compression::Lz4,
-            BagCompression::Zstd => excavator_bags::Compression::Zstd,
+            BagCompression::None => rosbag2::Compression::None,
+            BagCompression::Lz4 => rosbag2::Compression::Lz4,
+            BagCompression::Zstd => rosbag2::Compression::Zstd,
         }
     }
 }
@@ -82,6 +82,7 @@ pub struct UpArguments {
     #[arg(long)]
     pub demo: bool,
     /// Show the dashboard at this port of this computer; 0: any that is free.
+    #[cfg(feature = "dashboard")]
     #[arg(long, num_args = 0..=1, default_missing_value = "8050", value_name = "PORT")]
     pub dashboard: Option<u16>,
     /// Bag to write [default: rosbag2_ and the time].
@@ -95,6 +96,7 @@ pub struct UpArguments {
     pub duration: Option<f64>,
 }
 
+#[cfg(feature = "dashboard")]
 #[derive(Debug, Args)]
 pub struct DashboardArguments {
     /// Port of the page; 0: any that is free.

@@ -1,5 +1,6 @@
 //! The command line.
 
+#[cfg(feature = "live")]
 mod live;
 mod new_model;
 mod numbers;
@@ -11,6 +12,7 @@ use excavator_model::display::PressureUnit;
 
 use crate::verbosity::Verbosity;
 
+#[cfg(feature = "live")]
 pub use live::*;
 pub use new_model::*;
 pub use offline::*;
@@ -102,14 +104,19 @@ pub enum Verb {
     /// Make a bag whose recorder was killed readable for ros2 bag and other readers.
     Reindex(ReindexArguments),
     /// Record topics into a bag.
+    #[cfg(feature = "live")]
     Record(RecordArguments),
     /// Play a bag.
+    #[cfg(feature = "live")]
     Play(PlayArguments),
     /// Simulator, energy monitor and recorder in one command.
+    #[cfg(feature = "live")]
     Up(UpArguments),
     /// A page with state, energies, ledger and alarms of the live topics as moving plots.
+    #[cfg(feature = "dashboard")]
     Dashboard(DashboardArguments),
     /// A live ROS 2 node.
+    #[cfg(feature = "live")]
     #[command(subcommand)]
     Node(NodeVerb),
     /// Print the completions of a shell, for its start-up file.
@@ -121,6 +128,7 @@ pub enum Verb {
     #[command(subcommand, hide = true)]
     Manual(ManualVerb),
     /// The simulated machine of an arm simulator, which starts it.
+    #[cfg(feature = "live")]
     #[command(hide = true)]
     Machine,
 }
@@ -137,5 +145,6 @@ pub enum ManualVerb {
     /// Print the page of the verbs, in Markdown.
     Verbs,
     /// Print the page of the nodes' parameters, in Markdown.
+    #[cfg(feature = "live")]
     Parameters,
 }

@@ -4,6 +4,7 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, |value| value > 0.0, "a positive number")
 }
 
+#[cfg(feature = "live")]
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     number(text, |value| value >= 0.0, "zero or a positive number")
 }

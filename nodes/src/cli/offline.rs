@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand, ValueEnum};
 use excavator_bags::map::Origin;
-use excavator_identification::gate::OVERRULABLE;
+use excavator_identification::checks::OVERRULABLE;
 
 use super::numbers::{positive, profile_duration, stroke_margin};
 use super::{NewModelArguments, ValveTestArguments};

@@ -1,6 +1,6 @@
 //! The page, with everything in it.
 
-use excavator_identification::report::{KINEMATICS, plotting};
+use excavator_report::{KINEMATICS, plotting};
 
 const FRAME: &str = include_str!("assets/dashboard.html");
 const STYLE: &str = include_str!("assets/dashboard.css");

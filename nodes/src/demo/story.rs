@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, refine};
-use excavator_identification::report::{refinement_page, verdict_sentence};
 use excavator_model::document::{built_in, to_text};
 use excavator_model::recording::Recording;
+use excavator_report::{refinement_page, verdict_sentence};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use rosbag2::WriteOptions;
 
 use super::sealed::Sealed;
 use super::{manoeuvre, plant};

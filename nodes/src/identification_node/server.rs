@@ -3,7 +3,6 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use excavator_bags::cdr;
 use excavator_msgs::Time;
 use ros2_client::action::{
     ActionServer, ActionServerQosPolicies, CancelGoalResponse, GetResultResponse, GoalStatusEnum, SendGoalResponse,
@@ -11,6 +10,7 @@ use ros2_client::action::{
 use ros2_client::action_msgs::{CancelGoalResponseEnum, GoalStatus, GoalStatusArray};
 use ros2_client::qos::{Durability, History, QosProfile, Reliability, WhenFull};
 use ros2_client::{ActionTypeName, Name};
+use rosbag2::cdr;
 
 use super::desk::Desk;
 use super::goals::CancelAnswer;

@@ -164,7 +164,7 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
 fn recording(name: &str, library: &Library, wanted: &Model) -> Result<Recording, Ended> {
     let path = library.bag(name)?;
     sources::telling_recording(&path, Extent::default(), &Mapping::default(), wanted).map_err(|error| match error {
-        VerbError::Bag(error) => {
+        VerbError::Recording(_) | VerbError::Bag(_) => {
             tell_operator(&error.to_string());
             Ended::Unusable(Unusable::NotARecording(printable(name, QUOTED)))
         }

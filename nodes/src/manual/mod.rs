@@ -1,7 +1,9 @@
 //! The program described by itself: its command line with the parameters of the nodes, and the pages made of it.
 
 mod man;
+#[cfg(feature = "live")]
 mod parameters;
+#[cfg(feature = "live")]
 mod parameters_page;
 mod verbs_page;
 
@@ -11,18 +13,22 @@ use crate::cli::Arguments;
 use crate::output::filled;
 
 pub use man::write_man_pages;
+#[cfg(feature = "live")]
 pub use parameters_page::parameters_page;
 pub use verbs_page::verbs_page;
 
 /// The command line. The help of each node lists its parameters.
 pub fn command() -> Command {
-    Arguments::command().mut_subcommand("node", |node| {
+    let all = Arguments::command();
+    #[cfg(feature = "live")]
+    let all = all.mut_subcommand("node", |node| {
         let kinds: Vec<String> = node.get_subcommands().map(|kind| kind.get_name().to_string()).collect();
         kinds.into_iter().fold(node, |node, kind| {
             let help = parameters::help(&kind);
             node.mut_subcommand(kind, |kind| kind.after_help(help))
         })
-    })
+    });
+    all
 }
 
 /// The command line for a terminal of this many columns: no usage is wider.
@@ -78,6 +84,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg(feature = "live")]
     fn the_help_of_a_node_lists_its_parameters() {
         let mut all = command();
         let node = all.find_subcommand_mut("node").and_then(|node| node.find_subcommand_mut("arm-simulator"));

@@ -4,7 +4,7 @@ use comfy_table::{Cell, Table};
 use excavator_identification::characterisation::{
     ChamberLeakage, Characterisation, Edge, Estimate, FrictionCurve, Polynomial, Refusal,
 };
-use excavator_identification::report::leakage_unit;
+use excavator_report::leakage_unit;
 use serde_json::{Map, Value, json};
 
 use super::json::finite;

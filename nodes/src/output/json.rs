@@ -5,13 +5,13 @@ use std::path::Path;
 use excavator_identification::diagnosis::{Candidate, Diagnosis, Share, Unexplained};
 use excavator_identification::fit::nuisances_shown;
 use excavator_identification::regression::ConditionNumber;
-use excavator_identification::report::Beside;
 use excavator_identification::validation::{
     Baseline, Baselines, Comparison, Correlation, PhaseShare, SignalComparison,
 };
 use excavator_identification::value_marks::value_mark;
 use excavator_model::effects::Site;
 use excavator_model::{Model, site_name};
+use excavator_report::Beside;
 use serde_json::{Map, Value, json};
 
 use crate::cli::Overwriting;

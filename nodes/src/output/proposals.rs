@@ -2,8 +2,8 @@
 
 use comfy_table::{Cell, ContentArrangement, Table};
 use excavator_identification::proposal::{Finding, Guess, Proposal, ProposalVerdict, Proposals};
-use excavator_identification::report::{law_remarks, law_result};
 use excavator_model::Model;
+use excavator_report::{law_remarks, law_result};
 use serde_json::{Value, json};
 
 use super::json::{diagnosis_json, finite, unexplained_json};

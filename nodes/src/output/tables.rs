@@ -4,10 +4,10 @@ use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
 use comfy_table::{Attribute, Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 use excavator_identification::diagnosis::Diagnosis;
 use excavator_identification::refinement::Refinement;
-use excavator_identification::report::Beside;
 use excavator_identification::validation::{Baselines, Comparison, Correlation, MotionPhase, SignalComparison};
 use excavator_identification::value_marks::{remedies, value_mark};
 use excavator_model::Model;
+use excavator_report::Beside;
 
 /// A number with four significant digits, short.
 pub fn number(value: f64) -> String {

@@ -82,7 +82,7 @@ pub fn check_bag(path: &Path, inputs: &Inputs, overwriting: Overwriting) -> Resu
     if !overwriting.force {
         return Err(VerbError::Exists { path: path.to_path_buf() });
     }
-    excavator_bags::check_replaceable(path)?;
+    rosbag2::check_replaceable(path)?;
     try_folder(folder_of(path)).map_err(VerbError::write(path))
 }
 

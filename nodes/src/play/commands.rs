@@ -44,8 +44,8 @@ pub(super) fn left_out_line(topics: &BTreeSet<String>) -> String {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use excavator_bags::cdr;
     use excavator_msgs::OrificeCommand;
+    use rosbag2::cdr;
 
     #[test]
     fn commands_are_stamped_anew_and_nothing_else_is() {

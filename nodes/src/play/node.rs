@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use excavator_bags::{Durability, History, Qos, RawMessage, RawMessages, Reliability, Topic};
 use excavator_msgs::Time;
 use excavator_msgs::common::Clock;
+use rosbag2::{Durability, History, Qos, RawMessage, RawMessages, Reliability, Topic};
 use rustdds::policy;
 use rustdds::{QosPolicies, QosPolicyBuilder};
 

@@ -6,7 +6,7 @@ use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use excavator_bags::{BagWriter, WriteOptions};
+use rosbag2::{BagWriter, WriteOptions};
 
 use super::offered::{OfferedTopic, asked, topics};
 use super::selection::Selection;

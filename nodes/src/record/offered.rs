@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use excavator_bags::{Durability, History, Qos, Reliability};
+use rosbag2::{Durability, History, Qos, Reliability};
 use rustdds::discovery::DiscoveredWriterData;
 use rustdds::policy;
 use rustdds::{QosPolicies, QosPolicyBuilder};

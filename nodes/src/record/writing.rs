@@ -3,8 +3,8 @@
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use excavator_bags::{BagError, BagWriter, GoneFile, Qos, TopicId, TopicToWrite};
 use excavator_msgs::definitions;
+use rosbag2::{BagWriter, GoneFile, Qos, TopicId, TopicToWrite};
 
 use super::losses::Losses;
 use excavator_ros::raw::RawSample;
@@ -59,7 +59,7 @@ pub(super) fn write(
     orders: &Receiver<Order>,
     dropped: impl Fn() -> u64,
     on_gone: impl Fn(&GoneFile),
-) -> Result<Outcome, BagError> {
+) -> Result<Outcome, rosbag2::Error> {
     let mut topics: Vec<Recorded> = Vec::new();
     let written = take_orders(&mut bag, orders, &mut topics, on_gone);
     for topic in &mut topics {
@@ -89,7 +89,7 @@ fn take_orders(
     orders: &Receiver<Order>,
     topics: &mut Vec<Recorded>,
     on_gone: impl Fn(&GoneFile),
-) -> Result<(), BagError> {
+) -> Result<(), rosbag2::Error> {
     let mut flushed = Instant::now();
     loop {
         match orders.recv_timeout(FLUSH.saturating_sub(flushed.elapsed())) {

@@ -22,6 +22,7 @@ use excavator_ros::{Environment, RosArguments, Signals, end_with_this_process};
 /// Time that a part has to end in good order.
 const FAREWELL: Duration = Duration::from_secs(10);
 /// Of the dashboard, where none was asked for by its number: two machines on one computer do not collide.
+#[cfg(feature = "dashboard")]
 const ANY_PORT: u16 = 0;
 /// Model of a simulator that is told none.
 const DEFAULT_MODEL: &str = "zx30u-arm";
@@ -83,6 +84,7 @@ fn start(
         spawn("recorder", words)?;
     }
     // With a motion there is something to see.
+    #[cfg(feature = "dashboard")]
     if let Some(port) = arguments.dashboard.or(motion.map(|_| ANY_PORT)) {
         spawn("dashboard", vec!["dashboard".into(), "--port".into(), port.to_string().into()])?;
     }

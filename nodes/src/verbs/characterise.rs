@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use excavator_identification::characterisation::{Characterisation, characterise};
-use excavator_identification::report::characterisation_page;
 use excavator_model::recording::Recording;
+use excavator_report::characterisation_page;
 
 use super::{print, print_next};
 use crate::cli::CharacteriseArguments;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use excavator_identification::report::{Beside, comparison_page, comparison_sentence, others_sentence};
 use excavator_identification::validation::{Baselines, compare, compare_runs};
+use excavator_report::{Beside, comparison_page, comparison_sentence, others_sentence};
 
 use super::{print, print_detail, print_next};
 use crate::cli::CompareArguments;

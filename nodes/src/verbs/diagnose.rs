@@ -7,11 +7,11 @@ use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose
 use excavator_identification::energy::{EnergySettings, MissingPower, analyse, missing_power};
 use excavator_identification::proposal::{Guess, first_guess};
 use excavator_identification::refinement::refinement_of;
-use excavator_identification::report::{NONE_TRIED, diagnosis_page, guess_sentence, verdict_sentence};
 use excavator_identification::search::Unpromising;
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
+use excavator_report::{NONE_TRIED, diagnosis_page, guess_sentence, verdict_sentence};
 
 use super::{print, print_detail, print_next};
 use crate::cli::DiagnoseArguments;

@@ -7,9 +7,9 @@ use std::sync::mpsc::Receiver;
 use excavator_identification::energy::{
     Analyser, EnergyAnalysis, EnergyError, EnergySettings, MissingPower, analyse, missing_power,
 };
-use excavator_identification::report::energy_page;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
+use excavator_report::energy_page;
 
 use super::{print, print_next};
 use crate::block_reader::{needs_a_map, read_beside};

@@ -8,11 +8,11 @@ use excavator_identification::fit::{
 use excavator_identification::regression::{
     ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form,
 };
-use excavator_identification::report::implausible_sentence;
 use excavator_model::document::to_text;
 use excavator_model::effects::Family;
 use excavator_model::recording::Recording;
 use excavator_model::{HistoryEntry, Model, Parameter};
+use excavator_report::implausible_sentence;
 use serde_json::{Value, json};
 
 use super::{print, print_detail, print_next};

@@ -6,8 +6,9 @@ use std::io::IsTerminal;
 use std::path::Path;
 
 use excavator_bags::map::{Confidence, Guess, Hints, guess, read_pieces};
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
 use excavator_model::recording::is_measured;
+use rosbag2::WriteOptions;
 
 use super::{print, print_next};
 use crate::cli::{ImportArguments, ModelChoice, OwnEffects};

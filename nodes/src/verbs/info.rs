@@ -5,9 +5,10 @@ use std::path::Path;
 use comfy_table::Cell;
 use excavator_bags::map::{Origin, TopicMap, read_signals};
 use excavator_bags::table::Table as DataTable;
-use excavator_bags::{BagError, BagInfo, ColumnInfo, SignalsInfo, TableInfo, Timing, info};
+use excavator_bags::{BagError, ColumnInfo, SignalsInfo, TableInfo, own_definitions};
 use excavator_model::display::PressureUnit;
 use excavator_model::document::{BUILT_IN, built_in};
+use rosbag2::{BagInfo, Timing, info_with};
 use serde_json::{Value, json};
 
 use super::{print, print_next};
@@ -30,7 +31,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     // Two ways through the bag, one for each processor.
     let (bag, signals) = std::thread::scope(|scope| {
         let signals = scope.spawn(|| read_signals(path, origin));
-        let bag = (!DataTable::is_table(path)).then(|| info(path)).transpose();
+        let bag = (!DataTable::is_table(path)).then(|| info_with(path, own_definitions())).transpose();
         (bag, signals.join())
     });
     let bag = bag?;

@@ -5,7 +5,9 @@ use clap_complete::Shell;
 use super::{print, print_text};
 use crate::cli::ManualVerb;
 use crate::error::VerbError;
-use crate::manual::{command, parameters_page, verbs_page, write_man_pages};
+#[cfg(feature = "live")]
+use crate::manual::parameters_page;
+use crate::manual::{command, verbs_page, write_man_pages};
 
 /// Prints the completions of a shell.
 pub fn completions(shell: Shell) {
@@ -22,6 +24,7 @@ pub fn run(which: &ManualVerb) -> Result<(), VerbError> {
             print(&format!("{} man pages are in {}.", written.len(), to.display()));
         }
         ManualVerb::Verbs => print_text(verbs_page().trim_end()),
+        #[cfg(feature = "live")]
         ManualVerb::Parameters => print_text(parameters_page().trim_end()),
     }
     Ok(())

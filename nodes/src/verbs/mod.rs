@@ -13,6 +13,7 @@ mod info;
 mod manual;
 mod model;
 mod new_model;
+#[cfg(feature = "live")]
 mod node;
 mod propose;
 mod refine;
@@ -26,12 +27,13 @@ use std::sync::OnceLock;
 use crate::cli::Verb;
 use crate::error::VerbError;
 use crate::output::{NextStep, filled};
+use crate::ros_words::RosWords;
 use crate::terminal;
 use crate::verbosity::Verbosity;
-use excavator_ros::RosArguments;
 
-/// Runs a verb; `ros` is what stood after --ros-args, `ros_words` the same in words.
-pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), VerbError> {
+/// Runs a verb; `ros` is what stood after --ros-args.
+#[cfg_attr(not(feature = "live"), expect(unused_variables, reason = "only nodes take it"))]
+pub fn run(verb: Verb, ros: &RosWords) -> Result<(), VerbError> {
     match verb {
         Verb::Demo(arguments) => crate::demo::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
@@ -46,12 +48,18 @@ pub fn run(verb: Verb, ros: &RosArguments, ros_words: &[String]) -> Result<(), V
         Verb::Effects(arguments) => effects::run(&arguments),
         Verb::Model(which) => model::run(&which),
         Verb::Info(arguments) => info::run(&arguments),
-        Verb::Record(arguments) => crate::record::run(&arguments, ros),
-        Verb::Play(arguments) => crate::play::run(&arguments, ros),
-        Verb::Up(arguments) => crate::up::run(&arguments, ros_words),
-        Verb::Dashboard(arguments) => crate::dashboard::run(&arguments, ros),
-        Verb::Node(which) => node::run(which, ros),
+        #[cfg(feature = "live")]
+        Verb::Record(arguments) => crate::record::run(&arguments, &ros.arguments),
+        #[cfg(feature = "live")]
+        Verb::Play(arguments) => crate::play::run(&arguments, &ros.arguments),
+        #[cfg(feature = "live")]
+        Verb::Up(arguments) => crate::up::run(&arguments, &ros.words),
+        #[cfg(feature = "dashboard")]
+        Verb::Dashboard(arguments) => crate::dashboard::run(&arguments, &ros.arguments),
+        #[cfg(feature = "live")]
+        Verb::Node(which) => node::run(which, &ros.arguments),
         Verb::Import(arguments) => import::run(&arguments),
+        #[cfg(feature = "live")]
         Verb::Machine => crate::arm_simulator::run_machine(),
         Verb::Completions { shell } => {
             manual::completions(shell);

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::proposal::{Finding, Proposal, ProposalVerdict, Proposals, propose};
-use excavator_identification::report::{proposal_page, proposal_sentence};
 use excavator_model::Model;
 use excavator_model::document::catalogue_text;
 use excavator_model::recording::Recording;
+use excavator_report::{proposal_page, proposal_sentence};
 
 use super::{print, print_next};
 use crate::cli::ProposeArguments;

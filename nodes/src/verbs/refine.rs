@@ -4,12 +4,12 @@ use std::path::Path;
 
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
-use excavator_identification::report::{refinement_page, refinement_sentence};
 use excavator_identification::search::Addition;
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
+use excavator_report::{refinement_page, refinement_sentence};
 
 use super::{print, print_next};
 use crate::cli::{ModelChoice, Recordings, RefineArguments};

@@ -1,6 +1,6 @@
 //! `excavator reindex`
 
-use excavator_bags::{Reindexed, ReindexedFile, printable, reindex};
+use rosbag2::{Reindexed, ReindexedFile, printable, reindex};
 
 use super::{print, print_next};
 use crate::cli::ReindexArguments;

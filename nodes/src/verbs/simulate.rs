@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
 use excavator_model::Model;
 use excavator_model::equations::{Inputs, System};
 use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{InputSignals, Profile, RunError, Tolerances, rest_state, simulate, simulate_from};
+use rosbag2::WriteOptions;
 
 use super::{print, print_next};
 use crate::cli::SimulateArguments;

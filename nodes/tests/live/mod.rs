@@ -153,12 +153,12 @@ pub fn sleep(seconds: f64) {
 pub fn messages<M: excavator_msgs::Message>(bag: &Path, topic: &str) -> Vec<(f64, M)> {
     let mut start = None;
     let mut found = Vec::new();
-    for message in excavator_bags::RawMessages::open(bag).unwrap() {
+    for message in rosbag2::RawMessages::open(bag).unwrap() {
         let message = message.unwrap();
         let start = *start.get_or_insert(message.log_time);
         if message.topic.name == topic {
             let time = (message.log_time as f64 - start as f64) * 1e-9;
-            found.push((time, excavator_bags::cdr::decode(&message.data).unwrap()));
+            found.push((time, rosbag2::cdr::decode(&message.data).unwrap()));
         }
     }
     found

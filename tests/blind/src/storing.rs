@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use excavator_bags::{BagError, Topics, WriteOptions, write_recording};
+use excavator_bags::{BagError, Topics, write_recording};
+use rosbag2::WriteOptions;
 use serde_json::json;
 
 use crate::cases::Case;

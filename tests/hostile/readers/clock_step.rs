@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use excavator_bags::map::{Origin, read_recording_or_mapped};
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
 use excavator_model::recording::Recording;
+use rosbag2::WriteOptions;
 
 use crate::child::{Run, run};
 use crate::fault::Fault;

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use excavator_bags::{BagWriter, Qos, RawMessages, TopicToWrite, WriteOptions, cdr};
 use excavator_msgs::ArmState;
+use excavator_bags::topic_to_write;
+use rosbag2::{BagWriter, Qos, RawMessages, WriteOptions, cdr};
 
 use crate::child::run;
 use crate::fault::Fault;
@@ -78,8 +79,8 @@ fn bag(folder: &Path) -> PathBuf {
     let path = folder.join("bag");
     let options = WriteOptions { chunk_size: 20_000, most_file_bytes: Some(100_000), ..WriteOptions::default() };
     let mut writer = BagWriter::create(&path, &options).unwrap();
-    let topic = writer.add_topic(&TopicToWrite::of::<ArmState>("/arm/state", Qos::reliable(10))).unwrap();
-    writer.add_topic(&TopicToWrite::of::<excavator_msgs::OrificeCommand>("/silent", Qos::reliable(10))).unwrap();
+    let topic = writer.add_topic(&topic_to_write::<ArmState>("/arm/state", Qos::reliable(10))).unwrap();
+    writer.add_topic(&topic_to_write::<excavator_msgs::OrificeCommand>("/silent", Qos::reliable(10))).unwrap();
     for index in 0..20_000 {
         writer
             .write(topic, 1_000_000_000 + index * 2_000_000, 1_000_000_000 + index * 2_000_000, &state(index))

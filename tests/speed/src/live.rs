@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use excavator_bags::RawMessages;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
+use rosbag2::RawMessages;
 
 use crate::clock::processor_time;
 use crate::figures::{Group, Run};

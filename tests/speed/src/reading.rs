@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use excavator_bags::{RawMessages, Topics, read_recording};
+use excavator_bags::{Topics, read_recording};
+use rosbag2::RawMessages;
 
 use crate::clock::best_of;
 use crate::figures::{Group, Run};
@@ -26,7 +27,7 @@ pub fn reading(bag: &Path, peers: &Peers) -> Result<Group, String> {
     let samples = samples?;
     let mut runs = vec![
         Run::timed("mcap crate, messages as bytes", bare_seconds, format!("{bare_messages} messages")),
-        Run::timed("excavator-bags, messages as bytes", raw_seconds, format!("{raw_messages} messages")),
+        Run::timed("rosbag2, messages as bytes", raw_seconds, format!("{raw_messages} messages")),
         Run::timed("excavator-bags, decoded to columns", seconds, format!("{samples} samples")),
     ];
     runs.push(peers.run("rosbags, decoded messages", "rosbags", &serde_json::json!({ "bag": bag })));

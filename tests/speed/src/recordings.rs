@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::{Topics, WriteOptions, write_recording};
+use excavator_bags::{Topics, write_recording};
 use excavator_blind::cases::{Case, Sort, Wish};
 use excavator_blind::scoring::make;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Profile, Segment, Tolerances, simulate_from_rest};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rosbag2::WriteOptions;
 
 use crate::common;
 use crate::truth::truth;

@@ -1,9 +1,10 @@
 //! A column or field that may be a signal.
 
+use rosbag2::dynamic::FieldPath;
+
 use super::super::document::{ClockSource, ColumnName, SignalSource};
 use super::super::signal::SignalName;
 use super::super::unit::{Dimension, Unit};
-use crate::dynamic::FieldPath;
 
 /// Where the numbers come from.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,13 +4,15 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use rosbag2::dynamic::{FieldPath, Index, Layout, Selector, numeric_leaves};
+use rosbag2::{RawMessages, Topic};
+
 use super::super::document::ClockSource;
 use super::super::signal::SignalKind;
 use super::super::unit::{Dimension, Unit};
 use super::candidate::{Candidate, Found, Origin, words};
 use crate::can::FrameReader;
-use crate::dynamic::{Definitions, FieldPath, Index, Layout, Selector, numeric_leaves};
-use crate::{BagError, RawMessages, Topic};
+use crate::{BagError, own_definitions};
 
 /// Fields of one topic that are looked at.
 const FIELD_LIMIT: usize = 64;
@@ -76,7 +78,7 @@ fn look_at(topic: &Topic, message: &[u8]) -> Option<Seen> {
     if NO_SIGNAL_TYPES.contains(&topic.type_name.rsplit('/').next().unwrap_or_default()) {
         return None;
     }
-    let layout = Layout::of_topic(topic, &Definitions::default()).ok()?;
+    let layout = Layout::of_topic(topic, own_definitions()).ok()?;
     layout.check(message).ok()?;
     let leaves = numeric_leaves(&layout, message).ok()?;
     let fields: Vec<(FieldPath, Selector)> = leaves

@@ -157,7 +157,7 @@ impl GuessedSignal {
 /// not say.
 ///
 /// # Errors
-/// When the data cannot be read: those of [`RawMessages::open`](crate::RawMessages::open), [`BagError::BadTable`].
+/// When the data cannot be read: those of [`RawMessages::open`](rosbag2::RawMessages::open), [`BagError::BadTable`].
 pub fn guess<'h>(path: &Path, hints: impl Into<Hints<'h>>) -> Result<Guess, BagError> {
     let Found { candidates, clock, unreadable } = if Table::is_table(path) {
         from_table::candidates(&Table::read(path, &TableFormat::default())?)

@@ -8,10 +8,10 @@ use bytes::Bytes;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
+use rosbag2::ReadLimits;
 
 use super::fault::TableFault;
 use super::{Column, Table, guard, heading};
-use crate::limits::ReadLimits;
 use kind::Kind;
 use values::Cells;
 

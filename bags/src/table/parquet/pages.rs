@@ -4,8 +4,7 @@
 //! number, in the compact protocol of Apache Thrift.
 
 use parquet::file::metadata::ColumnChunkMetaData;
-
-use crate::limits::ReadLimits;
+use rosbag2::ReadLimits;
 
 /// Structs within structs that a header may have.
 const DEPTH_LIMIT: usize = 8;

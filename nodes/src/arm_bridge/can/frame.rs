@@ -1,9 +1,11 @@
 //! Frames, and what is read from them.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 
 use excavator_bags::can::{Identifier, Place};
 use socketcan::{CanAnyFrame, EmbeddedFrame, Frame as _};
+
+use super::Counts;
 
 /// A data frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,17 +25,6 @@ impl Frame {
         let identifier = Identifier { number: frame.raw_id(), extended: EmbeddedFrame::is_extended(frame) };
         Some(Frame { identifier, data })
     }
-}
-
-/// What frames were not used.
-#[derive(Debug, Default)]
-pub(in crate::arm_bridge) struct Counts {
-    /// Frames of a wanted message that are shorter than its signals need.
-    pub short: AtomicU64,
-    /// Error and remote frames.
-    pub without_data: AtomicU64,
-    /// Lines of a log that are no frame.
-    pub unreadable: AtomicU64,
 }
 
 /// What is read from frames.

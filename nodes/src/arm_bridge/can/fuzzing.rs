@@ -3,23 +3,16 @@
 use super::log::frames;
 use super::{Counts, Database, Wanted};
 
-/// A log for the signals of a database to be read from.
-const LOG: &[u8] = include_bytes!("../../../../config/can/arm.log");
-/// So much of it is read.
-const LENGTH: usize = 2_000;
-/// The database whose signals are read from logs.
-const DATABASE: &[u8] = include_bytes!("../../../../config/can/excavator.dbc");
-
-/// Bytes as a DBC file: how many signals have a place in their message; `None` for what is no DBC file.
-pub fn can_database(bytes: &[u8]) -> Option<usize> {
+/// Bytes as a DBC file, whose signals are read from `log`: how many signals have a place in their message; `None` for what is no DBC file.
+pub fn can_database(bytes: &[u8], log: &[u8]) -> Option<usize> {
     let wanted = wanted(&Database::parse(bytes).ok()?);
-    read(LOG.get(..LENGTH).unwrap_or(LOG), &wanted);
+    read(log, &wanted);
     Some(wanted.places.len())
 }
 
-/// Bytes as a log: how many frames it has, and how many lines are none.
-pub fn can_log(bytes: &[u8]) -> (u64, u64) {
-    read(bytes, &Database::parse(DATABASE).map(|database| wanted(&database)).unwrap_or(Wanted { places: Vec::new() }))
+/// Bytes as a log, from which the signals of a DBC file are read: how many frames it has, and how many lines are none.
+pub fn can_log(bytes: &[u8], database: &[u8]) -> (u64, u64) {
+    read(bytes, &Database::parse(database).map(|database| wanted(&database)).unwrap_or(Wanted { places: Vec::new() }))
 }
 
 fn wanted(database: &Database) -> Wanted {

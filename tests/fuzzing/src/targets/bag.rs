@@ -4,8 +4,9 @@ use std::io::Write;
 use std::path::Path;
 
 use excavator_bags::map::{guess, read_mapped};
-use excavator_bags::{RawMessages, Topics, info, read_recording, reindex};
+use excavator_bags::{Topics, read_recording};
 use excavator_model::recording::Recording;
+use rosbag2::{RawMessages, info, reindex};
 
 use crate::samples;
 

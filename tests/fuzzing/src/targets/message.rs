@@ -1,8 +1,8 @@
 //! Bytes as messages of known types.
 
-use excavator_bags::cdr;
-use excavator_bags::dynamic::{Layout, Selector, numeric_leaves};
 use excavator_msgs::{ArmState, CylinderState, Header, Time};
+use rosbag2::cdr;
+use rosbag2::dynamic::{Layout, Selector, numeric_leaves};
 
 /// Types that together have every kind of field.
 const TYPES: [&str; 5] = [

@@ -1,6 +1,6 @@
 //! Text as a message definition in both languages, and, after a zero byte, a message of the type that it defines.
 
-use excavator_bags::dynamic::{Definitions, Layout, Selector, numeric_leaves};
+use rosbag2::dynamic::{Definitions, Layout, Selector, numeric_leaves};
 
 const IDL: &str = "module p { module msg { const long N = 3; typedef double d3[3]; enum E { A, B }; struct Root { \
                    @unit(value=\"m\") d3 x; sequence<p::msg::B, 3> b; string<4> s; wstring w; boolean on; }; \

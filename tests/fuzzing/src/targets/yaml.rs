@@ -1,7 +1,7 @@
 //! Text as YAML: metadata of bags, parameter files, quality of service.
 
-use excavator_bags::yaml::{self, Yaml};
-use excavator_bags::{Qos, ReadLimits};
+use rosbag2::yaml::{self, Yaml};
+use rosbag2::{Qos, ReadLimits};
 
 use crate::samples;
 

@@ -1,0 +1,38 @@
+//! Our own messages for bags: their definitions, and topics that carry them.
+
+use std::sync::LazyLock;
+
+use excavator_msgs::{Message, definitions};
+use rosbag2::dynamic::Definitions;
+use rosbag2::{Qos, TopicToWrite};
+
+/// Types of `excavator_msgs`.
+const OWN: [&str; 6] = ["ArmState", "CylinderState", "OrificeCommand", "EnergyState", "CylinderEnergy", "EnergyTerm"];
+
+/// The definitions of our own messages, for bags that have none: SQLite3 bags of ROS 2 Humble and before.
+#[must_use]
+pub fn own_definitions() -> &'static Definitions {
+    static DEFINITIONS: LazyLock<Definitions> = LazyLock::new(|| {
+        let mut known = Definitions::default();
+        for name in OWN {
+            let name = format!("excavator_msgs/{name}");
+            if let Some(text) = definitions::message_text(&name) {
+                // The texts are ours: a test reads every one.
+                let _ = known.add(&name, text);
+            }
+        }
+        known
+    });
+    &DEFINITIONS
+}
+
+/// A topic of one of our own messages, which one publisher offers with `qos`.
+#[must_use]
+pub fn topic_to_write<M: Message>(name: &str, qos: Qos) -> TopicToWrite {
+    TopicToWrite {
+        name: name.to_string(),
+        type_name: M::TYPE_NAME.to_string(),
+        schema: definitions::schema(M::TYPE_NAME).unwrap_or_default(),
+        qos: vec![qos],
+    }
+}

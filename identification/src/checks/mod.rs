@@ -1,0 +1,16 @@
+//! Is a recording fit for use with a model? Asked before any number is computed.
+
+mod check;
+mod clipped;
+mod error;
+mod opening;
+mod remarks;
+mod runs;
+mod shared_readings;
+mod stuck;
+mod swapped;
+
+pub use check::check;
+pub use error::{CheckError, OVERRULABLE};
+pub use remarks::{Remark, remarks};
+pub use shared_readings::{SharedReadings, shared_readings};

@@ -1,0 +1,81 @@
+//! How far a model is from a recording, in plain sentences.
+
+use excavator_identification::validation::{Baselines, Comparison, PhaseShare, SignalComparison};
+
+use super::comparison_page::Beside;
+use super::numbers::{percent, significant};
+
+/// Share of a signal's error that one phase of motion must hold to be mentioned.
+const MOST_OF_IT: f64 = 0.8;
+
+/// What a comparison shows: how much of the recording the model explains, how good that is, and where it is worst.
+pub fn comparison_sentence(comparison: &Comparison, baselines: &Baselines) -> String {
+    let machine = &comparison.machine.name;
+    let mean = comparison.mean_error();
+    let number = |value: f64| significant(value, 3);
+    let mut sentences = vec![if mean < 1.0 {
+        format!(
+            "{machine} explains {} of the variance that was measured: mean NMSE {}.",
+            percent(1.0 - mean),
+            number(mean)
+        )
+    } else {
+        format!("{machine} does not follow what was measured: mean NMSE {}, where 1 is a constant.", number(mean))
+    }];
+    let known = [
+        ("sensor noise alone", baselines.mean(|one| one.noise)),
+        ("a linear ARX model fitted to this recording", baselines.mean(|one| one.arx)),
+    ];
+    let known: Vec<String> = known
+        .into_iter()
+        .filter(|(_, value)| value.is_finite())
+        .map(|(name, value)| format!("{name} has {}", number(value)))
+        .collect();
+    if !known.is_empty() {
+        sentences.push(format!("For comparison, {}.", known.join(", ")));
+    }
+    let worst = comparison.signals.iter().max_by(|a, b| a.normalised_error.total_cmp(&b.normalised_error));
+    sentences.extend(worst.filter(|_| comparison.signals.len() > 1).map(worst_sentence));
+    sentences.join(" ")
+}
+
+/// How what is drawn beside the model does on the same recording.
+pub fn others_sentence(comparison: &Comparison, other: Beside<'_>) -> String {
+    let (own, its) = (comparison.mean_error(), other.comparison().mean_error());
+    let error = significant(its, 3);
+    match other {
+        Beside::Model(_) if its < own => format!("The other model is closer: mean NMSE {error}."),
+        Beside::Model(_) => format!("The other model is not closer: mean NMSE {error}."),
+        Beside::Run(run) if !run.has_same_commands() => {
+            format!(
+                "The commands of the second run differ, so its mean NMSE of {error} does not measure repeatability."
+            )
+        }
+        Beside::Run(_) if its < own => {
+            format!("A second run of the machine has mean NMSE {error}: a perfect model could come that close.")
+        }
+        Beside::Run(_) => format!(
+            "A second run of the machine has mean NMSE {error}, more than the model: the machine does not repeat itself better."
+        ),
+    }
+}
+
+fn worst_sentence(signal: &SignalComparison) -> String {
+    let most = |share: &&PhaseShare| share.of_error >= MOST_OF_IT && share.of_error > share.of_time;
+    let when = signal.phases.iter().find(most).map_or_else(String::new, |share| {
+        format!(", {} of it while the piston is {}", percent(share.of_error), share.phase)
+    });
+    format!(
+        "The largest error is in {} (NMSE {}){when}.",
+        spoken(&signal.name),
+        significant(signal.normalised_error, 3)
+    )
+}
+
+/// "arm.cap_pressure" as a person says it: the cap pressure of arm.
+fn spoken(signal: &str) -> String {
+    match signal.split_once('.') {
+        Some((part, quantity)) => format!("the {} of {part}", quantity.replace('_', " ")),
+        None => format!("the {}", signal.replace('_', " ")),
+    }
+}

@@ -1,0 +1,36 @@
+//! What the catalogue says about an effect.
+
+use excavator_identification::diagnosis::{Candidate, contribution};
+use excavator_model::recording::Recording;
+use maud::{Markup, html};
+
+use super::effect_plot::effect_plot;
+use super::parameter_table;
+use super::verdict_text::place_of;
+
+/// Card, picture on `recordings` and fitted parameters of a named candidate.
+pub(super) fn effect_card(candidate: &Candidate<'_>, recordings: &[&Recording]) -> Markup {
+    let card = candidate.addition.physics.card();
+    // A picture that cannot be made leaves its place empty; the words beside it stand without.
+    let shown = contribution(candidate.trial, candidate.addition, recordings).ok().flatten();
+    html! {
+        div.card {
+            h3 { (capitalised(&place_of(candidate))) " " code.code-name { (card.name) "@" (candidate.place()) } }
+            dl {
+                dt { "What it is" } dd { (card.summary) }
+                dt { "Equation" } dd { code { (card.equation) } }
+                dt { "How it shows" } dd { (card.shows) }
+                dt { "Best experiment" } dd { (card.experiment) }
+                dt { "Energy" } dd { (card.energy) }
+                dt { "Source" } dd { (card.source) }
+            }
+            @if let Some(shown) = &shown { (effect_plot(&candidate.trial.fit.model.machine, shown)) }
+            (parameter_table::of_effect(&candidate.trial.fit.model, candidate.name(), candidate.addition.site))
+        }
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + letters.as_str())
+}

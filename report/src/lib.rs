@@ -1,0 +1,61 @@
+//! The HTML report: what was measured, what the model does, and what it is missing, on one page that a browser opens
+//! from disk without a network.
+//!
+//! Each function returns a whole page as text; writing it to a file is left to the caller. Plots over time are drawn by
+//! uPlot, which is part of the page; all others are inline pictures. All text from models and recordings is escaped.
+
+mod assets;
+mod characterisation_page;
+mod characterisation_plots;
+mod comparison_page;
+mod comparison_text;
+mod diagnosis_page;
+mod effect_cards;
+mod effect_plot;
+mod energy_flow;
+mod energy_page;
+mod energy_tables;
+mod error_plots;
+mod evidence_tables;
+mod frontier_plot;
+mod machine_picture;
+mod named_text;
+mod numbers;
+mod page;
+mod parameter_table;
+mod plausibility_text;
+mod power_plots;
+mod proposal_page;
+mod proposal_text;
+mod refinement_page;
+mod residual_units;
+mod sankey;
+mod signal_tables;
+mod step_plot;
+mod svg;
+mod thinning;
+mod time_plots;
+mod unexplained_plot;
+mod units;
+mod verdict_text;
+mod words;
+
+#[cfg(test)]
+mod tests;
+
+pub use assets::{KINEMATICS, plotting};
+pub use characterisation_page::{characterisation_page, leakage_unit};
+pub use comparison_page::{Beside, comparison_page};
+pub use comparison_text::{comparison_sentence, others_sentence};
+pub use diagnosis_page::diagnosis_page;
+pub use energy_page::energy_page;
+pub use named_text::refinement_sentence;
+pub use plausibility_text::implausible_sentence;
+pub use proposal_page::{proposal_page, result as law_result};
+pub use proposal_text::{guess_sentence, proposal_sentence, remarks as law_remarks};
+pub use refinement_page::refinement_page;
+pub use verdict_text::{NONE_TRIED, verdict_sentence};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,223 @@
+//! Measured and simulated signals over time, the error under them on the same axis.
+
+use excavator_identification::validation::{Comparison, SignalComparison};
+use excavator_model::recording::is_measured;
+use maud::{Markup, PreEscaped, html};
+
+use super::machine_picture::machine_picture;
+use super::thinning;
+use super::units::{self, Unit};
+use super::{numbers, words};
+
+/// Points of one series at most.
+const MOST_POINTS: usize = 2000;
+
+/// Points of one series at least, however many there are.
+const FEWEST_POINTS: usize = 200;
+
+/// Numbers that all plots of a page share, times among them. With about six characters each they leave room for the rest of
+/// a page of one megabyte.
+const NUMBERS_OF_A_PAGE: usize = 75_000;
+
+/// How one model's line looks.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    /// In the legend.
+    pub label: &'static str,
+    /// CSS colour.
+    pub colour: &'static str,
+    /// Dashed, so that lines differ without colour.
+    pub dashed: bool,
+}
+
+/// The only or the final model.
+pub(super) const MODEL: Line = Line { label: "model", colour: "var(--blue)", dashed: false };
+/// The model before effects were added.
+pub(super) const BEFORE: Line = Line { label: "before", colour: "var(--orange)", dashed: true };
+/// The model with all effects.
+pub(super) const AFTER: Line = Line { label: "after", colour: "var(--blue)", dashed: false };
+/// A second model beside the first.
+pub(super) const OTHER_MODEL: Line = Line { label: "other model", colour: "var(--orange)", dashed: true };
+/// A second run of the machine.
+pub(super) const SECOND_RUN: Line = Line { label: "second run", colour: "var(--purple)", dashed: true };
+/// The measurement.
+const MEASURED: Line = Line { label: "measured", colour: "var(--measured)", dashed: false };
+
+/// Width of the measured line, px: it lies under the models and must show on both sides of them.
+const MEASURED_WIDTH: f64 = 4.0;
+
+/// Width of all other lines, px.
+const MODEL_WIDTH: f64 = 1.4;
+
+/// How to use the plots.
+pub(super) fn hint() -> Markup {
+    html! {
+        p.hint {
+            "Drag across a plot to zoom, double-click to zoom out; all plots of one recording move together. Click a name under "
+            "a plot to hide its line. With the keyboard: Tab goes to a plot, ← and → move the cursor (with Shift in larger steps), "
+            "+ and − zoom around it, and 0 or Escape shows everything."
+        }
+        noscript { p.empty { "The plots over time are drawn by the script of this page, which is switched off here." } }
+    }
+}
+
+/// Plots of all signals of one recording under one or more models. `number` tells recordings of a page apart, of which
+/// there are `recordings`.
+pub(super) fn time_plots(models: &[(Line, &Comparison)], number: usize, recordings: usize) -> Markup {
+    let Some((_, first)) = models.first() else { return html! { p.empty { "Nothing to compare." } } };
+    // Of each signal two plots with a time axis each: the measurement and the models, and their errors.
+    let columns = first.signals.len() * recordings * (2 * models.len() + 3);
+    let group = format!("recording-{number}");
+    let budget = (NUMBERS_OF_A_PAGE / columns.max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
+    html! {
+        @if first.signals.is_empty() { p.empty { "This recording measures no output of the model." } }
+        (machine_picture(models, &group))
+        @for signal in &first.signals {
+            div.signal {
+                h3 { (words::signal(&signal.name)) small { code { (signal.name) } " · " (caption(models, signal)) } }
+                (signal_plots(models, &signal.name, &group, budget))
+            }
+        }
+    }
+}
+
+fn caption(models: &[(Line, &Comparison)], signal: &SignalComparison) -> String {
+    let error = |comparison: &Comparison| {
+        let own = comparison.signals.iter().find(|candidate| candidate.name == signal.name);
+        numbers::significant(own.map_or(f64::NAN, |own| own.normalised_error), 3)
+    };
+    match models {
+        [(_, only)] => format!("NMSE {} · FIT {:.1} %", error(only), signal.fit),
+        several => {
+            let errors: Vec<String> = several.iter().map(|(line, c)| format!("{} {}", line.label, error(c))).collect();
+            format!("NMSE {}", errors.join(", "))
+        }
+    }
+}
+
+fn signal_plots(models: &[(Line, &Comparison)], name: &str, group: &str, budget: usize) -> Markup {
+    let nothing = html! { p.empty { "No values to plot." } };
+    let Some((_, first)) = models.first() else { return nothing };
+    let time = &first.measured.time;
+    let Some(measured) = first.measured.signal(name).filter(|values| is_measured(values)) else { return nothing };
+    let simulated: Vec<(Line, &[f64])> =
+        models.iter().filter_map(|(line, comparison)| Some((*line, comparison.simulated.signal(name)?))).collect();
+    let errors: Vec<(Line, Vec<f64>)> = simulated
+        .iter()
+        .map(|(line, values)| (*line, measured.iter().zip(*values).map(|(m, s)| m - s).collect()))
+        .collect();
+    let mut guides: Vec<&[f64]> = vec![measured];
+    guides.extend(errors.first().map(|(_, values)| values.as_slice()));
+    let kept = thinning::indices(&guides, time.len(), budget);
+    let unit = units::of_signal(&first.machine, name);
+    let mut lines = vec![(MEASURED, measured)];
+    lines.extend(simulated.iter().copied());
+    let errors: Vec<(Line, &[f64])> = errors.iter().map(|(line, values)| (*line, values.as_slice())).collect();
+    let quantity = words::spoken(name.rsplit('.').next().unwrap_or(name));
+    let title = words::signal(name);
+    let upper = Plot { group, title: &title, label: &quantity, unit, height: 230, last: false, error: false };
+    let lower = Plot { group, title: &title, label: "error", unit, height: 150, last: true, error: true };
+    html! {
+        (upper.markup(time, &lines, &kept))
+        (lower.markup(time, &errors, &kept))
+    }
+}
+
+/// One plot as the page's script wants it.
+struct Plot<'a> {
+    group: &'a str,
+    /// The signal, for those who do not see the plot.
+    title: &'a str,
+    label: &'a str,
+    unit: Unit<'a>,
+    height: usize,
+    last: bool,
+    error: bool,
+}
+
+impl Plot<'_> {
+    fn markup(&self, time: &[f64], lines: &[(Line, &[f64])], kept: &[usize]) -> Markup {
+        let labels: Vec<String> = lines
+            .iter()
+            .map(|(line, _)| if self.error { format!("measured − {}", line.label) } else { line.label.to_string() })
+            .collect();
+        let series: Vec<String> = lines
+            .iter()
+            .zip(&labels)
+            .map(|((line, values), label)| {
+                format!(
+                    r#"{{"label":{},"colour":"{}","width":{}{},"values":{}}}"#,
+                    text(label),
+                    line.colour,
+                    if line.label == MEASURED.label { MEASURED_WIDTH } else { MODEL_WIDTH },
+                    if line.dashed { r#","dash":[6,3]"# } else { "" },
+                    array(values, self.unit.factor, kept)
+                )
+            })
+            .collect();
+        let seconds: Vec<String> =
+            kept.iter().filter_map(|&index| time.get(index)).map(|t| shortest(&format!("{t:.4}"))).collect();
+        let json = format!(
+            r#"{{"group":{},"label":{},"unit":{},"height":{},"last":{},"gaps":{:?},"time":[{}],"series":[{}]}}"#,
+            text(self.group),
+            text(self.label),
+            text(self.unit.symbol),
+            self.height,
+            self.last,
+            thinning::gaps(time, kept),
+            seconds.join(","),
+            series.join(",")
+        );
+        let what = if self.error { "error over time" } else { "over time" };
+        plot_box(&format!("{} {what}: {}", self.title, labels.join(", ")), &json)
+    }
+}
+
+/// The box that the page's script draws `json` into. The keyboard moves its cursor, so it is a widget with a focus, and
+/// `description` says what it shows.
+pub(super) fn plot_box(description: &str, json: &str) -> Markup {
+    html! {
+        div.time-plot tabindex="0" role="application" aria-roledescription="plot" aria-label=(description) {
+            script type="application/json" { (PreEscaped(json)) }
+        }
+    }
+}
+
+/// JSON text that cannot end the script it stands in.
+pub(super) fn text(words: &str) -> String {
+    serde_json::Value::from(words).to_string().replace('<', "\\u003c")
+}
+
+/// JSON array of the kept values with five significant digits; what is not a number is `null`.
+pub(super) fn array(values: &[f64], factor: f64, kept: &[usize]) -> String {
+    let entries: Vec<String> = kept
+        .iter()
+        .map(|&index| match values.get(index).map(|value| value * factor) {
+            Some(value) if value.is_finite() => shortest(&format!("{value:.4e}")),
+            _ => "null".to_string(),
+        })
+        .collect();
+    format!("[{}]", entries.join(","))
+}
+
+/// The same number in as few characters as JSON has for it: plain digits of 1e-30 would fill a line.
+pub(super) fn shortest(decimal: &str) -> String {
+    let Ok(value) = decimal.parse::<f64>() else { return "null".to_string() };
+    let (plain, scientific) = (value.to_string(), format!("{value:e}"));
+    if scientific.len() < plain.len() { scientific } else { plain }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_short_and_gaps_are_null() {
+        assert_eq!(
+            array(&[1.234_567_8, f64::NAN, f64::INFINITY, -0.000_012_345_67], 1.0, &[0, 1, 2, 3]),
+            "[1.2346,null,null,-1.2346e-5]"
+        );
+        assert_eq!(array(&[1e-30, 0.0, 1500.0, -2e9], 1.0, &[0, 1, 2, 3]), "[1e-30,0,1500,-2e9]");
+        assert_eq!(text("a</script>\""), r#""a\u003c/script>\"""#);
+    }
+}
