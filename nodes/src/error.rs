@@ -8,6 +8,7 @@ use excavator_identification::design::DesignError;
 use excavator_identification::diagnosis::DiagnosisError;
 use excavator_identification::energy::EnergyError;
 use excavator_identification::fit::FitError;
+use excavator_identification::identify::IdentifyError;
 use excavator_identification::refinement::RefineError;
 use excavator_identification::regression::RegressionError;
 use excavator_model::document::{DocumentError, TomlFault};
@@ -37,6 +38,8 @@ pub enum VerbError {
     Regression(#[from] RegressionError),
     #[error(transparent)]
     Fit(#[from] FitError),
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
     #[error(transparent)]
     Diagnosis(#[from] DiagnosisError),
     #[error(transparent)]
@@ -119,8 +122,6 @@ pub enum VerbError {
     NotPrinted(String),
     #[error("a map is guessed from one file, not from {0}; the others of the same recording take the same map")]
     GuessOfSeveral(usize),
-    #[error("cannot add {0} twice")]
-    AddedTwice(String),
 }
 
 impl VerbError {

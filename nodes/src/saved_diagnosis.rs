@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use excavator_identification::decision::Kind;
 use excavator_identification::refinement::Refinement;
 use excavator_model::Model;
 use excavator_model::document::{self, to_text};
@@ -20,8 +21,8 @@ const FORM: u32 = 1;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct SavedDiagnosis {
     form: u32,
-    /// `adequate`, `missing_effect` or `unexplained`.
-    pub verdict: String,
+    /// What is to be thought of the given model.
+    pub verdict: Kind,
     /// The verdict in words.
     pub sentence: String,
     /// The model as it was given, TOML.
@@ -71,7 +72,7 @@ impl SavedDiagnosis {
         let mapping = &recordings.mapping;
         Ok(SavedDiagnosis {
             form: FORM,
-            verdict: refinement.verdict().name().to_string(),
+            verdict: refinement.verdict(),
             sentence: refinement_sentence(refinement),
             given: to_text(&refinement.given_model)?,
             steps,

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use excavator_identification::characterisation::characterise;
+use excavator_identification::results;
 use excavator_model::recording::Recording;
 use excavator_report::characterisation_page;
 
 use super::print;
 use crate::cli::CharacteriseArguments;
 use crate::error::VerbError;
-use crate::output::{characterisation_json, characterisation_table, refusals, write_json};
+use crate::output::{characterisation_table, refusals, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -33,7 +34,7 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
         outputs::write(path, &characterisation_page(&model, &sources, &found), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &characterisation_json(&found), arguments.overwriting)?;
+        write_json(path, &results::Characterisation::of(&found), arguments.overwriting)?;
     }
     Ok(())
 }

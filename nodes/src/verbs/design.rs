@@ -5,6 +5,7 @@ use std::path::Path;
 use excavator_identification::design::{
     DesignSettings, ParameterDesign, Plan, Rival, SeparationDesign, determine, separate,
 };
+use excavator_identification::results;
 use excavator_model::Model;
 use excavator_model::simulation::Profile;
 
@@ -12,7 +13,7 @@ use super::{print, print_detail, print_next};
 use crate::cli::DesignArguments;
 use crate::diagnosis_file::DiagnosisFile;
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, determination_json, number, pair_table, separation_json, write_json};
+use crate::output::{NextStep, Progress, number, pair_table, write_json};
 use crate::outputs::{self, Inputs, write};
 use crate::profile_file::{ProfileFile, usual_rate};
 use crate::sources;
@@ -74,9 +75,14 @@ fn between_rivals(
         show(&design, written, arguments);
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &separation_json(&design, written), arguments.overwriting)?;
+        write_json(path, &results::Separation::of(&design, name_of(written).as_deref()), arguments.overwriting)?;
     }
     if written.is_some() { Ok(()) } else { Err(VerbError::NothingSeparates(sentence(&design))) }
+}
+
+/// The profile file as a result names it.
+fn name_of(written: Option<&Path>) -> Option<String> {
+    written.map(|path| path.display().to_string())
 }
 
 /// The pairs that are not separated, in words.
@@ -162,7 +168,7 @@ fn for_parameter(
         }
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &determination_json(&design, written), arguments.overwriting)?;
+        write_json(path, &results::Determination::of(&design, name_of(written).as_deref()), arguments.overwriting)?;
     }
     if written.is_some() {
         return Ok(());

@@ -7,6 +7,7 @@ use std::sync::mpsc::Receiver;
 use excavator_identification::energy::{
     Analyser, EnergyAnalysis, EnergyError, EnergySettings, MissingPower, analyse, missing_power,
 };
+use excavator_identification::results;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 use excavator_report::energy_page;
@@ -15,7 +16,7 @@ use super::{print, print_next};
 use crate::block_reader::{needs_a_map, read_beside};
 use crate::cli::{EnergyArguments, Mapping};
 use crate::error::VerbError;
-use crate::output::{NextStep, energy_json, energy_table, ledger_table, write_json};
+use crate::output::{NextStep, energy_table, ledger_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::{sources, terminal};
 
@@ -40,7 +41,7 @@ pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
         outputs::write(path, &energy_page(&model, &analysis), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &energy_json(&model, &analysis), arguments.overwriting)?;
+        write_json(path, &results::Energy::of(&model, &analysis), arguments.overwriting)?;
     }
     Ok(())
 }
