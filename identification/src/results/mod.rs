@@ -1,7 +1,7 @@
 //! Results for programs: what the verbs write as JSON, and what other front ends hand on.
 //!
 //! Each result is a type that is built `of` what the rest of this crate found. The description of a field is also its description in the
-//! JSON schema ([`schemas`]) and on the reference page. Units are SI units and stand in the description; a number without one is a pure
+//! JSON schema ([`schemas()`]) and on the reference page. Units are SI units and stand in the description; a number without one is a pure
 //! number. JSON has no `NaN`: a number that is not known, or not finite, is `null`.
 //!
 //! Programs that read results must let pass what they do not know: fields may be added.

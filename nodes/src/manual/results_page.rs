@@ -46,12 +46,13 @@ pub fn results_page() -> String {
 /// A folder or file that cannot be written.
 pub fn write_schemas(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder)?;
-    let write = |(name, schema): (&str, _)| {
+    let mut written = Vec::new();
+    for (name, schema) in schemas() {
         let path = folder.join(format!("{name}.schema.json"));
         std::fs::write(&path, serde_json::to_string_pretty(&schema)? + "\n")?;
-        Ok(path)
-    };
-    schemas().into_iter().map(write).collect()
+        written.push(path);
+    }
+    Ok(written)
 }
 
 fn section(page: &mut String, heading: &str, schema: &Value) {
