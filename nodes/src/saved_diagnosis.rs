@@ -8,6 +8,7 @@ use excavator_model::Model;
 use excavator_model::document::{self, to_text};
 use excavator_model::effects::Catalogue;
 use excavator_report::refinement_sentence;
+use excavator_workbench::WorkError;
 use rosbag2::{ReadLimits, read_regular_text};
 use serde::{Deserialize, Serialize};
 
@@ -90,15 +91,16 @@ impl SavedDiagnosis {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`VerbError::Bag`], [`VerbError::DiagnosisSyntax`].
+    /// [`VerbError::Bag`], [`WorkError::DiagnosisSyntax`].
     pub fn read(path: &Path) -> Result<Self, VerbError> {
         let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
-        let wrong = |reason: String| VerbError::DiagnosisSyntax { path: path.to_path_buf(), reason };
+        let wrong = |reason: String| WorkError::DiagnosisSyntax { path: path.to_path_buf(), reason };
         let saved: SavedDiagnosis = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
         if saved.form == FORM {
             Ok(saved)
         } else {
-            Err(wrong(format!("it has form {}, this program reads form {FORM}; run diagnose --save again", saved.form)))
+            Err(wrong(format!("it has form {}, this program reads form {FORM}; run diagnose --save again", saved.form))
+                .into())
         }
     }
 

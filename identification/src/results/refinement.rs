@@ -17,8 +17,8 @@ pub struct Refinement {
     pub verdict: Kind,
     /// The steps; the first is before anything is added.
     pub steps: Vec<RefinementStep>,
-    /// The model file that was written.
-    pub model: String,
+    /// The model file that was written; `null` where none was.
+    pub model: Option<String>,
 }
 
 /// The model after one addition.
@@ -32,16 +32,16 @@ pub struct RefinementStep {
 }
 
 impl Refinement {
-    /// Of steps, each with what it added and its comparisons with the validation recordings, and the model file.
+    /// Of steps, each with what it added and its comparisons with the validation recordings, and the model file, if one was written.
     pub fn of<'s>(
         verdict: Kind,
         steps: impl IntoIterator<Item = (Option<&'s str>, &'s [Comparison])>,
-        model: &str,
+        model: Option<&str>,
     ) -> Self {
         let steps = steps.into_iter().map(|(added, comparisons)| RefinementStep {
             added: added.map(str::to_string),
             signals: SignalComparison::all(comparisons),
         });
-        Refinement { verdict, steps: steps.collect(), model: model.to_string() }
+        Refinement { verdict, steps: steps.collect(), model: model.map(str::to_string) }
     }
 }

@@ -99,7 +99,7 @@ fn what_is_written_is_read_back_and_not_a_number_is_null() {
 fn phases_are_told_of_one_recording_only() {
     let (comparison, _) = comparison();
     let both = [comparison.clone(), comparison];
-    let steps = |comparisons| Refinement::of(Kind::Adequate, [(None, comparisons)], "better.toml");
+    let steps = |comparisons| Refinement::of(Kind::Adequate, [(None, comparisons)], Some("better.toml"));
     let written = |comparisons| serde_json::to_value(steps(comparisons)).unwrap()["steps"][0].clone();
     let signal = &both[0].signals[0].name;
     assert!(written(&both[..1])["signals"][signal]["phases"].is_array());

@@ -3,7 +3,8 @@
 use comfy_table::{Cell, Table};
 use excavator_identification::characterisation::{Characterisation, Estimate, Refusal};
 
-use super::tables::{number, right, table};
+use super::number;
+use super::tables::{right, table};
 
 /// Everything that was found of a cylinder, with 95 % intervals.
 pub fn characterisation_table(found: &Characterisation) -> Table {

@@ -3,7 +3,8 @@
 use comfy_table::{Cell, Table};
 use excavator_identification::design::SeparationDesign;
 
-use super::tables::{number, right, table};
+use super::number;
+use super::tables::{right, table};
 
 /// What is expected of every pair.
 pub fn pair_table(design: &SeparationDesign) -> Table {

@@ -6,7 +6,8 @@ use excavator_model::Model;
 use excavator_model::effects::ActsOn;
 use excavator_model::site_name;
 
-use super::tables::{fixed, number, right, table};
+use super::number;
+use super::tables::{fixed, right, table};
 
 /// Where the energy went: over the recording, and per cycle where the work repeats.
 pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {

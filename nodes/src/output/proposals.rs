@@ -4,7 +4,8 @@ use comfy_table::{Cell, ContentArrangement, Table};
 use excavator_identification::proposal::Proposals;
 use excavator_report::law_result;
 
-use super::tables::{number, right, table};
+use super::number;
+use super::tables::{right, table};
 
 /// Proposals, the best first.
 pub fn proposal_table(found: &Proposals) -> Table {

@@ -11,6 +11,8 @@ use excavator_identification::results;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 use excavator_report::energy_page;
+use excavator_workbench::recordings::LEDGER_BLOCK;
+use excavator_workbench::sentences::ledger_sentence;
 
 use super::{print, print_next};
 use crate::block_reader::{needs_a_map, read_beside};
@@ -20,8 +22,6 @@ use crate::output::{NextStep, energy_table, ledger_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::{sources, terminal};
 
-/// Samples per block: ten seconds at 1 kHz.
-const BLOCK: usize = 10_000;
 /// Blocks that may wait for the analysis.
 const WAITING: usize = 4;
 
@@ -77,7 +77,7 @@ fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAna
         Ok::<_, EnergyError>(analyser)
     };
     let all = |block| (Some(block), ControlFlow::Continue(()));
-    let (report, analysis) = read_beside(bag, mapping.origin().namespace, BLOCK, WAITING, all, work)?;
+    let (report, analysis) = read_beside(bag, mapping.origin().namespace, LEDGER_BLOCK, WAITING, all, work)?;
     for problem in report.problems() {
         terminal::remark(&format!("{}: {problem}", bag.display()));
     }
@@ -85,16 +85,7 @@ fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAna
 }
 
 fn show(model: &Model, analysis: &EnergyAnalysis, missing: &[MissingPower]) {
-    let over = format!("{:.1} s of {}", analysis.duration, analysis.source);
-    match missing.first() {
-        None => print(&format!(
-            "The ledger of {} closes over {over}: every residual is within the noise.",
-            model.machine.name
-        )),
-        Some(first) => {
-            print(&format!("The ledger of {} does not close over {over}. {}", model.machine.name, first.sentence))
-        }
-    }
+    print(&ledger_sentence(model, analysis, missing));
     print(&energy_table(model, analysis).to_string());
     if let Some(cycle) = &analysis.cycle {
         print(&format!("energies per cycle are means over {} cycles of {:.3} s", cycle.count, cycle.period));

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_identification::fit::ProfileInterval;
 use excavator_identification::identify::{Identified, identify};
 use excavator_identification::results;
+use excavator_model::Model;
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
-use excavator_model::{Model, Parameter};
 use excavator_report::implausible_sentence;
+use excavator_workbench::sentences::{identification_sentence, profile_sentence};
 
 use super::{print, print_detail, print_next};
 use crate::cli::IdentifyArguments;
@@ -42,31 +42,6 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     Ok(())
 }
 
-/// What the recordings say of a parameter that they hardly show.
-fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
-    let names = model.parameter_names();
-    let unit = model.parameters().nth(profile.index).map_or("", |(_, parameter)| &*parameter.card.unit);
-    let name = &names[profile.index];
-    let mut text = match (profile.lower, profile.upper) {
-        (None, None) => {
-            format!("{name} is not identifiable from these recordings: all values in its range fit equally well")
-        }
-        (Some(lower), None) => {
-            format!("{name} is at least {} {unit} (95 %); every larger value fits as well", number(lower))
-        }
-        (None, Some(upper)) => {
-            format!("{name} is at most {} {unit} (95 %); every smaller value fits as well", number(upper))
-        }
-        (Some(lower), Some(upper)) => {
-            format!("{name} is between {} and {} {unit} (95 %, profile likelihood)", number(lower), number(upper))
-        }
-    };
-    if let Some((other, correlation)) = profile.companion {
-        text += &format!("; {} compensates for changes of it (correlation {correlation:.2})", names[other]);
-    }
-    text
-}
-
 /// The identified model beside the recording; first of all it has to be kept.
 fn next(arguments: &IdentifyArguments) -> NextStep {
     let bag = arguments.bag.first().map(PathBuf::as_path).unwrap_or(Path::new("BAG"));
@@ -84,35 +59,8 @@ fn next(arguments: &IdentifyArguments) -> NextStep {
     }
 }
 
-/// How many parameters were identified, how well, and what the equations leave.
-fn summary(result: &Identified) -> String {
-    let machine = &result.model.machine.name;
-    let asked = result.fitted.len() + result.not_identified.len();
-    let names = result.model.parameter_names();
-    let share = |(index, parameter): (usize, &Parameter)| {
-        let margin = parameter.margin_95.filter(|margin| margin.is_finite() && parameter.value != 0.0)?;
-        Some((margin / parameter.value.abs(), names[index].as_str()))
-    };
-    let parameters = result.model.parameters().map(|(_, parameter)| parameter).enumerate();
-    let fitted = parameters.filter(|(index, _)| result.fitted.contains(index));
-    let widest = fitted.filter_map(share).max_by(|a, b| a.0.total_cmp(&b.0));
-    let mut text = format!("Identified {} of {asked} unknown parameters of {machine}.", result.fitted.len());
-    if let Some((share, name)) = widest {
-        text += &format!(" The widest 95 % interval is that of {name}: ± {:.1} % of its value.", 100.0 * share);
-    }
-    let known = result.equations.iter().filter(|gauge| gauge.chi_squared_per_row.is_finite());
-    if let Some(worst) = known.max_by(|a, b| a.chi_squared_per_row.total_cmp(&b.chi_squared_per_row)) {
-        text += &format!(
-            " The largest residual is that of {}: {} times the variance of sensor noise.",
-            worst.equation,
-            number(worst.chi_squared_per_row)
-        );
-    }
-    text
-}
-
 fn show(given: &Model, result: &Identified) {
-    print(&summary(result));
+    print(&identification_sentence(result));
     print(&parameter_table(&result.model, &result.fitted).to_string());
     remedy_lines(&result.model, &result.fitted).iter().for_each(|line| print(line));
     for condition in &result.conditions {

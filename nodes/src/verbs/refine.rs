@@ -63,7 +63,7 @@ fn searched(arguments: &RefineArguments) -> Result<(), VerbError> {
     }
     if let Some(path) = &arguments.json.json {
         let written = arguments.output.display().to_string();
-        let result = results::Refinement::of(refinement.verdict(), compared_steps(&refinement), &written);
+        let result = results::Refinement::of(refinement.verdict(), compared_steps(&refinement), Some(&written));
         write_json(path, &result, arguments.overwriting)?;
     }
     Ok(())
@@ -102,7 +102,7 @@ fn as_diagnosed(path: &Path, arguments: &RefineArguments) -> Result<(), VerbErro
     }
     if let Some(file) = &arguments.json.json {
         let written = arguments.output.display().to_string();
-        write_json(file, &results::Refinement::of(saved.verdict, steps(), &written), arguments.overwriting)?;
+        write_json(file, &results::Refinement::of(saved.verdict, steps(), Some(&written)), arguments.overwriting)?;
     }
     Ok(())
 }

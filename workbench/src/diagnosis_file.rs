@@ -8,7 +8,7 @@ use excavator_identification::results::{Candidate, Diagnosis, Parameter};
 use excavator_model::{Model, ModelError};
 use rosbag2::{ReadLimits, read_regular_text};
 
-use crate::error::VerbError;
+use crate::WorkError;
 
 /// A diagnosis as far as a design needs it: rivals by name (`EFFECT@PLACE`, `none`) with the values of all parameters that
 /// were fitted with them.
@@ -27,11 +27,18 @@ impl DiagnosisFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`VerbError::Bag`], [`VerbError::DiagnosisSyntax`].
-    pub fn read(path: &Path) -> Result<Self, VerbError> {
-        let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
-        let found: Diagnosis = serde_json::from_str(&text)
-            .map_err(|error| VerbError::DiagnosisSyntax { path: path.to_path_buf(), reason: error.to_string() })?;
+    /// [`WorkError::Bag`], [`WorkError::DiagnosisSyntax`].
+    pub fn read(path: &Path) -> Result<Self, WorkError> {
+        DiagnosisFile::of_text(path, &read_regular_text(path, ReadLimits::DEFAULT.document)?)
+    }
+
+    /// Reads the text of a file; `path` is for messages.
+    ///
+    /// # Errors
+    /// [`WorkError::DiagnosisSyntax`].
+    pub fn of_text(path: &Path, text: &str) -> Result<Self, WorkError> {
+        let found: Diagnosis = serde_json::from_str(text)
+            .map_err(|error| WorkError::DiagnosisSyntax { path: path.to_path_buf(), reason: error.to_string() })?;
         let name = |candidate: &Candidate| format!("{}@{}", candidate.effect, candidate.cylinder);
         let mut fitted: Vec<(String, Vec<(String, f64)>)> = vec![("none".into(), values(&found.refitted))];
         fitted.extend(found.candidates.iter().chain(&found.rejected).map(|one| (name(one), values(&one.refitted))));
@@ -49,8 +56,8 @@ impl DiagnosisFile {
     /// Names of the tied candidates, best first.
     ///
     /// # Errors
-    /// [`VerbError::NoTie`] when there are fewer than two.
-    pub fn tied(&self) -> Result<Vec<String>, VerbError> {
+    /// [`WorkError::NoTie`] when there are fewer than two.
+    pub fn tied(&self) -> Result<Vec<String>, WorkError> {
         if self.tied.len() > 1 {
             return Ok(self.tied.clone());
         }
@@ -58,7 +65,7 @@ impl DiagnosisFile {
             Some(first) => format!("it names {first} alone"),
             None => format!("its verdict is {} without a candidate", self.verdict.name()),
         };
-        Err(VerbError::NoTie { path: self.path.clone(), found })
+        Err(WorkError::NoTie { path: self.path.clone(), found })
     }
 
     /// Whether the diagnosis has fitted values for this rival.
