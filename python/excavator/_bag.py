@@ -50,7 +50,7 @@ class Bag:
     @property
     def path(self) -> FilePath:
         """Where the bag is."""
-        return FilePath(self._native.path)
+        return self._native.path
 
     @property
     def topics(self) -> list[Topic]:

@@ -92,7 +92,7 @@ class Model:
 
     @classmethod
     def template(cls, name: str) -> Model:
-        """A machine of a kind that no built-in model has, from a made-up data sheet; `Model.templates()` lists them."""
+        """A machine of a kind that no built-in model has, from an example data sheet; `Model.templates()` lists them."""
         known = dict(_native.Model.templates())
         if name not in known:
             raise ModelError(f'no template "{name}"; there are {", ".join(known)}')

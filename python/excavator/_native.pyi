@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -57,7 +58,7 @@ class Recording:
 class Bag:
     def __init__(self, path: _Path) -> None: ...
     @property
-    def path(self) -> str: ...
+    def path(self) -> Path: ...
     def info(self) -> tuple[list[tuple[str, str, int, float | None]], list[str], float]: ...
     def read(self, topic: str, fields: list[str] | None) -> tuple[dict[str, NDArray[Any]], int]: ...
 

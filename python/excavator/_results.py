@@ -112,12 +112,12 @@ class Comparison(_WithSignals):
     """A model beside a recording."""
 
     @property
-    def mean_nmse(self) -> float:
+    def mean_nmse(self) -> float | None:
         """Mean over the signals of the squared error divided by the variance: 0 is perfect, 1 is no better than a constant."""
         return self._content["mean_nmse"]
 
     @property
-    def nmse(self) -> dict[str, float]:
+    def nmse(self) -> dict[str, float | None]:
         """The same by signal."""
         return {name: one["nmse"] for name, one in self._content["signals"].items()}
 
@@ -259,7 +259,9 @@ class Energy(Result):
     def losses(self) -> dict[str, float]:
         """Energy that each effect took from the cylinders and the pump line, J."""
         effects = self._content["energy"]["effects"]
-        return {f"{one['effect']}@{one['at']}": -(one["into_cylinders"] + one["into_pump_line"]) for one in effects}
+        # What is not known is None in JSON.
+        taken = [-((one["into_cylinders"] or 0.0) + (one["into_pump_line"] or 0.0)) for one in effects]
+        return {f"{one['effect']}@{one['at']}": energy for one, energy in zip(effects, taken, strict=True)}
 
     def plot(self) -> Figure:
         """Energy that each effect took, J. Needs Matplotlib."""

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use excavator_bags::{BagInfo, RawMessages, info};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use rosbag2::{BagInfo, RawMessages, info};
 
 use crate::errors::{ReadError, of_bag};
 use crate::topic_columns::{ColumnsError, topic_columns};

@@ -19,7 +19,8 @@ create_exception!(
 create_exception!(excavator, ComputationError, ExcavatorError, "A computation that has no result.");
 
 /// A bag or table that cannot be used.
-pub fn of_bag(error: BagError) -> PyErr {
+pub fn of_bag(error: impl Into<BagError>) -> PyErr {
+    let error: BagError = error.into();
     ReadError::new_err(error.to_string())
 }
 
@@ -42,8 +43,8 @@ pub fn of_model(error: excavator_model::ModelError) -> PyErr {
 pub fn of_work(error: WorkError) -> PyErr {
     let text = error.to_string();
     match error {
-        WorkError::Bag(_) | WorkError::DiagnosisSyntax { .. } => ReadError::new_err(text),
-        WorkError::Gate(refusal) => CheckError::new_err(match refusal.name() {
+        WorkError::Recording(_) | WorkError::Bag(_) | WorkError::DiagnosisSyntax { .. } => ReadError::new_err(text),
+        WorkError::Check(refusal) => CheckError::new_err(match refusal.name() {
             Some(name) => format!("{text}; if this is right, say accept=[\"{name}\"]"),
             None => text,
         }),
@@ -53,17 +54,16 @@ pub fn of_work(error: WorkError) -> PyErr {
         | WorkError::Profile(_)
         | WorkError::ProfileSyntax { .. }
         | WorkError::ProfileWrite(_)
-        | WorkError::ProfileCylinder { .. }
-        | WorkError::AddedTwice(_) => ModelError::new_err(text),
+        | WorkError::ProfileCylinder { .. } => ModelError::new_err(text),
         WorkError::Regression(_)
-        | WorkError::Fit(_)
+        | WorkError::Identify(_)
         | WorkError::Diagnosis(_)
         | WorkError::Design(_)
         | WorkError::Energy(_)
         | WorkError::Refine(_)
         | WorkError::Run(_)
-        | WorkError::Simulation(_)
         | WorkError::Signal(_)
+        | WorkError::Json(_)
         | WorkError::NoTie { .. } => ComputationError::new_err(text),
     }
 }

@@ -24,7 +24,7 @@ impl Map {
         }
         let text =
             toml::to_string(&json::from_python(given)?).map_err(|error| ReadError::new_err(error.to_string()))?;
-        Ok(Map::Table(Box::new(text.parse().map_err(of_map)?)))
+        Ok(Map::Table(Box::new(text.parse::<TopicMap>().map_err(of_map)?)))
     }
 
     /// The map itself.

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use excavator_bags::{ReadLimits, read_regular_text};
 use excavator_model::document::{BUILT_IN, built_in, parse, parse_catalogue, to_text};
 use excavator_model::effects::{Catalogue, Site};
 use excavator_model::template::examples;
@@ -13,6 +12,7 @@ use excavator_workbench::profile_file::ProfileFile;
 use excavator_workbench::simulated::{simulate_commands, simulate_profile};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
+use rosbag2::{ReadLimits, read_regular_text};
 
 use crate::errors::{ModelError, of_bag, of_document, of_model};
 use crate::recording::Recording;
@@ -87,7 +87,7 @@ impl Model {
         BUILT_IN.iter().map(|(name, _)| *name).collect()
     }
 
-    /// Models from made-up data sheets, one for each kind of machine.
+    /// Models from example data sheets, one for each kind of machine.
     #[staticmethod]
     fn templates() -> Vec<(String, Model)> {
         examples().into_iter().map(|model| (model.machine.name.clone(), Model::of(model))).collect()

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use excavator_workbench::results::Outcome as Told;
 use pyo3::prelude::*;
 
-use crate::errors::{ComputationError, of_work};
+use crate::errors::of_work;
 use crate::model::Model;
 use crate::recording::Recording;
 
@@ -26,8 +26,7 @@ impl Outcome {
 impl Outcome {
     /// The content of `--json`.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| serde_json::to_string(&self.told.json()))
-            .map_err(|error| ComputationError::new_err(error.to_string()))
+        py.detach(|| self.told.json()).map_err(of_work)
     }
 
     /// The result in a sentence or two.

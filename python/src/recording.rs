@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use excavator_bags::map::{Origin, SignalName, TopicMap, read_mapped, read_recording_or_mapped};
 use excavator_bags::table::Table;
-use excavator_bags::{ReadReport, Topics, WriteOptions, write_recording};
+use excavator_bags::{ReadReport, Topics, write_recording};
 use excavator_model::recording::{Recording as Signals, is_measured};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
+use rosbag2::WriteOptions;
 
 use crate::columns;
 use crate::errors::{ReadError, of_bag};

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use excavator_bags::dynamic::{Definitions, FieldPath, Layout, Selector, numeric_leaves};
-use excavator_bags::{BagError, RawMessage, RawMessages, Topic};
+use excavator_bags::BagError;
+use rosbag2::dynamic::{Definitions, FieldPath, Layout, Selector, numeric_leaves};
+use rosbag2::{RawMessage, RawMessages, Topic};
 use thiserror::Error;
 
 /// Where the stamp of a message is, if its type has one.
@@ -102,12 +103,12 @@ impl Decoder {
 /// # Errors
 /// [`ColumnsError`] where the bag, the topic, its definition or a field cannot be read.
 pub fn topic_columns(path: &Path, name: &str, fields: Option<&[String]>) -> Result<TopicColumns, ColumnsError> {
-    let mut messages = RawMessages::open(path)?;
+    let mut messages = RawMessages::open(path).map_err(BagError::from)?;
     let mut columns = TopicColumns::default();
     let mut decoder: Option<Decoder> = None;
     let mut row = Vec::new();
     for message in &mut messages {
-        let message = message?;
+        let message = message.map_err(BagError::from)?;
         if message.topic.name != name {
             continue;
         }

@@ -3,17 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use excavator_identification::gate::shared_readings;
+use excavator_identification::checks::shared_readings;
+use excavator_identification::identify::Method;
 use excavator_identification::refinement::Additions;
 use excavator_model::Model as Physics;
 use excavator_model::recording::Recording as Signals;
 use excavator_workbench::WorkError;
 use excavator_workbench::diagnosis_file::DiagnosisFile;
-use excavator_workbench::identified::Method;
 use excavator_workbench::recordings::{Use, checked, telling};
 use excavator_workbench::results::{
     Characterised, Compared, DesignOrder, Determined, Diagnosed, Energetic, IdentifiedResult, Outcome as Told,
-    Progress, Proposed, Refined, Separated, named_additions,
+    Progress, Proposed, Refined, Separated,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -34,30 +34,32 @@ pub struct Usage {
 
 /// Recordings as they are used, and what is told of them.
 struct Desk {
-    usage: Use,
-    whole: bool,
+    usage: Usage,
     remarks: Vec<String>,
 }
 
 impl Desk {
     fn new(usage: Usage) -> Self {
-        let Usage { accept, conditions, whole } = usage;
-        Desk { usage: Use { accept, conditions }, whole, remarks: Vec::new() }
+        Desk { usage, remarks: Vec::new() }
     }
 
     /// A recording, checked.
     fn checked(&mut self, content: &Content, model: &Physics) -> Result<Signals, WorkError> {
-        checked(content.signals.clone(), &content.report, &self.usage, model, &mut self.remarks)
+        self.as_used(content.signals.clone(), content, model)
     }
 
     /// Of a long recording the most informative stretches, checked.
     fn telling(&mut self, content: &Content, model: &Physics) -> Result<Signals, WorkError> {
-        let part = match self.whole {
-            true => None,
-            false => telling(&content.signals, content.is_mapped, model, &mut self.remarks)?,
-        };
-        let used = part.unwrap_or_else(|| content.signals.clone());
-        checked(used, &content.report, &self.usage, model, &mut self.remarks)
+        let whole = &content.signals;
+        let part = if self.usage.whole { None } else { telling(whole, content.is_mapped, model)? };
+        let Some((part, choice)) = part else { return self.as_used(whole.clone(), content, model) };
+        self.remarks.push(format!("{}: {choice}; whole=True uses all", whole.source));
+        self.as_used(part, content, model)
+    }
+
+    fn as_used(&mut self, signals: Signals, content: &Content, model: &Physics) -> Result<Signals, WorkError> {
+        let usage = Use { accept: &self.usage.accept, conditions: &self.usage.conditions };
+        checked(&content.signals.source, signals, &content.report, &usage, model, &mut self.remarks)
     }
 
     fn all(&mut self, contents: &[Arc<Content>], model: &Physics) -> Result<Vec<Signals>, WorkError> {
@@ -213,7 +215,7 @@ pub fn refine(
         let additions = match (add.as_slice(), with_laws) {
             ([], true) => Additions::AutoWithLaws,
             ([], false) => Additions::Auto,
-            (names, _) => named_additions(&model, names)?,
+            (names, _) => Additions::named(&model, names)?,
         };
         let [fitted, judging] = desk.both(&both, &model)?;
         let (fitted, judging) = (fitted.iter().collect::<Vec<_>>(), judging.iter().collect::<Vec<_>>());
@@ -252,7 +254,7 @@ pub fn design(py: Python<'_>, model: &Model, order: Order, progress: Option<&Bou
             Some(name) => {
                 Arc::new(Determined::of(&model, &name, &order, diagnosis.as_ref(), progress)?) as Arc<dyn Told>
             }
-            None => Arc::new(Separated::of(&model, &order, diagnosis.as_ref(), progress)?),
+            None => Arc::new(Separated::of(&model, &order, diagnosis.as_ref(), progress)?) as Arc<dyn Told>,
         })
     })?;
     Ok(Outcome::of(found))

@@ -47,8 +47,8 @@ pub fn blocks(recording: &Recording, samples: usize) -> impl Iterator<Item = Rec
     })
 }
 
-/// Of a long recording the stretches most informative about the parameters of `model`; what was chosen is a remark. `None` for one that
-/// is used whole. A recording that no map brought together is looked at block by block, as the program reads it.
+/// Of a long recording the stretches most informative about the parameters of `model`, and the sentence of [`choice`]. `None` for one
+/// that is used whole. A recording that no map brought together is looked at block by block, as the program reads it.
 ///
 /// # Errors
 /// [`RegressionError`] where it lacks inputs.
@@ -56,8 +56,7 @@ pub fn telling(
     recording: &Recording,
     is_mapped: bool,
     model: &Model,
-    remarks: &mut Vec<String>,
-) -> Result<Option<Recording>, RegressionError> {
+) -> Result<Option<(Recording, String)>, RegressionError> {
     if !is_long(recording.len(), recording.recorded_time(), model) {
         return Ok(None);
     }
@@ -69,8 +68,8 @@ pub fn telling(
     }
     let mut chosen = selection.finish(&recording.source);
     let used = std::mem::take(&mut chosen.recording);
-    remarks.push(format!("{}: {}; whole=True uses all", recording.source, choice(&used, &chosen)));
-    Ok(Some(used))
+    let sentence = choice(&used, &chosen);
+    Ok(Some((used, sentence)))
 }
 
 /// Which stretches were chosen, in a sentence without its end.
@@ -171,5 +170,22 @@ fn leave_pump_pressure_out(model: &Model, recording: &mut Recording, stretches: 
         if stretches.iter().any(|[first, last]| (*first..=*last).contains(&moment)) {
             *pressure = f64::NAN;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_follow_each_other() {
+        let mut recording =
+            Recording::unmeasured("bag", (0..25).map(|index| f64::from(index) * 0.5).collect(), &["arm"]);
+        recording.start_nanoseconds = 7;
+        let found: Vec<Recording> = blocks(&recording, 10).collect();
+        assert_eq!(found.iter().map(Recording::len).collect::<Vec<_>>(), [10, 10, 5]);
+        assert!(found.iter().all(|block| block.time[0] == 0.0));
+        assert_eq!(found[2].start_nanoseconds, 10_000_000_007);
+        assert_eq!(found[2].time[4], 2.0);
     }
 }
