@@ -5,7 +5,6 @@ use std::path::Path;
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
 use excavator_identification::results;
-use excavator_identification::search::Addition;
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::document::to_text;
