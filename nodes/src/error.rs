@@ -8,13 +8,15 @@ use excavator_identification::design::DesignError;
 use excavator_identification::diagnosis::DiagnosisError;
 use excavator_identification::energy::EnergyError;
 use excavator_identification::fit::FitError;
+use excavator_identification::identify::IdentifyError;
 use excavator_identification::refinement::RefineError;
 use excavator_identification::regression::RegressionError;
-use excavator_model::document::{DocumentError, TomlFault};
+use excavator_model::ModelError;
+use excavator_model::document::DocumentError;
 use excavator_model::effects::UnknownEffect;
 use excavator_model::formula::FormulaError;
-use excavator_model::simulation::{ProfileError, RunError};
-use excavator_model::{ModelError, SignalError};
+use excavator_model::simulation::RunError;
+use excavator_workbench::WorkError;
 
 #[cfg(feature = "live")]
 use excavator_ros::RosError;
@@ -28,6 +30,8 @@ pub enum VerbError {
     #[error(transparent)]
     Bag(#[from] rosbag2::Error),
     #[error(transparent)]
+    Work(WorkError),
+    #[error(transparent)]
     Document(#[from] DocumentError),
     #[error("--where \"{text}\": {error}")]
     Condition { text: String, error: Box<FormulaError> },
@@ -37,6 +41,8 @@ pub enum VerbError {
     Regression(#[from] RegressionError),
     #[error(transparent)]
     Fit(#[from] FitError),
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
     #[error(transparent)]
     Diagnosis(#[from] DiagnosisError),
     #[error(transparent)]
@@ -48,16 +54,12 @@ pub enum VerbError {
     #[error(transparent)]
     Run(#[from] RunError),
     #[error(transparent)]
-    Signal(#[from] SignalError),
-    #[error(transparent)]
     Model(#[from] ModelError),
     #[error(transparent)]
     UnknownEffect(#[from] UnknownEffect),
     #[cfg(feature = "live")]
     #[error(transparent)]
     Ros(#[from] RosError),
-    #[error(transparent)]
-    Profile(#[from] ProfileError),
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: std::io::Error },
     #[error("{wrong} {} a problem; see the list above", if *wrong == 1 { "law has" } else { "laws have" })]
@@ -70,12 +72,6 @@ pub enum VerbError {
     NewModel(String),
     #[error("--catalogue {}: {reason}", path.display())]
     Catalogue { path: PathBuf, reason: String },
-    #[error("{} is not a profile: {}", path.display(), fault.message)]
-    ProfileSyntax { path: PathBuf, fault: TomlFault },
-    #[error("cannot write the profile: {0}")]
-    ProfileWrite(String),
-    #[error("profile: {machine} has no cylinder \"{cylinder}\"; it has {known}")]
-    ProfileCylinder { machine: String, cylinder: String, known: String },
     #[cfg(feature = "dashboard")]
     #[error("cannot offer a page at {address}: {source}; choose another --port or --host")]
     Listen { address: String, source: std::io::Error },
@@ -94,10 +90,6 @@ pub enum VerbError {
     PartFailed { part: &'static str, status: String },
     #[error("no bag is given; name at least one recording")]
     NoBags,
-    #[error("{} is not what `excavator diagnose --json` writes: {reason}", path.display())]
-    DiagnosisSyntax { path: PathBuf, reason: String },
-    #[error("{} has no tie: {found}; name rivals with --between", path.display())]
-    NoTie { path: PathBuf, found: String },
     #[error(
         "no profile is written, because no manoeuvre within the limits is expected to suffice: {0}; try a longer --duration or a smaller --stroke-margin"
     )]
@@ -119,8 +111,6 @@ pub enum VerbError {
     NotPrinted(String),
     #[error("a map is guessed from one file, not from {0}; the others of the same recording take the same map")]
     GuessOfSeveral(usize),
-    #[error("cannot add {0} twice")]
-    AddedTwice(String),
 }
 
 impl VerbError {
@@ -129,23 +119,38 @@ impl VerbError {
         move |source| VerbError::Write { path: path.to_path_buf(), source }
     }
 
-    /// 2 for wrong usage, 1 for everything that failed.
     /// The faulty line of a file with a mark at the place; empty where there is none.
     pub fn excerpt(&self) -> &str {
         match self {
             VerbError::Document(error) => error.excerpt(),
-            VerbError::Bag(BagError::Map(error)) => error.excerpt(),
-            VerbError::ProfileSyntax { fault, .. } => &fault.excerpt,
+            VerbError::Recording(BagError::Map(error)) => error.excerpt(),
+            VerbError::Work(error) => error.excerpt(),
             _ => "",
         }
     }
 
+    /// 2 for wrong usage, 1 for everything that failed.
     pub fn exit_code(&self) -> u8 {
         match self {
             #[cfg(feature = "live")]
             VerbError::Ros(RosError::Arguments(_)) => 2,
             VerbError::Design(DesignError::Alone { .. }) => 2,
             _ => 1,
+        }
+    }
+}
+
+impl From<WorkError> for VerbError {
+    /// Errors that are told with an option of the program, or that verbs tell apart, are its own.
+    fn from(error: WorkError) -> Self {
+        match error {
+            WorkError::Recording(error) => error.into(),
+            WorkError::Bag(error) => error.into(),
+            WorkError::Condition { text, error } => VerbError::Condition { text, error },
+            WorkError::Check(error) => error.into(),
+            WorkError::Regression(error) => error.into(),
+            WorkError::Model(error) => error.into(),
+            error => VerbError::Work(error),
         }
     }
 }

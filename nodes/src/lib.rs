@@ -13,7 +13,6 @@ mod command_gate;
 #[cfg(feature = "dashboard")]
 pub mod dashboard;
 pub mod demo;
-mod diagnosis_file;
 #[cfg(feature = "live")]
 mod energy_monitor;
 mod error;
@@ -28,7 +27,6 @@ mod output;
 mod outputs;
 #[cfg(feature = "live")]
 mod play;
-mod profile_file;
 #[cfg(feature = "live")]
 mod record;
 mod recording_part;
@@ -74,7 +72,7 @@ pub fn run_command_line() -> ExitCode {
 /// Ends the program with what is wrong in the command line, or with its help. Names in it may be those of files of others.
 fn refuse(refusal: &clap::Error) -> ! {
     if let Some(reason) = missing::reason(refusal) {
-        terminal::complain(&format!("excavator: {reason}"));
+        terminal::complain(&format!("excavator: {reason}"), "");
         std::process::exit(refusal.exit_code());
     }
     let is_odd = |word: std::ffi::OsString| terminal::printable(&word.to_string_lossy()) != word.to_string_lossy();

@@ -10,16 +10,11 @@ use excavator_identification::regression::RegressionError;
 use excavator_identification::selection::{Chosen, Selection, SelectionSettings, joined};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
+use excavator_workbench::recordings::{BLOCK, is_long};
 
 use crate::block_reader::{needs_a_map, read_beside};
 use crate::error::VerbError;
 use crate::recording_part::Part;
-
-/// Time on a machine of the reference size, s, from which on a recording is long. A fit of three minutes takes a minute.
-const LONG: f64 = 180.0;
-
-/// Samples that are in memory at a time, three minutes at 1 kHz; a recording of more is long.
-const BLOCK: usize = 180_000;
 
 /// Blocks that may wait to be looked at.
 const WAITING: usize = 1;
@@ -53,10 +48,6 @@ fn in_part(recording: Recording, part: Option<Part>, path: &Path) -> Result<Reco
         Some(part) => part.of(&recording, path),
         None => Ok(recording),
     }
-}
-
-fn is_long(samples: usize, duration: f64, model: &Model) -> bool {
-    samples > BLOCK || duration > LONG * model.machine.size().time()
 }
 
 /// A bag of our own topics, one block after the other: the next is read while one is looked at.

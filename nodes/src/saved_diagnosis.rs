@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use excavator_identification::decision::Kind;
 use excavator_identification::refinement::Refinement;
 use excavator_model::Model;
 use excavator_model::document::{self, to_text};
 use excavator_model::effects::Catalogue;
 use excavator_report::refinement_sentence;
+use excavator_workbench::WorkError;
 use rosbag2::{ReadLimits, read_regular_text};
 use serde::{Deserialize, Serialize};
 
@@ -20,8 +22,8 @@ const FORM: u32 = 1;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct SavedDiagnosis {
     form: u32,
-    /// `adequate`, `missing_effect` or `unexplained`.
-    pub verdict: String,
+    /// What is to be thought of the given model.
+    pub verdict: Kind,
     /// The verdict in words.
     pub sentence: String,
     /// The model as it was given, TOML.
@@ -71,7 +73,7 @@ impl SavedDiagnosis {
         let mapping = &recordings.mapping;
         Ok(SavedDiagnosis {
             form: FORM,
-            verdict: refinement.verdict().name().to_string(),
+            verdict: refinement.verdict(),
             sentence: refinement_sentence(refinement),
             given: to_text(&refinement.given_model)?,
             steps,
@@ -89,15 +91,16 @@ impl SavedDiagnosis {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`VerbError::Bag`], [`VerbError::DiagnosisSyntax`].
+    /// [`VerbError::Bag`], [`WorkError::DiagnosisSyntax`].
     pub fn read(path: &Path) -> Result<Self, VerbError> {
         let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
-        let wrong = |reason: String| VerbError::DiagnosisSyntax { path: path.to_path_buf(), reason };
+        let wrong = |reason: String| WorkError::DiagnosisSyntax { path: path.to_path_buf(), reason };
         let saved: SavedDiagnosis = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
         if saved.form == FORM {
             Ok(saved)
         } else {
-            Err(wrong(format!("it has form {}, this program reads form {FORM}; run diagnose --save again", saved.form)))
+            Err(wrong(format!("it has form {}, this program reads form {FORM}; run diagnose --save again", saved.form))
+                .into())
         }
     }
 

@@ -5,16 +5,13 @@ use std::path::{Path, PathBuf};
 use excavator_bags::ReadReport;
 use excavator_bags::map::read_recording_or_mapped;
 use excavator_identification::checks;
-use excavator_identification::selection::Chosen;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse, parse_catalogue};
 use excavator_model::effects::Catalogue;
-use excavator_model::formula::Condition;
-use excavator_model::machine::Supply;
 use excavator_model::recording::Recording;
-use excavator_model::simulation::input_holes;
 #[cfg(feature = "live")]
 use excavator_ros::{Parameter, Value};
+use excavator_workbench::recordings::{Use, checked as fit_for_use, choice};
 use rosbag2::{ReadLimits, read_regular_text};
 
 use crate::cli::{self, Extent, Mapping};
@@ -101,113 +98,27 @@ pub fn telling_recording(path: &Path, extent: Extent, map: &Mapping, model: &Mod
     }
     let (recording, report, chosen) = recording_or_stretches(path, map.origin(), model)?;
     if let Some(chosen) = &chosen {
-        remark(&format!("{}: {}", path.display(), choice(&recording, chosen)));
+        remark(&format!("{}: {}; --whole uses all", path.display(), choice(&recording, chosen)));
     }
     checked(path, recording, &report, map, model)
 }
 
-/// Which stretches were chosen, in a sentence.
-fn choice(used: &Recording, chosen: &Chosen) -> String {
-    let starts: Vec<String> = chosen.starts.iter().map(|start| format!("{start:.0}")).collect();
-    format!(
-        "{:.0} of {:.0} s are used: the most informative stretches of {:.0} s, from {} s (stretches at random would give intervals {:.1} times \
-         as wide); --whole uses all",
-        used.recorded_time(),
-        chosen.duration,
-        chosen.stretch,
-        starts.join(", "),
-        chosen.gain
-    )
-}
-
-/// A recording as it is used, and what is told of it.
+/// A recording as it is used; what is to be known of it is told on standard error.
 fn checked(
     path: &Path,
-    mut recording: Recording,
+    recording: Recording,
     report: &ReadReport,
     map: &Mapping,
     model: &Model,
 ) -> Result<Recording, VerbError> {
-    leave_pump_pressure_out(model, &mut recording, &report.left_out);
-    for problem in report.problems() {
-        remark(&format!("{}: {problem}", path.display()));
-    }
-    for overruled in checks::check(model, &recording, &map.accept)? {
-        remark(&format!("accepted: {overruled}"));
-    }
-    let holes = input_holes(model, &recording);
-    if holes.count > 0 {
-        remark(&format!(
-            "{}: an input is missing for up to {:.2} s, {} time(s); these {:.2} s are left out",
-            path.display(),
-            holes.longest,
-            holes.count,
-            holes.total
-        ));
-        recording = recording.at(&holes.known);
-    }
-    for found in checks::remarks(model, &recording) {
-        remark(&format!("{}: {found}", path.display()));
-    }
-    let kept = map.conditions.iter().map(|text| (text, true));
-    for (text, keeps) in kept.chain(report.left_out_where.iter().map(|text| (text, false))) {
-        let condition = Condition::read(text)
-            .map_err(|error| VerbError::Condition { text: text.clone(), error: Box::new(error) })?;
-        let left_out = leave_out(model, &mut recording, &condition, keeps);
-        let holds = if keeps { "where not" } else { "where" };
-        remark(&format!("{}: {:.0} % of the time is left out, {holds} {text}", path.display(), 100.0 * left_out));
-    }
-    Ok(recording)
-}
-
-/// Takes away what is compared with a model where the condition does not hold, or, unless it `keeps`, where it does; inputs stay. Gives
-/// the share of samples of all cylinders that are left out.
-fn leave_out(model: &Model, recording: &mut Recording, condition: &Condition, keeps: bool) -> f64 {
-    let mut holds = condition.holds(&model.machine, recording);
-    holds.iter_mut().flatten().for_each(|holds| *holds = *holds == keeps);
-    let samples = recording.len();
-    let left_out = holds.iter().flatten().filter(|holds| !**holds).count();
-    for (cylinder, holds) in model.machine.cylinders.iter().zip(&holds) {
-        let Some(signals) = recording.cylinders.iter_mut().find(|signals| signals.name == cylinder.name) else {
-            continue;
-        };
-        let outputs: Vec<&mut Vec<f64>> = if cylinder.imposed_motion.is_some() {
-            vec![&mut signals.rod_force]
-        } else {
-            vec![
-                &mut signals.displacement,
-                &mut signals.joint_angle,
-                &mut signals.velocity,
-                &mut signals.cap_pressure,
-                &mut signals.rod_pressure,
-            ]
-        };
-        for output in outputs {
-            output.iter_mut().zip(holds).filter(|(_, holds)| !**holds).for_each(|(value, _)| *value = f64::NAN);
-        }
-    }
-    if matches!(model.machine.supply, Supply::PumpLine(_)) {
-        for (sample, value) in recording.pump_pressure.iter_mut().enumerate() {
-            if holds.iter().any(|holds| !holds[sample]) {
-                *value = f64::NAN;
-            }
-        }
-    }
-    left_out as f64 / (samples * holds.len()).max(1) as f64
-}
-
-/// Takes away the pump pressure between these moments, ns, where it is compared with a model, and no input.
-fn leave_pump_pressure_out(model: &Model, recording: &mut Recording, stretches: &[[i64; 2]]) {
-    if !matches!(model.machine.supply, Supply::PumpLine(_)) {
-        return;
-    }
-    let start = recording.start_nanoseconds;
-    for (time, pressure) in recording.time.iter().zip(&mut recording.pump_pressure) {
-        let moment = start.saturating_add((time * 1e9).round() as i64);
-        if stretches.iter().any(|[first, last]| (*first..=*last).contains(&moment)) {
-            *pressure = f64::NAN;
-        }
-    }
+    let name = path.display().to_string();
+    report.problems().iter().for_each(|problem| remark(&format!("{name}: {problem}")));
+    let usage = Use { accept: &map.accept, conditions: &map.conditions };
+    let mut remarks = Vec::new();
+    let used = fit_for_use(&name, recording, report, &usage, model, &mut remarks);
+    // Also those that came before a refusal.
+    remarks.iter().for_each(|line| remark(line));
+    Ok(used?)
 }
 
 /// Several recordings.

@@ -27,6 +27,7 @@ fn generated_pages_are_those_of_the_program() {
         (["model", "schema"], "config/model.schema.json"),
         (["manual", "verbs"], "docs/verbs.md"),
         (["manual", "parameters"], "docs/parameters.md"),
+        (["manual", "results"], "docs/results.md"),
     ] {
         assert!(printed(&words) == stored(path), "write {path} anew: excavator {} > {path}", words.join(" "));
     }

@@ -52,7 +52,7 @@ pub use energy_page::energy_page;
 pub use named_text::refinement_sentence;
 pub use plausibility_text::implausible_sentence;
 pub use proposal_page::{proposal_page, result as law_result};
-pub use proposal_text::{guess_sentence, proposal_sentence, remarks as law_remarks};
+pub use proposal_text::{guess_sentence, proposal_sentence};
 pub use refinement_page::refinement_page;
 pub use verdict_text::{NONE_TRIED, verdict_sentence};
 

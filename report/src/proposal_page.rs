@@ -14,7 +14,7 @@ use super::frontier_plot::frontier_plot;
 use super::numbers::{percent, ratio, significant};
 use super::page::{Section, page, tile};
 use super::parameter_table;
-use super::proposal_text::{numbers, proposal_sentence, remarks};
+use super::proposal_text::{numbers, proposal_sentence};
 use super::time_plots::{AFTER, BEFORE, Line, hint, time_plots};
 use super::unexplained_plot::unexplained_plot;
 
@@ -107,7 +107,7 @@ fn table(found: &Proposals) -> Markup {
                 td { (numbers(proposal).join(", ")) }
                 td.n { (significant(proposal.validation_error, 3)) }
                 td { (result(found, proposal)) }
-                td { (remarks(proposal).join("; ")) }
+                td { (proposal.remarks().join("; ")) }
             } } }
         } }
         p.note {

@@ -111,21 +111,3 @@ fn lacking(found: &Proposals) -> Option<String> {
         words::variable(left.variable)
     ))
 }
-
-/// What speaks against a law, one line each.
-pub fn remarks(proposal: &Proposal) -> Vec<String> {
-    let mut remarks = Vec::new();
-    if !proposal.merits.dissipates {
-        remarks.push("puts energy into the machine at times".to_string());
-    }
-    if let Some(power) = proposal.merits.steep {
-        remarks.push(format!("grows with the power {power:.1} beyond what was recorded"));
-    }
-    if !proposal.merits.unsure_signs.is_empty() {
-        remarks.push(format!("the interval of {} holds zero", words::list(&proposal.merits.unsure_signs, "and")));
-    }
-    if proposal.is_a_curve {
-        remarks.push("is a table and no law".to_string());
-    }
-    remarks
-}

@@ -1,10 +1,12 @@
 //! A verdict and its reasons.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What is to be thought of a model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(rename = "Verdict")]
 pub enum Kind {
     /// An effect of the catalogue is missing (or one of a set that cannot be told apart).
     MissingEffect,
@@ -61,14 +63,14 @@ pub struct Standing {
 }
 
 /// Why a verdict is what it is, with the figures that decided.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "reason", rename_all = "snake_case")]
 pub enum Reason {
     /// What the given model leaves is the noise of the sensors.
     WithinNoise {
         /// Log error ratio.
         log_error_ratio: f64,
-        /// [`super::Policy::noise_margin`].
+        /// Largest that counts as noise: `noise_margin` of the policy.
         limit: f64,
     },
     /// It is noise but for a few moments.
@@ -80,21 +82,21 @@ pub enum Reason {
     SmallError {
         /// Error beyond the noise, over the signal's variance.
         relative_error: f64,
-        /// [`super::Policy::small_error`].
+        /// Largest that is too small to act on: `small_error` of the policy.
         limit: f64,
     },
     /// What the given model leaves is no more than the readings of the inputs leave open.
     WithinInputs {
         /// Log error ratio beyond noise and input readings.
         log_error_ratio: f64,
-        /// [`super::Policy::noise_margin`].
+        /// Largest that counts as noise: `noise_margin` of the policy.
         limit: f64,
     },
     /// The readings of the inputs leave as much open as the given model is off, and that is too much to call it adequate.
     TooCoarse {
         /// Error beyond the noise, over the signal's variance.
         relative_error: f64,
-        /// [`super::Policy::largest_error`].
+        /// Largest of an adequate model: `largest_error` of the policy.
         limit: f64,
     },
     /// The best hypothesis explains what the given model leaves.
@@ -103,7 +105,7 @@ pub enum Reason {
         before: f64,
         /// Log error ratio of the best hypothesis.
         after: f64,
-        /// [`super::Policy::largest_remainder`] for each of its effects.
+        /// Log error ratio that may remain, or share of `before`: `largest_remainder` of the policy, over the number of its effects.
         limit: f64,
     },
     /// The best hypothesis explains a part of what the given model leaves, and too much remains for an attribution.
@@ -112,7 +114,7 @@ pub enum Reason {
         before: f64,
         /// Log error ratio of the best hypothesis.
         after: f64,
-        /// [`super::Policy::largest_remainder`] for each of its effects.
+        /// Log error ratio that may remain, or share of `before`: `largest_remainder` of the policy, over the number of its effects.
         limit: f64,
     },
     /// No hypothesis improves on the given model.

@@ -17,6 +17,7 @@ mod books;
 mod cycle;
 mod error;
 mod judgement;
+mod ledgers;
 mod missing_power;
 mod noise;
 mod place;
@@ -34,6 +35,7 @@ pub use analysis::{Cycle, EnergyAnalysis, PhaseDelays, PumpLine, Section, Window
 pub use books::{Books, CylinderBooks, EffectBooks};
 pub use error::EnergyError;
 pub use judgement::{PlaceJudgement, RegimeJudgement};
+pub use ledgers::ledgers;
 pub use missing_power::{MissingPower, missing_power};
 pub use place::Place;
 pub use regime::Regime;

@@ -1,7 +1,12 @@
 //! What a cylinder is doing.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 /// A condition under which the ledger is judged on its own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "Condition")]
 pub enum Regime {
     /// The whole recording.
     Always,

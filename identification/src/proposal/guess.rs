@@ -7,6 +7,8 @@ use excavator_model::site_name;
 use super::grammar::law_text;
 use super::screening::screen;
 use super::shortlist::Shortlist;
+use crate::decision::Kind;
+use crate::diagnosis::{Diagnosis, DiagnosisSettings};
 use crate::fit::{Fit, FitSettings};
 use crate::regression::RegressionError;
 
@@ -40,4 +42,14 @@ pub fn first_guess(
         let place = site_name(&model.machine, law.site).to_string();
         Some(Guess { text, place, improvement: promised.improvement })
     }))
+}
+
+/// Where nothing of the catalogue explains the recordings of a diagnosis: the law of one term that promises most. `None` for any other
+/// verdict, and where a recording lacks the signals of an equation: the verdict stands without a guess.
+pub fn guess_for(diagnosis: &Diagnosis, identification: &[&Recording], validation: &[&Recording]) -> Option<Guess> {
+    if diagnosis.verdict.kind != Kind::Unexplained {
+        return None;
+    }
+    let settings = DiagnosisSettings::default().effort.fit;
+    first_guess(&diagnosis.supported().fit, identification, validation, &settings).ok().flatten()
 }

@@ -14,6 +14,7 @@ mod projection;
 mod promise;
 mod proposals;
 mod propose;
+mod remarks;
 mod screening;
 mod shortlist;
 mod simplest;
@@ -21,7 +22,7 @@ mod survey;
 #[cfg(test)]
 mod tests;
 
-pub use guess::{Guess, first_guess};
+pub use guess::{Guess, first_guess, guess_for};
 pub use merits::Merits;
 pub use proposals::{Proposal, ProposalVerdict, Proposals};
 pub use propose::propose;

@@ -4,6 +4,8 @@ use excavator_model::equations::Situation;
 use excavator_model::formula::FormulaText;
 use excavator_model::recording::Recording;
 use excavator_model::{ModelEffect, site_name};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::grammar::rounded;
 use super::merits::{Merits, law_of, merits};
@@ -15,7 +17,8 @@ use crate::search::{Pool, Trial};
 use crate::validation::{Comparison, compare};
 
 /// What comes of a search for laws.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum ProposalVerdict {
     /// A law explains what the model is missing.
     Law,

@@ -22,6 +22,26 @@ pub enum Additions {
     Named(Vec<Addition>),
 }
 
+impl Additions {
+    /// What a person names: each `EFFECT` at every place where it can act, `EFFECT@PLACE` at one.
+    ///
+    /// # Errors
+    /// [`RefineError::Model`], [`RefineError::Twice`].
+    pub fn named(model: &Model, names: &[String]) -> Result<Self, RefineError> {
+        let mut additions = Vec::new();
+        for name in names {
+            for (physics, site) in model.parse_addition(name)? {
+                let addition = Addition { physics, site };
+                if additions.contains(&addition) {
+                    return Err(RefineError::Twice(name.clone()));
+                }
+                additions.push(addition);
+            }
+        }
+        Ok(Additions::Named(additions))
+    }
+}
+
 /// The model after one addition.
 #[derive(Debug, Clone)]
 pub struct Step {
@@ -97,6 +117,9 @@ pub enum RefineError {
     /// A simulation failed.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// An effect is named at the same place once more.
+    #[error("cannot add {0} twice")]
+    Twice(String),
     /// A search ended farther from the recordings than it began: it says nothing of the effect.
     #[error(
         "{added} was not added: no fit with it comes as near to the identification recordings as the model without it (loss {after:.3}, without {before:.3}). Give the effect better start values in the model file, or recordings that show it"

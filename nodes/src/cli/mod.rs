@@ -124,7 +124,7 @@ pub enum Verb {
         /// Shell.
         shell: clap_complete::Shell,
     },
-    /// Man pages and pages of the docs that are made of the command line.
+    /// Man pages, schemas, and pages of the docs that are made of the program.
     #[command(subcommand, hide = true)]
     Manual(ManualVerb),
     /// The simulated machine of an arm simulator, which starts it.
@@ -133,11 +133,17 @@ pub enum Verb {
     Machine,
 }
 
-/// What is made of the command line.
+/// What is made of the program.
 #[derive(Debug, Subcommand)]
 pub enum ManualVerb {
     /// Write man pages, one for each verb.
     Man {
+        /// Folder to write them to.
+        #[arg(long, value_name = "FOLDER")]
+        to: std::path::PathBuf,
+    },
+    /// Write the JSON schema of each result of `--json`.
+    Schemas {
         /// Folder to write them to.
         #[arg(long, value_name = "FOLDER")]
         to: std::path::PathBuf,
@@ -147,4 +153,6 @@ pub enum ManualVerb {
     /// Print the page of the nodes' parameters, in Markdown.
     #[cfg(feature = "live")]
     Parameters,
+    /// Print the page of the results of `--json`, in Markdown.
+    Results,
 }

@@ -6,6 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand, ValueEnum};
 use excavator_bags::map::Origin;
 use excavator_identification::checks::OVERRULABLE;
+use excavator_identification::identify;
 
 use super::numbers::{positive, profile_duration, stroke_margin};
 use super::{NewModelArguments, ValveTestArguments};
@@ -114,6 +115,16 @@ pub enum Method {
     LeastSquares,
     /// Weak form, then simulated outputs fitted to the measured ones.
     OutputError,
+}
+
+impl From<Method> for identify::Method {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::WeakForm => identify::Method::WeakForm,
+            Method::LeastSquares => identify::Method::LeastSquares,
+            Method::OutputError => identify::Method::OutputError,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

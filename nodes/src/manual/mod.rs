@@ -5,6 +5,7 @@ mod man;
 mod parameters;
 #[cfg(feature = "live")]
 mod parameters_page;
+mod results_page;
 mod verbs_page;
 
 use clap::{Command, CommandFactory};
@@ -15,6 +16,7 @@ use crate::output::filled;
 pub use man::write_man_pages;
 #[cfg(feature = "live")]
 pub use parameters_page::parameters_page;
+pub use results_page::{results_page, write_schemas};
 pub use verbs_page::verbs_page;
 
 /// The command line. The help of each node lists its parameters.

@@ -8,22 +8,7 @@ use excavator_identification::validation::{Baselines, Comparison, Correlation, M
 use excavator_identification::value_marks::{remedies, value_mark};
 use excavator_model::Model;
 use excavator_report::Beside;
-
-/// A number with four significant digits, short.
-pub fn number(value: f64) -> String {
-    if !value.is_finite() {
-        return "-".to_string();
-    }
-    let size = value.abs();
-    if size == 0.0 {
-        "0".to_string()
-    } else if (0.01..1e5).contains(&size) {
-        let digits = (3 - size.log10().floor() as i32).clamp(0, 6) as usize;
-        format!("{value:.digits$}")
-    } else {
-        format!("{value:.3e}")
-    }
-}
+use excavator_workbench::numbers::number;
 
 /// A number with so many decimals, and no minus before zero.
 pub(super) fn fixed(value: f64, decimals: usize) -> String {

@@ -7,9 +7,9 @@ use std::process::{Command, Stdio};
 
 use excavator_model::Model;
 use excavator_model::simulation::{Profile, Segment};
+use excavator_workbench::profile_file::{ProfileFile, usual_rate};
 
 use crate::error::VerbError;
-use crate::profile_file::{ProfileFile, usual_rate};
 use crate::sources;
 
 /// Length of the motion before it begins again, on a machine of the reference size, s.
@@ -64,5 +64,5 @@ fn profile_of(model: &Model) -> Result<String, VerbError> {
         Profile { cylinder: cylinder.name.clone(), segments: vec![sine] }
     });
     let file = ProfileFile { rate: usual_rate(), start: BTreeMap::new(), profiles: profiles.collect() };
-    file.text(&["The motion of `excavator up --demo`.".to_string()])
+    Ok(file.text(&["The motion of `excavator up --demo`.".to_string()])?)
 }

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use excavator_identification::characterisation::{Characterisation, characterise};
+use excavator_identification::results;
 use excavator_model::recording::Recording;
 use excavator_report::characterisation_page;
 
 use super::{print, print_next};
 use crate::cli::CharacteriseArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, characterisation_json, characterisation_table, refusals, write_json};
+use crate::output::{NextStep, characterisation_table, refusals, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -38,7 +39,7 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
         outputs::write(path, &characterisation_page(&model, &sources, &found), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &characterisation_json(&found), arguments.overwriting)?;
+        write_json(path, &results::Characterisation::of(&found), arguments.overwriting)?;
     }
     Ok(())
 }

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use excavator_identification::results;
 use excavator_identification::validation::{Baselines, compare, compare_runs};
 use excavator_report::{Beside, comparison_page, comparison_sentence, others_sentence};
 
 use super::{print, print_detail, print_next};
 use crate::cli::CompareArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, comparison_json, comparison_table, correlation_table, phase_table, write_json};
+use crate::output::{NextStep, comparison_table, correlation_table, phase_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -45,7 +46,8 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
         outputs::write(path, &page, arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &comparison_json(&comparison, &baselines, &others), arguments.overwriting)?;
+        let result = results::Comparison::of(&comparison, &baselines, against.as_ref(), again.as_ref());
+        write_json(path, &result, arguments.overwriting)?;
     }
     Ok(())
 }

@@ -5,16 +5,18 @@ use std::path::Path;
 use excavator_identification::design::{
     DesignSettings, ParameterDesign, Plan, Rival, SeparationDesign, determine, separate,
 };
+use excavator_identification::results;
 use excavator_model::Model;
-use excavator_model::simulation::Profile;
+use excavator_workbench::diagnosis_file::DiagnosisFile;
+use excavator_workbench::sentences::{
+    determination_profile, determination_sentence, separation_profile, separation_sentence,
+};
 
 use super::{print, print_detail, print_next};
 use crate::cli::DesignArguments;
-use crate::diagnosis_file::DiagnosisFile;
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, determination_json, number, pair_table, separation_json, write_json};
+use crate::output::{NextStep, Progress, number, pair_table, write_json};
 use crate::outputs::{self, Inputs, write};
-use crate::profile_file::{ProfileFile, usual_rate};
 use crate::sources;
 
 pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {
@@ -58,25 +60,20 @@ fn between_rivals(
     drop(progress);
     let written = design.any_separated().then_some(arguments.output.as_path());
     if let Some(path) = written {
-        let expectation = design.pairs.iter().map(|pair| {
-            format!(
-                "{} from {}: expected improvement {:.2} ({:.1} standard errors), {}",
-                pair.first,
-                pair.second,
-                pair.expected_improvement,
-                pair.expected_significance,
-                if pair.separated { "separated" } else { "not separated" }
-            )
-        });
-        write(path, &text(model, &design.profiles, &design.plan, expectation.collect())?, arguments.overwriting)?;
+        write(path, &separation_profile(model, &design)?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&design, written, arguments);
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &separation_json(&design, written), arguments.overwriting)?;
+        write_json(path, &results::Separation::of(&design, name_of(written).as_deref()), arguments.overwriting)?;
     }
     if written.is_some() { Ok(()) } else { Err(VerbError::NothingSeparates(sentence(&design))) }
+}
+
+/// The profile file as a result names it.
+fn name_of(written: Option<&Path>) -> Option<String> {
+    written.map(|path| path.display().to_string())
 }
 
 /// The pairs that are not separated, in words.
@@ -93,13 +90,7 @@ fn sentence(design: &SeparationDesign) -> String {
 
 fn show(design: &SeparationDesign, written: Option<&Path>, arguments: &DesignArguments) {
     let (all, within) = design.manoeuvres;
-    let separated = design.pairs.iter().filter(|pair| pair.separated).count();
-    let pairs = design.pairs.len();
-    print(&format!(
-        "A profile of {:.1} s is expected to separate {separated} of {pairs} {}.",
-        design.plan.duration,
-        if pairs == 1 { "pair" } else { "pairs" }
-    ));
+    print(&separation_sentence(design));
     print(&pair_table(design).to_string());
     if !design.all_separated() && design.any_separated() {
         print(&format!("{}.", sentence(design)));
@@ -146,14 +137,7 @@ fn for_parameter(
     drop(progress);
     let written = design.determined.then_some(arguments.output.as_path());
     if let Some(path) = written {
-        let expectation = format!(
-            "{}: expected standard error {} {} of {}",
-            design.name,
-            number(design.trial_run_error),
-            design.unit,
-            number(design.value)
-        );
-        write(path, &text(&model, &design.profiles, &design.plan, vec![expectation])?, arguments.overwriting)?;
+        write(path, &determination_profile(&model, &design)?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show_parameter(&design);
@@ -162,7 +146,7 @@ fn for_parameter(
         }
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &determination_json(&design, written), arguments.overwriting)?;
+        write_json(path, &results::Determination::of(&design, name_of(written).as_deref()), arguments.overwriting)?;
     }
     if written.is_some() {
         return Ok(());
@@ -179,12 +163,7 @@ fn for_parameter(
 
 fn show_parameter(design: &ParameterDesign) {
     let (all, within) = design.manoeuvres;
-    print(&format!(
-        "A profile of {:.1} s is expected to determine {} to within {:.1} % (one standard error).",
-        design.plan.duration,
-        design.name,
-        100.0 * (design.trial_run_error / design.value).abs()
-    ));
+    print(&determination_sentence(design));
     print_detail(&format!("{within} of {all} manoeuvres stay within the limits."));
     let line = |what: &str, error: f64| {
         let share = 100.0 * error / design.value.abs();
@@ -198,17 +177,4 @@ fn show_parameter(design: &ParameterDesign) {
     line("this profile, sensor noise alone", design.expected_error);
     line("this profile, as a fit to a trial run reports it", design.trial_run_error);
     show_plan(&design.plan);
-}
-
-/// The profile file.
-fn text(model: &Model, profiles: &[Profile], plan: &Plan, expectation: Vec<String>) -> Result<String, VerbError> {
-    let file =
-        ProfileFile { rate: usual_rate(), start: std::collections::BTreeMap::new(), profiles: profiles.to_vec() };
-    let mut comment = vec![format!(
-        "Proposed by `excavator design` for {}: {:.1} s from rest at mid-stroke. Areas in m2, times in s.",
-        model.machine.name, plan.duration
-    )];
-    comment.extend(plan.chosen.iter().map(|(name, start)| format!("{start:6.1} s  {name}")));
-    comment.extend(expectation);
-    file.text(&comment)
 }

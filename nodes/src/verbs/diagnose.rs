@@ -4,9 +4,10 @@ use std::path::Path;
 
 use excavator_identification::decision::Kind;
 use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
-use excavator_identification::energy::{EnergySettings, MissingPower, analyse, missing_power};
-use excavator_identification::proposal::{Guess, first_guess};
+use excavator_identification::energy::ledgers;
+use excavator_identification::proposal::guess_for;
 use excavator_identification::refinement::refinement_of;
+use excavator_identification::results;
 use excavator_identification::search::Unpromising;
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
@@ -16,7 +17,7 @@ use excavator_report::{NONE_TRIED, diagnosis_page, guess_sentence, verdict_sente
 use super::{print, print_detail, print_next};
 use crate::cli::DiagnoseArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, candidate_table, diagnosis_json, guess_json, missing_power_json, write_json};
+use crate::output::{NextStep, Progress, candidate_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::saved_diagnosis::SavedDiagnosis;
 use crate::sources;
@@ -53,7 +54,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&model, &diagnosis);
     }
-    let guess = guess(&diagnosis, &identification, &validation);
+    let guess = guess_for(&diagnosis, &identification, &validation);
     if arguments.json.json.as_deref() != Some(Path::new("-"))
         && let Some(guess) = &guess
     {
@@ -78,14 +79,8 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         outputs::write(path, &diagnosis_page(&model, &diagnosis, &comparisons, &missing), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        let mut value = diagnosis_json(&model, &diagnosis);
-        value["first_guess"] = guess.as_ref().map_or(serde_json::Value::Null, guess_json);
-        let sentences = |found: &[MissingPower]| found.iter().map(missing_power_json).collect::<Vec<_>>();
-        value["missing_power"] = missing
-            .iter()
-            .map(|(source, found)| serde_json::json!({"source": source, "found": sentences(found)}))
-            .collect();
-        write_json(path, &value, arguments.overwriting)?;
+        let result = results::Diagnosis::of(&model, &diagnosis, guess.as_ref(), &missing);
+        write_json(path, &result, arguments.overwriting)?;
     }
     Ok(())
 }
@@ -110,23 +105,6 @@ fn next(arguments: &DiagnoseArguments, diagnosis: &Diagnosis) -> NextStep {
             same("add it to the model", "refine").word("--auto").path("-o", Path::new("refined.toml"))
         }
     }
-}
-
-/// Where nothing of the catalogue explains the recordings: the term that promises most.
-fn guess(diagnosis: &Diagnosis, identification: &[&Recording], validation: &[&Recording]) -> Option<Guess> {
-    if diagnosis.verdict.kind != Kind::Unexplained {
-        return None;
-    }
-    // Without the signals of an equation there is nothing to guess from; the verdict stands without.
-    let settings = DiagnosisSettings::default().effort.fit;
-    first_guess(&diagnosis.supported().fit, identification, validation, &settings).ok().flatten()
-}
-
-/// What the energy ledger of the refitted model says of each recording in which energy is known.
-fn ledgers(model: &Model, recordings: &[&Recording]) -> Vec<(String, Vec<MissingPower>)> {
-    let analyses = recordings.iter().map(|recording| analyse(model, recording, EnergySettings::default()));
-    // Without the pressures there is no ledger; the diagnosis does not need it.
-    analyses.flatten().map(|analysis| (analysis.source.clone(), missing_power(model, &analysis))).collect()
 }
 
 /// Shares of the residual that are worth a line.

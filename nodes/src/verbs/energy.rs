@@ -7,20 +7,21 @@ use std::sync::mpsc::Receiver;
 use excavator_identification::energy::{
     Analyser, EnergyAnalysis, EnergyError, EnergySettings, MissingPower, analyse, missing_power,
 };
+use excavator_identification::results;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 use excavator_report::energy_page;
+use excavator_workbench::recordings::LEDGER_BLOCK;
+use excavator_workbench::sentences::ledger_sentence;
 
 use super::{print, print_next};
 use crate::block_reader::{needs_a_map, read_beside};
 use crate::cli::{EnergyArguments, Mapping};
 use crate::error::VerbError;
-use crate::output::{NextStep, energy_json, energy_table, ledger_table, write_json};
+use crate::output::{NextStep, energy_table, ledger_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::{sources, terminal};
 
-/// Samples per block: ten seconds at 1 kHz.
-const BLOCK: usize = 10_000;
 /// Blocks that may wait for the analysis.
 const WAITING: usize = 4;
 
@@ -40,7 +41,7 @@ pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
         outputs::write(path, &energy_page(&model, &analysis), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &energy_json(&model, &analysis), arguments.overwriting)?;
+        write_json(path, &results::Energy::of(&model, &analysis), arguments.overwriting)?;
     }
     Ok(())
 }
@@ -76,7 +77,7 @@ fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAna
         Ok::<_, EnergyError>(analyser)
     };
     let all = |block| (Some(block), ControlFlow::Continue(()));
-    let (report, analysis) = read_beside(bag, mapping.origin().namespace, BLOCK, WAITING, all, work)?;
+    let (report, analysis) = read_beside(bag, mapping.origin().namespace, LEDGER_BLOCK, WAITING, all, work)?;
     for problem in report.problems() {
         terminal::remark(&format!("{}: {problem}", bag.display()));
     }
@@ -84,16 +85,7 @@ fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAna
 }
 
 fn show(model: &Model, analysis: &EnergyAnalysis, missing: &[MissingPower]) {
-    let over = format!("{:.1} s of {}", analysis.duration, analysis.source);
-    match missing.first() {
-        None => print(&format!(
-            "The ledger of {} closes over {over}: every residual is within the noise.",
-            model.machine.name
-        )),
-        Some(first) => {
-            print(&format!("The ledger of {} does not close over {over}. {}", model.machine.name, first.sentence))
-        }
-    }
+    print(&ledger_sentence(model, analysis, missing));
     print(&energy_table(model, analysis).to_string());
     if let Some(cycle) = &analysis.cycle {
         print(&format!("energies per cycle are means over {} cycles of {:.3} s", cycle.count, cycle.period));

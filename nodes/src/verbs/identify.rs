@@ -2,36 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_identification::fit::{
-    FitSettings, ProfileInterval, fit, profile, simplified, with_nuisances, with_nuisances_of,
-};
-use excavator_identification::regression::{
-    ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form,
-};
+use excavator_identification::identify::{Identified, identify};
+use excavator_identification::results;
+use excavator_model::Model;
 use excavator_model::document::to_text;
-use excavator_model::effects::Family;
 use excavator_model::recording::Recording;
-use excavator_model::{HistoryEntry, Model, Parameter};
 use excavator_report::implausible_sentence;
-use serde_json::{Value, json};
+use excavator_workbench::sentences::{identification_sentence, profile_sentence};
 
 use super::{print, print_detail, print_next};
-use crate::cli::{IdentifyArguments, Method};
+use crate::cli::IdentifyArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, identification_json, number, parameter_table, remedy_lines, write_json};
+use crate::output::{NextStep, number, parameter_table, remedy_lines, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
-
-struct Identified {
-    model: Model,
-    fitted: Vec<usize>,
-    conditions: Vec<ConditionNumber>,
-    rows: usize,
-    equations: Vec<EquationGauge>,
-    not_identified: Vec<(usize, String)>,
-    /// Of parameters whose standard errors say little.
-    profiles: Vec<ProfileInterval>,
-}
 
 pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     let outputs = [("-o", arguments.output.as_deref()), ("--json", arguments.json.json.as_deref())];
@@ -42,14 +26,9 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     let model = sources::model(&arguments.model)?;
     let recordings = sources::telling_recordings(&arguments.bag, arguments.extent, &arguments.mapping, &model)?;
     let recordings: Vec<&Recording> = recordings.iter().collect();
-    let mut result = identify(&model, &recordings, arguments.method)?;
-    result.model.history.push(HistoryEntry {
-        when: jiff::Timestamp::now().to_string(),
-        what: format!("parameters identified ({})", method_name(arguments.method)),
-        recordings: recordings.iter().map(|recording| recording.source.clone()).collect(),
-        validation_error_before: None,
-        validation_error_after: None,
-    });
+    let method = arguments.method.into();
+    let mut result = identify(&model, &recordings, method)?;
+    result.add_history(&jiff::Timestamp::now().to_string(), method, &recordings);
     if let Some(path) = &arguments.output {
         outputs::write(path, &to_text(&result.model)?, arguments.overwriting)?;
     }
@@ -58,124 +37,9 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
         print_next(&next(arguments));
     }
     if let Some(path) = &arguments.json.json {
-        let equations = result.equations.iter().map(|gauge| {
-            let chi = gauge.chi_squared_per_row;
-            json!({
-                "equation": gauge.equation,
-                "chi_squared_per_row": chi.is_finite().then_some(chi),
-                "relative_residual": gauge.relative_residual,
-                "rows": gauge.rows,
-            })
-        });
-        let mut value = identification_json(
-            &result.model,
-            &result.fitted,
-            &result.conditions,
-            result.rows,
-            equations.collect(),
-            &result.not_identified,
-        );
-        if !result.profiles.is_empty() {
-            value["profiles"] = profiles_json(&result);
-        }
-        write_json(path, &value, arguments.overwriting)?;
+        write_json(path, &results::Identification::of(&result), arguments.overwriting)?;
     }
     Ok(())
-}
-
-fn method_name(method: Method) -> &'static str {
-    match method {
-        Method::WeakForm => "weak form with instruments",
-        Method::LeastSquares => "least squares",
-        Method::OutputError => "output error",
-    }
-}
-
-fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<Identified, VerbError> {
-    let regression = match method {
-        Method::LeastSquares => Some(least_squares(model, recordings)?),
-        Method::WeakForm => Some(in_weak_form(model, recordings)?),
-        // Where the equations lack signals the given values are the start.
-        Method::OutputError => in_weak_form(model, recordings).ok(),
-    };
-    let mut result = match regression {
-        Some(regression) => Identified {
-            model: regression.model,
-            fitted: regression.fitted,
-            conditions: regression.condition_numbers,
-            rows: regression.rows,
-            equations: regression.equations,
-            not_identified: regression.not_identified,
-            profiles: Vec::new(),
-        },
-        None => Identified {
-            model: model.clone(),
-            fitted: Vec::new(),
-            conditions: Vec::new(),
-            rows: 0,
-            equations: Vec::new(),
-            not_identified: Vec::new(),
-            profiles: Vec::new(),
-        },
-    };
-    if method == Method::OutputError {
-        let settings = FitSettings { sample_rate: f64::INFINITY, ..FitSettings::default() };
-        let fitted = fit(&with_nuisances(&result.model, recordings), recordings, &settings)?;
-        let fitted = simplified(model, &fitted, recordings, &settings)?;
-        result.profiles = fitted
-            .undetermined()
-            .into_iter()
-            .map(|index| profile(&fitted, recordings, &FitSettings::default(), index))
-            .collect::<Result<_, _>>()?;
-        result.model = fitted.model;
-        result.fitted = fitted.fitted;
-        result.not_identified.clear();
-    }
-    Ok(result)
-}
-
-fn in_weak_form(model: &Model, recordings: &[&Recording]) -> Result<Regression, RegressionError> {
-    let extended = with_nuisances_of(model, &[Family::Recording], recordings);
-    Ok(weak_form(&extended, recordings, &WeakFormSettings::default())?.simplified(model))
-}
-
-fn profiles_json(result: &Identified) -> Value {
-    let names = result.model.parameter_names();
-    let one = |profile: &ProfileInterval| {
-        json!({
-            "name": names[profile.index],
-            "lower": profile.lower,
-            "upper": profile.upper,
-            "identifiable": profile.is_identifiable(),
-            "moves_with": profile.companion.map(|(other, correlation)| json!({"name": names[other], "correlation": correlation})),
-        })
-    };
-    Value::Array(result.profiles.iter().map(one).collect())
-}
-
-/// What the recordings say of a parameter that they hardly show.
-fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
-    let names = model.parameter_names();
-    let unit = model.parameters().nth(profile.index).map_or("", |(_, parameter)| &*parameter.card.unit);
-    let name = &names[profile.index];
-    let mut text = match (profile.lower, profile.upper) {
-        (None, None) => {
-            format!("{name} is not identifiable from these recordings: all values in its range fit equally well")
-        }
-        (Some(lower), None) => {
-            format!("{name} is at least {} {unit} (95 %); every larger value fits as well", number(lower))
-        }
-        (None, Some(upper)) => {
-            format!("{name} is at most {} {unit} (95 %); every smaller value fits as well", number(upper))
-        }
-        (Some(lower), Some(upper)) => {
-            format!("{name} is between {} and {} {unit} (95 %, profile likelihood)", number(lower), number(upper))
-        }
-    };
-    if let Some((other, correlation)) = profile.companion {
-        text += &format!("; {} compensates for changes of it (correlation {correlation:.2})", names[other]);
-    }
-    text
 }
 
 /// The identified model beside the recording; first of all it has to be kept.
@@ -195,35 +59,8 @@ fn next(arguments: &IdentifyArguments) -> NextStep {
     }
 }
 
-/// How many parameters were identified, how well, and what the equations leave.
-fn summary(result: &Identified) -> String {
-    let machine = &result.model.machine.name;
-    let asked = result.fitted.len() + result.not_identified.len();
-    let names = result.model.parameter_names();
-    let share = |(index, parameter): (usize, &Parameter)| {
-        let margin = parameter.margin_95.filter(|margin| margin.is_finite() && parameter.value != 0.0)?;
-        Some((margin / parameter.value.abs(), names[index].as_str()))
-    };
-    let parameters = result.model.parameters().map(|(_, parameter)| parameter).enumerate();
-    let fitted = parameters.filter(|(index, _)| result.fitted.contains(index));
-    let widest = fitted.filter_map(share).max_by(|a, b| a.0.total_cmp(&b.0));
-    let mut text = format!("Identified {} of {asked} unknown parameters of {machine}.", result.fitted.len());
-    if let Some((share, name)) = widest {
-        text += &format!(" The widest 95 % interval is that of {name}: ± {:.1} % of its value.", 100.0 * share);
-    }
-    let known = result.equations.iter().filter(|gauge| gauge.chi_squared_per_row.is_finite());
-    if let Some(worst) = known.max_by(|a, b| a.chi_squared_per_row.total_cmp(&b.chi_squared_per_row)) {
-        text += &format!(
-            " The largest residual is that of {}: {} times the variance of sensor noise.",
-            worst.equation,
-            number(worst.chi_squared_per_row)
-        );
-    }
-    text
-}
-
 fn show(given: &Model, result: &Identified) {
-    print(&summary(result));
+    print(&identification_sentence(result));
     print(&parameter_table(&result.model, &result.fitted).to_string());
     remedy_lines(&result.model, &result.fitted).iter().for_each(|line| print(line));
     for condition in &result.conditions {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::proposal::{Finding, Proposal, ProposalVerdict, Proposals, propose};
+use excavator_identification::results;
 use excavator_model::Model;
 use excavator_model::document::catalogue_text;
 use excavator_model::recording::Recording;
@@ -12,7 +13,7 @@ use excavator_report::{proposal_page, proposal_sentence};
 use super::{print, print_next};
 use crate::cli::ProposeArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, proposal_json, proposal_table, write_json};
+use crate::output::{NextStep, Progress, proposal_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -44,7 +45,7 @@ pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
         outputs::write(path, &proposal_page(&model, &found), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &proposal_json(&model, &found), arguments.overwriting)?;
+        write_json(path, &results::Proposals::of(&found), arguments.overwriting)?;
     }
     Ok(())
 }

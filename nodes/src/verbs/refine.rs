@@ -4,7 +4,7 @@ use std::path::Path;
 
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
-use excavator_identification::search::Addition;
+use excavator_identification::results;
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::document::to_text;
@@ -15,7 +15,7 @@ use super::{print, print_next};
 use crate::cli::{ModelChoice, Recordings, RefineArguments};
 use crate::error::VerbError;
 use crate::output::{
-    NextStep, Progress, Stage, compared_steps, parameter_table, refinement_json, remedy_lines, stage_table, write_json,
+    NextStep, Progress, Stage, compared_steps, parameter_table, remedy_lines, stage_table, write_json,
 };
 use crate::outputs::{self, Inputs};
 use crate::saved_diagnosis::SavedDiagnosis;
@@ -40,7 +40,7 @@ fn searched(arguments: &RefineArguments) -> Result<(), VerbError> {
     let additions = match (arguments.auto, arguments.propose) {
         (true, true) => Additions::AutoWithLaws,
         (true, false) => Additions::Auto,
-        _ => named(&model, &arguments.add)?,
+        _ => Additions::named(&model, &arguments.add)?,
     };
     let (identification, validation) = sources::fitted_and_judging(&recordings, &model)?;
     let identification: Vec<&Recording> = identification.iter().collect();
@@ -61,8 +61,9 @@ fn searched(arguments: &RefineArguments) -> Result<(), VerbError> {
         outputs::write(path, &refinement_page(&refinement), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
-        let value = refinement_json(refinement.verdict().name(), compared_steps(&refinement), &arguments.output);
-        write_json(path, &value, arguments.overwriting)?;
+        let written = arguments.output.display().to_string();
+        let result = results::Refinement::of(refinement.verdict(), compared_steps(&refinement), Some(&written));
+        write_json(path, &result, arguments.overwriting)?;
     }
     Ok(())
 }
@@ -99,7 +100,8 @@ fn as_diagnosed(path: &Path, arguments: &RefineArguments) -> Result<(), VerbErro
         end(arguments, &ModelChoice { model: String::new(), own: arguments.own.clone() }, &recordings);
     }
     if let Some(file) = &arguments.json.json {
-        write_json(file, &refinement_json(&saved.verdict, steps(), &arguments.output), arguments.overwriting)?;
+        let written = arguments.output.display().to_string();
+        write_json(file, &results::Refinement::of(saved.verdict, steps(), Some(&written)), arguments.overwriting)?;
     }
     Ok(())
 }
@@ -112,21 +114,6 @@ fn end(arguments: &RefineArguments, choice: &ModelChoice, recordings: &Recording
         let page = arguments.output.with_extension("html");
         print_next(&step.path("--bag", bag).mapping(&recordings.mapping).path("--report", &page));
     }
-}
-
-/// What the user named, each at every place it can act unless a place is given.
-fn named(model: &Model, names: &[String]) -> Result<Additions, VerbError> {
-    let mut additions = Vec::new();
-    for name in names {
-        for (physics, site) in model.parse_addition(name)? {
-            let addition = Addition { physics, site };
-            if additions.contains(&addition) {
-                return Err(VerbError::AddedTwice(name.clone()));
-            }
-            additions.push(addition);
-        }
-    }
-    Ok(Additions::Named(additions))
 }
 
 /// Prints a refinement for people.

@@ -2,60 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
+use excavator_identification::decision::Kind;
 use excavator_identification::design::Sensors;
+use excavator_identification::results::{Candidate, Diagnosis, Parameter};
 use excavator_model::{Model, ModelError};
 use rosbag2::{ReadLimits, read_regular_text};
-use serde::Deserialize;
 
-use crate::error::VerbError;
-
-#[derive(Debug, Deserialize)]
-struct Value {
-    name: String,
-    value: Option<f64>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Candidate {
-    effect: String,
-    cylinder: String,
-    tied_with_first: bool,
-    #[serde(default)]
-    refitted: Vec<Value>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Nuisance {
-    effect: String,
-    cylinder: String,
-}
-
-#[derive(Debug, Deserialize)]
-struct Instrument {
-    name: String,
-    noise: Option<f64>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Text {
-    verdict: String,
-    candidates: Vec<Candidate>,
-    #[serde(default)]
-    rejected: Vec<Candidate>,
-    #[serde(default)]
-    refitted: Vec<Value>,
-    #[serde(default)]
-    instruments: Vec<Instrument>,
-    #[serde(default)]
-    nuisances: Vec<Nuisance>,
-}
+use crate::WorkError;
 
 /// A diagnosis as far as a design needs it: rivals by name (`EFFECT@PLACE`, `none`) with the values of all parameters that
 /// were fitted with them.
 #[derive(Debug)]
 pub struct DiagnosisFile {
     path: PathBuf,
-    verdict: String,
+    verdict: Kind,
     tied: Vec<String>,
     named: Vec<String>,
     fitted: Vec<(String, Vec<(String, f64)>)>,
@@ -67,38 +27,45 @@ impl DiagnosisFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`VerbError::Bag`], [`VerbError::DiagnosisSyntax`].
-    pub fn read(path: &Path) -> Result<Self, VerbError> {
-        let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
-        let text: Text = serde_json::from_str(&text)
-            .map_err(|error| VerbError::DiagnosisSyntax { path: path.to_path_buf(), reason: error.to_string() })?;
+    /// [`WorkError::Bag`], [`WorkError::DiagnosisSyntax`].
+    pub fn read(path: &Path) -> Result<Self, WorkError> {
+        DiagnosisFile::of_text(path, &read_regular_text(path, ReadLimits::DEFAULT.document)?)
+    }
+
+    /// Reads the text of a file; `path` is for messages.
+    ///
+    /// # Errors
+    /// [`WorkError::DiagnosisSyntax`].
+    pub fn of_text(path: &Path, text: &str) -> Result<Self, WorkError> {
+        let found: Diagnosis = serde_json::from_str(text)
+            .map_err(|error| WorkError::DiagnosisSyntax { path: path.to_path_buf(), reason: error.to_string() })?;
         let name = |candidate: &Candidate| format!("{}@{}", candidate.effect, candidate.cylinder);
-        let mut fitted: Vec<(String, Vec<(String, f64)>)> = vec![("none".into(), values(&text.refitted))];
-        fitted.extend(text.candidates.iter().chain(&text.rejected).map(|one| (name(one), values(&one.refitted))));
+        let mut fitted: Vec<(String, Vec<(String, f64)>)> = vec![("none".into(), values(&found.refitted))];
+        fitted.extend(found.candidates.iter().chain(&found.rejected).map(|one| (name(one), values(&one.refitted))));
         Ok(DiagnosisFile {
             path: path.to_path_buf(),
-            verdict: text.verdict,
-            tied: text.candidates.iter().filter(|candidate| candidate.tied_with_first).map(name).collect(),
-            named: text.candidates.iter().map(name).collect(),
+            verdict: found.verdict,
+            tied: found.candidates.iter().filter(|candidate| candidate.tied_with_first).map(name).collect(),
+            named: found.candidates.iter().map(name).collect(),
             fitted,
-            nuisances: text.nuisances.iter().map(|one| format!("{}@{}", one.effect, one.cylinder)).collect(),
-            noise: text.instruments.into_iter().filter_map(|one| Some((one.name, one.noise?))).collect(),
+            nuisances: found.nuisances.iter().map(|one| format!("{}@{}", one.effect, one.cylinder)).collect(),
+            noise: found.instruments.into_iter().filter_map(|one| Some((one.name, one.noise?))).collect(),
         })
     }
 
     /// Names of the tied candidates, best first.
     ///
     /// # Errors
-    /// [`VerbError::NoTie`] when there are fewer than two.
-    pub fn tied(&self) -> Result<Vec<String>, VerbError> {
+    /// [`WorkError::NoTie`] when there are fewer than two.
+    pub fn tied(&self) -> Result<Vec<String>, WorkError> {
         if self.tied.len() > 1 {
             return Ok(self.tied.clone());
         }
         let found = match self.named.first() {
             Some(first) => format!("it names {first} alone"),
-            None => format!("its verdict is {} without a candidate", self.verdict),
+            None => format!("its verdict is {} without a candidate", self.verdict.name()),
         };
-        Err(VerbError::NoTie { path: self.path.clone(), found })
+        Err(WorkError::NoTie { path: self.path.clone(), found })
     }
 
     /// Whether the diagnosis has fitted values for this rival.
@@ -135,6 +102,6 @@ impl DiagnosisFile {
     }
 }
 
-fn values(list: &[Value]) -> Vec<(String, f64)> {
+fn values(list: &[Parameter]) -> Vec<(String, f64)> {
     list.iter().filter_map(|one| Some((one.name.clone(), one.value?))).collect()
 }

@@ -9,7 +9,7 @@ use excavator_model::simulation::{Profile, Segment};
 use rosbag2::{ReadLimits, read_regular_text};
 use serde::{Deserialize, Serialize};
 
-use crate::error::VerbError;
+use crate::WorkError;
 
 /// Memory that a simulation may take, bytes.
 const MOST_MEMORY: f64 = 1e9;
@@ -48,19 +48,26 @@ impl ProfileFile {
     /// Reads a file and checks it against a machine.
     ///
     /// # Errors
-    /// [`VerbError`] in one line that says which number or name is wrong.
-    pub fn read(path: &Path, machine: &Machine) -> Result<Self, VerbError> {
-        let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
-        let wrong = |fault: TomlFault| VerbError::ProfileSyntax { path: path.to_path_buf(), fault };
+    /// [`WorkError`] in one line that says which number or name is wrong.
+    pub fn read(path: &Path, machine: &Machine) -> Result<Self, WorkError> {
+        ProfileFile::of_text(path, &read_regular_text(path, ReadLimits::DEFAULT.document)?, machine)
+    }
+
+    /// Reads the text of a file and checks it against a machine; `path` is for messages.
+    ///
+    /// # Errors
+    /// [`WorkError`] in one line that says which number or name is wrong.
+    pub fn of_text(path: &Path, text: &str, machine: &Machine) -> Result<Self, WorkError> {
+        let wrong = |fault: TomlFault| WorkError::ProfileSyntax { path: path.to_path_buf(), fault };
         let syntax = |reason: String| wrong(reason.into());
-        let file: ProfileFile = toml::from_str(&text).map_err(|error| wrong(toml_fault(&text, &error)))?;
+        let file: ProfileFile = toml::from_str(text).map_err(|error| wrong(toml_fault(text, &error)))?;
         if !(1.0..=100_000.0).contains(&file.rate) {
             return Err(syntax(format!("rate = {} must be between 1 and 100000 samples per second", file.rate)));
         }
         let names: Vec<&str> = machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();
         for name in file.profiles.iter().map(|profile| &profile.cylinder).chain(file.start.keys()) {
             if !names.contains(&name.as_str()) {
-                return Err(VerbError::ProfileCylinder {
+                return Err(WorkError::ProfileCylinder {
                     machine: machine.name.clone(),
                     cylinder: name.clone(),
                     known: names.join(", "),
@@ -127,9 +134,9 @@ impl ProfileFile {
     /// The file's text, under comment lines that say what it is.
     ///
     /// # Errors
-    /// [`VerbError::ProfileWrite`] when a number cannot be written.
-    pub fn text(&self, comment: &[String]) -> Result<String, VerbError> {
-        let body = toml::to_string(self).map_err(|error| VerbError::ProfileWrite(error.to_string()))?;
+    /// [`WorkError::ProfileWrite`] when a number cannot be written.
+    pub fn text(&self, comment: &[String]) -> Result<String, WorkError> {
+        let body = toml::to_string(self).map_err(|error| WorkError::ProfileWrite(error.to_string()))?;
         let head: String = comment.iter().map(|line| format!("# {line}\n")).collect();
         Ok(format!("{head}\n{body}"))
     }

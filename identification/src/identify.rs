@@ -1,0 +1,136 @@
+//! The unknown parameters of a model from recordings, by any of the methods.
+
+use std::fmt;
+
+use excavator_model::effects::Family;
+use excavator_model::recording::Recording;
+use excavator_model::{HistoryEntry, Model};
+
+use crate::fit::{FitError, FitSettings, ProfileInterval, fit, profile, simplified, with_nuisances, with_nuisances_of};
+use crate::regression::{
+    ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form,
+};
+
+/// How parameters are identified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Weak form of the equations with instruments from the simulated model: not biased by sensor noise.
+    WeakForm,
+    /// Ordinary least squares on smoothed differences, the recipe of Arai et al. 2021; biased by noise.
+    LeastSquares,
+    /// Weak form, then simulated outputs fitted to the measured ones.
+    OutputError,
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Method::WeakForm => "weak form with instruments",
+            Method::LeastSquares => "least squares",
+            Method::OutputError => "output error",
+        })
+    }
+}
+
+/// An identified model.
+#[derive(Debug, Clone)]
+pub struct Identified {
+    /// The model with the identified parameters and their standard errors.
+    pub model: Model,
+    /// Indices of the identified parameters, in the model's order.
+    pub fitted: Vec<usize>,
+    /// Condition number of each group of equations.
+    pub conditions: Vec<ConditionNumber>,
+    /// Rows of the regression; 0 where there was none.
+    pub rows: usize,
+    /// How well each equation is met.
+    pub equations: Vec<EquationGauge>,
+    /// Indices of parameters that take part in no equation whose signals are measured, with the reason.
+    pub not_identified: Vec<(usize, String)>,
+    /// What the recordings say of parameters whose standard errors say little.
+    pub profiles: Vec<ProfileInterval>,
+}
+
+/// Why there is no identified model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum IdentifyError {
+    /// The equations give no numbers.
+    #[error(transparent)]
+    Regression(#[from] RegressionError),
+    /// The outputs cannot be fitted.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+}
+
+/// Identifies the unknown parameters of `model` from `recordings`.
+///
+/// # Errors
+/// [`IdentifyError`].
+pub fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<Identified, IdentifyError> {
+    let regression = match method {
+        Method::LeastSquares => Some(least_squares(model, recordings)?),
+        Method::WeakForm => Some(in_weak_form(model, recordings)?),
+        // Where the equations lack signals the given values are the start.
+        Method::OutputError => in_weak_form(model, recordings).ok(),
+    };
+    let mut result = regression.map_or_else(|| Identified::unchanged(model), Identified::from);
+    if method == Method::OutputError {
+        let settings = FitSettings { sample_rate: f64::INFINITY, ..FitSettings::default() };
+        let fitted = fit(&with_nuisances(&result.model, recordings), recordings, &settings)?;
+        let fitted = simplified(model, &fitted, recordings, &settings)?;
+        result.profiles = fitted
+            .undetermined()
+            .into_iter()
+            .map(|index| profile(&fitted, recordings, &FitSettings::default(), index))
+            .collect::<Result<_, _>>()?;
+        result.model = fitted.model;
+        result.fitted = fitted.fitted;
+        result.not_identified.clear();
+    }
+    Ok(result)
+}
+
+fn in_weak_form(model: &Model, recordings: &[&Recording]) -> Result<Regression, RegressionError> {
+    let extended = with_nuisances_of(model, &[Family::Recording], recordings);
+    Ok(weak_form(&extended, recordings, &WeakFormSettings::default())?.simplified(model))
+}
+
+impl Identified {
+    /// The model as it was given.
+    fn unchanged(model: &Model) -> Self {
+        Identified {
+            model: model.clone(),
+            fitted: Vec::new(),
+            conditions: Vec::new(),
+            rows: 0,
+            equations: Vec::new(),
+            not_identified: Vec::new(),
+            profiles: Vec::new(),
+        }
+    }
+
+    /// Writes into the model's history how and when (ISO 8601) it was identified, and from which recordings.
+    pub fn add_history(&mut self, when: &str, method: Method, recordings: &[&Recording]) {
+        self.model.history.push(HistoryEntry {
+            when: when.to_string(),
+            what: format!("parameters identified ({method})"),
+            recordings: recordings.iter().map(|recording| recording.source.clone()).collect(),
+            validation_error_before: None,
+            validation_error_after: None,
+        });
+    }
+}
+
+impl From<Regression> for Identified {
+    fn from(regression: Regression) -> Self {
+        Identified {
+            model: regression.model,
+            fitted: regression.fitted,
+            conditions: regression.condition_numbers,
+            rows: regression.rows,
+            equations: regression.equations,
+            not_identified: regression.not_identified,
+            profiles: Vec::new(),
+        }
+    }
+}

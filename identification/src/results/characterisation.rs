@@ -1,0 +1,103 @@
+//! Result of `characterise`.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{DeadZone, Friction, Gain, ValveLeakage, finite};
+use crate::characterisation::{self, Edge, Refusal};
+
+/// Valves and friction, read off recordings without a simulation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct Characterisation {
+    /// The cylinders, in the model's order.
+    pub cylinders: Vec<CylinderCharacterisation>,
+}
+
+/// What the procedures found of one cylinder. What a recording does not show is refused.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct CylinderCharacterisation {
+    /// Name of the cylinder.
+    pub name: String,
+    /// Full command of its valve section, m2 for an opening; 1 where the cylinder has no chambers.
+    pub maximum_orifice_area: Option<f64>,
+    /// Gain by metering edge: `cap_positive`, `rod_positive`, `cap_negative`, `rod_negative`, the chamber and the sign of the opening.
+    pub gains: BTreeMap<String, Outcome<Gain>>,
+    /// Dead zone by metering edge.
+    pub dead_zones: BTreeMap<String, Outcome<DeadZone>>,
+    /// Leakage of the closed valve.
+    pub valve_leakage: Outcome<ValveLeakage>,
+    /// Friction against speed.
+    pub friction: Outcome<Friction>,
+}
+
+/// What was found, or why it was not.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+pub enum Outcome<T> {
+    /// Not found.
+    Refused(Refused),
+    /// Found.
+    Found(T),
+}
+
+/// Why something was not found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct Refused {
+    /// Which signal or manoeuvre is missing, with numbers.
+    pub refused: String,
+}
+
+/// An estimate, in the unit of the quantity.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct Estimate {
+    /// Value.
+    pub value: Option<f64>,
+    /// Standard error of the value.
+    pub std_error: Option<f64>,
+}
+
+impl Characterisation {
+    /// Of what the procedures found of every cylinder.
+    pub fn of(found: &[characterisation::Characterisation]) -> Self {
+        Characterisation { cylinders: found.iter().map(CylinderCharacterisation::of).collect() }
+    }
+}
+
+impl CylinderCharacterisation {
+    fn of(found: &characterisation::Characterisation) -> Self {
+        CylinderCharacterisation {
+            name: found.cylinder.clone(),
+            maximum_orifice_area: finite(found.maximum_orifice_area),
+            gains: by_edge(&found.gains, Gain::of),
+            dead_zones: by_edge(&found.dead_zones, DeadZone::of),
+            valve_leakage: Outcome::of(&found.leakage, ValveLeakage::of),
+            friction: Outcome::of(&found.friction, Friction::of),
+        }
+    }
+}
+
+fn by_edge<T, R>(found: &[(Edge, Result<T, Refusal>)], of: impl Fn(&T) -> R) -> BTreeMap<String, Outcome<R>> {
+    found.iter().map(|(edge, one)| (edge.key().to_string(), Outcome::of(one, &of))).collect()
+}
+
+impl<R> Outcome<R> {
+    pub(super) fn of<T>(found: &Result<T, Refusal>, of: impl Fn(&T) -> R) -> Self {
+        match found {
+            Ok(found) => Outcome::Found(of(found)),
+            Err(refusal) => Outcome::Refused(Refused { refused: refusal.to_string() }),
+        }
+    }
+}
+
+impl Estimate {
+    pub(super) fn of(estimate: characterisation::Estimate) -> Self {
+        Estimate { value: finite(estimate.value), std_error: finite(estimate.error) }
+    }
+}

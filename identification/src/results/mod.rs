@@ -1,0 +1,60 @@
+//! Results for programs: what the verbs write as JSON, and what other front ends hand on.
+//!
+//! Each result is a type that is built `of` what the rest of this crate found. The description of a field is also its description in the
+//! JSON schema ([`schemas()`]) and on the reference page. Units are SI units and stand in the description; a number without one is a pure
+//! number. JSON has no `NaN`: a number that is not known, or not finite, is `null`.
+//!
+//! Programs that read results must let pass what they do not know: fields may be added.
+
+mod candidate;
+mod characterisation;
+mod comparison;
+mod determination;
+mod diagnosis;
+mod energies;
+mod energy;
+mod friction;
+mod gain;
+mod given_value;
+mod guess;
+mod identification;
+mod missing_power;
+mod parameter;
+mod plan;
+mod proposals;
+mod refinement;
+mod schemas;
+mod separation;
+mod signal;
+#[cfg(test)]
+mod tests;
+mod unexplained;
+mod valve_leakage;
+
+pub use candidate::{Bootstrap, Candidate};
+pub use characterisation::{Characterisation, CylinderCharacterisation, Estimate, Outcome, Refused};
+pub use comparison::{Baseline, Baselines, Comparison, OtherComparison};
+pub use determination::Determination;
+pub use diagnosis::{Construction, Diagnosis, ErrorChange, Instrument, Nuisance, ResidualShare, SelectedEffect};
+pub use energies::{CylinderEnergies, EffectEnergies, Energies};
+pub use energy::{Cycle, Energy, LedgerCondition, LedgerPlace, PhaseDelays, PumpLine, ValveSection};
+pub use friction::{Friction, FrictionTerm};
+pub use gain::{DeadZone, Gain, GainPoint, Polynomial};
+pub use given_value::GivenValue;
+pub use guess::Guess;
+pub use identification::{Companion, ConditionNumbers, EquationGauge, Identification, NotIdentified, ProfileBounds};
+pub use missing_power::{MissingPower, RecordingLedger};
+pub use parameter::Parameter;
+pub use plan::{Manoeuvre, Plan};
+pub use proposals::{Finding, Proposal, Proposals};
+pub use refinement::{Refinement, RefinementStep};
+pub use schemas::schemas;
+pub use separation::{PairSeparation, Rival, Separation, TrialRun};
+pub use signal::{Correlation, PhaseShare, SignalComparison};
+pub use unexplained::Unexplained;
+pub use valve_leakage::{ChamberLeakage, ValveLeakage};
+
+/// A number as JSON can hold it.
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

@@ -1,0 +1,32 @@
+"""Samples, and the program to compare with."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+SAMPLES = Path(__file__).parents[2] / "bags" / "samples"
+
+
+@pytest.fixture
+def samples():
+    """Folder of the samples of the repository."""
+    return SAMPLES
+
+
+@pytest.fixture
+def program(tmp_path):
+    """Runs a verb of the program and gives its JSON."""
+    binary = os.environ.get("EXCAVATOR_BINARY")
+    if not binary:
+        pytest.skip("EXCAVATOR_BINARY is not set: results are not compared with those of the program")
+
+    def run(*words, status=0):
+        target = tmp_path / "result.json"
+        done = subprocess.run([binary, *map(str, words), "--json", target, "--force"], capture_output=True, text=True)
+        assert done.returncode == status, done.stderr
+        return json.loads(target.read_text())
+
+    return run

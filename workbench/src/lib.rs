@@ -1,0 +1,23 @@
+//! What the program and the Python package do alike: recordings are made fit for use, and results are told as JSON, sentences and pages.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`recordings`] | checks before a recording is used, what is left out of it, the most informative stretches of a long one |
+//! | [`results`] | the result of each verb, with its JSON, its sentence and its page |
+//! | [`sentences`] | results in words that no page has |
+//! | [`numbers`] | numbers for people |
+//! | [`simulated`] | simulations of commands, from rest |
+//! | [`profile_file`], [`diagnosis_file`] | files that one verb writes and another reads |
+//!
+//! Nothing is printed here: what a person should know is given back as remarks.
+
+pub mod diagnosis_file;
+mod error;
+pub mod numbers;
+pub mod profile_file;
+pub mod recordings;
+pub mod results;
+pub mod sentences;
+pub mod simulated;
+
+pub use error::WorkError;

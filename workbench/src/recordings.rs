@@ -1,0 +1,191 @@
+//! Recordings before they are used: checked against the model, without what is left out, and of long ones the part that tells most.
+
+use excavator_bags::ReadReport;
+use excavator_identification::checks;
+use excavator_identification::regression::RegressionError;
+use excavator_identification::selection::{Chosen, Selection, SelectionSettings};
+use excavator_model::Model;
+use excavator_model::formula::Condition;
+use excavator_model::machine::Supply;
+use excavator_model::recording::Recording;
+use excavator_model::simulation::input_holes;
+
+use crate::WorkError;
+
+/// Time on a machine of the reference size, s, from which on a recording is long. A fit of three minutes takes a minute.
+pub const LONG: f64 = 180.0;
+
+/// Samples that are in memory at a time, three minutes at 1 kHz; a recording of more is long.
+pub const BLOCK: usize = 180_000;
+
+/// Samples in memory at a time where an energy ledger is kept, ten seconds at 1 kHz.
+pub const LEDGER_BLOCK: usize = 10_000;
+
+/// What a person decided on the use of recordings.
+#[derive(Debug, Clone, Copy)]
+pub struct Use<'u> {
+    /// Checks that may refuse a recording and are overruled, by name.
+    pub accept: &'u [String],
+    /// Conditions that must hold where a recording is compared with a model, in the language of formulas.
+    pub conditions: &'u [String],
+}
+
+/// Whether a recording is reduced to its most informative stretches.
+pub fn is_long(samples: usize, duration: f64, model: &Model) -> bool {
+    samples > BLOCK || duration > LONG * model.machine.size().time()
+}
+
+/// A recording in blocks of so many samples, each with its own start.
+pub fn blocks(recording: &Recording, samples: usize) -> impl Iterator<Item = Recording> {
+    (0..recording.len()).step_by(samples).map(move |first| {
+        let wanted: Vec<usize> = (first..recording.len().min(first + samples)).collect();
+        let mut block = recording.at(&wanted);
+        let start = block.time.first().copied().unwrap_or(0.0);
+        block.time.iter_mut().for_each(|time| *time -= start);
+        block.start_nanoseconds += (start * 1e9).round() as i64;
+        block
+    })
+}
+
+/// Of a long recording the stretches most informative about the parameters of `model`, and the sentence of [`choice`]. `None` for one
+/// that is used whole. A recording that no map brought together is looked at block by block, as the program reads it.
+///
+/// # Errors
+/// [`RegressionError`] where it lacks inputs.
+pub fn telling(
+    recording: &Recording,
+    is_mapped: bool,
+    model: &Model,
+) -> Result<Option<(Recording, String)>, RegressionError> {
+    if !is_long(recording.len(), recording.recorded_time(), model) {
+        return Ok(None);
+    }
+    let mut selection = Selection::new(model, SelectionSettings::default());
+    if is_mapped {
+        selection.offer(recording)?;
+    } else {
+        blocks(recording, BLOCK).try_for_each(|block| selection.offer(&block))?;
+    }
+    let mut chosen = selection.finish(&recording.source);
+    let used = std::mem::take(&mut chosen.recording);
+    let sentence = choice(&used, &chosen);
+    Ok(Some((used, sentence)))
+}
+
+/// Which stretches were chosen, in a sentence without its end.
+pub fn choice(used: &Recording, chosen: &Chosen) -> String {
+    let starts: Vec<String> = chosen.starts.iter().map(|start| format!("{start:.0}")).collect();
+    format!(
+        "{:.0} of {:.0} s are used: the most informative stretches of {:.0} s, from {} s (stretches at random would give intervals {:.1} times \
+         as wide)",
+        used.recorded_time(),
+        chosen.duration,
+        chosen.stretch,
+        starts.join(", "),
+        chosen.gain
+    )
+}
+
+/// A recording as it is used, with what is to be told of it added to `remarks`; `name` is what they call it. `report` says what its map
+/// leaves out.
+///
+/// # Errors
+/// [`WorkError::Check`] for a recording that a check refuses, [`WorkError::Condition`] for a condition that cannot be read.
+pub fn checked(
+    name: &str,
+    mut recording: Recording,
+    report: &ReadReport,
+    usage: &Use<'_>,
+    model: &Model,
+    remarks: &mut Vec<String>,
+) -> Result<Recording, WorkError> {
+    leave_pump_pressure_out(model, &mut recording, &report.left_out);
+    for overruled in checks::check(model, &recording, usage.accept)? {
+        remarks.push(format!("accepted: {overruled}"));
+    }
+    let holes = input_holes(model, &recording);
+    if holes.count > 0 {
+        remarks.push(format!(
+            "{name}: an input is missing for up to {:.2} s, {} time(s); these {:.2} s are left out",
+            holes.longest, holes.count, holes.total
+        ));
+        recording = recording.at(&holes.known);
+    }
+    remarks.extend(checks::remarks(model, &recording).iter().map(|found| format!("{name}: {found}")));
+    let kept = usage.conditions.iter().map(|text| (text, true));
+    for (text, keeps) in kept.chain(report.left_out_where.iter().map(|text| (text, false))) {
+        let condition = Condition::read(text)
+            .map_err(|error| WorkError::Condition { text: text.clone(), error: Box::new(error) })?;
+        let left_out = leave_out(model, &mut recording, &condition, keeps);
+        let holds = if keeps { "where not" } else { "where" };
+        remarks.push(format!("{name}: {:.0} % of the time is left out, {holds} {text}", 100.0 * left_out));
+    }
+    Ok(recording)
+}
+
+/// Takes away what is compared with a model where the condition does not hold, or, unless it `keeps`, where it does; inputs stay. Gives
+/// the share of samples of all cylinders that are left out.
+fn leave_out(model: &Model, recording: &mut Recording, condition: &Condition, keeps: bool) -> f64 {
+    let mut holds = condition.holds(&model.machine, recording);
+    holds.iter_mut().flatten().for_each(|holds| *holds = *holds == keeps);
+    let samples = recording.len();
+    let left_out = holds.iter().flatten().filter(|holds| !**holds).count();
+    for (cylinder, holds) in model.machine.cylinders.iter().zip(&holds) {
+        let Some(signals) = recording.cylinders.iter_mut().find(|signals| signals.name == cylinder.name) else {
+            continue;
+        };
+        let outputs: Vec<&mut Vec<f64>> = if cylinder.imposed_motion.is_some() {
+            vec![&mut signals.rod_force]
+        } else {
+            vec![
+                &mut signals.displacement,
+                &mut signals.joint_angle,
+                &mut signals.velocity,
+                &mut signals.cap_pressure,
+                &mut signals.rod_pressure,
+            ]
+        };
+        for output in outputs {
+            output.iter_mut().zip(holds).filter(|(_, holds)| !**holds).for_each(|(value, _)| *value = f64::NAN);
+        }
+    }
+    if matches!(model.machine.supply, Supply::PumpLine(_)) {
+        for (sample, value) in recording.pump_pressure.iter_mut().enumerate() {
+            if holds.iter().any(|holds| !holds[sample]) {
+                *value = f64::NAN;
+            }
+        }
+    }
+    left_out as f64 / (samples * holds.len()).max(1) as f64
+}
+
+/// Takes away the pump pressure between these moments, ns, where it is compared with a model, and no input.
+fn leave_pump_pressure_out(model: &Model, recording: &mut Recording, stretches: &[[i64; 2]]) {
+    if !matches!(model.machine.supply, Supply::PumpLine(_)) {
+        return;
+    }
+    let start = recording.start_nanoseconds;
+    for (time, pressure) in recording.time.iter().zip(&mut recording.pump_pressure) {
+        let moment = start.saturating_add((time * 1e9).round() as i64);
+        if stretches.iter().any(|[first, last]| (*first..=*last).contains(&moment)) {
+            *pressure = f64::NAN;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_follow_each_other() {
+        let mut recording =
+            Recording::unmeasured("bag", (0..25).map(|index| f64::from(index) * 0.5).collect(), &["arm"]);
+        recording.start_nanoseconds = 7;
+        let found: Vec<Recording> = blocks(&recording, 10).collect();
+        assert_eq!(found.iter().map(Recording::len).collect::<Vec<_>>(), [10, 10, 5]);
+        assert!(found.iter().all(|block| block.time[0] == 0.0));
+        assert_eq!(found[2].start_nanoseconds, 10_000_000_007);
+        assert_eq!(found[2].time[4], 2.0);
+    }
+}

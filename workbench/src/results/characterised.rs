@@ -1,0 +1,40 @@
+//! Valve and friction, read off without a simulation.
+
+use excavator_identification::characterisation::{Characterisation, characterise};
+use excavator_identification::results;
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+use excavator_report::characterisation_page;
+
+use super::Outcome;
+use crate::WorkError;
+
+/// Result of `characterise`.
+pub struct Characterised {
+    model: Model,
+    sources: Vec<String>,
+    found: Vec<Characterisation>,
+}
+
+impl Characterised {
+    /// Reads what there is to read off the recordings, taken together.
+    pub fn of(model: &Model, recordings: &[&Recording]) -> Self {
+        let sources = recordings.iter().map(|recording| recording.source.clone()).collect();
+        Characterised { model: model.clone(), sources, found: characterise(model, recordings) }
+    }
+}
+
+impl Outcome for Characterised {
+    fn json(&self) -> Result<String, WorkError> {
+        Ok(serde_json::to_string(&results::Characterisation::of(&self.found))?)
+    }
+
+    fn sentence(&self) -> String {
+        let names: Vec<&str> = self.found.iter().map(|one| one.cylinder.as_str()).collect();
+        format!("Valve and friction of {} of {}.", names.join(", "), self.model.machine.name)
+    }
+
+    fn page(&self) -> Result<Option<String>, WorkError> {
+        Ok(Some(characterisation_page(&self.model, &self.sources, &self.found)))
+    }
+}

@@ -1,0 +1,74 @@
+//! A model beside a recording.
+
+use excavator_identification::results;
+use excavator_identification::validation::{Baselines, Comparison, Repeat, compare, compare_runs};
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+use excavator_report::{Beside, comparison_page, comparison_sentence, others_sentence};
+
+use super::Outcome;
+use crate::WorkError;
+
+/// Result of `compare`.
+pub struct Compared {
+    model: Model,
+    comparison: Comparison,
+    baselines: Baselines,
+    against: Option<Comparison>,
+    again: Option<Repeat>,
+}
+
+impl Compared {
+    /// Simulates `model` with the input of `recording` and compares every output; beside it another model, or another run of the same
+    /// commands.
+    ///
+    /// # Errors
+    /// [`WorkError::Run`].
+    pub fn of(
+        model: &Model,
+        recording: &Recording,
+        against: Option<&Model>,
+        again: Option<&Recording>,
+    ) -> Result<Self, WorkError> {
+        let comparison = compare(model, recording)?;
+        let baselines = Baselines::of(model, recording, &comparison);
+        let against = against.map(|model| compare(model, recording)).transpose()?;
+        let again = again.map(|again| compare_runs(model, recording, again)).transpose()?;
+        Ok(Compared { model: model.clone(), comparison, baselines, against, again })
+    }
+
+    fn others(&self) -> Vec<Beside<'_>> {
+        self.against.iter().map(Beside::Model).chain(self.again.iter().map(Beside::Run)).collect()
+    }
+}
+
+impl Outcome for Compared {
+    fn json(&self) -> Result<String, WorkError> {
+        let (against, again) = (self.against.as_ref(), self.again.as_ref());
+        let result = results::Comparison::of(&self.comparison, &self.baselines, against, again);
+        Ok(serde_json::to_string(&result)?)
+    }
+
+    fn sentence(&self) -> String {
+        let others = self.others();
+        let others = others.iter().map(|other| others_sentence(&self.comparison, *other));
+        std::iter::once(comparison_sentence(&self.comparison, &self.baselines))
+            .chain(others)
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+
+    fn page(&self) -> Result<Option<String>, WorkError> {
+        let (one, its_baselines) = (std::slice::from_ref(&self.comparison), std::slice::from_ref(&self.baselines));
+        Ok(Some(comparison_page(&self.model, one, its_baselines, &self.others())))
+    }
+
+    fn recordings(&self) -> Vec<(&'static str, &Recording)> {
+        let own = [("measured", &self.comparison.measured), ("simulated", &self.comparison.simulated)];
+        let against = self.against.iter().map(|other| ("against", &other.simulated));
+        own.into_iter()
+            .chain(against)
+            .chain(self.again.iter().map(|run| ("repeat", &run.comparison.simulated)))
+            .collect()
+    }
+}

@@ -1,0 +1,53 @@
+//! Where the energy of a recording went.
+
+use excavator_identification::energy::{Analyser, EnergyAnalysis, EnergySettings, analyse, missing_power};
+use excavator_identification::results;
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+use excavator_report::energy_page;
+
+use super::Outcome;
+use crate::WorkError;
+use crate::recordings::{LEDGER_BLOCK, blocks};
+use crate::sentences::ledger_sentence;
+
+/// Result of `energy`.
+pub struct Energetic {
+    model: Model,
+    analysis: EnergyAnalysis,
+}
+
+impl Energetic {
+    /// Analyses a recording as a whole.
+    ///
+    /// # Errors
+    /// [`WorkError::Energy`].
+    pub fn of(model: &Model, recording: &Recording) -> Result<Self, WorkError> {
+        let analysis = analyse(model, recording, EnergySettings::default())?;
+        Ok(Energetic { model: model.clone(), analysis })
+    }
+
+    /// The same block by block, as the program reads a bag of its own topics.
+    ///
+    /// # Errors
+    /// [`WorkError::Energy`].
+    pub fn of_blocks(model: &Model, recording: &Recording) -> Result<Self, WorkError> {
+        let mut analyser = Analyser::new(model, EnergySettings::default());
+        blocks(recording, LEDGER_BLOCK).try_for_each(|block| analyser.push(&block))?;
+        Ok(Energetic { model: model.clone(), analysis: analyser.finish()? })
+    }
+}
+
+impl Outcome for Energetic {
+    fn json(&self) -> Result<String, WorkError> {
+        Ok(serde_json::to_string(&results::Energy::of(&self.model, &self.analysis))?)
+    }
+
+    fn sentence(&self) -> String {
+        ledger_sentence(&self.model, &self.analysis, &missing_power(&self.model, &self.analysis))
+    }
+
+    fn page(&self) -> Result<Option<String>, WorkError> {
+        Ok(Some(energy_page(&self.model, &self.analysis)))
+    }
+}

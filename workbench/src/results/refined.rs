@@ -1,0 +1,60 @@
+//! A model with more effects, fitted and measured again.
+
+use excavator_identification::diagnosis::DiagnosisSettings;
+use excavator_identification::refinement::{Additions, Refinement, refine};
+use excavator_identification::results;
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+use excavator_report::{refinement_page, refinement_sentence};
+
+use super::{Outcome, Progress};
+use crate::WorkError;
+
+/// Result of `refine`.
+pub struct Refined {
+    refinement: Refinement,
+}
+
+impl Refined {
+    /// Adds effects to `model` and fits it again.
+    ///
+    /// # Errors
+    /// [`WorkError::Refine`].
+    pub fn of(
+        model: &Model,
+        identification: &[&Recording],
+        validation: &[&Recording],
+        additions: &Additions,
+        progress: Progress<'_>,
+    ) -> Result<Self, WorkError> {
+        let (settings, when) = (DiagnosisSettings::default(), jiff::Timestamp::now().to_string());
+        let refinement = refine(model, identification, validation, additions, &settings, &when, progress)?;
+        Ok(Refined { refinement })
+    }
+}
+
+impl Outcome for Refined {
+    fn json(&self) -> Result<String, WorkError> {
+        let steps = self.refinement.steps.iter().map(|step| (step.added.as_deref(), step.comparisons.as_slice()));
+        Ok(serde_json::to_string(&results::Refinement::of(self.refinement.verdict(), steps, None))?)
+    }
+
+    fn sentence(&self) -> String {
+        refinement_sentence(&self.refinement)
+    }
+
+    fn page(&self) -> Result<Option<String>, WorkError> {
+        Ok(Some(refinement_page(&self.refinement)))
+    }
+
+    fn model(&self) -> Option<&Model> {
+        Some(&self.refinement.model)
+    }
+
+    fn recordings(&self) -> Vec<(&'static str, &Recording)> {
+        let last = self.refinement.steps.last().and_then(|step| step.comparisons.first());
+        let given = self.refinement.given.first().map(|given| ("as given", &given.simulated));
+        let own = last.map(|last| [("measured", &last.measured), ("simulated", &last.simulated)]);
+        own.into_iter().flatten().chain(given).collect()
+    }
+}
