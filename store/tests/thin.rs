@@ -30,8 +30,12 @@ fn write(path: &Path, options: WriteOptions) {
             publish_time: u64::from(number),
         };
         // Not to be packed to nothing.
-        let noise = |place: u32| (place.wrapping_mul(2_654_435_761) >> 24) as u8;
-        let content: Vec<u8> = (0..if is_image { 40_000 } else { 100 }).map(|at| noise(at + number * 77_777)).collect();
+        let mut state = u64::from(number);
+        let mut noise = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 56) as u8
+        };
+        let content: Vec<u8> = (0..if is_image { 40_000 } else { 100 }).map(|_| noise()).collect();
         writer.write_to_known_channel(&header, &content).unwrap();
     }
     writer.finish().unwrap();
