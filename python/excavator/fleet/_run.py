@@ -142,7 +142,7 @@ class _Ray:
         if not self.ray.is_initialized():
             quiet = {"include_dashboard": False, "object_store_memory": OBJECT_STORE} if self._address is None else {}
             cpus = self._workers if self._address is None else None
-            self.ray.init(address=self._address, num_cpus=cpus, log_to_driver=False, logging_level="error", **quiet)
+            self.ray.init(address=self._address or "local", num_cpus=cpus, log_to_driver=False, logging_level="error", **quiet)
             self._is_ours = True
         return self
 
