@@ -5,9 +5,9 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable
 
-from ._native import CheckError, ComputationError, ExcavatorError, ModelError, ReadError
+from ._native import CheckError, ComputationError, ExcavatorError, ModelError, ReadError, StoreError
 
-__all__ = ["CheckError", "ComputationError", "ExcavatorError", "ModelError", "ReadError", "Remark", "remark"]
+__all__ = ["CheckError", "ComputationError", "ExcavatorError", "ModelError", "ReadError", "Remark", "StoreError", "remark"]
 
 
 class Remark(UserWarning):

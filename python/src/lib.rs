@@ -11,6 +11,7 @@ mod mapping;
 mod model;
 mod outcome;
 mod recording;
+mod store;
 mod topic_columns;
 mod verbs;
 mod work;
@@ -33,6 +34,10 @@ mod _native {
     use crate::outcome::Outcome;
     #[pymodule_export]
     use crate::recording::{Recording, read};
+    #[pymodule_export]
+    use crate::store::{
+        StoreError, store_fingerprint, store_get, store_list, store_put, store_put_if_absent, store_thin_copy,
+    };
     #[pymodule_export]
     use crate::verbs::{characterise, compare, design, diagnose, energy, identify, propose, refine, simulate};
     use pyo3::prelude::*;

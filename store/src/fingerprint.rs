@@ -1,0 +1,90 @@
+//! Which content is at an address.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use object_store::ObjectStoreExt;
+use sha2::{Digest, Sha256};
+
+use crate::StoreError;
+use crate::objects::metas;
+use crate::opened::{Options, Place, open};
+use crate::runtime::{block_on, persistently};
+
+/// Identity of the content at an address: the same text for the same content, another for another.
+///
+/// - Of a file on this machine it is `sha256:` and the hash of its bytes: times and inodes say nothing of the content.
+/// - Of an object it is `etag:`, what the store calls its content, and its size. The store computed it when the object was written; to hash the
+///   bytes again, every bag would have to be read as a whole, which [`thin_copy`](crate::thin_copy) avoids. A store gives another ETag to
+///   other bytes. It may give another one to the same bytes, after an upload in other parts: then the work is done once more, and nothing worse.
+/// - Of a folder it is `folder:` and a hash over names and identities of what is in it.
+///
+/// # Errors
+/// [`StoreError::DoesNotExist`]; others.
+pub fn fingerprint(url: &str, options: &Options) -> Result<String, StoreError> {
+    let place = open(url, options)?;
+    if let Some(file) = place.file() {
+        return if file.is_dir() { of_folder(&file) } else { of_file(&file, url) };
+    }
+    block_on(of_objects(&place))
+}
+
+async fn of_objects(place: &Place) -> Result<String, StoreError> {
+    if !place.url.ends_with('/') {
+        match persistently("read", &place.url, |_| place.store.head(&place.path)).await {
+            Ok(meta) => return Ok(named(meta.e_tag.as_deref(), meta.size)),
+            Err(StoreError::DoesNotExist { .. }) => {}
+            Err(other) => return Err(other),
+        }
+    }
+    let mut found = metas(place).await?;
+    if found.is_empty() {
+        return Err(StoreError::DoesNotExist { url: place.url.clone() });
+    }
+    found.sort_by(|one, other| one.location.cmp(&other.location));
+    let mut all = Sha256::new();
+    for meta in &found {
+        let name = meta.location.as_ref().strip_prefix(place.path.as_ref()).unwrap_or(meta.location.as_ref());
+        all.update(format!("{}\n{}\n", name.trim_start_matches('/'), named(meta.e_tag.as_deref(), meta.size)));
+    }
+    Ok(format!("folder:{:x}", all.finalize()))
+}
+
+fn named(etag: Option<&str>, size: u64) -> String {
+    format!("etag:{}:{size}", etag.unwrap_or("none").trim_matches('"'))
+}
+
+fn of_folder(folder: &Path) -> Result<String, StoreError> {
+    let failed = |source| StoreError::File { action: "read", path: folder.to_path_buf(), source };
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.is_file() {
+            files.push(path);
+        }
+    }
+    files.sort();
+    let mut all = Sha256::new();
+    for file in &files {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        all.update(format!("{name}\n{}\n", of_file(file, &file.display().to_string())?));
+    }
+    Ok(format!("folder:{:x}", all.finalize()))
+}
+
+fn of_file(file: &Path, url: &str) -> Result<String, StoreError> {
+    let failed = |source: std::io::Error| match source.kind() {
+        std::io::ErrorKind::NotFound => StoreError::DoesNotExist { url: url.to_string() },
+        _ => StoreError::File { action: "read", path: file.to_path_buf(), source },
+    };
+    let mut opened = File::open(file).map_err(failed)?;
+    let (mut hash, mut buffer) = (Sha256::new(), vec![0; 1 << 20]);
+    loop {
+        let read = opened.read(&mut buffer).map_err(failed)?;
+        if read == 0 {
+            return Ok(format!("sha256:{:x}", hash.finalize()));
+        }
+        hash.update(buffer.get(..read).unwrap_or_default());
+    }
+}

@@ -1,0 +1,25 @@
+//! Object storage for fleets of machines: S3, GCS, Azure and files behind one set of functions.
+//!
+//! An address is a URL (`s3://bucket/path`, `gs://bucket/path`, `az://container/path`, `file:///path`) or a plain path. [`Options`] are those
+//! of the crate `object_store` (`endpoint`, `allow_http`, `region`, `access_key_id`, ...); variables of the environment (`AWS_*`,
+//! `GOOGLE_*`, `AZURE_*`) are read first.
+//!
+//! [`thin_copy`] copies of an MCAP bag only what a piece of work needs: it reads the index at the end of the file, and then the chunks with
+//! wanted topics.
+//!
+//! Every function blocks. Requests run on one runtime of the process, so that connections are kept. Each is tried again when the store or
+//! the network fails.
+
+mod error;
+mod fingerprint;
+mod objects;
+mod opened;
+mod runtime;
+mod thin;
+
+pub use error::StoreError;
+pub use objects::{Entry, get, head, list, put, put_if_absent};
+pub use opened::{Options, Place, open};
+pub use thin::{ThinCopy, thin_copy};
+
+pub use fingerprint::fingerprint;

@@ -1,0 +1,174 @@
+//! From an address to a store.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path as FilePath, PathBuf};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::time::Duration;
+
+use object_store::aws::{AmazonS3Builder, AmazonS3ConfigKey};
+use object_store::azure::{AzureConfigKey, MicrosoftAzureBuilder};
+use object_store::gcp::{GoogleCloudStorageBuilder, GoogleConfigKey};
+use object_store::local::LocalFileSystem;
+use object_store::path::Path;
+use object_store::{BackoffConfig, ObjectStore, RetryConfig};
+use url::Url;
+
+use crate::StoreError;
+use crate::error::one_line;
+
+/// Options of a store by name, as `object_store` has them.
+pub type Options = BTreeMap<String, String>;
+
+/// Stores that were opened, by address of their root, process, options and environment: a client keeps its connections, and making one
+/// reads certificates.
+type Opened = HashMap<(String, u32, Options), Arc<dyn ObjectStore>>;
+
+static OPENED: LazyLock<Mutex<Opened>> = LazyLock::new(Mutex::default);
+
+/// A place in a store.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// The store.
+    pub store: Arc<dyn ObjectStore>,
+    /// The path in it.
+    pub path: Path,
+    /// Address that was asked for.
+    pub url: String,
+    root: Root,
+}
+
+/// How addresses of this store begin.
+#[derive(Debug, Clone)]
+enum Root {
+    /// Plain paths.
+    Folder,
+    /// URLs.
+    Url(Url),
+}
+
+impl Place {
+    /// The address of an object of the same store, as the place itself was given: a path or a URL.
+    pub fn url_of(&self, path: &Path) -> String {
+        match &self.root {
+            Root::Folder => format!("/{path}"),
+            Root::Url(root) => {
+                let mut url = root.clone();
+                url.set_path(path.as_ref());
+                url.to_string()
+            }
+        }
+    }
+
+    /// The file, where the store is this machine.
+    pub fn file(&self) -> Option<PathBuf> {
+        match &self.root {
+            Root::Folder => Some(PathBuf::from(&self.url)),
+            Root::Url(url) if url.scheme() == "file" => Url::parse(&self.url).ok()?.to_file_path().ok(),
+            Root::Url(_) => None,
+        }
+    }
+}
+
+/// Retries of the client. Ten of them, as by default, but the first after 50 ms instead of 100, and none later than 5 s: a store that fails one
+/// request in ten then fails one in 10^11 for good, and a unit of work waits a tenth of a second rather than a minute.
+fn retries() -> RetryConfig {
+    RetryConfig {
+        backoff: BackoffConfig {
+            init_backoff: Duration::from_millis(50),
+            max_backoff: Duration::from_secs(5),
+            base: 2.0,
+        },
+        max_retries: 10,
+        retry_timeout: Duration::from_secs(120),
+    }
+}
+
+/// The store of an address, and the path in it.
+///
+/// # Errors
+/// [`StoreError::Address`] and [`StoreError::Option`].
+pub fn open(url: &str, options: &Options) -> Result<Place, StoreError> {
+    let wrong = |reason: String| StoreError::Address { url: url.to_string(), reason };
+    if !url.contains("://") {
+        let absolute = std::path::absolute(FilePath::new(url)).map_err(|error| wrong(error.to_string()))?;
+        let path = Path::from_absolute_path(&absolute).map_err(|error| wrong(one_line(&error)))?;
+        let (store, url) = (opened("file:", options, || Ok(local()))?, absolute.display().to_string());
+        return Ok(Place { store, path, url, root: Root::Folder });
+    }
+    let parsed = Url::parse(url).map_err(|error| wrong(error.to_string()))?;
+    if parsed.scheme() == "file" {
+        let file = parsed.to_file_path().map_err(|()| wrong("file URLs are absolute: file:///path".to_string()))?;
+        let path = Path::from_absolute_path(&file).map_err(|error| wrong(one_line(&error)))?;
+        let store = opened("file:", options, || Ok(local()))?;
+        return Ok(Place { store, path, url: url.to_string(), root: Root::Url(parsed) });
+    }
+    if parsed.host_str().is_none_or(str::is_empty) {
+        return Err(wrong("no bucket or container".to_string()));
+    }
+    let path = Path::from_url_path(parsed.path()).map_err(|error| wrong(one_line(&error)))?;
+    let root = parsed[..url::Position::BeforePath].to_string();
+    let store = opened(&root, options, || remote(&parsed, options))?;
+    Ok(Place { store, path, url: url.to_string(), root: Root::Url(parsed) })
+}
+
+fn local() -> Arc<dyn ObjectStore> {
+    Arc::new(LocalFileSystem::new())
+}
+
+/// The store of this root, made where there is none yet.
+fn opened(
+    root: &str,
+    options: &Options,
+    make: impl FnOnce() -> Result<Arc<dyn ObjectStore>, StoreError>,
+) -> Result<Arc<dyn ObjectStore>, StoreError> {
+    let mut all = options.clone();
+    all.extend(std::env::vars_os().filter_map(|(key, value)| {
+        let (key, value) = (key.into_string().ok()?, value.into_string().ok()?);
+        let is_ours = ["AWS_", "GOOGLE_", "AZURE_"].iter().any(|start| key.starts_with(start));
+        is_ours.then(|| (format!("${key}"), value))
+    }));
+    let key = (root.to_string(), std::process::id(), all);
+    let mut stores = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(store) = stores.get(&key) {
+        return Ok(store.clone());
+    }
+    let store = make()?;
+    stores.insert(key, store.clone());
+    Ok(store)
+}
+
+/// A store that is reached by requests.
+fn remote(url: &Url, options: &Options) -> Result<Arc<dyn ObjectStore>, StoreError> {
+    let wrong = |error: object_store::Error| StoreError::Address { url: url.to_string(), reason: one_line(&error) };
+    let unknown = |key: &str| StoreError::Option { url: url.to_string(), key: key.to_string() };
+    match url.scheme() {
+        "s3" | "s3a" => {
+            let mut builder = AmazonS3Builder::from_env().with_url(url.as_str()).with_retry(retries());
+            for (key, value) in options {
+                let known: AmazonS3ConfigKey = key.to_ascii_lowercase().parse().map_err(|_| unknown(key))?;
+                builder = builder.with_config(known, value);
+            }
+            Ok(Arc::new(builder.build().map_err(wrong)?))
+        }
+        "gs" => {
+            let mut builder = GoogleCloudStorageBuilder::from_env().with_url(url.as_str()).with_retry(retries());
+            for (key, value) in options {
+                let known: GoogleConfigKey = key.to_ascii_lowercase().parse().map_err(|_| unknown(key))?;
+                builder = builder.with_config(known, value);
+            }
+            Ok(Arc::new(builder.build().map_err(wrong)?))
+        }
+        "az" | "adl" | "azure" | "abfs" | "abfss" => {
+            let mut builder = MicrosoftAzureBuilder::from_env().with_url(url.as_str()).with_retry(retries());
+            for (key, value) in options {
+                let known: AzureConfigKey = key.to_ascii_lowercase().parse().map_err(|_| unknown(key))?;
+                builder = builder.with_config(known, value);
+            }
+            Ok(Arc::new(builder.build().map_err(wrong)?))
+        }
+        other => Err(StoreError::Address {
+            url: url.to_string(),
+            reason: format!("no store has \"{other}://\"; there are s3, gs, az and file"),
+        }),
+    }
+}

@@ -1,0 +1,198 @@
+//! Copies of bags with only the topics that are needed.
+
+mod index;
+mod lengths;
+mod plan;
+mod source;
+mod writing;
+
+use std::path::{Path as FilePath, PathBuf};
+
+use futures::StreamExt;
+use object_store::{ObjectMeta, ObjectStoreExt};
+
+use crate::StoreError;
+use crate::objects::metas;
+use crate::opened::{Options, Place, open};
+use crate::runtime::{block_on, persistently};
+
+/// How many requests for chunks run at a time. Their answers are in memory: at most 4 times 8 MiB, or four chunks where one is larger.
+const AT_A_TIME: usize = 4;
+
+/// What was copied.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ThinCopy {
+    /// Where the copy is: a file, or a folder where the bag is one.
+    pub path: PathBuf,
+    /// Bytes that were read from the store.
+    pub bytes_read: u64,
+    /// Bytes that the bag has.
+    pub bytes_total: u64,
+    /// Messages that were copied one by one; none of files that were copied whole.
+    pub messages: u64,
+    /// Files that were copied whole, with the reason.
+    pub whole: Vec<String>,
+}
+
+/// Why a file is copied whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Unfit(&'static str);
+
+/// Why a file is copied whole after its index was good.
+const DAMAGED: Unfit = Unfit("a damaged chunk");
+
+/// Which topics are wanted.
+struct Wanted<'t>(&'t [String]);
+
+impl Wanted<'_> {
+    /// Whether this one is: by its name, or by its end where the wanted name begins with `*`.
+    fn has(&self, topic: &str) -> bool {
+        self.0.iter().any(|one| match one.strip_prefix('*') {
+            Some(end) => topic.ends_with(end),
+            None => one == topic,
+        })
+    }
+}
+
+/// Copies the bag at `url` into the folder `target`, under its own name, with only the messages of `topics`. A name that begins with `*` means
+/// every topic that ends with the rest. Without topics the copy is whole.
+///
+/// Of an MCAP file its index is read, and then the chunks that have wanted topics; the copy has their messages in the same order, their
+/// schemas, channels and metadata. What cannot be copied so is copied whole: other formats, files without an index or with a damaged one, and
+/// files with every topic wanted. So a reader finds the same messages of these topics, and the same damage.
+///
+/// A folder is copied file by file: bags, `map.toml`, and `metadata.yaml` where there are several files.
+///
+/// # Errors
+/// [`StoreError`]: of the store, or of files in `target`.
+pub fn thin_copy(
+    url: &str,
+    topics: Option<&[String]>,
+    target: &FilePath,
+    options: &Options,
+) -> Result<ThinCopy, StoreError> {
+    let place = open(url, options)?;
+    let wanted = topics.map(Wanted);
+    block_on(async {
+        let is_folder = url.ends_with('/') || place.file().is_some_and(|file| file.is_dir());
+        if !is_folder {
+            match persistently("read", url, |_| place.store.head(&place.path)).await {
+                Ok(meta) => {
+                    let mut done = ThinCopy { path: target.join(name_of(&meta)), ..ThinCopy::default() };
+                    folder(target)?;
+                    file(&place, &meta, wanted.as_ref(), &done.path.clone(), &mut done).await?;
+                    return Ok(done);
+                }
+                // The place may be a folder.
+                Err(StoreError::DoesNotExist { .. }) => {}
+                Err(other) => return Err(other),
+            }
+        }
+        of_folder(&place, wanted.as_ref(), target).await
+    })
+}
+
+async fn of_folder(place: &Place, wanted: Option<&Wanted<'_>>, target: &FilePath) -> Result<ThinCopy, StoreError> {
+    let found = metas(place).await?;
+    let direct = |meta: &&ObjectMeta| {
+        let parts = meta.location.prefix_match(&place.path).map(|parts| parts.count());
+        parts == Some(1)
+    };
+    let files: Vec<&ObjectMeta> = found.iter().filter(direct).collect();
+    let bags = files.iter().filter(|meta| is_bag(&name_of(meta))).count();
+    if bags == 0 {
+        return Err(StoreError::DoesNotExist { url: format!("{} as a bag", place.url) });
+    }
+    let name = place.path.filename().unwrap_or("bag").to_string();
+    let mut done = ThinCopy { path: target.join(name), ..ThinCopy::default() };
+    folder(&done.path)?;
+    for meta in files {
+        let name = name_of(meta);
+        let path = done.path.join(&name);
+        if is_bag(&name) {
+            file(place, meta, wanted, &path, &mut done).await?;
+        } else if name == "map.toml" || (name == "metadata.yaml" && (bags > 1 || wanted.is_none())) {
+            file(place, meta, None, &path, &mut done).await?;
+        }
+    }
+    Ok(done)
+}
+
+fn folder(path: &FilePath) -> Result<(), StoreError> {
+    std::fs::create_dir_all(path).map_err(|source| StoreError::File {
+        action: "create",
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
+fn name_of(meta: &ObjectMeta) -> String {
+    meta.location.filename().unwrap_or("bag").to_string()
+}
+
+fn is_bag(name: &str) -> bool {
+    let name = name.to_lowercase();
+    [".mcap", ".db3", ".mcap.zstd", ".db3.zstd"].iter().any(|end| name.ends_with(end))
+}
+
+/// Copies one file: thinly if it can be, else whole.
+async fn file(
+    place: &Place,
+    meta: &ObjectMeta,
+    wanted: Option<&Wanted<'_>>,
+    target: &FilePath,
+    done: &mut ThinCopy,
+) -> Result<(), StoreError> {
+    let source = source::Source::of(place, meta);
+    let name = name_of(meta);
+    let unfit = match wanted {
+        Some(wanted) if name.to_lowercase().ends_with(".mcap") => match thin(&source, wanted, target).await? {
+            Ok(messages) => {
+                done.messages += messages;
+                None
+            }
+            Err(unfit) => Some(unfit),
+        },
+        Some(_) => Some(Unfit("no MCAP file")),
+        None => Some(Unfit("as asked")),
+    };
+    if let Some(Unfit(reason)) = unfit {
+        source.copy(target).await?;
+        done.whole.push(format!("{name}: {reason}"));
+    }
+    done.bytes_read += source.bytes_read();
+    done.bytes_total += source.size;
+    Ok(())
+}
+
+/// Copies the wanted messages of a file; gives their number.
+///
+/// # Errors
+/// [`StoreError`] of a request. Within: why the file must be copied whole.
+async fn thin(
+    source: &source::Source<'_>,
+    wanted: &Wanted<'_>,
+    target: &FilePath,
+) -> Result<Result<u64, Unfit>, StoreError> {
+    let index = match index::read(source).await? {
+        Ok(index) => index,
+        Err(unfit) => return Ok(Err(unfit)),
+    };
+    let plan = match plan::plan(&index, wanted) {
+        Ok(plan) => plan,
+        Err(unfit) => return Ok(Err(unfit)),
+    };
+    let Ok(mut copy) = writing::ThinFile::create(target, &index, &plan.channels) else { return Ok(Err(DAMAGED)) };
+    let requests = plan.fetches.iter().map(|fetch| async move { (fetch, source.range(fetch.range.clone()).await) });
+    let mut answers = futures::stream::iter(requests).buffered(AT_A_TIME);
+    while let Some((fetch, answer)) = answers.next().await {
+        let bytes = answer?;
+        for chunk in &fetch.chunks {
+            let Some(record) = bytes.get(chunk.clone()) else { return Ok(Err(DAMAGED)) };
+            if copy.add(record).is_err() {
+                return Ok(Err(DAMAGED));
+            }
+        }
+    }
+    Ok(copy.finish().map_err(|_| DAMAGED))
+}
