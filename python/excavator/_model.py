@@ -287,7 +287,8 @@ def _catalogues(catalogue: Catalogue | Sequence[Path]) -> list[tuple[str, str]]:
             raise ModelError(f"{path}: the folder has no catalogue files (.toml)")
         return [(file.read_text(encoding="utf-8"), str(file)) for file in files]
     if isinstance(catalogue, Mapping):
-        laws = catalogue.get("formula", [catalogue])
+        # In the content of a file, "formula" is the list of laws; in one law, it is its formula.
+        laws = [catalogue] if isinstance(catalogue.get("formula"), str) else catalogue.get("formula", [])
         return [(_native.to_toml({"formula": list(laws)}), "the catalogue")]
     texts = []
     for one in catalogue:

@@ -1,7 +1,8 @@
 //! What the procedures of \[B\] found, on one page.
 
 use excavator_identification::characterisation::{
-    ChamberLeakage, Characterisation, ClosedValve, DeadZone, DirectionalGain, Edge, Estimate, FrictionCurve, Polynomial, Refusal,
+    ChamberLeakage, Characterisation, ClosedValve, DeadZone, DirectionalGain, Edge, Estimate, FrictionCurve,
+    Polynomial, Refusal,
 };
 use excavator_model::Model;
 use excavator_model::display::PressureUnit;
@@ -98,9 +99,7 @@ fn polynomial_text(curve: &Polynomial) -> String {
 fn dead_zones(one: &Characterisation) -> Markup {
     let found: Vec<(Edge, &DeadZone)> =
         one.dead_zones.iter().filter_map(|(edge, zone)| Some((*edge, zone.as_ref().ok()?))).collect();
-    let area = |estimate: Estimate| {
-        with_margin(estimate.value * 1e6, SIDES_95 * estimate.error * 1e6)
-    };
+    let area = |estimate: Estimate| with_margin(estimate.value * 1e6, SIDES_95 * estimate.error * 1e6);
     html! {
         @if !found.is_empty() {
             (edge_plots(&found))
@@ -166,9 +165,7 @@ fn creep(found: &ClosedValve) -> f64 {
 fn leakage_row(name: &str, side: &ChamberLeakage) -> Markup {
     let text = |estimate: Estimate| with_margin(estimate.value, SIDES_95 * estimate.error);
     let (factor, _) = leakage_unit();
-    let leak = |estimate: Estimate| {
-        with_margin(factor * estimate.value, SIDES_95 * factor * estimate.error)
-    };
+    let leak = |estimate: Estimate| with_margin(factor * estimate.value, SIDES_95 * factor * estimate.error);
     html! { tr {
         td { (name) }
         td.n { (leak(side.from_pump)) } td.n { (leak(side.to_tank)) } td.n { (text(side.time_constant)) } td.n { (text(side.static_gain)) }

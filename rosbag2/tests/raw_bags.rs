@@ -41,7 +41,8 @@ fn what_was_written_into_several_files_is_read_in_order() {
     assert_eq!(values(&bag), (0..350).map(f64::from).collect::<Vec<_>>());
     let found = info(&bag).unwrap();
     assert_eq!((found.files.len(), found.message_count, found.problems.len()), (4, 350, 0));
-    let topics: Vec<(&str, u64)> = found.topics.iter().map(|topic| (topic.name.as_str(), topic.message_count)).collect();
+    let topics: Vec<(&str, u64)> =
+        found.topics.iter().map(|topic| (topic.name.as_str(), topic.message_count)).collect();
     assert_eq!(topics, [("/a", 350), ("/silent", 0)]);
     let known = RawMessages::open(&bag).unwrap().topics();
     assert_eq!((known[0].type_name.as_str(), known[0].qos()), ("std_msgs/msg/Float64", vec![Qos::reliable(5)]));

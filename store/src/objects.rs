@@ -66,7 +66,8 @@ pub fn put(url: &str, content: &[u8], options: &Options) -> Result<(), StoreErro
     block_on(persistently("write", url, request)).map(drop)
 }
 
-/// Writes an object only where there is none; says whether it did. Of many that write at the same time one does.
+/// Writes an object only where there is none; says whether the object is this content. Of many that write different contents at the same
+/// time one does; where another wrote the very same bytes, both are told so.
 ///
 /// # Errors
 /// [`StoreError::NoCreate`] where the store has no such request; others.
@@ -75,12 +76,11 @@ pub fn put_if_absent(url: &str, content: &[u8], options: &Options) -> Result<boo
     block_on(create(&place, content))
 }
 
-/// As [`put_if_absent`]. Where an attempt failed after its bytes had arrived, the next finds an object with the same bytes: its own.
+/// As [`put_if_absent`]. Where an attempt failed after its bytes had arrived, the next one finds an object with the same bytes: its own.
+/// The library of the stores tries again by itself and does not say so, hence every object that is found is looked at.
 async fn create(place: &Place, content: &[u8]) -> Result<bool, StoreError> {
     let payload = PutPayload::from(content.to_vec());
-    let mut attempts = 0;
-    let request = |attempt| {
-        attempts = attempt;
+    let request = |_| {
         let (store, path, payload) = (place.store.clone(), place.path.clone(), payload.clone());
         async move {
             let options = PutOptions { mode: PutMode::Create, ..PutOptions::default() };
@@ -94,8 +94,8 @@ async fn create(place: &Place, content: &[u8]) -> Result<bool, StoreError> {
         }
     };
     match persistently("write", &place.url, request).await? {
-        Ok(false) if attempts > 1 => Ok(self::content(place).await? == content),
-        Ok(written) => Ok(written),
+        Ok(true) => Ok(true),
+        Ok(false) => Ok(self::content(place).await? == content),
         Err(reason) => Err(StoreError::NoCreate { url: place.url.clone(), reason }),
     }
 }

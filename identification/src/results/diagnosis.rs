@@ -37,7 +37,7 @@ pub struct Diagnosis {
     pub shares: Vec<ResidualShare>,
     /// What remains where nothing explains it, as a curve; `null` for other verdicts.
     pub unexplained: Option<Unexplained>,
-    /// A machine that is built otherwise and explains the recordings as well; `null` where there is none.
+    /// A machine that is constructed differently and explains the recordings as well; `null` where there is none.
     pub construction: Option<Construction>,
     /// Whether the readings of the inputs are too coarse to act on the verdict.
     #[serde(default)]

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use excavator_msgs::ArmState;
 use excavator_bags::topic_to_write;
+use excavator_msgs::ArmState;
 use rosbag2::{BagWriter, Qos, RawMessages, WriteOptions, cdr};
 
 use crate::child::run;
