@@ -30,7 +30,7 @@ pub enum VerbError {
     #[error(transparent)]
     Bag(#[from] rosbag2::Error),
     #[error(transparent)]
-    Work(WorkError),
+    Work(Box<WorkError>),
     #[error(transparent)]
     Document(#[from] DocumentError),
     #[error("--where \"{text}\": {error}")]
@@ -150,7 +150,7 @@ impl From<WorkError> for VerbError {
             WorkError::Check(error) => error.into(),
             WorkError::Regression(error) => error.into(),
             WorkError::Model(error) => error.into(),
-            error => VerbError::Work(error),
+            error => VerbError::Work(Box::new(error)),
         }
     }
 }

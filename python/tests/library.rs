@@ -1,5 +1,7 @@
 //! The library as Python loads it. What it does is tested in Python, in this folder.
 
+#![allow(clippy::panic)]
+
 use std::path::PathBuf;
 
 /// Python looks for one function by the name of the module.
