@@ -127,7 +127,7 @@ pub enum Reason {
         /// Their numbers, the best first.
         hypotheses: Vec<usize>,
     },
-    /// A machine that is built otherwise explains the recordings as well or better.
+    /// A machine that is constructed differently explains the recordings as well or better.
     StructuralAlternative {
         /// The hypothesis with the structural effect.
         hypothesis: usize,
