@@ -148,8 +148,10 @@ impl From<WorkError> for VerbError {
             WorkError::Bag(error) => error.into(),
             WorkError::Condition { text, error } => VerbError::Condition { text, error },
             WorkError::Check(error) => error.into(),
+            WorkError::Part { path, reason } => VerbError::Part { path, reason },
             WorkError::Regression(error) => error.into(),
             WorkError::Model(error) => error.into(),
+            WorkError::Design(error) => error.into(),
             error => VerbError::Work(Box::new(error)),
         }
     }

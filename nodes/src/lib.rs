@@ -29,7 +29,6 @@ mod outputs;
 mod play;
 #[cfg(feature = "live")]
 mod record;
-mod recording_part;
 mod ros_words;
 mod saved_diagnosis;
 mod sources;
@@ -52,7 +51,9 @@ use excavator_model::display::PressureUnit;
 pub fn run_command_line() -> ExitCode {
     let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let outcome = ros_words::RosWords::split(&all).and_then(|(ros, words)| {
-        let parsed = manual::command_within(terminal::width()).try_get_matches_from(words);
+        let parsed = manual::command().try_get_matches_from(&words);
+        // Only a help or a refusal shows a usage.
+        let parsed = parsed.or_else(|_| manual::command_within(terminal::width()).try_get_matches_from(words));
         let arguments = parsed.and_then(|found| cli::Arguments::from_arg_matches(&found));
         let arguments = arguments.unwrap_or_else(|refusal| refuse(&refusal));
         arguments.verbosity().choose();

@@ -14,7 +14,7 @@ use excavator_workbench::recordings::{BLOCK, is_long};
 
 use crate::block_reader::{needs_a_map, read_beside};
 use crate::error::VerbError;
-use crate::recording_part::Part;
+use excavator_workbench::recording_part::Part;
 
 /// Blocks that may wait to be looked at.
 const WAITING: usize = 1;
@@ -45,7 +45,7 @@ pub fn recording_or_stretches(
 
 fn in_part(recording: Recording, part: Option<Part>, path: &Path) -> Result<Recording, VerbError> {
     match part {
-        Some(part) => part.of(&recording, path),
+        Some(part) => Ok(part.of(&recording, path)?),
         None => Ok(recording),
     }
 }
@@ -71,7 +71,7 @@ fn in_blocks(
     let (report, outcome) = read_beside(whole, namespace, BLOCK, WAITING, choose, |blocks| taken(blocks, path, model))?;
     match outcome? {
         Taken::Whole(recording) if recording.is_empty() => match part {
-            Some(part) => Err(part.is_beyond(end, path)),
+            Some(part) => Err(part.is_beyond(end, path).into()),
             None => Ok((recording, report, None)),
         },
         Taken::Whole(recording) => Ok((recording, report, None)),

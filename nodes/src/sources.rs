@@ -11,13 +11,13 @@ use excavator_model::effects::Catalogue;
 use excavator_model::recording::Recording;
 #[cfg(feature = "live")]
 use excavator_ros::{Parameter, Value};
+use excavator_workbench::recording_part::Part;
 use excavator_workbench::recordings::{Use, checked as fit_for_use, choice};
 use rosbag2::{ReadLimits, read_regular_text};
 
 use crate::cli::{self, Extent, Mapping};
 use crate::error::VerbError;
 use crate::long_recording::recording_or_stretches;
-use crate::recording_part::Part;
 use crate::terminal::remark;
 
 /// A model by its built-in name or file, with the effects of its user.

@@ -43,7 +43,9 @@ pub fn of_model(error: excavator_model::ModelError) -> PyErr {
 pub fn of_work(error: WorkError) -> PyErr {
     let text = error.to_string();
     match error {
-        WorkError::Recording(_) | WorkError::Bag(_) | WorkError::DiagnosisSyntax { .. } => ReadError::new_err(text),
+        WorkError::Recording(_) | WorkError::Bag(_) | WorkError::Part { .. } | WorkError::DiagnosisSyntax { .. } => {
+            ReadError::new_err(text)
+        }
         WorkError::Check(refusal) => CheckError::new_err(match refusal.name() {
             Some(name) => format!("{text}; if this is right, say accept=[\"{name}\"]"),
             None => text,

@@ -7,13 +7,14 @@ use excavator_bags::map::{Origin, SignalName, TopicMap, read_mapped, read_record
 use excavator_bags::table::Table;
 use excavator_bags::{ReadReport, Topics, write_recording};
 use excavator_model::recording::{Recording as Signals, is_measured};
+use excavator_workbench::recording_part::Part;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use rosbag2::WriteOptions;
 
 use crate::columns;
-use crate::errors::{ReadError, of_bag};
+use crate::errors::{ReadError, of_bag, of_work};
 use crate::mapping::Map;
 
 /// What was read, and how.
@@ -74,10 +75,7 @@ impl Recording {
         let mut signals = Signals::unmeasured(source, time, &cylinders);
         signals.start_nanoseconds = start_nanoseconds;
         for (name, values) in &names {
-            // Names that were read are those of columns.
-            if let Some(column) = column_mut(&mut signals, &name.to_string()) {
-                *column = values.to_vec();
-            }
+            *name.column(&mut signals) = values.to_vec();
         }
         signals.validate().map_err(|error| ReadError::new_err(error.to_string()))?;
         Ok(Recording::of_signals(signals))
@@ -156,36 +154,14 @@ impl Recording {
     }
 }
 
-/// The column of this name.
-fn column_mut<'r>(signals: &'r mut Signals, wanted: &str) -> Option<&'r mut Vec<f64>> {
-    // `signals` and `columns_mut` have them in different orders.
-    match wanted {
-        "pump_pressure" => return Some(&mut signals.pump_pressure),
-        "tank_pressure" => return Some(&mut signals.tank_pressure),
-        "pump_flow" => return Some(&mut signals.pump_flow),
-        "oil_temperature" => return Some(&mut signals.oil_temperature),
-        _ => {}
-    }
-    let (cylinder, signal) = wanted.rsplit_once('.')?;
-    let cylinder = signals.cylinders.iter_mut().find(|one| one.name == cylinder)?;
-    let place = cylinder.signals().iter().position(|(name, _)| *name == signal)?;
-    cylinder.columns_mut().into_iter().nth(place)
-}
-
 /// A part of a recording, named as the program names it.
 fn part(whole: &Signals, start: Option<f64>, stop: Option<f64>) -> PyResult<Signals> {
     if start.is_none() && stop.is_none() {
         return Ok(whole.clone());
     }
-    let (from, to) = (start.unwrap_or(0.0), stop.unwrap_or(f64::INFINITY));
-    let wrong = |reason: String| Err(ReadError::new_err(format!("{}: {reason}", whole.source)));
-    if !(from >= 0.0 && from < to) {
-        return wrong(format!("{from} s is not before {to} s"));
-    }
-    if from >= whole.duration() {
-        return wrong(format!("the recording ends at {:.2} s", whole.duration()));
-    }
-    let mut part = whole.part(from, to);
+    let name = Path::new(&whole.source);
+    let wanted = Part::between(start.unwrap_or(0.0), stop.unwrap_or(f64::INFINITY), name).map_err(of_work)?;
+    let mut part = wanted.of(whole, name).map_err(of_work)?;
     let shown = |time: Option<f64>| time.map_or(String::new(), |time| time.to_string());
     part.source = format!("{}@{}..{}", whole.source, shown(start), shown(stop));
     Ok(part)

@@ -23,10 +23,11 @@ def program(tmp_path):
     if not binary:
         pytest.skip("EXCAVATOR_BINARY is not set: results are not compared with those of the program")
 
-    def run(*words, status=0):
+    def run(*words, status=0, as_text=False):
         target = tmp_path / "result.json"
         done = subprocess.run([binary, *map(str, words), "--json", target, "--force"], capture_output=True, text=True)
         assert done.returncode == status, done.stderr
-        return json.loads(target.read_text())
+        text = target.read_text()
+        return text if as_text else json.loads(text)
 
     return run

@@ -77,6 +77,13 @@ def test_compare_equals_the_program(hidden, samples, program):
         assert excavator.compare(model, validation, against=model, where="abs(v) > 0.002").to_dict() == own
 
 
+def test_json_is_that_of_the_program_character_by_character(hidden, samples, program):
+    model, _, validation = hidden
+    text = program("compare", "--model", MODEL, "--bag", samples / "hidden-law/validation", as_text=True)
+    assert excavator.compare(model, validation).to_json() == text
+    assert text.startswith('{\n  "') and text.endswith("}\n")
+
+
 @pytest.mark.parametrize("method", ["weak-form", "least-squares", "output-error"])
 def test_identify_equals_the_program(hidden, samples, program, method):
     model, identification, _ = hidden

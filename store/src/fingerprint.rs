@@ -32,7 +32,7 @@ pub fn fingerprint(url: &str, options: &Options) -> Result<String, StoreError> {
 
 async fn of_objects(place: &Place) -> Result<String, StoreError> {
     if !place.url.ends_with('/') {
-        match persistently("read", &place.url, |_| place.store.head(&place.path)).await {
+        match persistently("read", &place.url, || place.store.head(&place.path)).await {
             Ok(meta) => return Ok(named(meta.e_tag.as_deref(), meta.size)),
             Err(StoreError::DoesNotExist { .. }) => {}
             Err(other) => return Err(other),

@@ -41,7 +41,7 @@ impl Entry {
 pub fn get(url: &str, options: &Options) -> Result<Vec<u8>, StoreError> {
     let place = open(url, options)?;
     block_on(async {
-        let size = persistently("read", url, |_| place.store.head(&place.path)).await?.size;
+        let size = persistently("read", url, || place.store.head(&place.path)).await?.size;
         if size > LARGEST {
             return Err(StoreError::TooLarge { url: url.to_string(), size, limit: LARGEST });
         }
@@ -51,7 +51,7 @@ pub fn get(url: &str, options: &Options) -> Result<Vec<u8>, StoreError> {
 
 /// The content of an object that is known to be small enough.
 async fn content(place: &Place) -> Result<Vec<u8>, StoreError> {
-    let request = |_| async { place.store.get_opts(&place.path, GetOptions::default()).await?.bytes().await };
+    let request = || async { place.store.get_opts(&place.path, GetOptions::default()).await?.bytes().await };
     persistently("read", &place.url, request).await.map(Vec::from)
 }
 
@@ -62,7 +62,7 @@ async fn content(place: &Place) -> Result<Vec<u8>, StoreError> {
 pub fn put(url: &str, content: &[u8], options: &Options) -> Result<(), StoreError> {
     let place = open(url, options)?;
     let payload = PutPayload::from(content.to_vec());
-    let request = |_| place.store.put(&place.path, payload.clone());
+    let request = || place.store.put(&place.path, payload.clone());
     block_on(persistently("write", url, request)).map(drop)
 }
 
@@ -80,7 +80,7 @@ pub fn put_if_absent(url: &str, content: &[u8], options: &Options) -> Result<boo
 /// The library of the stores tries again by itself and does not say so, hence every object that is found is looked at.
 async fn create(place: &Place, content: &[u8]) -> Result<bool, StoreError> {
     let payload = PutPayload::from(content.to_vec());
-    let request = |_| {
+    let request = || {
         let (store, path, payload) = (place.store.clone(), place.path.clone(), payload.clone());
         async move {
             let options = PutOptions { mode: PutMode::Create, ..PutOptions::default() };
@@ -113,7 +113,7 @@ pub fn list(url: &str, options: &Options) -> Result<Vec<Entry>, StoreError> {
 
 /// What the store knows of all objects below a place.
 pub(crate) async fn metas(place: &Place) -> Result<Vec<ObjectMeta>, StoreError> {
-    persistently("list", &place.url, |_| place.store.list(Some(&place.path)).try_collect()).await
+    persistently("list", &place.url, || place.store.list(Some(&place.path)).try_collect()).await
 }
 
 /// What the store knows of an object.
@@ -122,6 +122,6 @@ pub(crate) async fn metas(place: &Place) -> Result<Vec<ObjectMeta>, StoreError> 
 /// [`StoreError::DoesNotExist`]; others.
 pub fn head(url: &str, options: &Options) -> Result<Entry, StoreError> {
     let place = open(url, options)?;
-    let meta = block_on(persistently("read", url, |_| place.store.head(&place.path)))?;
+    let meta = block_on(persistently("read", url, || place.store.head(&place.path)))?;
     Ok(Entry::of(&place, &meta))
 }

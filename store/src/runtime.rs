@@ -9,7 +9,7 @@ use tokio::runtime::{Builder, Runtime};
 use crate::StoreError;
 
 /// How often a request is made before its failure is told. The client of `object_store` tries most failures again by itself; this is for
-/// those that it leaves alone, such as a connection that ends in the middle of an answer or after a conditional write.
+/// those that it leaves alone, such as a connection that ends in the middle of an answer.
 pub(crate) const ATTEMPTS: u32 = 6;
 
 /// Wait before the second attempt; it doubles each time, so that all waits together are 3 s.
@@ -47,21 +47,21 @@ fn runtime() -> Result<&'static Runtime, StoreError> {
     Ok(runtime)
 }
 
-/// Makes a request, and makes it again where that may help. `request` gets the number of the attempt, from 1.
+/// Makes a request, and makes it again where that may help.
 ///
 /// # Errors
 /// What the last attempt says.
 pub(crate) async fn persistently<T, F>(
     action: &'static str,
     url: &str,
-    mut request: impl FnMut(u32) -> F,
+    mut request: impl FnMut() -> F,
 ) -> Result<T, StoreError>
 where
     F: Future<Output = object_store::Result<T>>,
 {
     let mut wait = FIRST_WAIT;
     for attempt in 1.. {
-        match request(attempt).await {
+        match request().await {
             Ok(found) => return Ok(found),
             Err(error) => {
                 let told = StoreError::of(error, action, url, attempt);

@@ -25,6 +25,8 @@ pub enum WorkError {
     Bag(#[from] rosbag2::Error),
     #[error(transparent)]
     Document(#[from] DocumentError),
+    #[error("{}: {reason}", path.display())]
+    Part { path: PathBuf, reason: String },
     #[error("\"{text}\": {error}")]
     Condition { text: String, error: Box<FormulaError> },
     #[error(transparent)]

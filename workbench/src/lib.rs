@@ -2,6 +2,7 @@
 //!
 //! | module | content |
 //! |---|---|
+//! | [`recording_part`] | `BAG@20..40`: a part of a recording |
 //! | [`recordings`] | checks before a recording is used, what is left out of it, the most informative stretches of a long one |
 //! | [`results`] | the result of each verb, with its JSON, its sentence and its page |
 //! | [`sentences`] | results in words that no page has |
@@ -13,11 +14,14 @@
 
 pub mod diagnosis_file;
 mod error;
+mod json_text;
 pub mod numbers;
 pub mod profile_file;
+pub mod recording_part;
 pub mod recordings;
 pub mod results;
 pub mod sentences;
 pub mod simulated;
 
 pub use error::WorkError;
+pub use json_text::json_text;

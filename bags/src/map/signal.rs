@@ -109,7 +109,7 @@ pub struct SignalName {
 
 impl SignalName {
     /// The column of the recording that the name stands for; a cylinder that is not there yet is added.
-    pub(super) fn column<'r>(&self, recording: &'r mut Recording) -> &'r mut Vec<f64> {
+    pub fn column<'r>(&self, recording: &'r mut Recording) -> &'r mut Vec<f64> {
         let samples = recording.len();
         let Some(name) = &self.cylinder else {
             return match self.kind {

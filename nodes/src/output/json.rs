@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use excavator_workbench::json_text;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -10,7 +11,7 @@ use crate::error::VerbError;
 
 /// Writes a result as JSON to a file, or to standard output for "-".
 pub fn write_json(path: &Path, result: &impl Serialize, overwriting: Overwriting) -> Result<(), VerbError> {
-    crate::outputs::write(path, &(serde_json::to_string_pretty(result)? + "\n"), overwriting)
+    crate::outputs::write(path, &json_text(result)?, overwriting)
 }
 
 /// JSON has no NaN: what is not a number is null.

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use excavator_workbench::recording_part::Part;
+
 use crate::cli::{Mapping, ModelChoice, Recordings};
-use crate::recording_part::Part;
 
 /// Both halves of a recording of `duration` s, for a command that wants one to fit and another to judge; where `bag` is a part of a
 /// recording already, the second is left to whoever pastes it.

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use excavator_bags::map::TopicMap;
+use excavator_workbench::recording_part::Part;
 
 use super::place::FileId;
-use crate::recording_part::Part;
 
 /// Files that a command reads, by their identity on the disk.
 #[derive(Debug, Default)]

@@ -2,15 +2,10 @@
 
 use std::path::Path;
 
-use excavator_identification::design::{
-    DesignSettings, ParameterDesign, Plan, Rival, SeparationDesign, determine, separate,
-};
-use excavator_identification::results;
-use excavator_model::Model;
+use excavator_identification::design::{ParameterDesign, Plan, SeparationDesign};
 use excavator_workbench::diagnosis_file::DiagnosisFile;
-use excavator_workbench::sentences::{
-    determination_profile, determination_sentence, separation_profile, separation_sentence,
-};
+use excavator_workbench::results::{DesignOrder, Determined, Outcome, Separated};
+use excavator_workbench::sentences::{determination_sentence, separation_sentence};
 
 use super::{print, print_detail, print_next};
 use crate::cli::DesignArguments;
@@ -25,50 +20,45 @@ pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let diagnosis = arguments.diagnosis.as_deref().map(DiagnosisFile::read).transpose()?;
-    let model = diagnosis.as_ref().map_or_else(|| Ok(model.clone()), |file| file.with_nuisances(&model))?;
-    let mut settings = DesignSettings::usual(&model.machine);
-    settings.duration = arguments.duration;
-    settings.limits.stroke_margin = arguments.stroke_margin;
-    settings.limits.highest_pressure = arguments.highest_pressure;
-    if let Some(file) = &diagnosis {
-        file.noise_into(&mut settings.sensors);
-    }
+    let order = DesignOrder {
+        between: arguments.between.clone(),
+        duration: arguments.duration,
+        stroke_margin: arguments.stroke_margin,
+        highest_pressure: arguments.highest_pressure,
+    };
+    let progress = Progress::new();
+    let tell = |what: &str, done: f64| progress.tell(what, done);
     match &arguments.parameter {
-        Some(name) => for_parameter(arguments, &model, name, diagnosis.as_ref(), &settings),
-        None => between_rivals(arguments, &model, diagnosis.as_ref(), &settings),
+        Some(name) => {
+            let found = Determined::of(&model, name, &order, diagnosis.as_ref(), &tell)?;
+            drop(progress);
+            for_parameter(arguments, &found)
+        }
+        None => {
+            let found = Separated::of(&model, &order, diagnosis.as_ref(), &tell)?;
+            drop(progress);
+            between_rivals(arguments, &found)
+        }
     }
 }
 
-fn between_rivals(
-    arguments: &DesignArguments,
-    model: &Model,
-    diagnosis: Option<&DiagnosisFile>,
-    settings: &DesignSettings,
-) -> Result<(), VerbError> {
-    let names = match (arguments.between.as_slice(), diagnosis) {
-        ([], Some(file)) => file.tied()?,
-        (names, _) => names.to_vec(),
-    };
-    let mut rivals = Rival::named(model, &names)?;
-    // Only values of all rivals from one diagnosis make them as alike as the recordings did.
-    let fitted = diagnosis.is_some_and(|file| rivals.iter().all(|rival| file.has(&rival.name)));
-    if let Some(file) = diagnosis {
-        rivals.iter_mut().for_each(|rival| rival.set(file.values(&rival.name)));
-    }
-    let progress = Progress::new();
-    let design = separate(rivals, fitted, settings, &|what, done| progress.tell(what, done))?;
-    drop(progress);
-    let written = design.any_separated().then_some(arguments.output.as_path());
-    if let Some(path) = written {
-        write(path, &separation_profile(model, &design)?, arguments.overwriting)?;
-    }
+fn between_rivals(arguments: &DesignArguments, found: &Separated) -> Result<(), VerbError> {
+    let design = found.design();
+    let written = write_profile(arguments, found)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&design, written, arguments);
+        show(design, written, arguments);
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &results::Separation::of(&design, name_of(written).as_deref()), arguments.overwriting)?;
+        write_json(path, &found.result(name_of(written).as_deref()), arguments.overwriting)?;
     }
-    if written.is_some() { Ok(()) } else { Err(VerbError::NothingSeparates(sentence(&design))) }
+    if written.is_some() { Ok(()) } else { Err(VerbError::NothingSeparates(sentence(design))) }
+}
+
+/// Writes the profile, where one was found; gives its file.
+fn write_profile<'a>(arguments: &'a DesignArguments, found: &impl Outcome) -> Result<Option<&'a Path>, VerbError> {
+    let Some(profile) = found.file()? else { return Ok(None) };
+    write(&arguments.output, &profile, arguments.overwriting)?;
+    Ok(Some(&arguments.output))
 }
 
 /// The profile file as a result names it.
@@ -115,38 +105,17 @@ fn show_use(path: &Path, arguments: &DesignArguments) {
     print_next(&step.path("--input", path).path("-o", Path::new("commands")));
 }
 
-fn for_parameter(
-    arguments: &DesignArguments,
-    model: &Model,
-    name: &str,
-    diagnosis: Option<&DiagnosisFile>,
-    settings: &DesignSettings,
-) -> Result<(), VerbError> {
-    let mut rival = Rival { name: "none".into(), addition: None, model: model.clone() };
-    for one in &arguments.between {
-        for more in Rival::named(&rival.model, std::slice::from_ref(one))? {
-            rival = more;
-        }
-    }
-    if let Some(file) = diagnosis {
-        rival.set(file.values(&rival.name));
-    }
-    let model = rival.model;
-    let progress = Progress::new();
-    let design = determine(&model, name, settings, &|what, done| progress.tell(what, done))?;
-    drop(progress);
-    let written = design.determined.then_some(arguments.output.as_path());
-    if let Some(path) = written {
-        write(path, &determination_profile(&model, &design)?, arguments.overwriting)?;
-    }
+fn for_parameter(arguments: &DesignArguments, found: &Determined) -> Result<(), VerbError> {
+    let design = found.design();
+    let written = write_profile(arguments, found)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show_parameter(&design);
+        show_parameter(design);
         if let Some(path) = written {
             show_use(path, arguments);
         }
     }
     if let Some(path) = &arguments.json.json {
-        write_json(path, &results::Determination::of(&design, name_of(written).as_deref()), arguments.overwriting)?;
+        write_json(path, &found.result(name_of(written).as_deref()), arguments.overwriting)?;
     }
     if written.is_some() {
         return Ok(());

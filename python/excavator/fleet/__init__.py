@@ -14,7 +14,6 @@ from ._pairs import Job, Pair, read_manifest
 from ._results import EFFECT, PARAMETER, ROW, Poison, Results
 from ._run import Report, run
 from ._store import Copied, Entry, Store
-from ._text import as_program
 from ._unit import Done, work
 
 __all__ = [
@@ -30,7 +29,6 @@ __all__ = [
     "Report",
     "Results",
     "Store",
-    "as_program",
     "page",
     "read_manifest",
     "run",

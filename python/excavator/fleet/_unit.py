@@ -15,7 +15,6 @@ from .. import _native
 from .._errors import ReadError, Remark
 from ._pairs import Job
 from ._store import Store, joined, local_path
-from ._text import as_program
 
 OWN_TOPICS = ("*arm/state", "*arm/orifice_command")
 """Ends of the topics of this project, in any namespace."""
@@ -43,7 +42,7 @@ def work(job: Job, store: Store) -> Done:
         identification = [desk.read(address) for address in job.pair.identification]
         validation = [desk.read(address) for address in job.pair.validation]
         result = _result(job, identification, validation)
-        text = as_program(desk.named(result.to_json()))
+        text = desk.named(result.to_json())
         remarks = [desk.named(str(one.message)) for one in told if issubclass(one.category, Remark)]
         stamp = (validation or identification)[0].start_nanoseconds
     recorded = job.pair.recorded

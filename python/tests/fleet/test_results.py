@@ -21,13 +21,6 @@ DIAGNOSIS = {
 }
 
 
-def test_json_is_laid_out_as_by_the_program():
-    text = '{"a":[1,1e-7,2.0,{}],"b":"x:{,\\"}\\\\","c":[],"d":{"e":null}}'
-    laid_out = fleet.as_program(text)
-    assert json.loads(laid_out) == json.loads(text)
-    assert laid_out.startswith('{\n  "a": [\n    1,\n    1e-7,\n    2.0,\n    {}\n  ],\n  "b": "x:{,\\"}\\\\",\n  "c": [],\n') and laid_out.endswith("}\n")
-
-
 def test_a_key_is_of_everything_that_counts():
     identity = {"program": "1", "verb": "diagnose", "validation": ["sha256:1"]}
     assert key_of(identity) == key_of(dict(reversed(identity.items())))

@@ -76,7 +76,7 @@ pub fn thin_copy(
     block_on(async {
         let is_folder = url.ends_with('/') || place.file().is_some_and(|file| file.is_dir());
         if !is_folder {
-            match persistently("read", url, |_| place.store.head(&place.path)).await {
+            match persistently("read", url, || place.store.head(&place.path)).await {
                 Ok(meta) => {
                     let mut done = ThinCopy { path: target.join(name_of(&meta)), ..ThinCopy::default() };
                     folder(target)?;

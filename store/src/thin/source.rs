@@ -44,7 +44,7 @@ impl<'p> Source<'p> {
     /// The bytes of a range; of the same content each time, where the store can tell.
     pub(super) async fn range(&self, range: Range<u64>) -> Result<Bytes, StoreError> {
         let wanted = range.end.saturating_sub(range.start);
-        let request = |_| async {
+        let request = || async {
             let options =
                 GetOptions { range: Some(range.clone().into()), if_match: self.etag.clone(), ..GetOptions::default() };
             self.place.store.get_opts(&self.path, options).await?.bytes().await
@@ -59,7 +59,7 @@ impl<'p> Source<'p> {
 
     /// Copies the whole object to a file.
     pub(super) async fn copy(&self, target: &FilePath) -> Result<(), StoreError> {
-        let request = |_| async {
+        let request = || async {
             let options = GetOptions { if_match: self.etag.clone(), ..GetOptions::default() };
             let mut pieces = self.place.store.get_opts(&self.path, options).await?.into_stream();
             let failed = |source| object_store::Error::Generic { store: "file", source: Box::new(source) };

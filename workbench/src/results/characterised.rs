@@ -7,7 +7,7 @@ use excavator_model::recording::Recording;
 use excavator_report::characterisation_page;
 
 use super::Outcome;
-use crate::WorkError;
+use crate::{WorkError, json_text};
 
 /// Result of `characterise`.
 pub struct Characterised {
@@ -26,7 +26,7 @@ impl Characterised {
 
 impl Outcome for Characterised {
     fn json(&self) -> Result<String, WorkError> {
-        Ok(serde_json::to_string(&results::Characterisation::of(&self.found))?)
+        json_text(&results::Characterisation::of(&self.found))
     }
 
     fn sentence(&self) -> String {

@@ -7,7 +7,7 @@ use excavator_model::recording::Recording;
 use excavator_report::{Beside, comparison_page, comparison_sentence, others_sentence};
 
 use super::Outcome;
-use crate::WorkError;
+use crate::{WorkError, json_text};
 
 /// Result of `compare`.
 pub struct Compared {
@@ -46,7 +46,7 @@ impl Outcome for Compared {
     fn json(&self) -> Result<String, WorkError> {
         let (against, again) = (self.against.as_ref(), self.again.as_ref());
         let result = results::Comparison::of(&self.comparison, &self.baselines, against, again);
-        Ok(serde_json::to_string(&result)?)
+        json_text(&result)
     }
 
     fn sentence(&self) -> String {

@@ -5,9 +5,9 @@ use excavator_identification::results;
 use excavator_model::Model;
 
 use super::{Outcome, Progress};
-use crate::WorkError;
 use crate::diagnosis_file::DiagnosisFile;
 use crate::sentences::{determination_profile, determination_sentence, separation_profile, separation_sentence};
+use crate::{WorkError, json_text};
 
 /// What a design is for, and what it must keep to.
 #[derive(Debug, Clone)]
@@ -68,11 +68,21 @@ impl Separated {
         let design = separate(rivals, fitted, &settings, progress)?;
         Ok(Separated { model, design })
     }
+
+    /// What was designed.
+    pub fn design(&self) -> &SeparationDesign {
+        &self.design
+    }
+
+    /// The result for programs, with the name of the profile file that was written.
+    pub fn result(&self, profile: Option<&str>) -> results::Separation {
+        results::Separation::of(&self.design, profile)
+    }
 }
 
 impl Outcome for Separated {
     fn json(&self) -> Result<String, WorkError> {
-        Ok(serde_json::to_string(&results::Separation::of(&self.design, None))?)
+        json_text(&self.result(None))
     }
 
     fn sentence(&self) -> String {
@@ -116,11 +126,21 @@ impl Determined {
         let design = determine(&rival.model, parameter, &settings, progress)?;
         Ok(Determined { model: rival.model, design })
     }
+
+    /// What was designed.
+    pub fn design(&self) -> &ParameterDesign {
+        &self.design
+    }
+
+    /// The result for programs, with the name of the profile file that was written.
+    pub fn result(&self, profile: Option<&str>) -> results::Determination {
+        results::Determination::of(&self.design, profile)
+    }
 }
 
 impl Outcome for Determined {
     fn json(&self) -> Result<String, WorkError> {
-        Ok(serde_json::to_string(&results::Determination::of(&self.design, None))?)
+        json_text(&self.result(None))
     }
 
     fn sentence(&self) -> String {

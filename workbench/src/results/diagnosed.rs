@@ -10,7 +10,7 @@ use excavator_model::recording::Recording;
 use excavator_report::{diagnosis_page, guess_sentence, verdict_sentence};
 
 use super::{Outcome, Progress};
-use crate::WorkError;
+use crate::{WorkError, json_text};
 
 /// Result of `diagnose`.
 pub struct Diagnosed {
@@ -44,7 +44,7 @@ impl Diagnosed {
 impl Outcome for Diagnosed {
     fn json(&self) -> Result<String, WorkError> {
         let result = results::Diagnosis::of(&self.model, &self.diagnosis, self.guess.as_ref(), &self.missing);
-        Ok(serde_json::to_string(&result)?)
+        json_text(&result)
     }
 
     fn sentence(&self) -> String {

@@ -7,9 +7,9 @@ use excavator_model::recording::Recording;
 use excavator_report::energy_page;
 
 use super::Outcome;
-use crate::WorkError;
 use crate::recordings::{LEDGER_BLOCK, blocks};
 use crate::sentences::ledger_sentence;
+use crate::{WorkError, json_text};
 
 /// Result of `energy`.
 pub struct Energetic {
@@ -40,7 +40,7 @@ impl Energetic {
 
 impl Outcome for Energetic {
     fn json(&self) -> Result<String, WorkError> {
-        Ok(serde_json::to_string(&results::Energy::of(&self.model, &self.analysis))?)
+        json_text(&results::Energy::of(&self.model, &self.analysis))
     }
 
     fn sentence(&self) -> String {

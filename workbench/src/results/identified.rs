@@ -7,8 +7,8 @@ use excavator_model::recording::Recording;
 use excavator_report::implausible_sentence;
 
 use super::Outcome;
-use crate::WorkError;
 use crate::sentences::{identification_sentence, profile_sentence};
+use crate::{WorkError, json_text};
 
 /// Result of `identify`.
 pub struct IdentifiedResult {
@@ -30,7 +30,7 @@ impl IdentifiedResult {
 
 impl Outcome for IdentifiedResult {
     fn json(&self) -> Result<String, WorkError> {
-        Ok(serde_json::to_string(&results::Identification::of(&self.result))?)
+        json_text(&results::Identification::of(&self.result))
     }
 
     fn sentence(&self) -> String {

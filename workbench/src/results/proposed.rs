@@ -9,7 +9,7 @@ use excavator_model::recording::Recording;
 use excavator_report::{proposal_page, proposal_sentence};
 
 use super::{Outcome, Progress};
-use crate::WorkError;
+use crate::{WorkError, json_text};
 
 /// Result of `propose`.
 pub struct Proposed {
@@ -35,7 +35,7 @@ impl Proposed {
 
 impl Outcome for Proposed {
     fn json(&self) -> Result<String, WorkError> {
-        Ok(serde_json::to_string(&results::Proposals::of(&self.found))?)
+        json_text(&results::Proposals::of(&self.found))
     }
 
     fn sentence(&self) -> String {

@@ -8,7 +8,7 @@ use excavator_model::recording::Recording;
 use excavator_report::{refinement_page, refinement_sentence};
 
 use super::{Outcome, Progress};
-use crate::WorkError;
+use crate::{WorkError, json_text};
 
 /// Result of `refine`.
 pub struct Refined {
@@ -36,7 +36,7 @@ impl Refined {
 impl Outcome for Refined {
     fn json(&self) -> Result<String, WorkError> {
         let steps = self.refinement.steps.iter().map(|step| (step.added.as_deref(), step.comparisons.as_slice()));
-        Ok(serde_json::to_string(&results::Refinement::of(self.refinement.verdict(), steps, None))?)
+        json_text(&results::Refinement::of(self.refinement.verdict(), steps, None))
     }
 
     fn sentence(&self) -> String {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use excavator_model::recording::Recording;
 
-use crate::error::VerbError;
+use crate::WorkError;
 
 /// From when to when, s after the first sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,8 +17,8 @@ impl Part {
     /// A path without the part of it that is wanted, and that part. What exists as it is has no part, even with an @ in its name.
     ///
     /// # Errors
-    /// [`VerbError::Part`] for times that are none.
-    pub fn split(path: &Path) -> Result<(PathBuf, Option<Part>), VerbError> {
+    /// [`WorkError::Part`] for times that are none.
+    pub fn split(path: &Path) -> Result<(PathBuf, Option<Part>), WorkError> {
         let named = || {
             let (before, part) = path.to_str()?.rsplit_once('@')?;
             Some((before, part.split_once("..")?))
@@ -32,10 +32,17 @@ impl Part {
             _ => Err(wrong(path, format!("\"{text}\" is no number of seconds after the first sample"))),
         };
         let (from, to) = (time(from, 0.0)?, time(to, f64::INFINITY)?);
-        if from >= to {
-            return Err(wrong(path, format!("{from} s is not before {to} s")));
-        }
-        Ok((PathBuf::from(before), Some(Part { from, to })))
+        Ok((PathBuf::from(before), Some(Part::between(from, to, path)?)))
+    }
+
+    /// The part of a recording from `from` to `to`, s, which errors call `name`.
+    ///
+    /// # Errors
+    /// [`WorkError::Part`] for an end that is not after the start.
+    pub fn between(from: f64, to: f64, name: &Path) -> Result<Part, WorkError> {
+        // Also false where one of them is no number.
+        let is_part = from >= 0.0 && from < to;
+        if is_part { Ok(Part { from, to }) } else { Err(wrong(name, format!("{from} s is not before {to} s"))) }
     }
 
     /// What is wanted of a block that begins `offset` s after the first sample of its recording; `None` where that is nothing.
@@ -50,15 +57,15 @@ impl Part {
     }
 
     /// That the recording from `path` ends at `end`, s, before anything that is wanted.
-    pub fn is_beyond(self, end: f64, path: &Path) -> VerbError {
+    pub fn is_beyond(self, end: f64, path: &Path) -> WorkError {
         wrong(path, format!("the recording ends at {end:.2} s"))
     }
 
     /// That part of what was read from `path`.
     ///
     /// # Errors
-    /// [`VerbError::Part`] where the recording has ended before.
-    pub fn of(self, recording: &Recording, path: &Path) -> Result<Recording, VerbError> {
+    /// [`WorkError::Part`] where the recording has ended before.
+    pub fn of(self, recording: &Recording, path: &Path) -> Result<Recording, WorkError> {
         if self.from >= recording.duration() {
             return Err(self.is_beyond(recording.duration(), path));
         }
@@ -68,8 +75,8 @@ impl Part {
     }
 }
 
-fn wrong(path: &Path, reason: String) -> VerbError {
-    VerbError::Part { path: path.to_path_buf(), reason }
+fn wrong(path: &Path, reason: String) -> WorkError {
+    WorkError::Part { path: path.to_path_buf(), reason }
 }
 
 #[cfg(test)]
