@@ -13,6 +13,7 @@ All quantities are in SI units; pressures are gauge pressures.
 
 from ._bag import Bag, Topic
 from ._errors import CheckError, ComputationError, ExcavatorError, ModelError, ReadError, Remark
+from ._law import law, root, table
 from ._model import Effect, Model, Parameter
 from ._native import __version__
 from ._recording import Recording, guess_map, read
@@ -59,7 +60,10 @@ __all__ = [
     "energy",
     "guess_map",
     "identify",
+    "law",
     "propose",
     "read",
     "refine",
+    "root",
+    "table",
 ]

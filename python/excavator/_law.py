@@ -1,0 +1,298 @@
+"""Python functions as physical laws: a function is called once with symbols, and what it computes is written down as a formula."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import numbers
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ._errors import ModelError
+
+# How tightly an operation binds; a formula gets parentheses only where they are needed.
+SUM, PRODUCT, SIGN, POWER, ATOM = range(1, 6)
+
+# Functions of NumPy and what a formula calls them.
+CALLS = {
+    np.absolute: "abs",
+    np.fabs: "abs",
+    np.sign: "sign",
+    np.sqrt: "sqrt",
+    np.exp: "exp",
+    np.log: "ln",
+    np.log10: "log10",
+    np.sin: "sin",
+    np.cos: "cos",
+    np.tan: "tan",
+    np.tanh: "tanh",
+    np.arctan: "atan",
+    np.minimum: "min",
+    np.fmin: "min",
+    np.maximum: "max",
+    np.fmax: "max",
+}
+
+
+class Symbol:
+    """A quantity of a law: Python's arithmetic and NumPy's functions on it build a formula."""
+
+    __slots__ = ("binds", "text")
+    __array_priority__ = 1000
+
+    def __init__(self, text: str, binds: int = ATOM) -> None:
+        self.text = text
+        self.binds = binds
+
+    def within(self, least: int) -> str:
+        """The text, in parentheses where an operation around it binds tighter."""
+        return self.text if self.binds >= least else f"({self.text})"
+
+    def __add__(self, other: Any) -> Symbol:
+        return _binary(self, "+", other, SUM)
+
+    def __radd__(self, other: Any) -> Symbol:
+        return _binary(other, "+", self, SUM)
+
+    def __sub__(self, other: Any) -> Symbol:
+        return _binary(self, "-", other, SUM)
+
+    def __rsub__(self, other: Any) -> Symbol:
+        return _binary(other, "-", self, SUM)
+
+    def __mul__(self, other: Any) -> Symbol:
+        return _binary(self, "*", other, PRODUCT)
+
+    def __rmul__(self, other: Any) -> Symbol:
+        return _binary(other, "*", self, PRODUCT)
+
+    def __truediv__(self, other: Any) -> Symbol:
+        return _binary(self, "/", other, PRODUCT)
+
+    def __rtruediv__(self, other: Any) -> Symbol:
+        return _binary(other, "/", self, PRODUCT)
+
+    def __pow__(self, other: Any) -> Symbol:
+        return _power(self, other)
+
+    def __rpow__(self, other: Any) -> Symbol:
+        return _power(other, self)
+
+    def __neg__(self) -> Symbol:
+        return Symbol(f"-{self.within(POWER)}", SIGN)
+
+    def __pos__(self) -> Symbol:
+        return self
+
+    def __abs__(self) -> Symbol:
+        return call("abs", self)
+
+    def __lt__(self, other: Any) -> Condition:
+        return Condition(self, "<", other)
+
+    def __le__(self, other: Any) -> Condition:
+        return Condition(self, "<=", other)
+
+    def __gt__(self, other: Any) -> Condition:
+        return Condition(self, ">", other)
+
+    def __ge__(self, other: Any) -> Condition:
+        return Condition(self, ">=", other)
+
+    def __bool__(self) -> bool:
+        raise ModelError(f'a law cannot branch on "{self.text}": write numpy.where(x > 0, a, b) in place of if')
+
+    def __float__(self) -> float:
+        raise ModelError(f'"{self.text}" has no value yet: use functions of NumPy (numpy.tanh in place of math.tanh)')
+
+    def __array_ufunc__(self, function: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
+        if method != "__call__" or options:
+            raise ModelError(f"a formula has no numpy.{function.__name__}.{method}")
+        if function in OPERATORS:
+            return OPERATORS[function](*inputs)
+        if function in CALLS:
+            return call(CALLS[function], *inputs)
+        known = ", ".join(sorted({one.__name__ for one in CALLS}))
+        raise ModelError(f"a formula has no numpy.{function.__name__}; it has {known}, where, clip")
+
+    def __array_function__(self, function: Callable[..., Any], types: Any, args: tuple[Any, ...], options: Any) -> Any:
+        if function is np.where and len(args) == 3:
+            return where(*args)
+        if function is np.clip and len(args) == 3:
+            return call("clamp", *args)
+        raise ModelError(f"a formula has no numpy.{function.__name__}")
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+class Condition:
+    """A comparison of two quantities, for `numpy.where`."""
+
+    __slots__ = ("text",)
+
+    def __init__(self, left: Any, operator: str, right: Any) -> None:
+        self.text = f"{_symbol(left).text} {operator} {_symbol(right).text}"
+
+    def __bool__(self) -> bool:
+        raise ModelError(f'a law cannot branch on "{self.text}": write numpy.where({self.text}, a, b) in place of if')
+
+    def __array_function__(self, function: Callable[..., Any], types: Any, args: tuple[Any, ...], options: Any) -> Any:
+        if function is np.where and len(args) == 3:
+            return where(*args)
+        raise ModelError(f"a formula has no numpy.{function.__name__} of a comparison")
+
+
+def call(function: str, *arguments: Any) -> Symbol:
+    """A function of the language of formulas, by its name there."""
+    return Symbol(f"{function}({', '.join(_symbol(one).text for one in arguments)})")
+
+
+def where(condition: Condition, holds: Any, otherwise: Any) -> Symbol:
+    """`holds` where the condition holds, else `otherwise`; rounded at the change like all corners of a formula."""
+    if not isinstance(condition, Condition):
+        raise ModelError("numpy.where in a law needs one comparison, as in numpy.where(v > 0, a, b)")
+    return Symbol(f"if({condition.text}, {_symbol(holds).text}, {_symbol(otherwise).text})")
+
+
+def root(x: Any) -> Any:
+    """sign(x) sqrt(abs(x)) with a finite slope at zero, like the flow through an orifice."""
+    if isinstance(x, Symbol):
+        return call("root", x)
+    return np.sign(x) * np.sqrt(np.abs(x))
+
+
+def table(x: Any, knots: Sequence[float], values: Sequence[float]) -> Symbol:
+    """A monotone cubic through its knots. `knots` are in the SI unit of `x`, and the result is a pure number."""
+    lists = (f"[{', '.join(_number(one) for one in row)}]" for row in (knots, values))
+    return Symbol(f"table({_symbol(x).text}, {', '.join(lists)})")
+
+
+def law(
+    function: Callable[..., Any],
+    *,
+    acts_on: str,
+    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+    states: Mapping[str, Mapping[str, Any]] | None = None,
+    name: str | None = None,
+    summary: str | None = None,
+) -> dict[str, Any]:
+    """A Python function as a law, in the form that `Model.with_effect` and `Model.with_catalogue` take.
+
+    The function is called once, with symbols in place of numbers, and its result becomes the formula. So a law in Python is as fast as
+    one in text, has exact derivatives and is stored in the model file. Its arguments are variables of the machine, parameters and
+    states, by name; an argument whose default is a text means the variable of that name (`boom_speed="boom.v"`)::
+
+        def load_damping(v, p_cap, p_rod, k):
+            \"\"\"Damping that grows with the load.\"\"\"
+            return -k * v * abs(p_cap - p_rod)
+
+        excavator.law(
+            load_damping,
+            acts_on="piston_force",
+            parameters={"k": {"unit": "N s/(m Pa)", "maximum": 1.0, "start": [1e-3]}},
+        )
+
+    The function may use arithmetic and those functions of NumPy that formulas have, among them `numpy.where`, `numpy.clip` and
+    `numpy.tanh`, and `excavator.root` and `excavator.table`. It may loop over a fixed count, but not branch on a quantity.
+
+    Args:
+        function: the law, in the SI unit of what it acts on.
+        acts_on: what the law enters; it sets the unit. `excavator effects --language` lists all.
+        parameters: unit, limits, start values and meaning of each parameter, with the keys of a catalogue file.
+        states: start, rate and unit of each state, for laws with memory. `rate` and `start` are formulas or functions.
+        name: name of the effect; that of the function by default.
+        summary: what the effect is, in a sentence; the first line of the function's docstring by default.
+
+    Raises:
+        ModelError: when the function does what a formula cannot.
+    """
+    told = name or function.__name__
+    if not told.isidentifier():
+        raise ModelError(f'a law needs a name: law(..., name="load_damping"); "{told}" is none')
+    entry: dict[str, Any] = {"name": told, "acts_on": acts_on, "formula": _traced(function, told)}
+    summary = summary or (inspect.getdoc(function) or "").partition("\n")[0]
+    if summary:
+        entry["summary"] = summary
+    if parameters:
+        entry["parameters"] = {key: dict(value) for key, value in parameters.items()}
+    if states:
+        entry["states"] = {key: _state(told, key, value) for key, value in states.items()}
+    return entry
+
+
+def _state(law_name: str, key: str, state: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        field: _traced(value, f"{law_name}.{key}.{field}") if callable(value) else value for field, value in state.items()
+    }
+
+
+def _traced(function: Callable[..., Any], told: str) -> str:
+    arguments: list[Symbol] = []
+    named: dict[str, Symbol] = {}
+    for parameter in inspect.signature(function).parameters.values():
+        if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
+            raise ModelError(f"{told}: a law names its arguments; *{parameter.name} has no name")
+        symbol = Symbol(parameter.default if isinstance(parameter.default, str) else parameter.name)
+        if parameter.kind is parameter.KEYWORD_ONLY:
+            named[parameter.name] = symbol
+        else:
+            arguments.append(symbol)
+    try:
+        result = function(*arguments, **named)
+    except ModelError as error:
+        raise ModelError(f"{told}: {error}") from None
+    if isinstance(result, Condition):
+        raise ModelError(f"{told}: the result is a comparison ({result.text}), not a number")
+    if result is None:
+        raise ModelError(f"{told}: the function returns nothing")
+    return _symbol(result).text
+
+
+def _number(value: Any) -> str:
+    # repr gives the shortest text that reads back as the same number.
+    number = float(value)
+    if not math.isfinite(number):
+        raise ModelError(f"a formula has no number {number}")
+    return repr(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
+
+
+def _symbol(value: Any) -> Symbol:
+    if isinstance(value, Symbol):
+        return value
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    if isinstance(value, numbers.Real):
+        text = _number(value)
+        return Symbol(text, SIGN if text.startswith("-") else ATOM)
+    raise ModelError(f"a law computes with single numbers; {type(value).__name__} is none")
+
+
+def _binary(left: Any, operator: str, right: Any, binds: int) -> Symbol:
+    first, second = _symbol(left), _symbol(right)
+    # Behind "-" and "/", an operation of the same kind needs parentheses. A sign there gets them to be readable.
+    behind = ATOM if second.binds == SIGN else binds + 1 if operator in "-/" else binds
+    return Symbol(f"{first.within(binds)} {operator} {second.within(behind)}", binds)
+
+
+def _power(base: Any, exponent: Any) -> Symbol:
+    return Symbol(f"{_symbol(base).within(ATOM)}^{_symbol(exponent).within(POWER)}", POWER)
+
+
+OPERATORS: dict[np.ufunc, Callable[..., Any]] = {
+    np.add: lambda left, right: _binary(left, "+", right, SUM),
+    np.subtract: lambda left, right: _binary(left, "-", right, SUM),
+    np.multiply: lambda left, right: _binary(left, "*", right, PRODUCT),
+    np.true_divide: lambda left, right: _binary(left, "/", right, PRODUCT),
+    np.power: _power,
+    np.float_power: _power,
+    np.square: lambda x: _power(x, 2),
+    np.negative: lambda x: -_symbol(x),
+    np.positive: lambda x: x,
+    np.less: lambda left, right: Condition(left, "<", right),
+    np.less_equal: lambda left, right: Condition(left, "<=", right),
+    np.greater: lambda left, right: Condition(left, ">", right),
+    np.greater_equal: lambda left, right: Condition(left, ">=", right),
+}
