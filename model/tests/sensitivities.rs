@@ -144,15 +144,15 @@ fn fine() -> Tolerances {
 #[test]
 fn sensitivities_with_each_effect_added() {
     let base = excavator_model::document::built_in("zx30u-arm").unwrap();
-    for physics in &common::catalogue() {
-        for site in base.free_sites(physics) {
-            let model = common::with_typical(&base, physics, site);
-            // A regulator that is at its limits has corners there.
-            let is_regulated = physics.card().name == "load_sensing_pump";
-            check(&model, Tolerances::default(), 0.02, if is_regulated { 0.2 } else { 0.1 });
-            check(&model, fine(), 2e-3, if is_regulated { 0.2 } else { 0.02 });
-        }
-    }
+    let catalogue = common::catalogue();
+    let cases = catalogue.iter().flat_map(|physics| base.free_sites(physics).into_iter().map(move |site| (physics, site)));
+    common::each(cases.collect::<Vec<_>>(), |(physics, site)| {
+        let model = common::with_typical(&base, physics, site);
+        // A regulator that is at its limits has corners there.
+        let is_regulated = physics.card().name == "load_sensing_pump";
+        check(&model, Tolerances::default(), 0.02, if is_regulated { 0.2 } else { 0.1 });
+        check(&model, fine(), 2e-3, if is_regulated { 0.2 } else { 0.02 });
+    });
 }
 
 /// What instruments see, from what states do.

@@ -273,3 +273,20 @@ pub fn good_noise(channel: Channel) -> f64 {
         Channel::RodForce(_) => 1.0,
     }
 }
+
+/// Does something to each item, on every core.
+pub fn each<Item: Send>(items: impl IntoIterator<Item = Item>, work: impl Fn(Item) + Sync) {
+    let items: Vec<Item> = items.into_iter().collect();
+    let waiting = std::sync::Mutex::new(items.into_iter());
+    // Not in the condition of the loop, which would hold the lock while the item is worked on.
+    let next = || waiting.lock().unwrap().next();
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some(item) = next() {
+                    work(item);
+                }
+            });
+        }
+    });
+}
