@@ -24,6 +24,7 @@ mod error;
 mod info;
 pub mod map;
 mod own_messages;
+pub mod prelude;
 mod reading;
 pub mod table;
 mod topics;

@@ -17,6 +17,24 @@ const COMMAND_DEPTH: u32 = 10;
 /// each at which a command changes, with the cylinders for which it does. All stamps are those of the samples, to the
 /// nearest nanosecond. The folder has its name only when the bag is complete.
 ///
+/// ```
+/// use excavator_bags::{Topics, read_recording, write_recording};
+/// use excavator_model::recording::Recording;
+/// use rosbag2::WriteOptions;
+///
+/// let folder = tempfile::tempdir()?;
+/// let bag = folder.path().join("drive_1");
+/// let time: Vec<f64> = (0..100).map(|sample| f64::from(sample) * 0.01).collect();
+/// let mut recording = Recording::unmeasured("a drive", time, &["arm"]);
+/// recording.start_nanoseconds = 1_790_000_000_000_000_000;
+/// recording.cylinders[0].cap_pressure.fill(12.4e6);
+/// write_recording(&bag, &recording, &Topics::default(), &WriteOptions::default())?;
+///
+/// let (read, _) = read_recording(&bag, &Topics::default())?;
+/// assert_eq!(read.cylinders[0].cap_pressure, recording.cylinders[0].cap_pressure);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`BagError::InvalidRecording`], [`BagError::StampOutOfRange`], [`BagError::StampsCoincide`], [`rosbag2::Error::AlreadyExists`]
 /// and [`rosbag2::Error::NotReplaceable`] before anything is written; then all of [`BagWriter`].

@@ -53,6 +53,7 @@ pub struct Identified {
 
 /// Why there is no identified model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum IdentifyError {
     /// The equations give no numbers.
     #[error(transparent)]
@@ -63,6 +64,27 @@ pub enum IdentifyError {
 }
 
 /// Identifies the unknown parameters of `model` from `recordings`.
+///
+/// ```
+/// use excavator_identification::prelude::*;
+/// use excavator_model::prelude::*;
+///
+/// let machine = built_in("zx30u-arm")?;
+/// # let time: Vec<f64> = (0..8000).map(|sample| f64::from(sample) * 2e-3).collect();
+/// # let mut command = Recording::unmeasured("swing", time, &["arm"]);
+/// # command.tank_pressure.fill(3e5);
+/// # let area = |t: &f64| 5e-5 * (3.1 * t).sin() + 3e-5 * (7.3 * t).sin();
+/// # command.cylinders[0].orifice_area = command.time.iter().map(area).collect();
+/// let recording = simulate_from_rest(&machine, &command, &[0.1], Tolerances::default().scaled(0.05))?;
+/// // A model whose numbers are a tenth too large.
+/// let mut given = machine.clone();
+/// given.parameters_mut().filter(|parameter| !parameter.known).for_each(|parameter| parameter.value *= 1.1);
+///
+/// let found = identify(&given, &[&recording], Method::WeakForm)?;
+/// let gain = found.model.value_of("arm.flow_gain_cap").ok_or("no such parameter")?;
+/// assert!((gain / 4.6e-3 - 1.0).abs() < 0.02, "{gain} m/(s sqrt(Pa))");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`IdentifyError`].

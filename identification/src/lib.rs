@@ -13,6 +13,7 @@ pub mod energy;
 pub mod fit;
 pub mod identify;
 pub mod plausibility;
+pub mod prelude;
 pub mod proposal;
 pub mod refinement;
 pub mod regression;

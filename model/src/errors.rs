@@ -4,6 +4,7 @@ use crate::effects::UnknownEffect;
 
 /// What can be wrong with a change to a model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModelError {
     /// No such effect in the catalogue.
     #[error(transparent)]
@@ -34,6 +35,7 @@ pub enum ModelError {
 
 /// What can be wrong between a model and a recording.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SignalError {
     /// A signal that the model needs as input is nowhere in the recording.
     #[error("{source_name} does not measure {signal}, which {machine} needs as an input")]

@@ -18,6 +18,7 @@ mod errors;
 pub mod formula;
 pub mod machine;
 mod model;
+pub mod prelude;
 pub mod recording;
 pub mod scalar;
 pub mod simulation;

@@ -326,6 +326,17 @@ impl Model {
 
     /// A copy of the model with one more effect at its start values.
     ///
+    /// ```
+    /// use excavator_model::prelude::*;
+    ///
+    /// let plain = built_in("zx30u-arm")?;
+    /// let dead_zone = plain.catalogue.find("valve_dead_zone")?;
+    /// let model = plain.with_effect(&dead_zone, Site::Cylinder(0))?;
+    /// assert_eq!(model.value_of("arm.dead_zone_positive"), Some(3e-6)); // m²
+    /// assert!(model.with_effect(&dead_zone, Site::Cylinder(0)).is_err(), "it is there already");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`ModelError::WrongSite`], [`ModelError::AlreadyPresent`].
     pub fn with_effect(&self, physics: &AnyEffect, site: Site) -> Result<Model, ModelError> {

@@ -27,6 +27,13 @@ pub struct CylinderState {
 
 impl CylinderState {
     /// A cylinder of which nothing is measured. There is no `Default`: zeros would be measurements.
+    ///
+    /// ```
+    /// use excavator_msgs::CylinderState;
+    ///
+    /// let state = CylinderState { cap_pressure: 12.4e6, ..CylinderState::unmeasured("arm") };
+    /// assert!(state.rod_force.is_nan());
+    /// ```
     pub fn unmeasured(name: &str) -> Self {
         CylinderState {
             name: name.to_string(),

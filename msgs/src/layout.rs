@@ -80,6 +80,17 @@ pub fn fields(text: &str) -> Vec<Field> {
 ///
 /// Types that the schema does not define are looked up in [`definitions`]; if unknown there too, the field stays as it
 /// is. Comments and spelling (`std_msgs/msg/Header` or `std_msgs/Header`) make no difference.
+///
+/// ```
+/// use excavator_msgs::{definitions, layout};
+///
+/// let name = "excavator_msgs/msg/OrificeCommand";
+/// let schema = definitions::schema(name).ok_or("not known")?;
+/// let fields = layout::flat_fields(name, &schema);
+/// let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
+/// assert_eq!(names, ["header.stamp.sec", "header.stamp.nanosec", "header.frame_id", "names", "areas"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn flat_fields(type_name: &str, schema: &str) -> Vec<Field> {
     let mut sections: HashMap<String, &str> = HashMap::new();
     let mut parts = split_at_separators(schema).into_iter();

@@ -17,6 +17,14 @@ pub struct Time {
 
 impl Time {
     /// The time that is `nanoseconds` (ns) after the epoch; `None` outside 1901 to 2038, which `sec` cannot hold.
+    ///
+    /// ```
+    /// use excavator_msgs::Time;
+    ///
+    /// let time = Time::from_nanoseconds(1_500_000_000);
+    /// assert_eq!(time, Some(Time { sec: 1, nanosec: 500_000_000 }));
+    /// assert_eq!(time.map(Time::nanoseconds), Some(1_500_000_000));
+    /// ```
     pub fn from_nanoseconds(nanoseconds: i64) -> Option<Time> {
         let sec = i32::try_from(nanoseconds.div_euclid(NANOSECONDS_PER_SECOND)).ok()?;
         let nanosec = u32::try_from(nanoseconds.rem_euclid(NANOSECONDS_PER_SECOND)).ok()?;

@@ -7,6 +7,13 @@ use crate::definitions::{message_text, with_contained};
 use crate::layout::{self, Field};
 
 /// `type_description_interfaces/msg/TypeDescription`.
+///
+/// ```
+/// use excavator_msgs::TypeDescription;
+///
+/// let hash = TypeDescription::of("std_msgs/msg/String").map(|described| described.hash());
+/// assert_eq!(hash.as_deref(), Some("RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"));
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TypeDescription {
     /// The type itself.

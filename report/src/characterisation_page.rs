@@ -14,6 +14,17 @@ use super::page::{Section, page, tile};
 
 /// A page with gains, dead zones, leakage and friction of every cylinder, with 95 % bands, and why what is not there could
 /// not be measured.
+///
+/// ```
+/// use excavator_identification::characterisation::characterise;
+/// use excavator_model::Model;
+/// use excavator_model::recording::Recording;
+/// use excavator_report::characterisation_page;
+///
+/// fn page(model: &Model, recording: &Recording) -> String {
+///     characterisation_page(model, &[recording.source.clone()], &characterise(model, &[recording]))
+/// }
+/// ```
 pub fn characterisation_page(model: &Model, sources: &[String], found: &[Characterisation]) -> String {
     let lead = html! {
         p.about { (model.machine.description) " · " (sources.join(", ")) }

@@ -21,6 +21,21 @@ use super::{energy_tables, parameter_table};
 /// A page with a diagnosis: the verdict, the evidence, and where the model fails. `comparisons_before` are the model
 /// without additions on the validation recordings; `missing` is what the energy ledger of the refitted model says of each
 /// of them.
+///
+/// ```no_run
+/// use excavator_identification::diagnosis::Diagnosis;
+/// use excavator_identification::energy::ledgers;
+/// use excavator_identification::validation::compare;
+/// use excavator_model::Model;
+/// use excavator_model::recording::Recording;
+/// use excavator_report::diagnosis_page;
+///
+/// fn write(model: &Model, found: &Diagnosis, judging: &Recording) -> Result<(), Box<dyn std::error::Error>> {
+///     let refitted = &found.given().fit.model;
+///     let page = diagnosis_page(model, found, &[compare(refitted, judging)?], &ledgers(refitted, &[judging]));
+///     Ok(std::fs::write("diagnosis.html", page)?)
+/// }
+/// ```
 pub fn diagnosis_page(
     model: &Model,
     diagnosis: &Diagnosis,

@@ -23,6 +23,18 @@ const POINTS_OF_A_PAGE: usize = 50_000;
 
 /// A page with the energy of one recording under one model: its flow, the rates of the stored energy as in \[A\] Figures
 /// 10 to 12, and the ledger with its noise bands.
+///
+/// ```no_run
+/// use excavator_identification::energy::{EnergySettings, analyse};
+/// use excavator_model::Model;
+/// use excavator_model::recording::Recording;
+/// use excavator_report::energy_page;
+///
+/// fn write(model: &Model, recording: &Recording) -> Result<(), Box<dyn std::error::Error>> {
+///     let analysis = analyse(model, recording, EnergySettings::default())?;
+///     Ok(std::fs::write("energy.html", energy_page(model, &analysis))?)
+/// }
+/// ```
 pub fn energy_page(model: &Model, analysis: &EnergyAnalysis) -> String {
     let missing = missing_power(model, analysis);
     let totals = &analysis.totals;

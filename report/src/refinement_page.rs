@@ -18,6 +18,21 @@ use super::time_plots::{AFTER, BEFORE, Line, MODEL, hint, time_plots};
 
 /// A page with the story of a refinement: errors step by step, signals before and after, the final model, and the
 /// diagnosis behind it.
+///
+/// ```no_run
+/// use excavator_identification::diagnosis::DiagnosisSettings;
+/// use excavator_identification::refinement::{Additions, refine};
+/// use excavator_model::Model;
+/// use excavator_model::recording::Recording;
+/// use excavator_report::refinement_page;
+///
+/// fn write(model: &Model, fitted: &Recording, judging: &Recording) -> Result<(), Box<dyn std::error::Error>> {
+///     let (settings, when) = (DiagnosisSettings::default(), "2026-05-01T12:00:00Z");
+///     let progress = |_: &str, _: f64| ();
+///     let refinement = refine(model, &[fitted], &[judging], &Additions::Auto, &settings, when, &progress)?;
+///     Ok(std::fs::write("refinement.html", refinement_page(&refinement))?)
+/// }
+/// ```
 pub fn refinement_page(refinement: &Refinement) -> String {
     let model = &refinement.model;
     let stages = Stages::of(refinement);

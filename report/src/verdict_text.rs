@@ -12,6 +12,19 @@ use super::plausibility_text::implausible_sentence;
 use super::words;
 
 /// What a diagnosis found, in a few plain sentences. Effects that the recordings cannot tell apart are all named.
+///
+/// ```no_run
+/// use excavator_identification::diagnosis::{DiagnosisSettings, diagnose};
+/// use excavator_model::Model;
+/// use excavator_model::recording::Recording;
+/// use excavator_report::verdict_sentence;
+///
+/// fn tell(model: &Model, fitted: &Recording, judging: &Recording) -> Result<String, Box<dyn std::error::Error>> {
+///     let progress = |_: &str, _: f64| ();
+///     let found = diagnose(model, &[fitted], &[judging], &DiagnosisSettings::default(), &progress)?;
+///     Ok(verdict_sentence(model, &found))
+/// }
+/// ```
 pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
     let machine = &model.machine.name;
     let mut sentences = vec![match diagnosis.verdict.kind {

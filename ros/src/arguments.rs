@@ -96,6 +96,16 @@ impl Default for RosArguments {
 impl RosArguments {
     /// Splits `arguments` into what is for ROS and what is not.
     ///
+    /// ```
+    /// use excavator_ros::RosArguments;
+    ///
+    /// let words = ["play", "drive_1", "--ros-args", "-r", "__ns:=/left", "-p", "rate:=500"].map(String::from);
+    /// let (ros, others) = RosArguments::parse(&words)?;
+    /// assert_eq!(others, ["play", "drive_1"]);
+    /// assert_eq!(ros.parameters[0].name, "rate");
+    /// # Ok::<(), excavator_ros::RosError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`RosError::Arguments`] with the argument that cannot be understood.
     pub fn parse(arguments: &[String]) -> Result<(Self, Vec<String>), RosError> {

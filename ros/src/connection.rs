@@ -21,6 +21,7 @@ pub type Install = Box<dyn FnOnce(&Handle) + Send>;
 
 /// What is left of an endpoint that was closed.
 #[derive(Default)]
+#[must_use = "tasks must be ended, and what remains be dropped where that may hang"]
 pub struct Closed {
     /// To be ended.
     pub tasks: Vec<Task>,

@@ -77,6 +77,15 @@ impl Diagnostics {
     }
 
     /// Tells how a part is. A new level or message is published at once, new values with the next message.
+    ///
+    /// ```no_run
+    /// use excavator_ros::{Health, RosArguments, Supervisor};
+    ///
+    /// let supervisor = Supervisor::start("pump_watch", &RosArguments::default(), Vec::new())?;
+    /// let values = [("pressure [Pa]", "31.4e6".to_string())];
+    /// supervisor.diagnostics.tell("pump", Health::Warning, "the relief valve is open", &values);
+    /// # Ok::<(), excavator_ros::RosError>(())
+    /// ```
     pub fn tell(&self, part: &str, health: Health, message: impl Into<String>, values: &[(&str, String)]) {
         let message = message.into();
         let values = values.iter().map(|(key, value)| (key.to_string(), value.clone())).collect();

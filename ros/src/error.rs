@@ -5,6 +5,7 @@ use std::path::PathBuf;
 /// Why a node cannot start or go on.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)]
+#[non_exhaustive]
 pub enum RosError {
     #[error("--ros-args: {0}")]
     Arguments(String),

@@ -17,6 +17,7 @@ use super::{RosError, TopicQos};
 
 /// What is known about a message beside its content.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Received {
     /// When it came, on the steady clock of this machine.
     pub at: Instant,

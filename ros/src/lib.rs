@@ -70,6 +70,7 @@ mod parameter_services;
 mod parameters;
 mod patience;
 mod peers;
+pub mod prelude;
 mod probe;
 mod qos;
 pub mod raw;

@@ -14,6 +14,18 @@ pub struct Remap {
 }
 
 /// Name and namespace of a node with the rules that apply to it.
+///
+/// ```
+/// use excavator_ros::{NodeIdentity, RosArguments};
+///
+/// let words = ["--ros-args", "-r", "__ns:=/left", "-r", "/clock:=/simulation/clock"].map(String::from);
+/// let (ros, _) = RosArguments::parse(&words)?;
+/// let identity = NodeIdentity::new("arm_bridge", &ros.remaps)?;
+/// assert_eq!(identity.full_name(), "/left/arm_bridge");
+/// assert_eq!(identity.resolve("arm/state")?, "/left/arm/state");
+/// assert_eq!(identity.resolve("/clock")?, "/simulation/clock");
+/// # Ok::<(), excavator_ros::RosError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NodeIdentity {
     namespace: String,

@@ -12,6 +12,7 @@ use super::{RosError, TopicQos};
 
 /// Why a message was not taken.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PublishError {
     /// Readers are too far behind.
     #[error("readers are too far behind, the send window is full")]

@@ -9,6 +9,18 @@ use nix::time::{ClockId, ClockNanosleepFlags, clock_gettime, clock_nanosleep};
 const GIVE_UP: Duration = Duration::from_millis(50);
 
 /// Absolute sleeps on the steady clock: lateness of one round does not shift the next.
+///
+/// ```
+/// use excavator_ros::Pace;
+///
+/// let mut pace = Pace::new(100.0);
+/// for _ in 0..3 {
+///     // The work of one round stands here.
+///     if !pace.wait() {
+///         eprintln!("{} rounds were left out", pace.take_missed());
+///     }
+/// }
+/// ```
 pub struct Pace {
     period: Duration,
     next: Duration,
@@ -17,7 +29,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// A loop of `rate` rounds per second that starts now.
+    /// A loop of `rate` rounds per second (Hz) that starts now.
     pub fn new(rate: f64) -> Self {
         let period = Duration::try_from_secs_f64(1.0 / rate).unwrap_or(Duration::from_secs(1));
         Pace { period, next: steady_now(), late: 0, missed: 0 }

@@ -137,11 +137,13 @@ impl Parameter {
     }
 
     /// The same, with a range.
+    #[must_use]
     pub fn within(self, from: f64, to: f64) -> Self {
         Parameter { range: Some(Range { from, to }), ..self }
     }
 
     /// The same, fixed once the node runs.
+    #[must_use]
     pub fn read_only(self) -> Self {
         Parameter { read_only: true, ..self }
     }

@@ -24,6 +24,17 @@ impl Parameters {
     /// Declares `parameters` with the `overrides` of command line and files. Overrides of parameters that do not exist
     /// come back as warnings, with the nearest name, since a mistyped name must not pass in silence.
     ///
+    /// ```
+    /// use excavator_ros::{Parameter, Parameters, Value};
+    ///
+    /// let rate = Parameter::new("rate", Value::Double(1000.0), "samples per second [Hz]").within(1.0, 2000.0);
+    /// let overrides = [("rate".to_string(), Value::Integer(500))];
+    /// let (parameters, warnings) = Parameters::declare(vec![rate], &overrides)?;
+    /// assert_eq!(parameters.double("rate"), 500.0);
+    /// assert!(warnings.is_empty());
+    /// # Ok::<(), excavator_ros::RosError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`RosError::Parameter`] for a value of the wrong type or out of range.
     pub fn declare(parameters: Vec<Parameter>, overrides: &[(String, Value)]) -> Result<(Self, Vec<String>), RosError> {

@@ -29,6 +29,7 @@ impl TopicQos {
     }
 
     /// The same for a reader that only ever wants the newest: middleware keeps what was read until the room is full.
+    #[must_use]
     pub const fn with_room(self, samples: i32) -> Self {
         TopicQos { room: samples, ..self }
     }

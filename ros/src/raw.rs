@@ -76,6 +76,7 @@ impl SerializerAdapter<RawBytes> for RawAdapter {
 
 /// A message as it came.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RawSample {
     /// Content with encapsulation.
     pub data: Bytes,

@@ -20,6 +20,16 @@ use crate::runtime::{block_on, persistently};
 ///   other bytes. It may give another one to the same bytes, after an upload in other parts: then the work is done once more, and nothing worse.
 /// - Of a folder it is `folder:` and a hash over names and identities of what is in it.
 ///
+/// ```
+/// use excavator_store::{Options, fingerprint};
+///
+/// let folder = tempfile::tempdir()?;
+/// let address = folder.path().join("drive_1.mcap").display().to_string();
+/// std::fs::write(&address, "content")?;
+/// assert!(fingerprint(&address, &Options::new())?.starts_with("sha256:"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`StoreError::DoesNotExist`]; others.
 pub fn fingerprint(url: &str, options: &Options) -> Result<String, StoreError> {

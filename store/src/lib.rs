@@ -9,6 +9,19 @@
 //!
 //! Every function blocks. Requests run on one runtime of the process, so that connections are kept. Each is tried again when the store or
 //! the network fails.
+//!
+//! ```
+//! use excavator_store::{Options, get, list, put_if_absent};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let results = format!("file://{}/results", folder.path().display());
+//! let (address, options) = (format!("{results}/drive_1.json"), Options::new());
+//! assert!(put_if_absent(&address, b"first", &options)?);
+//! assert!(!put_if_absent(&address, b"second", &options)?);
+//! assert_eq!(get(&address, &options)?, b"first");
+//! assert_eq!(list(&results, &options)?.len(), 1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod error;
 mod fingerprint;
@@ -23,3 +36,7 @@ pub use opened::{Options, Place, open};
 pub use thin::{ThinCopy, thin_copy};
 
 pub use fingerprint::fingerprint;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -12,6 +12,7 @@ const LARGEST: u64 = 1 << 30;
 
 /// An object of a store.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Entry {
     /// Its address.
     pub url: String,

@@ -6,6 +6,11 @@ use crate::WorkError;
 
 /// A result as text, laid out for people too.
 ///
+/// ```
+/// assert_eq!(excavator_workbench::json_text(&[0.5, 2.0])?, "[\n  0.5,\n  2.0\n]\n");
+/// # Ok::<(), excavator_workbench::WorkError>(())
+/// ```
+///
 /// # Errors
 /// [`WorkError::Json`].
 pub fn json_text(result: &impl Serialize) -> Result<String, WorkError> {

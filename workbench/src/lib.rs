@@ -11,11 +11,30 @@
 //! | [`profile_file`], [`diagnosis_file`] | files that one verb writes and another reads |
 //!
 //! Nothing is printed here: what a person should know is given back as remarks.
+//!
+//! ```no_run
+//! use std::path::Path;
+//!
+//! use excavator_bags::prelude::*;
+//! use excavator_model::document::built_in;
+//! use excavator_workbench::prelude::*;
+//!
+//! let model = built_in("zx30u-arm")?;
+//! let (recording, report) = read_recording_or_mapped(Path::new("drive_1"), Origin::default())?;
+//! let mut remarks = report.problems();
+//! let usage = Use { accept: &[], conditions: &[] };
+//! let recording = checked("drive_1", recording, &report, &usage, &model, &mut remarks)?;
+//! let compared = Compared::of(&model, &recording, None, None)?;
+//! println!("{}", compared.sentence());
+//! std::fs::write("compared.json", compared.json()?)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod diagnosis_file;
 mod error;
 mod json_text;
 pub mod numbers;
+pub mod prelude;
 pub mod profile_file;
 pub mod recording_part;
 pub mod recordings;

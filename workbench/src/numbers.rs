@@ -1,6 +1,12 @@
 //! Numbers for people.
 
 /// A number with four significant digits, short.
+///
+/// ```
+/// use excavator_workbench::numbers::number;
+///
+/// assert_eq!([21.3456, 2.1e-7, f64::NAN].map(number), ["21.35", "2.100e-7", "-"]);
+/// ```
 pub fn number(value: f64) -> String {
     if !value.is_finite() {
         return "-".to_string();

@@ -16,6 +16,17 @@ pub struct Part {
 impl Part {
     /// A path without the part of it that is wanted, and that part. What exists as it is has no part, even with an @ in its name.
     ///
+    /// ```
+    /// use std::path::Path;
+    ///
+    /// use excavator_workbench::recording_part::Part;
+    ///
+    /// let (bag, part) = Part::split(Path::new("drive_1@20..40"))?;
+    /// assert_eq!(bag, Path::new("drive_1"));
+    /// assert!(part.is_some());
+    /// # Ok::<(), excavator_workbench::WorkError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`WorkError::Part`] for times that are none.
     pub fn split(path: &Path) -> Result<(PathBuf, Option<Part>), WorkError> {

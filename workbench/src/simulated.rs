@@ -14,6 +14,26 @@ use crate::profile_file::ProfileFile;
 
 /// Simulates a profile; `source` names it in messages and in the result.
 ///
+/// ```
+/// use std::path::Path;
+///
+/// use excavator_model::document::built_in;
+/// use excavator_workbench::profile_file::ProfileFile;
+/// use excavator_workbench::simulated::simulate_profile;
+///
+/// let text = r#"
+///     rate = 100.0
+///     [[profiles]]
+///     cylinder = "arm"
+///     segments = [{ kind = "sine", duration = 1.0, amplitude = 3e-5, frequency = 1.0 }]
+/// "#;
+/// let (model, path) = (built_in("zx30u-arm")?, Path::new("swing.toml"));
+/// let profile = ProfileFile::of_text(path, text, &model.machine)?;
+/// let recording = simulate_profile(&model, &profile, path)?;
+/// assert_eq!(recording.len(), 101);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`WorkError`] where the machine cannot start there, or the simulation fails.
 pub fn simulate_profile(model: &Model, file: &ProfileFile, source: &Path) -> Result<Recording, WorkError> {

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 /// One measured signal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct SignalInfo {
     /// Contract name: `arm.displacement`.
     pub name: String,
@@ -20,6 +21,7 @@ pub struct SignalInfo {
 
 /// One equation of the model and the signals that it lacks.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct EquationInfo {
     /// `arm motion`, `arm chambers`, `pump line`.
     pub equation: String,
@@ -31,6 +33,8 @@ pub struct EquationInfo {
 
 /// What can be identified from a recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[must_use]
+#[non_exhaustive]
 pub struct SignalsInfo {
     /// Samples of the clock.
     pub samples: usize,
@@ -133,6 +137,20 @@ impl SignalsTally {
 
 impl SignalsInfo {
     /// Looks at every signal of a recording.
+    ///
+    /// ```
+    /// use excavator_bags::SignalsInfo;
+    /// use excavator_model::recording::Recording;
+    ///
+    /// let mut recording = Recording::unmeasured("a drive", vec![0.0, 0.01, 0.02], &["arm"]);
+    /// recording.cylinders[0].displacement = vec![0.1, 0.2, 0.3];
+    /// let found = SignalsInfo::of(&recording);
+    /// assert_eq!(found.measured[0].name, "arm.displacement");
+    /// assert_eq!((found.measured[0].least, found.measured[0].most), (0.1, 0.3));
+    /// for equation in &found.equations {
+    ///     println!("{} lacks {}", equation.equation, equation.missing.join(", "));
+    /// }
+    /// ```
     pub fn of(recording: &Recording) -> SignalsInfo {
         let mut tally = SignalsTally::default();
         tally.add(recording);

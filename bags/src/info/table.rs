@@ -11,6 +11,7 @@ use crate::table::{Table, TableFormat, Values};
 
 /// One column.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct ColumnInfo {
     /// Name, share without value, and range: in the column's own unit, s since the epoch for dates.
     #[serde(flatten)]
@@ -25,6 +26,7 @@ pub struct ColumnInfo {
 
 /// What is in a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct TableInfo {
     /// In the order of the file.
     pub columns: Vec<ColumnInfo>,

@@ -11,6 +11,7 @@ use super::unit::Dimension;
 
 /// A topic map that cannot be used, or does not fit the data.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum MapError {
     /// No map in the text.
     #[error("the map is not understood: {}", _0.message)]

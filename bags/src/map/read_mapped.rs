@@ -52,6 +52,17 @@ pub struct Origin<'o> {
 
 /// Reads the data at `path` with a map, or without any as a bag of our own topics.
 ///
+/// ```no_run
+/// use std::path::Path;
+///
+/// use excavator_bags::map::{Origin, read_recording_or_mapped};
+///
+/// let origin = Origin { map: Some(Path::new("test_stand.toml")), ..Origin::default() };
+/// let (recording, report) = read_recording_or_mapped(Path::new("pressures.csv"), origin)?;
+/// println!("{} samples; {}", recording.len(), report.problems().join("; "));
+/// # Ok::<(), excavator_bags::BagError>(())
+/// ```
+///
 /// # Errors
 /// All of [`read_mapped`], [`Topics::in_bag`] and [`read_recording`](crate::read_recording); [`BagError::BadTable`] for a table without map.
 pub fn read_recording_or_mapped(path: &Path, origin: Origin<'_>) -> Result<(Recording, ReadReport), BagError> {

@@ -161,6 +161,13 @@ const UNITS: [Unit; 64] = {
 impl Unit {
     /// The unit of this name: `bar`, `l/min`, `mm²`, `°C`; capitals count only where it matters (`mm`, `MM`, but
     /// `mPa` is not `MPa`).
+    ///
+    /// ```
+    /// use excavator_bags::map::Unit;
+    ///
+    /// assert_eq!(Unit::named("l/min").map(|unit| unit.to_si(60.0)), Some(1e-3));
+    /// assert_eq!(Unit::named("furlong"), None);
+    /// ```
     pub fn named(name: &str) -> Option<Unit> {
         let name: String = name
             .trim()

@@ -18,6 +18,7 @@ pub struct Gap {
 
 /// What was found in a bag, and what had to be done to make a recording of it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[non_exhaustive]
 pub struct ReadReport {
     /// Messages read per topic, of all topics in the bag.
     pub messages: BTreeMap<String, u64>,

@@ -122,6 +122,15 @@ impl Table {
 
     /// The table in the text of a CSV file of any dialect.
     ///
+    /// ```
+    /// use excavator_bags::table::{Table, TableFormat, Values};
+    ///
+    /// let table = Table::from_text(b"t [s],p [bar]\n0,1.5\n0.5,-2.25\n1.0,3e2\n", &TableFormat::default())?;
+    /// assert_eq!((table.columns[1].name.as_str(), table.columns[1].unit.as_deref()), ("p", Some("bar")));
+    /// assert_eq!(table.columns[1].values, Values::Numbers(vec![1.5, -2.25, 300.0]));
+    /// # Ok::<(), String>(())
+    /// ```
+    ///
     /// # Errors
     /// What is wrong, in one line.
     pub fn from_text(bytes: &[u8], format: &TableFormat) -> Result<Table, String> {

@@ -9,6 +9,7 @@ fn counted(number: usize, one: &str, more: &str) -> String {
 
 /// A recording does not suit a procedure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refusal {
     /// The cylinder has no oil, or no valve between its oil and the pump.
     #[error("{cylinder} has no valve section in this model, so there is nothing of it to measure")]

@@ -10,6 +10,7 @@ pub(super) const FEWEST_SAMPLES: usize = 50;
 
 /// A recording that cannot be used, in one line that says what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CheckError {
     /// Too short.
     #[error(

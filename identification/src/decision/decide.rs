@@ -12,6 +12,39 @@ use super::{Kind, Policy, Reason, Scores, Standing, Verdict};
 /// 2. Hypotheses are admissible where each of their effects is needed, shows and has a sensible size.
 /// 3. The model confidence set of these holds what cannot be told from the best one; of that those with the fewest effects stay.
 /// 4. The first of them explains the recordings where it leaves little. A structural effect in the set forbids an attribution.
+///
+/// ```
+/// use excavator_identification::decision::scores::{Block, FORMAT, Hypothesis, InstrumentScale, Misfit, Side};
+/// use excavator_identification::prelude::*;
+///
+/// // One displacement, read 85 times in each of 40 blocks of half a second; the given model leaves the noise and no more.
+/// let instrument = InstrumentScale { name: "arm.displacement".into(), unit: "m".into(), noise: 1e-4, spread: 1e-2 };
+/// let block = |number: i32| Block { recording: 0, begin_s: 0.5 * f64::from(number), readings: vec![85] };
+/// let side = Side {
+///     sample_interval_s: 2e-3,
+///     instruments: vec![instrument],
+///     input_floor: Vec::new(),
+///     blocks: (0..40).map(block).collect(),
+/// };
+/// let misfit = Misfit { error_ratios: vec![vec![1.0]; 40] };
+/// let given = Hypothesis {
+///     effects: Vec::new(),
+///     nuisances: Vec::new(),
+///     identification: misfit.clone(),
+///     validation: misfit,
+///     parameter_count: 12,
+///     seconds: 1.0,
+/// };
+/// let scores = Scores {
+///     format: FORMAT,
+///     machine: "zx30u-arm".into(),
+///     identification: side.clone(),
+///     validation: side,
+///     hypotheses: vec![given],
+/// };
+/// let verdict = decide(&scores, &Policy::default());
+/// assert_eq!(verdict.kind, Kind::Adequate);
+/// ```
 pub fn decide(scores: &Scores, policy: &Policy) -> Verdict {
     let adequacy = adequacy(scores, policy);
     let assessed = assess(scores, policy, adequacy.is_adequate);

@@ -7,6 +7,7 @@ pub const FORMAT: u32 = 1;
 
 /// The scores of all hypotheses of one search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[must_use]
 pub struct Scores {
     /// [`FORMAT`].
     pub format: u32,
@@ -60,6 +61,7 @@ pub struct Block {
 
 /// A model that was tried.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[must_use]
 pub struct Hypothesis {
     /// Effects that the given model has not, in the order in which they were selected.
     pub effects: Vec<EffectScore>,
@@ -139,6 +141,7 @@ pub enum Bound {
 
 /// Why scores cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ScoresError {
     /// Not the expected JSON.
     #[error("not the scores of a diagnosis: {0}")]

@@ -29,6 +29,7 @@ impl Kind {
 
 /// The verdict on the scores of a search. Hypotheses are given by their numbers in [`super::Scores::hypotheses`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[must_use]
 pub struct Verdict {
     /// What is to be thought of the given model.
     pub kind: Kind,

@@ -9,6 +9,7 @@ use crate::fit::FitError;
 
 /// Why no manoeuvre can be proposed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DesignError {
     /// One rival has nobody to be told from.
     #[error("{rival} alone has nothing to be told from; name a second effect, or \"none\", or a --parameter")]

@@ -30,6 +30,7 @@ pub(super) struct Extremes {
 
 /// A limit that was left.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Violation {
     /// Too near an end of the stroke.
     #[error("the {cylinder} cylinder comes to {found:.3} m; the stroke less its margin ends at {limit:.3} m")]

@@ -35,6 +35,7 @@ pub struct Diagnosis {
 
 /// Why there is no verdict.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DiagnosisError {
     /// The residual cannot be formed.
     #[error(transparent)]
@@ -58,6 +59,22 @@ pub struct DiagnosisSettings {
 
 /// Finds out what `model` is missing. Parameters are fitted to `identification`, evidence comes from `validation`.
 /// `progress` is told what is being done, in words, with the fraction done.
+///
+/// ```no_run
+/// use excavator_identification::prelude::*;
+/// use excavator_model::prelude::*;
+///
+/// # fn verdict(model: &Model, fitted: &Recording, judging: &Recording) -> Result<(), Box<dyn std::error::Error>> {
+/// let progress = |what: &str, share: f64| eprintln!("{:3.0} % {what}", 100.0 * share);
+/// let found = diagnose(model, &[fitted], &[judging], &DiagnosisSettings::default(), &progress)?;
+/// if found.verdict.kind == Kind::MissingEffect {
+///     for candidate in found.selected() {
+///         println!("{} at {}", candidate.name(), candidate.place());
+///     }
+/// }
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 /// [`DiagnosisError`].

@@ -4,6 +4,7 @@ use excavator_model::SignalError;
 
 /// Why the energy of a recording could not be analysed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EnergyError {
     /// The recording does not give what the model needs.
     #[error(transparent)]

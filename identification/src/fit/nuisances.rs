@@ -17,11 +17,13 @@ pub fn is_nuisance(family: Family) -> bool {
 }
 
 /// `model` with every nuisance effect that it has not and that these recordings can have.
+#[must_use]
 pub fn with_nuisances(model: &Model, recordings: &[&Recording]) -> Model {
     with_nuisances_of(model, &[Family::Recording, Family::Rounding], recordings)
 }
 
 /// The same of these families. A regression sees no [`Family::Rounding`]: a smoothed velocity reverses slower than the piston.
+#[must_use]
 pub fn with_nuisances_of(model: &Model, families: &[Family], recordings: &[&Recording]) -> Model {
     let mut extended = model.clone();
     for physics in model.catalogue.iter().filter(|physics| families.contains(&physics.card().family)) {
@@ -65,6 +67,7 @@ pub fn nuisances_shown<'a>(given: &'a Model, fitted: &'a Model) -> impl Iterator
 
 /// A model without the nuisance effects that `given` has not and that do not differ from nothing: as simple as it can be.
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Simplified {
     /// The model.
     pub model: Model,

@@ -23,6 +23,7 @@ use super::{FitSettings, Instrument, Watch};
 
 /// Why a fit could not be done.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// The recordings do not give what the model needs.
     #[error(transparent)]
@@ -104,6 +105,29 @@ impl Fit {
 ///
 /// Errors of each instrument are divided by their own size in the step before (never less than its noise): where the
 /// model is wrong, that is the maximum-likelihood weighting for errors of unknown size.
+///
+/// ```
+/// use excavator_identification::prelude::*;
+/// use excavator_model::prelude::*;
+///
+/// let machine = built_in("zx30u-arm")?;
+/// # let time: Vec<f64> = (0..8000).map(|sample| f64::from(sample) * 2e-3).collect();
+/// # let mut command = Recording::unmeasured("swing", time, &["arm"]);
+/// # command.tank_pressure.fill(3e5);
+/// # let area = |t: &f64| 5e-5 * (3.1 * t).sin() + 3e-5 * (7.3 * t).sin();
+/// # command.cylinders[0].orifice_area = command.time.iter().map(area).collect();
+/// let recording = simulate_from_rest(&machine, &command, &[0.1], Tolerances::default().scaled(0.05))?;
+/// // A model whose numbers are a tenth too large.
+/// let mut given = machine.clone();
+/// given.parameters_mut().filter(|parameter| !parameter.known).for_each(|parameter| parameter.value *= 1.1);
+///
+/// // The regression gives the fit a good start.
+/// let start = weak_form(&given, &[&recording], &WeakFormSettings::default())?;
+/// let found = fit(&start.model, &[&recording], &FitSettings::default())?;
+/// let gain = found.model.value_of("arm.flow_gain_cap").ok_or("no such parameter")?;
+/// assert!((gain / 4.6e-3 - 1.0).abs() < 0.02, "{gain} m/(s sqrt(Pa))");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`FitError`].

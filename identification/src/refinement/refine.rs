@@ -25,6 +25,16 @@ pub enum Additions {
 impl Additions {
     /// What a person names: each `EFFECT` at every place where it can act, `EFFECT@PLACE` at one.
     ///
+    /// ```
+    /// use excavator_identification::prelude::*;
+    /// use excavator_model::prelude::*;
+    ///
+    /// let model = built_in("zx30u-arm")?;
+    /// let additions = Additions::named(&model, &["valve_dead_zone@arm".to_string()])?;
+    /// assert!(matches!(additions, Additions::Named(named) if named[0].name(&model) == "valve_dead_zone@arm"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`RefineError::Model`], [`RefineError::Twice`].
     pub fn named(model: &Model, names: &[String]) -> Result<Self, RefineError> {
@@ -104,6 +114,7 @@ impl Refinement {
 
 /// Why there is no refined model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RefineError {
     /// No diagnosis.
     #[error(transparent)]
@@ -144,6 +155,21 @@ impl From<AdditionError> for RefineError {
 }
 
 /// Refines `model`. `when` (ISO 8601) goes into the model's history; `progress` is told what is being done.
+///
+/// ```no_run
+/// use excavator_identification::prelude::*;
+/// use excavator_model::prelude::*;
+///
+/// # fn better(model: &Model, fitted: &Recording, judging: &Recording) -> Result<(), Box<dyn std::error::Error>> {
+/// let settings = DiagnosisSettings::default();
+/// let when = "2025-01-01T00:00:00Z";
+/// let refined = refine(model, &[fitted], &[judging], &Additions::Auto, &settings, when, &|_, _| {})?;
+/// for step in &refined.steps {
+///     println!("{}: error {:.2e}", step.added.as_deref().unwrap_or("refitted"), step.mean_error());
+/// }
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 /// [`RefineError`].

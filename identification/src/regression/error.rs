@@ -6,6 +6,7 @@ use crate::fit::FitError;
 
 /// Why a regression gives no numbers.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RegressionError {
     /// The recordings do not give what the model needs.
     #[error(transparent)]

@@ -26,6 +26,7 @@ pub struct Regression {
 
 impl Regression {
     /// Without the nuisance effects that `given` has not and that do not differ from nothing.
+    #[must_use]
     pub fn simplified(self, given: &Model) -> Self {
         let simple = Simplified::of(given, &self.model);
         let (places, fitted): (Vec<usize>, Vec<usize>) =

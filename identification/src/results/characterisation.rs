@@ -11,6 +11,7 @@ use crate::characterisation::{self, Edge, Refusal};
 /// Valves and friction, read off recordings without a simulation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Characterisation {
     /// The cylinders, in the model's order.
     pub cylinders: Vec<CylinderCharacterisation>,

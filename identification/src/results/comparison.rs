@@ -11,6 +11,7 @@ use crate::validation;
 /// A model beside a recording, simulated with its input.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Comparison {
     /// Mean over the signals of their mean squared error over their variance (NMSE): 0 is a perfect match, 1 is no better than a constant.
     pub mean_nmse: Option<f64>,

@@ -9,6 +9,7 @@ use crate::design;
 /// A profile that shows a parameter, and what to expect of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Determination {
     /// The profile file that was written; `null` where the parameter would stay open.
     pub profile: Option<String>,

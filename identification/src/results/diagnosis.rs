@@ -12,6 +12,7 @@ use crate::{diagnosis, energy, proposal};
 /// What a model is missing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Diagnosis {
     /// What is to be thought of the given model.
     pub verdict: Kind,

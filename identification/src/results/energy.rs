@@ -12,6 +12,7 @@ use crate::energy::{self, EnergyAnalysis, Regime, missing_power};
 /// Where the energy of a recording went, and whether the model's ledger closes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Energy {
     /// The recording.
     pub source: String,

@@ -9,6 +9,7 @@ use crate::proposal;
 /// The law of one term that promises most. It was not fitted, and not judged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Guess {
     /// The formula.
     pub formula: String,

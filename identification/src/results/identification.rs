@@ -13,6 +13,7 @@ use crate::identify::Identified;
 /// Parameters identified from recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Identification {
     /// The identified parameters, in the model's order.
     pub parameters: Vec<Parameter>,

@@ -9,6 +9,7 @@ use crate::energy::{self, Regime};
 /// Power that goes missing, or appears without a source, at one equation, beyond what noise explains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct MissingPower {
     /// Cylinder; `null` for the pump line, and where several joints share an equation.
     pub cylinder: Option<String>,

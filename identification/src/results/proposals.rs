@@ -10,6 +10,7 @@ use crate::proposal::{self, ProposalVerdict};
 /// Proposed laws for what a model is missing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Proposals {
     /// What comes of it.
     pub verdict: ProposalVerdict,

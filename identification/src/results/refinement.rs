@@ -12,6 +12,7 @@ use crate::validation::Comparison;
 /// A refined model: what was added at each step, and how the model then compares with the validation recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Refinement {
     /// The verdict on the given model; for named additions, whether they explain what it was missing.
     pub verdict: Kind,

@@ -10,6 +10,7 @@ use crate::design;
 /// A profile that separates rivals, and what to expect of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Separation {
     /// The profile file that was written; `null` where no pair is separated.
     pub profile: Option<String>,

@@ -9,6 +9,7 @@ use crate::diagnosis;
 /// A residual that no known effect explains, as a curve over the variable that it follows most closely.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
+#[must_use]
 pub struct Unexplained {
     /// The equation with the largest residual: `arm.motion`.
     pub equation: String,

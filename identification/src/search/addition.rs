@@ -52,6 +52,7 @@ fn of_families(model: &Model, wanted: impl Fn(Family) -> bool) -> Vec<Addition> 
 
 /// Why an addition could not be fitted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AdditionError {
     /// The effect does not fit the model.
     #[error(transparent)]

@@ -46,6 +46,7 @@ struct Stretch {
 
 /// What was chosen.
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Chosen {
     /// The stretches as one recording with gaps in its clock.
     pub recording: Recording,

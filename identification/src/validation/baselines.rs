@@ -28,6 +28,7 @@ pub struct Baseline {
 
 /// The baselines of a comparison's signals, in their order.
 #[derive(Debug, Clone, PartialEq)]
+#[must_use]
 pub struct Baselines {
     /// One for each signal.
     pub signals: Vec<Baseline>,

@@ -64,6 +64,29 @@ pub fn measured_velocity(model: &Model, recording: &Recording) -> Result<Vec<Vec
 
 /// Compares `model` with `recording`.
 ///
+/// ```
+/// use excavator_identification::prelude::*;
+/// use excavator_model::prelude::*;
+///
+/// let machine = built_in("zx30u-arm")?;
+/// # let time: Vec<f64> = (0..8000).map(|sample| f64::from(sample) * 2e-3).collect();
+/// # let mut command = Recording::unmeasured("swing", time, &["arm"]);
+/// # command.tank_pressure.fill(3e5);
+/// # let area = |t: &f64| 5e-5 * (3.1 * t).sin() + 3e-5 * (7.3 * t).sin();
+/// # command.cylinders[0].orifice_area = command.time.iter().map(area).collect();
+/// let recording = simulate_from_rest(&machine, &command, &[0.1], Tolerances::default().scaled(0.05))?;
+/// // A model whose numbers are a tenth too large.
+/// let mut given = machine.clone();
+/// given.parameters_mut().filter(|parameter| !parameter.known).for_each(|parameter| parameter.value *= 1.1);
+///
+/// let (right, wrong) = (compare(&machine, &recording)?, compare(&given, &recording)?);
+/// assert!(right.mean_error() < wrong.mean_error());
+/// for signal in &wrong.signals {
+///     println!("{}: fit {:.1} %", signal.name, signal.fit);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`RunError`] when the recording lacks inputs or the simulation fails.
 pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunError> {

@@ -7,6 +7,7 @@ use crate::{Model, ModelEffect, Parameter};
 
 /// What is odd about a model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Oddity {
     /// A parameter is where no machine has it.
     #[error("{parameter} = {} {unit}: a plausible value lies between {} and {}", shown(*value), shown(*least), shown(*most))]

@@ -7,6 +7,7 @@ use crate::simulation::{Linearisation, reachable_rest_state};
 
 /// An oscillation of small motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Oscillation {
     /// Natural frequency, Hz.
     pub frequency: f64,

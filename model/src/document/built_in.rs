@@ -16,6 +16,15 @@ pub static BUILT_IN: &[(&str, &str)] = &[
 
 /// The built-in model of this name.
 ///
+/// ```
+/// use excavator_model::prelude::*;
+///
+/// let model = built_in("zx30u-arm")?;
+/// assert_eq!(model.machine.cylinders[0].stroke, 0.6); // m
+/// assert_eq!(model.value_of("arm.coulomb_friction"), Some(160.0)); // N
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`DocumentError::Unknown`] with the nearest name.
 pub fn built_in(name: &str) -> Result<Model, DocumentError> {

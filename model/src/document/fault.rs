@@ -8,6 +8,7 @@ const LONGEST_LINE: usize = 72;
 
 /// What is wrong with a TOML text.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct TomlFault {
     /// What the reader of TOML says, in one line that begins with line and column.
     pub message: String,

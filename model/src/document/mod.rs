@@ -21,6 +21,7 @@ pub use schema::schema;
 
 /// What can be wrong with a model text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DocumentError {
     /// Not TOML, or not of a model's form.
     #[error("{name} is not a model file: {reason}")]

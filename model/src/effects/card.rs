@@ -162,6 +162,7 @@ pub struct ParameterCard {
 
 impl ParameterCard {
     /// The same for a place of a machine: its size and its units.
+    #[must_use]
     pub fn for_place(&self, machine: &Machine, site: Site) -> ParameterCard {
         let mut card = self.for_size(&machine.size_at(site));
         if let Site::Cylinder(index) = site

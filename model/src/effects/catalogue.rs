@@ -16,6 +16,7 @@ pub struct Catalogue {
 /// An effect name that the catalogue does not have.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown effect \"{name}\"{}; `excavator effects` lists all", did_you_mean(suggestion))]
+#[non_exhaustive]
 pub struct UnknownEffect {
     /// The name asked for.
     pub name: String,
@@ -30,6 +31,7 @@ fn did_you_mean(suggestion: &Option<String>) -> String {
 /// Two effects of one name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("there are two effects named \"{name}\"; give yours another name")]
+#[non_exhaustive]
 pub struct TwiceInCatalogue {
     /// The name.
     pub name: String,

@@ -10,6 +10,70 @@ use crate::machine::{Machine, Size};
 use crate::scalar::Dual;
 
 /// One physical effect, written once for any number type.
+///
+/// An effect of one's own needs its card, its parameters, and what it adds to the equations:
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use excavator_model::effects::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Start, text};
+/// use excavator_model::equations::{Rows, Situation};
+/// use excavator_model::prelude::*;
+/// use excavator_model::scalar::Scalar;
+///
+/// /// Drag of a tool in soil.
+/// struct ToolDrag;
+///
+/// static CARD: Card = Card {
+///     name: text("tool_drag"),
+///     acts_on: ActsOn::Cylinder,
+///     needs: Needs::Nothing,
+///     family: Family::Candidate,
+///     summary: text("A torque against the joint's rate that grows with its square."),
+///     equation: text("torque -k qd |qd|"),
+///     source: text("example"),
+///     shows: text("Torque error that bends upward with the rate."),
+///     experiment: text("Steady strokes at several rates, in soil and in air."),
+///     energy: text("Dissipates k |qd|^3."),
+/// };
+///
+/// static PARAMETERS: &[ParameterCard] = &[ParameterCard {
+///     name: text("tool_drag"),
+///     symbol: text("k"),
+///     unit: text("N m s2"),
+///     meaning: text("torque at a rate of 1 rad/s"),
+///     kind: Kind::Linear,
+///     growth: Growth::TORQUE,
+///     minimum: 0.0,
+///     maximum: 1e6,
+///     typical: 5e3,
+///     start: Start::at(&[5e3]),
+///     prior: None,
+/// }];
+///
+/// impl Physics for ToolDrag {
+///     fn card(&self) -> &Card {
+///         &CARD
+///     }
+///
+///     fn parameters(&self, _machine: &Machine, _site: Site) -> &[ParameterCard] {
+///         PARAMETERS
+///     }
+///
+///     fn contribute<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>, rows: &mut Rows<T>) {
+///         let Site::Cylinder(cylinder) = site else { return };
+///         let rate = now.pistons[cylinder].rate;
+///         rows.torque[cylinder] -= parameters[0] * rate * rate.abs();
+///     }
+/// }
+///
+/// let catalogue = Catalogue::built_in().with([Arc::new(ToolDrag) as _])?;
+/// let plain = Model { catalogue, ..built_in("zx30u-arm")? };
+/// let drag = plain.catalogue.find("tool_drag")?;
+/// let model = plain.with_effect(&drag, Site::Cylinder(0))?;
+/// assert_eq!(model.value_of("arm.tool_drag"), Some(5e3)); // N m s²
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Physics: Send + Sync {
     /// What is said about it.
     fn card(&self) -> &Card;

@@ -8,6 +8,22 @@ use crate::machine::Supply;
 
 /// Storage and powers of a model at one instant: parameters in the model's order, state in the order of its layout. Many instants are
 /// cheaper with an [`Accountant`].
+///
+/// ```
+/// use excavator_model::equations::Inputs;
+/// use excavator_model::prelude::*;
+///
+/// let model = built_in("zx30u-arm")?;
+/// let system = System::new(&model);
+/// let mut inputs = Inputs::zero(1);
+/// inputs.pump_flow = 3.8e-4; // m³/s
+/// let state = rest_state(&system, &[0.1], &inputs);
+/// let book = ledger(&system, &model.parameter_values(), &state, &inputs);
+/// // Nothing moves, and oil runs to the tank.
+/// assert_eq!(book.cylinders[0].kinetic, 0.0); // J
+/// assert!(book.bypass_loss() > 0.0); // W
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn ledger<'m, T: Number>(system: &System<'m>, parameters: &[T], state: &[T], inputs: &Inputs<T>) -> Ledger<T> {
     Accountant::new(system).ledger(parameters, state, inputs)
 }

@@ -5,6 +5,7 @@ use crate::scalar::Scalar;
 
 /// What one cylinder with its joint stores, J.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct CylinderStorage<T = f64> {
     /// Kinetic energy `1/2 qd_i (J qd)_i`, \[A\] Eq. 9. What two joints share through the coupling of the mass matrix is
     /// split evenly, so that one joint's part can be negative; the sum cannot.
@@ -19,6 +20,7 @@ pub struct CylinderStorage<T = f64> {
 
 /// Power of one effect of the model, W; positive where it gives energy to what it acts on.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct EffectPower<T = f64> {
     /// Name of the effect in the catalogue.
     pub effect: Text,
@@ -42,6 +44,8 @@ pub struct EffectPower<T = f64> {
 /// Storage and powers of a model at one instant. With `storage H`, along the model's solutions
 /// `dH/dt = balance()`, and for the cylinders alone `dHc/dt = supply() + dissipation()`, \[A\] Eq. 11.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+#[must_use]
 pub struct Ledger<T = f64> {
     /// Storage of each cylinder with its joint.
     pub cylinders: Vec<CylinderStorage<T>>,

@@ -8,6 +8,7 @@ use crate::scalar::Scalar;
 /// `V h` with `h = e - p`. With these, `d(V h)/dt = e Q - p dV/dt` follows from the continuity equation for any c(p). A
 /// constant `c = 1/b` gives `e = b (exp(p/b) - 1)` and the storage of \[A\] Eq. 9.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[must_use]
 pub struct OilEnergy<T> {
     /// Energy h stored per volume, J/m³.
     pub stored: T,

@@ -10,6 +10,7 @@ use crate::scalar::{Dual, constant, derivative, variable};
 
 /// What was found of a law at one place of a machine.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Checked {
     /// Least and largest value over the range of the machine, in the unit of its row.
     pub range: [f64; 2],
@@ -24,6 +25,7 @@ pub struct Checked {
 
 /// What is wrong with a law.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CheckProblem {
     /// It is not a finite number somewhere.
     #[error("its value is not finite where {0}")]
@@ -48,6 +50,7 @@ pub enum CheckProblem {
 
 /// A law over one of its variables.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Curve {
     /// The variable.
     pub variable: &'static str,

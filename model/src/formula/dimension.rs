@@ -16,6 +16,7 @@ pub struct Dimension {
 /// What is wrong with a unit.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("\"{unit}\" is no SI unit: {reason}; write it like \"N s/(m Pa)\", \"m3/s\" or \"-\" for a pure number")]
+#[non_exhaustive]
 pub struct UnitError {
     /// The text.
     pub unit: String,

@@ -5,6 +5,7 @@ use std::ops::Range;
 /// A formula that cannot be used, with the place in it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{problem}, at column {}{}", at.start + 1, near(excerpt))]
+#[non_exhaustive]
 pub struct FormulaError {
     /// What is wrong.
     pub problem: Problem,
@@ -16,6 +17,7 @@ pub struct FormulaError {
 
 /// What is wrong with a formula.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Problem {
     /// A character that no formula has.
     #[error("'{0}' is no part of a formula")]

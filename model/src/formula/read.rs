@@ -17,6 +17,7 @@ use crate::effects::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, S
 /// A formula effect that cannot be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("formula effect \"{name}\": {problem}")]
+#[non_exhaustive]
 pub struct LawError {
     /// Name of the effect.
     pub name: String,
@@ -26,6 +27,7 @@ pub struct LawError {
 
 /// What is wrong with a formula effect.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LawProblem {
     /// A name that cannot be one.
     #[error("\"{0}\" cannot be a name: use letters, digits and _, at most 60, and begin with a letter")]

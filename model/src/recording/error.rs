@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// A recording that breaks its own promises or lacks what was asked of it.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RecordingError {
     /// A signal has another number of values than the clock has samples.
     #[error("signal {signal} has {found} values, but the clock has {expected} samples")]

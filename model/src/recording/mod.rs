@@ -49,6 +49,17 @@ pub struct Recording {
 
 impl Recording {
     /// An empty recording on the given clock (s, strictly increasing): every signal is `NaN`.
+    ///
+    /// ```
+    /// use excavator_model::prelude::*;
+    ///
+    /// let time: Vec<f64> = (0..1000).map(|sample| f64::from(sample) * 1e-3).collect();
+    /// let mut recording = Recording::unmeasured("by hand", time, &["arm"]);
+    /// recording.cylinders[0].orifice_area.fill(5e-5); // m²
+    /// recording.validate()?;
+    /// assert!(recording.pump_pressure.iter().all(|pressure| pressure.is_nan()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn unmeasured(source: &str, time: Vec<f64>, cylinder_names: &[&str]) -> Self {
         let samples = time.len();
         let nothing = vec![f64::NAN; samples];
@@ -65,11 +76,13 @@ impl Recording {
     }
 
     /// Every `stride`-th sample of the recording.
+    #[must_use]
     pub fn thinned(&self, stride: usize) -> Self {
         self.at(&(0..self.len()).step_by(stride.max(1)).collect::<Vec<usize>>())
     }
 
     /// The samples with these numbers, which are in order and below the recording's length.
+    #[must_use]
     pub fn at(&self, samples: &[usize]) -> Self {
         self.with_columns(|column| samples.iter().map(|&sample| column[sample]).collect())
     }
@@ -89,6 +102,7 @@ impl Recording {
     }
 
     /// The recording at other times, s on its own clock: straight lines between samples, `NaN` outside.
+    #[must_use]
     pub fn interpolated(&self, times: &[f64]) -> Self {
         let range = self.time.first().copied().unwrap_or(0.0)..=self.time.last().copied().unwrap_or(0.0);
         let at = |column: &[f64], time: f64| {
@@ -100,6 +114,7 @@ impl Recording {
     }
 
     /// The samples from `from` to `to`, s after the first; the first of them is time 0 of the part.
+    #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
         let (first, last) = (self.time.partition_point(|&t| t < from), self.time.partition_point(|&t| t <= to));
         let mut part = self.with_columns(|column| column.get(first..last).unwrap_or_default().to_vec());

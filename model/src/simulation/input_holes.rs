@@ -9,6 +9,8 @@ const BRIDGED: usize = 10;
 
 /// Moments in which an input of a model is missing for longer than a line may bridge.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+#[must_use]
 pub struct InputHoles {
     /// Samples at which every input is known, or can be bridged.
     pub known: Vec<usize>,

@@ -123,6 +123,7 @@ impl InputSignals {
     }
 
     /// The inputs at the samples `kept`: straight lines nearest to the full ones, means of held ones.
+    #[must_use]
     pub fn at(&self, kept: &[usize]) -> Self {
         let lines = |values: &[f64]| nearest_lines(&self.time, values, kept);
         let thin = |(interpolation, values): &(Interpolation, Vec<f64>)| match interpolation {

@@ -17,6 +17,7 @@ use crate::machine::{Growth, Machine, Mechanism};
 
 /// Why a simulation ended early.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// The step size fell below what can carry the solution on.
     #[error("the simulation of {model} stops at {time:.3} s: step {step:.1e} s is below {minimum:.1e} s; {state}")]
@@ -114,6 +115,7 @@ impl Tolerances {
     }
 
     /// All tolerances scaled by `factor`.
+    #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Tolerances {
             relative: self.relative * factor,

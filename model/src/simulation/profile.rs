@@ -6,6 +6,7 @@ use crate::recording::Recording;
 
 /// A command profile can not be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProfileError {
     /// A number of the profile is impossible.
     #[error("profile: {quantity} = {value} must be {must}")]
@@ -149,6 +150,20 @@ impl Segment {
 impl Profile {
     /// Commands each cylinder of a recording along its own profile from the first sample on, with the valve exactly where it
     /// is told to be; those without a profile stay closed. No force acts on any rod.
+    ///
+    /// ```
+    /// use excavator_model::prelude::*;
+    ///
+    /// let segments = vec![Segment::Sine { duration: 2.0, amplitude: 8e-5, frequency: 0.5 }];
+    /// let profile = Profile { cylinder: "arm".into(), segments };
+    /// profile.check()?;
+    /// let time: Vec<f64> = (0..=2000).map(|sample| f64::from(sample) * 1e-3).collect();
+    /// let mut recording = Recording::unmeasured("sine", time, &["arm"]);
+    /// Profile::command(&[profile], &mut recording);
+    /// let opening = recording.cylinders[0].orifice_area[500]; // at 0.5 s, m²
+    /// assert!((opening - 8e-5).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn command(profiles: &[Profile], recording: &mut Recording) {
         let start = recording.time.first().copied().unwrap_or(0.0);
         for signals in &mut recording.cylinders {

@@ -11,6 +11,7 @@ use crate::recording::Recording;
 
 /// Why there is no simulated recording.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RunError {
     /// The recording does not give what the model needs.
     #[error(transparent)]
@@ -25,6 +26,22 @@ pub enum RunError {
 ///
 /// Each piece of the recording ([`Recording::pieces`]) is simulated from its own start: what happened between is not known.
 /// What comes before the first measured position of a piece has `NaN` for what is simulated.
+///
+/// ```
+/// use excavator_model::prelude::*;
+///
+/// let model = built_in("zx30u-arm")?;
+/// let time: Vec<f64> = (0..=2000).map(|sample| f64::from(sample) * 1e-3).collect();
+/// let mut command = Recording::unmeasured("sine", time, &["arm"]);
+/// command.cylinders[0].orifice_area = command.time.iter().map(|t| 6e-5 * (3.0 * t).sin()).collect();
+/// // What another program would read from a bag.
+/// let measured = simulate_from_rest(&model, &command, &[0.0], Tolerances::default())?;
+///
+/// let simulated = simulate(&model, &measured)?;
+/// let [ours, theirs] = [&simulated, &measured].map(|recording| recording.cylinders[0].displacement[2000]);
+/// assert!((ours - theirs).abs() < 1e-3, "{ours} m and {theirs} m");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`RunError`].
@@ -110,6 +127,18 @@ pub fn simulate_from(
 
 /// Simulates `model` with the inputs of `recording` from rest at these piston displacements, m from mid-stroke, and with the
 /// pressures that hold it there; see [`rest_state`].
+///
+/// ```
+/// use excavator_model::prelude::*;
+///
+/// let model = built_in("zx30u-arm")?;
+/// let time: Vec<f64> = (0..=1000).map(|sample| f64::from(sample) * 1e-3).collect();
+/// let mut input = Recording::unmeasured("open", time, &["arm"]);
+/// input.cylinders[0].orifice_area.fill(1e-4); // m²
+/// let moved = simulate_from_rest(&model, &input, &[0.0], Tolerances::default())?;
+/// assert!(moved.cylinders[0].displacement[1000] > 0.01); // m
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`RunError`].

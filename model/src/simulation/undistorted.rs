@@ -10,6 +10,7 @@ use crate::recording::{Recording, cubic};
 ///
 /// For equations that are fed with measurements. How the true values depend on the sensor effects' parameters says
 /// [`Distortion::truth`].
+#[must_use]
 pub fn undistorted(model: &Model, recording: &Recording) -> Recording {
     let mut corrected = recording.clone();
     let system = System::new(model);

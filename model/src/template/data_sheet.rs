@@ -155,6 +155,7 @@ pub struct RatedFlow {
 /// A number that nothing can stand in for.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("a machine with this drive needs {what}")]
+#[non_exhaustive]
 pub struct MissingFromDataSheet {
     /// What is missing, for people.
     pub what: &'static str,

@@ -16,6 +16,7 @@ use crate::effects::Catalogue;
 
 /// Why no model file could be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TemplateError {
     /// The data sheet lacks something.
     #[error(transparent)]

@@ -21,6 +21,7 @@ const AT_A_TIME: usize = 4;
 
 /// What was copied.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub struct ThinCopy {
     /// Where the copy is: a file, or a folder where the bag is one.
     pub path: PathBuf,
@@ -62,6 +63,18 @@ impl Wanted<'_> {
 /// files with every topic wanted. So a reader finds the same messages of these topics, and the same damage.
 ///
 /// A folder is copied file by file: bags, `map.toml`, and `metadata.yaml` where there are several files.
+///
+/// ```no_run
+/// use std::path::Path;
+///
+/// use excavator_store::{Options, thin_copy};
+///
+/// let options = Options::from([("region".to_string(), "eu-central-1".to_string())]);
+/// let topics = ["*/state".to_string(), "*/orifice_command".to_string()];
+/// let copy = thin_copy("s3://fleet/machine_7/drive_1", Some(&topics), Path::new("kept"), &options)?;
+/// println!("{} of {} bytes were read", copy.bytes_read, copy.bytes_total);
+/// # Ok::<(), excavator_store::StoreError>(())
+/// ```
 ///
 /// # Errors
 /// [`StoreError`]: of the store, or of files in `target`.

@@ -10,6 +10,7 @@ use super::Outcome;
 use crate::{WorkError, json_text};
 
 /// Result of `characterise`.
+#[must_use]
 pub struct Characterised {
     model: Model,
     sources: Vec<String>,

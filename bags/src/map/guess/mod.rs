@@ -65,6 +65,7 @@ impl Hints<'_> {
 
 /// A column or field that may be a signal.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Possibility {
     /// As it would stand in the map.
     pub source: SignalSource,
@@ -78,6 +79,7 @@ pub struct Possibility {
 
 /// One guessed signal and why.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct GuessedSignal {
     /// As it stands in the map.
     pub source: SignalSource,
@@ -95,6 +97,7 @@ pub struct GuessedSignal {
 
 /// A guessed map.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Guess {
     /// The data.
     pub data: String,
@@ -155,6 +158,17 @@ impl GuessedSignal {
 
 /// Guesses which signals the bag or table at `path` has. `cylinder` is the one that signals belong to whose names do
 /// not say.
+///
+/// ```no_run
+/// use std::path::Path;
+///
+/// let guess = excavator_bags::map::guess(Path::new("pressures.csv"), "arm")?;
+/// for signal in &guess.signals {
+///     println!("{} is {}: {} ({})", signal.source.signal, signal.label, signal.reason, signal.confidence.name());
+/// }
+/// std::fs::write("pressures.csv.map.toml", guess.map().to_text()?)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// When the data cannot be read: those of [`RawMessages::open`](rosbag2::RawMessages::open), [`BagError::BadTable`].

@@ -4,6 +4,7 @@ use crate::effects::Text;
 
 /// The energy balance at one measured state, \[A\] Eq. 9-12; `NaN` where a signal is missing.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Balance {
     /// Time of the state, ns.
     pub nanoseconds: i64,
@@ -20,6 +21,7 @@ pub struct Balance {
 /// The energy balance of one cylinder and its link. In a chain of links the residual of one cylinder also holds what
 /// the links pass on to each other; in the sum over all cylinders that cancels.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CylinderBalance {
     /// Kinetic energy, J.
     pub kinetic: f64,
@@ -39,6 +41,7 @@ pub struct CylinderBalance {
 
 /// Power of one effect.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct EffectTerm {
     /// Name in the catalogue.
     pub effect: Text,

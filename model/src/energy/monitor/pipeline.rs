@@ -29,6 +29,7 @@ impl Default for Settings {
 
 /// What the monitor met.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Counts {
     /// States taken.
     pub states: u64,

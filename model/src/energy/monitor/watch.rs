@@ -23,6 +23,7 @@ impl Default for WatchSettings {
 
 /// The sum of all cylinders over one window.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Window {
     /// End of the window, ns.
     pub nanoseconds: i64,

@@ -1,0 +1,12 @@
+//! What most programs need: `use excavator_identification::prelude::*;`, beside `excavator_model::prelude`.
+//!
+//! Data goes from a regression or a fit over scores and a decision to a refinement; [`identify`](fn@identify) and
+//! [`refine`](fn@refine) do all of it. Errors are not among it: each step has its own.
+
+pub use crate::decision::{Kind, Policy, Scores, Verdict, decide};
+pub use crate::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
+pub use crate::fit::{Fit, FitSettings, fit};
+pub use crate::identify::{Method, identify};
+pub use crate::refinement::{Additions, Refinement, refine};
+pub use crate::regression::{WeakFormSettings, weak_form};
+pub use crate::validation::{Comparison, compare};

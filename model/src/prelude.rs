@@ -1,0 +1,15 @@
+//! What most programs need: `use excavator_model::prelude::*;`.
+//!
+//! Errors are not among it: each step has its own, and `Box<dyn Error>` takes them all. Nor is what only the card of an effect needs,
+//! which is in [`effects`](crate::effects).
+
+pub use crate::document::built_in;
+pub use crate::effects::{Catalogue, Physics, Site};
+pub use crate::energy::{Accountant, Ledger, ledger};
+pub use crate::equations::System;
+pub use crate::machine::Machine;
+pub use crate::recording::Recording;
+pub use crate::simulation::{
+    InputSignals, Integrator, Profile, Segment, Tolerances, rest_state, simulate, simulate_from_rest,
+};
+pub use crate::{Model, ModelEffect};

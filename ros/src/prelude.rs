@@ -1,0 +1,8 @@
+//! What most nodes need: `use excavator_ros::prelude::*;`.
+//!
+//! Types of messages are those of the crate `excavator_msgs`.
+
+pub use crate::{
+    Diagnostics, Health, Latched, Lifecycle, Link, Logger, Outlet, Pace, Parameter, Parameters, PublishError, Received,
+    RosArguments, RosClock, RosError, Supervisor, TopicQos, Value,
+};

@@ -1,0 +1,12 @@
+//! What most programs need: `use excavator_workbench::prelude::*;`.
+
+pub use crate::WorkError;
+pub use crate::diagnosis_file::DiagnosisFile;
+pub use crate::profile_file::ProfileFile;
+pub use crate::recording_part::Part;
+pub use crate::recordings::{Use, checked, telling};
+pub use crate::results::{
+    Characterised, Compared, DesignOrder, Determined, Diagnosed, Energetic, IdentifiedResult, Outcome, Progress,
+    Proposed, Refined, Separated,
+};
+pub use crate::simulated::simulate_profile;
