@@ -145,7 +145,8 @@ fn fine() -> Tolerances {
 fn sensitivities_with_each_effect_added() {
     let base = excavator_model::document::built_in("zx30u-arm").unwrap();
     let catalogue = common::catalogue();
-    let cases = catalogue.iter().flat_map(|physics| base.free_sites(physics).into_iter().map(move |site| (physics, site)));
+    let cases =
+        catalogue.iter().flat_map(|physics| base.free_sites(physics).into_iter().map(move |site| (physics, site)));
     common::each(cases.collect::<Vec<_>>(), |(physics, site)| {
         let model = common::with_typical(&base, physics, site);
         // A regulator that is at its limits has corners there.

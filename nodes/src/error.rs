@@ -152,6 +152,12 @@ impl From<WorkError> for VerbError {
             WorkError::Regression(error) => error.into(),
             WorkError::Model(error) => error.into(),
             WorkError::Design(error) => error.into(),
+            WorkError::Document(error) => error.into(),
+            WorkError::Identify(error) => error.into(),
+            WorkError::Diagnosis(error) => error.into(),
+            WorkError::Energy(error) => error.into(),
+            WorkError::Refine(error) => error.into(),
+            WorkError::Run(error) => error.into(),
             error => VerbError::Work(Box::new(error)),
         }
     }

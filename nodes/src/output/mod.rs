@@ -22,6 +22,6 @@ pub use paragraph::filled;
 pub use progress::Progress;
 pub use proposals::proposal_table;
 pub use tables::{
-    Stage, candidate_table, compared_steps, comparison_table, correlation_table, effect_table, parameter_table,
-    phase_table, remedy_lines, right, stage_table, table,
+    Stage, candidate_table, comparison_table, correlation_table, effect_table, parameter_table, phase_table,
+    remedy_lines, right, stage_table, table,
 };

@@ -196,13 +196,9 @@ impl<'c> Stage<'c> {
 
     /// The stages of a refinement.
     pub fn of_refinement(refinement: &'c Refinement) -> Vec<Self> {
-        Stage::all(&refinement.given, compared_steps(refinement))
+        let steps = refinement.steps.iter().map(|step| (step.added.as_deref(), step.comparisons.as_slice()));
+        Stage::all(&refinement.given, steps)
     }
-}
-
-/// What each step of a refinement added, with its comparisons.
-pub fn compared_steps(refinement: &Refinement) -> impl Iterator<Item = (Option<&str>, &[Comparison])> {
-    refinement.steps.iter().map(|step| (step.added.as_deref(), step.comparisons.as_slice()))
 }
 
 /// Normalised mean squared error of every signal on the validation recordings, stage by stage.

@@ -10,12 +10,14 @@
 
 mod inputs;
 mod place;
+mod told;
 mod write;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 pub use inputs::Inputs;
+pub use told::write_told;
 pub use write::{standard_output, write};
 
 use crate::cli::Overwriting;

@@ -3,21 +3,18 @@
 use std::path::Path;
 
 use excavator_identification::decision::Kind;
-use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
-use excavator_identification::energy::ledgers;
-use excavator_identification::proposal::guess_for;
+use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings};
 use excavator_identification::refinement::refinement_of;
-use excavator_identification::results;
 use excavator_identification::search::Unpromising;
-use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
-use excavator_report::{NONE_TRIED, diagnosis_page, guess_sentence, verdict_sentence};
+use excavator_report::{NONE_TRIED, guess_sentence, verdict_sentence};
+use excavator_workbench::results::Diagnosed;
 
 use super::{print, print_detail, print_next};
 use crate::cli::DiagnoseArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, candidate_table, write_json};
+use crate::output::{NextStep, Progress, candidate_table};
 use crate::outputs::{self, Inputs};
 use crate::saved_diagnosis::SavedDiagnosis;
 use crate::sources;
@@ -36,53 +33,33 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     let model = sources::model(&arguments.model)?;
     let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
     let identification: Vec<&Recording> = identification.iter().collect();
-    let validation: Vec<&Recording> = validation.iter().collect();
     let progress = Progress::new();
-    let settings = DiagnosisSettings::default();
-    let mut diagnosis =
-        diagnose(&model, &identification, &validation, &settings, &|what, done| progress.tell(what, done))?;
+    let tell = |what: &str, done: f64| progress.tell(what, done);
+    let mut diagnosed = Diagnosed::of(&model, &identification, validation, &tell)?;
     drop(progress);
     if let Some(path) = &arguments.save {
-        let when = jiff::Timestamp::now().to_string();
-        let refinement = refinement_of(&model, &diagnosis, &identification, &validation, &settings, &when)?;
+        let (settings, when) = (DiagnosisSettings::default(), jiff::Timestamp::now().to_string());
+        let validation: Vec<&Recording> = diagnosed.validation.iter().collect();
+        let refinement = refinement_of(&model, &diagnosed.diagnosis, &identification, &validation, &settings, &when)?;
         outputs::write(path, &SavedDiagnosis::of(&refinement, &arguments.recordings)?.text()?, arguments.overwriting)?;
         // A refinement leaves out what is superfluous in the fits: its numbers are those that will be seen again.
         if let Some(found) = refinement.diagnosis() {
-            diagnosis.errors.clone_from(&found.errors);
+            diagnosed.diagnosis.errors.clone_from(&found.errors);
         }
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&model, &diagnosis);
-    }
-    let guess = guess_for(&diagnosis, &identification, &validation);
-    if arguments.json.json.as_deref() != Some(Path::new("-"))
-        && let Some(guess) = &guess
-    {
-        print(&guess_sentence(guess));
-    }
-    let missing = ledgers(&diagnosis.given().fit.model, &validation);
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        for (source, found) in &missing {
+        show(&model, &diagnosed.diagnosis);
+        diagnosed.guess.iter().for_each(|guess| print(&guess_sentence(guess)));
+        for (source, found) in &diagnosed.missing {
             found.iter().for_each(|one| print_detail(&format!("Energy in {source}: {}", one.sentence)));
         }
-        print_next(&next(arguments, &diagnosis));
+        print_next(&next(arguments, &diagnosed.diagnosis));
     }
     if let Some(path) = &arguments.scores {
-        let text = serde_json::to_string(&diagnosis.scores).map_err(VerbError::from)?;
+        let text = serde_json::to_string(&diagnosed.diagnosis.scores).map_err(VerbError::from)?;
         outputs::write(path, &text, arguments.overwriting)?;
     }
-    if let Some(path) = &arguments.report {
-        let comparisons = validation
-            .iter()
-            .map(|recording| compare(&diagnosis.given().fit.model, recording))
-            .collect::<Result<Vec<Comparison>, _>>()?;
-        outputs::write(path, &diagnosis_page(&model, &diagnosis, &comparisons, &missing), arguments.overwriting)?;
-    }
-    if let Some(path) = &arguments.json.json {
-        let result = results::Diagnosis::of(&model, &diagnosis, guess.as_ref(), &missing);
-        write_json(path, &result, arguments.overwriting)?;
-    }
-    Ok(())
+    outputs::write_told(&diagnosed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
 }
 
 /// What a verdict asks for.

@@ -2,18 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_identification::identify::{Identified, identify};
-use excavator_identification::results;
+use excavator_identification::identify::Identified;
 use excavator_model::Model;
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
 use excavator_report::implausible_sentence;
+use excavator_workbench::results::IdentifiedResult;
 use excavator_workbench::sentences::{identification_sentence, profile_sentence};
 
 use super::{print, print_detail, print_next};
 use crate::cli::IdentifyArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, number, parameter_table, remedy_lines, write_json};
+use crate::output::{NextStep, number, parameter_table, remedy_lines};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -26,20 +26,15 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     let model = sources::model(&arguments.model)?;
     let recordings = sources::telling_recordings(&arguments.bag, arguments.extent, &arguments.mapping, &model)?;
     let recordings: Vec<&Recording> = recordings.iter().collect();
-    let method = arguments.method.into();
-    let mut result = identify(&model, &recordings, method)?;
-    result.add_history(&jiff::Timestamp::now().to_string(), method, &recordings);
+    let identified = IdentifiedResult::of(&model, &recordings, arguments.method.into())?;
     if let Some(path) = &arguments.output {
-        outputs::write(path, &to_text(&result.model)?, arguments.overwriting)?;
+        outputs::write(path, &to_text(&identified.result.model)?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&model, &result);
+        show(&model, &identified.result);
         print_next(&next(arguments));
     }
-    if let Some(path) = &arguments.json.json {
-        write_json(path, &results::Identification::of(&result), arguments.overwriting)?;
-    }
-    Ok(())
+    outputs::write_told(&identified, None, arguments.json.json.as_deref(), arguments.overwriting)
 }
 
 /// The identified model beside the recording; first of all it has to be kept.

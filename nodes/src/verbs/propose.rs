@@ -2,18 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_identification::diagnosis::DiagnosisSettings;
-use excavator_identification::proposal::{Finding, Proposal, ProposalVerdict, Proposals, propose};
-use excavator_identification::results;
+use excavator_identification::proposal::{Finding, Proposal, ProposalVerdict, Proposals};
 use excavator_model::Model;
-use excavator_model::document::catalogue_text;
 use excavator_model::recording::Recording;
-use excavator_report::{proposal_page, proposal_sentence};
+use excavator_report::proposal_sentence;
+use excavator_workbench::results::{Outcome, Proposed};
 
 use super::{print, print_next};
 use crate::cli::ProposeArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, proposal_table, write_json};
+use crate::output::{NextStep, Progress, proposal_table};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -31,23 +29,16 @@ pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
     let identification: Vec<&Recording> = identification.iter().collect();
     let validation: Vec<&Recording> = validation.iter().collect();
     let progress = Progress::new();
-    let settings = DiagnosisSettings::default();
-    let found = propose(&model, &identification, &validation, &settings, &|what, done| progress.tell(what, done))?;
+    let proposed =
+        Proposed::of(&model, &identification, &validation, &|what: &str, done: f64| progress.tell(what, done))?;
     drop(progress);
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(arguments, &model, &found);
+        show(arguments, &model, &proposed.found);
     }
-    if let Some(path) = &arguments.output {
-        let laws = found.proposals.iter().map(|proposal| proposal.text.clone()).collect();
-        outputs::write(path, &catalogue_text(laws)?, arguments.overwriting)?;
+    if let (Some(path), Some(laws)) = (&arguments.output, proposed.file()?) {
+        outputs::write(path, &laws, arguments.overwriting)?;
     }
-    if let Some(path) = &arguments.report {
-        outputs::write(path, &proposal_page(&model, &found), arguments.overwriting)?;
-    }
-    if let Some(path) = &arguments.json.json {
-        write_json(path, &results::Proposals::of(&found), arguments.overwriting)?;
-    }
-    Ok(())
+    outputs::write_told(&proposed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
 }
 
 /// Prints proposals for people, with the command that goes on.

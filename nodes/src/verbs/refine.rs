@@ -2,21 +2,19 @@
 
 use std::path::Path;
 
-use excavator_identification::diagnosis::DiagnosisSettings;
-use excavator_identification::refinement::{Additions, Refinement, refine};
+use excavator_identification::refinement::{Additions, Refinement};
 use excavator_identification::results;
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
-use excavator_report::{refinement_page, refinement_sentence};
+use excavator_report::refinement_sentence;
+use excavator_workbench::results::Refined;
 
 use super::{print, print_next};
 use crate::cli::{ModelChoice, Recordings, RefineArguments};
 use crate::error::VerbError;
-use crate::output::{
-    NextStep, Progress, Stage, compared_steps, parameter_table, remedy_lines, stage_table, write_json,
-};
+use crate::output::{NextStep, Progress, Stage, parameter_table, remedy_lines, stage_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::saved_diagnosis::SavedDiagnosis;
 use crate::sources;
@@ -46,24 +44,18 @@ fn searched(arguments: &RefineArguments) -> Result<(), VerbError> {
     let identification: Vec<&Recording> = identification.iter().collect();
     let validation: Vec<&Recording> = validation.iter().collect();
     let progress = Progress::new();
-    let settings = DiagnosisSettings::default();
-    let when = jiff::Timestamp::now().to_string();
-    let refinement = refine(&model, &identification, &validation, &additions, &settings, &when, &|what, done| {
-        progress.tell(what, done);
-    })?;
+    let tell = |what: &str, done: f64| progress.tell(what, done);
+    let refined = Refined::of(&model, &identification, &validation, &additions, &tell)?;
     drop(progress);
-    outputs::write(&arguments.output, &to_text(&refinement.model)?, arguments.overwriting)?;
+    outputs::write(&arguments.output, &to_text(&refined.refinement.model)?, arguments.overwriting)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&refinement);
+        show(&refined.refinement);
         end(arguments, &choice, &recordings);
     }
-    if let Some(path) = &arguments.report {
-        outputs::write(path, &refinement_page(&refinement), arguments.overwriting)?;
-    }
+    outputs::write_told(&refined, arguments.report.as_deref(), None, arguments.overwriting)?;
     if let Some(path) = &arguments.json.json {
         let written = arguments.output.display().to_string();
-        let result = results::Refinement::of(refinement.verdict(), compared_steps(&refinement), Some(&written));
-        write_json(path, &result, arguments.overwriting)?;
+        write_json(path, &refined.result(Some(&written)), arguments.overwriting)?;
     }
     Ok(())
 }

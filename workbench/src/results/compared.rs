@@ -11,11 +11,16 @@ use crate::{WorkError, json_text};
 
 /// Result of `compare`.
 pub struct Compared {
-    model: Model,
-    comparison: Comparison,
-    baselines: Baselines,
-    against: Option<Comparison>,
-    again: Option<Repeat>,
+    /// The model.
+    pub model: Model,
+    /// The model beside the recording.
+    pub comparison: Comparison,
+    /// What is known without the model.
+    pub baselines: Baselines,
+    /// Another model beside the same recording.
+    pub against: Option<Comparison>,
+    /// Another run of the same commands.
+    pub again: Option<Repeat>,
 }
 
 impl Compared {
@@ -37,7 +42,9 @@ impl Compared {
         Ok(Compared { model: model.clone(), comparison, baselines, against, again })
     }
 
-    fn others(&self) -> Vec<Beside<'_>> {
+    /// What stands beside the comparison.
+    #[must_use]
+    pub fn others(&self) -> Vec<Beside<'_>> {
         self.against.iter().map(Beside::Model).chain(self.again.iter().map(Beside::Run)).collect()
     }
 }

@@ -14,12 +14,16 @@ use crate::{WorkError, json_text};
 
 /// Result of `diagnose`.
 pub struct Diagnosed {
-    model: Model,
-    diagnosis: Diagnosis,
-    guess: Option<Guess>,
+    /// The model as given.
+    pub model: Model,
+    /// Verdict and candidates.
+    pub diagnosis: Diagnosis,
+    /// A first idea of the law, where no effect explains what is missing.
+    pub guess: Option<Guess>,
     /// What the energy ledger says of each validation recording in which energy is known.
-    missing: Vec<(String, Vec<MissingPower>)>,
-    validation: Vec<Recording>,
+    pub missing: Vec<(String, Vec<MissingPower>)>,
+    /// The recordings that the evidence is from.
+    pub validation: Vec<Recording>,
 }
 
 impl Diagnosed {

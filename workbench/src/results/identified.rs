@@ -12,8 +12,10 @@ use crate::{WorkError, json_text};
 
 /// Result of `identify`.
 pub struct IdentifiedResult {
-    given: Model,
-    result: Identified,
+    /// The model as given.
+    pub given: Model,
+    /// What was identified.
+    pub result: Identified,
 }
 
 impl IdentifiedResult {

@@ -13,8 +13,10 @@ use crate::{WorkError, json_text};
 
 /// Result of `propose`.
 pub struct Proposed {
-    model: Model,
-    found: Proposals,
+    /// The model as given.
+    pub model: Model,
+    /// The laws, and what they were judged by.
+    pub found: Proposals,
 }
 
 impl Proposed {

@@ -12,7 +12,8 @@ use crate::{WorkError, json_text};
 
 /// Result of `refine`.
 pub struct Refined {
-    refinement: Refinement,
+    /// The steps, and the model that they end in.
+    pub refinement: Refinement,
 }
 
 impl Refined {
@@ -31,12 +32,17 @@ impl Refined {
         let refinement = refine(model, identification, validation, additions, &settings, &when, progress)?;
         Ok(Refined { refinement })
     }
+
+    /// The result, with the file that the model was written to.
+    pub fn result(&self, written: Option<&str>) -> results::Refinement {
+        let steps = self.refinement.steps.iter().map(|step| (step.added.as_deref(), step.comparisons.as_slice()));
+        results::Refinement::of(self.refinement.verdict(), steps, written)
+    }
 }
 
 impl Outcome for Refined {
     fn json(&self) -> Result<String, WorkError> {
-        let steps = self.refinement.steps.iter().map(|step| (step.added.as_deref(), step.comparisons.as_slice()));
-        json_text(&results::Refinement::of(self.refinement.verdict(), steps, None))
+        json_text(&self.result(None))
     }
 
     fn sentence(&self) -> String {
