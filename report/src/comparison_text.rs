@@ -14,11 +14,7 @@ pub fn comparison_sentence(comparison: &Comparison, baselines: &Baselines) -> St
     let mean = comparison.mean_error();
     let number = |value: f64| significant(value, 3);
     let mut sentences = vec![if mean < 1.0 {
-        format!(
-            "{machine} explains {} of the variance that was measured: mean NMSE {}.",
-            percent(1.0 - mean),
-            number(mean)
-        )
+        format!("{machine} explains {} of the variance that was measured: mean NMSE {}.", explained(mean), number(mean))
     } else {
         format!("{machine} does not follow what was measured: mean NMSE {}, where 1 is a constant.", number(mean))
     }];
@@ -37,6 +33,15 @@ pub fn comparison_sentence(comparison: &Comparison, baselines: &Baselines) -> St
     let worst = comparison.signals.iter().max_by(|a, b| a.normalised_error.total_cmp(&b.normalised_error));
     sentences.extend(worst.filter(|_| comparison.signals.len() > 1).map(worst_sentence));
     sentences.join(" ")
+}
+
+/// Share of the variance that a mean NMSE leaves to the model. All of it is never explained.
+fn explained(nmse: f64) -> String {
+    match 100.0 * (1.0 - nmse) {
+        share if share >= 99.95 => "more than 99.9 %".to_string(),
+        share if share >= 99.0 => format!("{share:.1} %"),
+        share => percent(share / 100.0),
+    }
 }
 
 /// How what is drawn beside the model does on the same recording.
@@ -77,5 +82,17 @@ fn spoken(signal: &str) -> String {
     match signal.split_once('.') {
         Some((part, quantity)) => format!("the {} of {part}", quantity.replace('_', " ")),
         None => format!("the {}", signal.replace('_', " ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_of_the_variance_is_never_explained() {
+        assert_eq!(explained(0.251), "75 %");
+        assert_eq!(explained(0.00298), "99.7 %");
+        assert_eq!(explained(1e-6), "more than 99.9 %");
     }
 }

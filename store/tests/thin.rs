@@ -108,3 +108,12 @@ fn what_cannot_be_copied_thinly_is_copied_whole() {
     write(&bag, WriteOptions::new().use_chunks(false));
     same("records outside chunks", &["/arm/state"]);
 }
+
+#[test]
+fn a_small_bag_is_read_once() {
+    let bag = Path::new(env!("CARGO_MANIFEST_DIR")).join("../bags/samples/arm-swing/arm-swing_0.mcap");
+    let (_kept, done) = copied(&bag, &["/arm/state"]);
+    assert!(done.whole.is_empty() && done.messages > 0, "{done:?}");
+    assert_eq!(done.bytes_read, done.bytes_total);
+    assert_eq!(messages(&done.path, "/arm/state"), messages(&bag, "/arm/state"));
+}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime
@@ -20,11 +21,13 @@ DRIFT_HEIGHT = 260
 """Height of the drawing of a drift, pixels."""
 
 VERDICTS = {
-    "adequate": ("ok", "the model is adequate"),
-    "missing_effect": ("effect", "an effect is missing"),
-    "unexplained": ("open", "unexplained"),
+    "adequate": ("ok", "the model is adequate", "with an adequate model"),
+    "missing_effect": ("effect", "an effect is missing", "with a missing effect"),
+    "unexplained": ("open", "unexplained", "unexplained"),
 }
-"""Class and words of each verdict."""
+"""Class of each verdict, its words, and its words behind a number."""
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 LINES = 8
 """Machines that a drawing of a drift shows apart; the others are grey."""
@@ -77,8 +80,14 @@ def _section(title: str, words: str, content: str) -> str:
 def _lead(results: list[dict[str, Any]], poison: Sequence[Poison]) -> str:
     machines = len({row["machine"] for row in results})
     verdicts = Counter(row["verdict"] for row in results)
-    counts = [f"{verdicts[name]} × {words}" for name, (_, words) in VERDICTS.items() if verdicts[name]]
-    return f"<p>{len(results)} results of {machines} machines: {_text(', '.join(counts) or 'no verdicts')}; {len(poison)} on the poison list.</p>"
+    counts = [f"{verdicts[name]} {words}" for name, (_, _, words) in VERDICTS.items() if verdicts[name]]
+    judged = f"{_count(len(results), 'pair')} of {_count(machines, 'machine')}: {', '.join(counts) or 'no verdicts'}."
+    failed = f" {_count(len(poison), 'pair')} could not be computed and {'is' if len(poison) == 1 else 'are'} on the poison list." if poison else ""
+    return f"<p>{_text(judged + failed)}</p>"
+
+
+def _count(number: int, thing: str) -> str:
+    return f"{number} {thing}{'' if number == 1 else 's'}"
 
 
 def _places(moments: Iterable[datetime | None], left: float, right: float) -> tuple[Callable[[datetime], float], list[datetime]]:
@@ -123,14 +132,14 @@ def _verdicts(results: list[dict[str, Any]]) -> str:
     for row in judged:
         y = ROW_HEIGHT * (machines.index(row["machine"]) + 0.5)
         x = LEFT + 4 if row["recorded"] is None else place(row["recorded"])
-        kind, words = VERDICTS[row["verdict"]]
+        kind, words, _ = VERDICTS[row["verdict"]]
         when = "" if row["recorded"] is None else f"{row['recorded']:%Y-%m-%d %H:%M}"
         tip = f"{row['machine']} {when}: {words} {', '.join(row['effects'] or [])}"
         out.append(f"<g><title>{_text(tip)}</title>{_mark(kind, x, y)}</g>")
     height = ROW_HEIGHT * len(machines) + 44
     out.append(_dates(ends, height - 28))
     x = float(LEFT)
-    for kind, words in VERDICTS.values():
+    for kind, words, _ in VERDICTS.values():
         out.append(f'{_mark(kind, x + 6, height - 10)}<text x="{x + 18:.0f}" y="{height - 6}">{_text(words)}</text>')
         x += 200
     return _svg(height, "verdicts of each machine over time", "".join(out))
@@ -160,6 +169,20 @@ def _effects(results: list[dict[str, Any]]) -> str:
     return f'<div class="scroll"><table>{heads}{"".join(rows)}</table></div>'
 
 
+def _marks(low: float, high: float) -> tuple[list[float], int]:
+    """Round numbers from `low` or below to `high` or above, and the power of ten that they are written in."""
+    if high <= low:
+        reach = 0.05 * abs(low) or 1.0
+        low, high = low - reach, high + reach
+    rough = (high - low) / 4
+    decade = 10.0 ** math.floor(math.log10(rough))
+    step = next(factor * decade for factor in (1, 2, 5, 10) if factor * decade >= rough)
+    first, last = math.floor(low / step), math.ceil(high / step)
+    marks = [number * step for number in range(first, last + 1)]
+    largest = math.floor(math.log10(max(abs(one) for one in marks)))
+    return marks, 0 if -3 <= largest <= 4 else 3 * (largest // 3)
+
+
 def _drift(parameters: list[dict[str, Any]], wanted: str | None) -> str:
     """A parameter over time, with its 95 % intervals; a line for each machine."""
     usable = [row for row in parameters if row["value"] is not None and row["recorded"] is not None]
@@ -170,16 +193,16 @@ def _drift(parameters: list[dict[str, Any]], wanted: str | None) -> str:
     rows = [row for row in given if row["parameter"] == name]
     margin = lambda row: row["margin_95"] or 0.0  # noqa: E731
     low, high = min(row["value"] - margin(row) for row in rows), max(row["value"] + margin(row) for row in rows)
-    if high <= low:
-        low, high = low - abs(low) * 0.05 - 1e-12, high + abs(high) * 0.05 + 1e-12
+    marks, exponent = _marks(low, high)
+    low, high = marks[0], marks[-1]
     top, bottom = 12.0, DRIFT_HEIGHT - 40.0
     height_of = lambda value: bottom - (bottom - top) * (value - low) / (high - low)  # noqa: E731
     place, ends = _places((row["recorded"] for row in rows), LEFT + 14, WIDTH - RIGHT - 6)
     out = []
-    for value in (low, (low + high) / 2, high):
+    for value in marks:
         y = height_of(value)
         out.append(f'<line class="rule" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{y:.1f}" y2="{y:.1f}"/>')
-        out.append(f'<text class="dim" x="{LEFT - 8}" y="{y + 4:.1f}" text-anchor="end">{_number(value)}</text>')
+        out.append(f'<text class="dim" x="{LEFT - 8}" y="{y + 4:.1f}" text-anchor="end">{_number(value / 10.0**exponent)}</text>')
     machines = [machine for machine, _ in Counter(row["machine"] for row in rows).most_common()]
     for number, machine in enumerate(machines):
         colour = f"var(--c{number})" if number < LINES else "var(--dim)"
@@ -199,7 +222,8 @@ def _drift(parameters: list[dict[str, Any]], wanted: str | None) -> str:
         y = 20 + 18 * number
         out.append(f'<circle cx="6" cy="{y}" r="4" fill="var(--c{number})"/><text x="16" y="{y + 4}">{_text(machine[:16])}</text>')
     unit = next((row["unit"] for row in rows if row["unit"]), "")
-    words = f"{name}, {unit}. Bars are 95 % intervals."
+    power = "" if exponent == 0 else "10" + str(exponent).translate(SUPERSCRIPTS) + " "
+    words = f"{name} in {power}{unit}. Bars are 95 % intervals."
     return _section("Drift", words, _svg(DRIFT_HEIGHT, f"{name} of each machine over time", "".join(out)))
 
 

@@ -38,7 +38,7 @@ pub(super) struct Index {
 /// [`StoreError`] of a request. Within: what makes the file unfit for a thin copy.
 pub(super) async fn read(source: &Source<'_>) -> Result<Result<Index, Unfit>, StoreError> {
     let mut tail = Tail { start: source.size.saturating_sub(TAIL), bytes: Bytes::new() };
-    tail.bytes = source.range(tail.start..source.size).await?;
+    tail.bytes = source.tail(tail.start).await?;
     let Some(start) = summary_start(&tail.bytes) else { return Ok(Err(Unfit("no index"))) };
     if start >= source.size || source.size - start > LARGEST {
         return Ok(Err(Unfit("an index at no possible place")));

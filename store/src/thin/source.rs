@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::ops::Range;
 use std::path::Path as FilePath;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use bytes::Bytes;
@@ -22,6 +23,8 @@ pub(super) struct Source<'p> {
     etag: Option<String>,
     pub(super) size: u64,
     read: AtomicU64,
+    /// The end of the object and where it begins, once it was read.
+    tail: OnceLock<(u64, Bytes)>,
 }
 
 impl<'p> Source<'p> {
@@ -33,6 +36,7 @@ impl<'p> Source<'p> {
             etag: meta.e_tag.clone(),
             size: meta.size,
             read: AtomicU64::new(0),
+            tail: OnceLock::new(),
         }
     }
 
@@ -41,8 +45,26 @@ impl<'p> Source<'p> {
         self.read.load(Ordering::Relaxed)
     }
 
+    /// The last bytes, which are kept: a small bag lies in them altogether.
+    pub(super) async fn tail(&self, start: u64) -> Result<Bytes, StoreError> {
+        let bytes = self.range(start..self.size).await?;
+        let (_, kept) = self.tail.get_or_init(|| (start, bytes));
+        Ok(kept.clone())
+    }
+
+    /// What is kept of a range, where it is all of it.
+    fn kept(&self, range: &Range<u64>) -> Option<Bytes> {
+        let (start, bytes) = self.tail.get()?;
+        let place = |offset: u64| usize::try_from(offset.checked_sub(*start)?).ok();
+        let (from, to) = (place(range.start)?, place(range.end)?);
+        (from <= to && to <= bytes.len()).then(|| bytes.slice(from..to))
+    }
+
     /// The bytes of a range; of the same content each time, where the store can tell.
     pub(super) async fn range(&self, range: Range<u64>) -> Result<Bytes, StoreError> {
+        if let Some(kept) = self.kept(&range) {
+            return Ok(kept);
+        }
         let wanted = range.end.saturating_sub(range.start);
         let request = || async {
             let options =
