@@ -101,6 +101,13 @@ class Symbol:
     def __ge__(self, other: Any) -> Condition:
         return Condition(self, ">=", other)
 
+    def __eq__(self, other: object) -> bool:
+        # Two symbols are never the same number for certain: a silent "not equal" would choose a branch.
+        raise ModelError(f'a formula has no "==", as with "{self.text}": compare with < or >, in numpy.where')
+
+    __ne__ = __eq__
+    __hash__ = object.__hash__
+
     def __bool__(self) -> bool:
         raise ModelError(f'a law cannot branch on "{self.text}": write numpy.where(x > 0, a, b) in place of if')
 

@@ -86,6 +86,8 @@ def refused(function, *words):
 
 def test_what_a_formula_cannot_say_is_refused_in_one_line():
     refused(lambda v: 1.0 if v > 0 else -1.0, "branch", "numpy.where")
+    refused(lambda v: 1.0 if v == 0 else -1.0, "no \"==\"")
+    refused(lambda v: np.where(v != 0, 1.0, -1.0), "no \"==\"")
     refused(lambda v: math.tanh(v), "numpy.tanh")
     refused(lambda v: np.arcsin(v), "arcsin", "arctan")
     refused(lambda v: np.interp(v, [0, 1], [0, 1]), "interp")
