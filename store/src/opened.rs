@@ -1,7 +1,7 @@
 //! From an address to a store.
 
 use std::collections::{BTreeMap, HashMap};
-use std::path::{Path as FilePath, PathBuf};
+use std::path::{Component, Path as FilePath, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -91,6 +91,7 @@ pub fn open(url: &str, options: &Options) -> Result<Place, StoreError> {
     let wrong = |reason: String| StoreError::Address { url: url.to_string(), reason };
     if !url.contains("://") {
         let absolute = std::path::absolute(FilePath::new(url)).map_err(|error| wrong(error.to_string()))?;
+        let absolute = without_parents(&absolute);
         let path = Path::from_absolute_path(&absolute).map_err(|error| wrong(one_line(&error)))?;
         let (store, url) = (opened("file:", options, || Ok(local()))?, absolute.display().to_string());
         return Ok(Place { store, path, url, root: Root::Folder });
@@ -109,6 +110,21 @@ pub fn open(url: &str, options: &Options) -> Result<Place, StoreError> {
     let root = parsed[..url::Position::BeforePath].to_string();
     let store = opened(&root, options, || remote(&parsed, options))?;
     Ok(Place { store, path, url: url.to_string(), root: Root::Url(parsed) })
+}
+
+/// The path without `..`, which paths of a store do not have. Behind a symbolic link, `..` is the parent of where the link leads.
+fn without_parents(path: &FilePath) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::ParentDir => {
+                plain = plain.canonicalize().unwrap_or(plain);
+                plain.pop();
+            }
+            other => plain.push(other),
+        }
+    }
+    plain
 }
 
 fn local() -> Arc<dyn ObjectStore> {
