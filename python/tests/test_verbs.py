@@ -201,11 +201,16 @@ def test_other_threads_run_meanwhile(hidden):
 
 
 def test_ctrl_c_ends_the_work(hidden):
-    begin = time.perf_counter()
-    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
-    with pytest.raises(KeyboardInterrupt):
-        excavator.diagnose(*hidden)
-    assert time.perf_counter() - begin < 1.5
+    # A shell starts what runs in its background deaf to SIGINT, and Python leaves it so.
+    usual = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        begin = time.perf_counter()
+        threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with pytest.raises(KeyboardInterrupt):
+            excavator.diagnose(*hidden)
+        assert time.perf_counter() - begin < 1.5
+    finally:
+        signal.signal(signal.SIGINT, usual)
 
 
 def test_errors_in_progress_are_passed_on(hidden):
