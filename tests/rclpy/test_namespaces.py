@@ -59,12 +59,15 @@ def test_a_command_moves_the_machine_of_its_namespace_alone(ros, machines):
 
 
 def test_nothing_is_left_outside_the_namespaces(ros, machines):
-    names = {name for name, _ in ros.node.get_topic_names_and_types()}
+    # Topics and services are announced one by one.
+    topics = lambda: {name for name, _ in ros.node.get_topic_names_and_types()}  # noqa: E731
+    services = lambda: {name for name, _ in ros.node.get_service_names_and_types()}  # noqa: E731
+    own = {f"/{side}/{topic}" for side in SIDES for topic in (*TOPICS, "arm/model", "joint_states")}
+    ros.spin_until(lambda: own <= topics(), "the topics of both machines")
+    asked = {f"/{side}/arm_simulator/get_parameters" for side in SIDES}
+    ros.spin_until(lambda: asked <= services(), "the services of both machines")
+    names = topics()
     assert not {name for name in names if name.startswith("/arm/")} and "/joint_states" not in names
-    for side in SIDES:
-        assert {f"/{side}/{topic}" for topic in (*TOPICS, "arm/model", "joint_states")} <= names
-    services = {name for name, _ in ros.node.get_service_names_and_types()}
-    assert {f"/{side}/arm_simulator/get_parameters" for side in SIDES} <= services
 
 
 def test_joint_states_and_description_agree(ros, machines):
