@@ -13,6 +13,7 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 from excavator_msgs.msg import ArmState
 from support.flood import dds_ports, flood, malformed_packet
+from support.session import LONGEST_WAIT
 from support.simulator import STATE_QOS, Simulator, seconds
 
 pytestmark = pytest.mark.middleware
@@ -128,8 +129,9 @@ def test_datagrams_of_another_kind_do_not_stop_the_bridge(ros, excavator, tmp_pa
     good = random.Random(1)
     before = len(states)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-        start = time.monotonic()
-        while flooding.is_alive() or time.monotonic() - start < 1.5:
+        # A machine with other work may not hear a state for seconds.
+        deadline = time.monotonic() + LONGEST_WAIT
+        while flooding.is_alive() or (len(states) - before <= 200 and time.monotonic() < deadline):
             sender.sendto(struct.pack("<f", 0.125), ("127.0.0.1", port))
             ros.spin_for(0.01 + 0.001 * good.random())
         measured = [state.cylinders[0].displacement for state in states[before:]]
