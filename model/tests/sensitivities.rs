@@ -147,7 +147,7 @@ fn sensitivities_with_each_effect_added() {
     let catalogue = common::catalogue();
     let cases =
         catalogue.iter().flat_map(|physics| base.free_sites(physics).into_iter().map(move |site| (physics, site)));
-    common::each(cases.collect::<Vec<_>>(), |(physics, site)| {
+    common::each(cases, |(physics, site)| {
         let model = common::with_typical(&base, physics, site);
         // A regulator that is at its limits has corners there.
         let is_regulated = physics.card().name == "load_sensing_pump";

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from ._errors import ModelError
 
@@ -36,11 +37,11 @@ CALLS = {
 }
 
 
-class Symbol:
+class Symbol(NDArrayOperatorsMixin):
     """A quantity of a law: Python's arithmetic and NumPy's functions on it build a formula."""
 
     __slots__ = ("binds", "text")
-    __array_priority__ = 1000
+    __hash__ = object.__hash__
 
     def __init__(self, text: str, binds: int = ATOM) -> None:
         self.text = text
@@ -50,64 +51,6 @@ class Symbol:
         """The text, in parentheses where an operation around it binds tighter."""
         return self.text if self.binds >= least else f"({self.text})"
 
-    def __add__(self, other: Any) -> Symbol:
-        return _binary(self, "+", other, SUM)
-
-    def __radd__(self, other: Any) -> Symbol:
-        return _binary(other, "+", self, SUM)
-
-    def __sub__(self, other: Any) -> Symbol:
-        return _binary(self, "-", other, SUM)
-
-    def __rsub__(self, other: Any) -> Symbol:
-        return _binary(other, "-", self, SUM)
-
-    def __mul__(self, other: Any) -> Symbol:
-        return _binary(self, "*", other, PRODUCT)
-
-    def __rmul__(self, other: Any) -> Symbol:
-        return _binary(other, "*", self, PRODUCT)
-
-    def __truediv__(self, other: Any) -> Symbol:
-        return _binary(self, "/", other, PRODUCT)
-
-    def __rtruediv__(self, other: Any) -> Symbol:
-        return _binary(other, "/", self, PRODUCT)
-
-    def __pow__(self, other: Any) -> Symbol:
-        return _power(self, other)
-
-    def __rpow__(self, other: Any) -> Symbol:
-        return _power(other, self)
-
-    def __neg__(self) -> Symbol:
-        return Symbol(f"-{self.within(POWER)}", SIGN)
-
-    def __pos__(self) -> Symbol:
-        return self
-
-    def __abs__(self) -> Symbol:
-        return call("abs", self)
-
-    def __lt__(self, other: Any) -> Condition:
-        return Condition(self, "<", other)
-
-    def __le__(self, other: Any) -> Condition:
-        return Condition(self, "<=", other)
-
-    def __gt__(self, other: Any) -> Condition:
-        return Condition(self, ">", other)
-
-    def __ge__(self, other: Any) -> Condition:
-        return Condition(self, ">=", other)
-
-    def __eq__(self, other: object) -> bool:
-        # Two symbols are never the same number for certain: a silent "not equal" would choose a branch.
-        raise ModelError(f'a formula has no "==", as with "{self.text}": compare with < or >, in numpy.where')
-
-    __ne__ = __eq__
-    __hash__ = object.__hash__
-
     def __bool__(self) -> bool:
         raise ModelError(f'a law cannot branch on "{self.text}": write numpy.where(x > 0, a, b) in place of if')
 
@@ -115,7 +58,9 @@ class Symbol:
         raise ModelError(f'"{self.text}" has no value yet: use functions of NumPy (numpy.tanh in place of math.tanh)')
 
     def __array_ufunc__(self, function: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
-        if method != "__call__" or options:
+        # `x += 1` asks for the result in x, which is another symbol from then on.
+        into = options.pop("out", ())
+        if method != "__call__" or options or not all(isinstance(one, Symbol) for one in into):
             raise ModelError(f"a formula has no numpy.{function.__name__}.{method}")
         if function in OPERATORS:
             return OPERATORS[function](*inputs)
@@ -125,11 +70,7 @@ class Symbol:
         raise ModelError(f"a formula has no numpy.{function.__name__}; it has {known}, where, clip")
 
     def __array_function__(self, function: Callable[..., Any], types: Any, args: tuple[Any, ...], options: Any) -> Any:
-        if function is np.where and len(args) == 3:
-            return where(*args)
-        if function is np.clip and len(args) == 3:
-            return call("clamp", *args)
-        raise ModelError(f"a formula has no numpy.{function.__name__}")
+        return _numpy_function(function, args)
 
     def __repr__(self) -> str:
         return self.text
@@ -147,9 +88,21 @@ class Condition:
         raise ModelError(f'a law cannot branch on "{self.text}": write numpy.where({self.text}, a, b) in place of if')
 
     def __array_function__(self, function: Callable[..., Any], types: Any, args: tuple[Any, ...], options: Any) -> Any:
-        if function is np.where and len(args) == 3:
-            return where(*args)
-        raise ModelError(f"a formula has no numpy.{function.__name__} of a comparison")
+        return _numpy_function(function, args)
+
+
+def _numpy_function(function: Callable[..., Any], args: tuple[Any, ...]) -> Symbol:
+    if function is np.where and len(args) == 3:
+        return where(*args)
+    if function is np.clip and len(args) == 3:
+        return call("clamp", *args)
+    raise ModelError(f"a formula has no numpy.{function.__name__}")
+
+
+def _equality(left: Any, right: Any) -> Any:
+    # Two symbols are never the same number for certain: a silent "not equal" would choose a branch.
+    told = left if isinstance(left, Symbol) else right
+    raise ModelError(f'a formula has no "==", as with "{told}": compare with < or >, in numpy.where')
 
 
 def call(function: str, *arguments: Any) -> Symbol:
@@ -296,10 +249,12 @@ OPERATORS: dict[np.ufunc, Callable[..., Any]] = {
     np.power: _power,
     np.float_power: _power,
     np.square: lambda x: _power(x, 2),
-    np.negative: lambda x: -_symbol(x),
+    np.negative: lambda x: Symbol(f"-{_symbol(x).within(POWER)}", SIGN),
     np.positive: lambda x: x,
     np.less: lambda left, right: Condition(left, "<", right),
     np.less_equal: lambda left, right: Condition(left, "<=", right),
     np.greater: lambda left, right: Condition(left, ">", right),
     np.greater_equal: lambda left, right: Condition(left, ">=", right),
+    np.equal: _equality,
+    np.not_equal: _equality,
 }

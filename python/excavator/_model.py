@@ -181,7 +181,9 @@ class Model:
                 at="arm",
             )
 
-        `excavator.law` makes such a `dict` from a Python function. `at` is a cylinder, `pump` or `machine`; without, the effect acts at each place where it can. Its parameters have their start values
+        `excavator.law` makes such a `dict` from a Python function.
+
+        `at` is a cylinder, `pump` or `machine`; without, the effect acts at each place where it can. Its parameters have their start values
         unless `values` says otherwise (`{"k": 2e-3}`).
         """
         model = self

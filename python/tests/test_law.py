@@ -34,6 +34,13 @@ def test_a_function_is_the_law_in_text():
     assert "load_damping" in [effect.name for effect in again.effects]
 
 
+def added_up(x, y):
+    total = 2.0 * x
+    total -= y
+    total *= x
+    return total + x
+
+
 SHAPES = [
     lambda x, y: x - (y - x) - (x + y),
     lambda x, y: x / (y * x) / y * (x / y),
@@ -44,6 +51,7 @@ SHAPES = [
     lambda x, y: np.clip(x, 0.5, 2.0) + np.minimum(x, 3.0 * y) - np.power(x, 3) + (+x),
     lambda x, y: np.where(x > y, x - y, -(y - x) * 2) + abs(x - y),
     lambda x, y: sum(c * x**n for n, c in enumerate([0.1, -0.2, 0.3])),
+    lambda x, y: added_up(x, y),
 ]
 
 

@@ -103,6 +103,11 @@ impl Refinement {
         }
     }
 
+    /// What each step added, with its comparisons.
+    pub fn compared_steps(&self) -> impl Iterator<Item = (Option<&str>, &[Comparison])> {
+        self.steps.iter().map(|step| (step.added.as_deref(), step.comparisons.as_slice()))
+    }
+
     /// The diagnosis behind automatic additions.
     pub fn diagnosis(&self) -> Option<&Diagnosis> {
         match &self.reason {

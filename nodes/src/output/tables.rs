@@ -196,8 +196,7 @@ impl<'c> Stage<'c> {
 
     /// The stages of a refinement.
     pub fn of_refinement(refinement: &'c Refinement) -> Vec<Self> {
-        let steps = refinement.steps.iter().map(|step| (step.added.as_deref(), step.comparisons.as_slice()));
-        Stage::all(&refinement.given, steps)
+        Stage::all(&refinement.given, refinement.compared_steps())
     }
 }
 

@@ -35,7 +35,9 @@ pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(arguments, &model, &proposed.found);
     }
-    if let (Some(path), Some(laws)) = (&arguments.output, proposed.file()?) {
+    if let Some(path) = &arguments.output
+        && let Some(laws) = proposed.file()?
+    {
         outputs::write(path, &laws, arguments.overwriting)?;
     }
     outputs::write_told(&proposed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)

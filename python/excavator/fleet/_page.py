@@ -169,7 +169,7 @@ def _effects(results: list[dict[str, Any]]) -> str:
     return f'<div class="scroll"><table>{heads}{"".join(rows)}</table></div>'
 
 
-def _marks(low: float, high: float) -> tuple[list[float], int]:
+def _ticks(low: float, high: float) -> tuple[list[float], int]:
     """Round numbers from `low` or below to `high` or above, and the power of ten that they are written in."""
     if high <= low:
         reach = 0.05 * abs(low) or 1.0
@@ -178,9 +178,9 @@ def _marks(low: float, high: float) -> tuple[list[float], int]:
     decade = 10.0 ** math.floor(math.log10(rough))
     step = next(factor * decade for factor in (1, 2, 5, 10) if factor * decade >= rough)
     first, last = math.floor(low / step), math.ceil(high / step)
-    marks = [number * step for number in range(first, last + 1)]
-    largest = math.floor(math.log10(max(abs(one) for one in marks)))
-    return marks, 0 if -3 <= largest <= 4 else 3 * (largest // 3)
+    ticks = [number * step for number in range(first, last + 1)]
+    largest = math.floor(math.log10(max(abs(one) for one in ticks)))
+    return ticks, 0 if -3 <= largest <= 4 else 3 * (largest // 3)
 
 
 def _drift(parameters: list[dict[str, Any]], wanted: str | None) -> str:
@@ -193,13 +193,13 @@ def _drift(parameters: list[dict[str, Any]], wanted: str | None) -> str:
     rows = [row for row in given if row["parameter"] == name]
     margin = lambda row: row["margin_95"] or 0.0  # noqa: E731
     low, high = min(row["value"] - margin(row) for row in rows), max(row["value"] + margin(row) for row in rows)
-    marks, exponent = _marks(low, high)
-    low, high = marks[0], marks[-1]
+    ticks, exponent = _ticks(low, high)
+    low, high = ticks[0], ticks[-1]
     top, bottom = 12.0, DRIFT_HEIGHT - 40.0
     height_of = lambda value: bottom - (bottom - top) * (value - low) / (high - low)  # noqa: E731
     place, ends = _places((row["recorded"] for row in rows), LEFT + 14, WIDTH - RIGHT - 6)
     out = []
-    for value in marks:
+    for value in ticks:
         y = height_of(value)
         out.append(f'<line class="rule" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{y:.1f}" y2="{y:.1f}"/>')
         out.append(f'<text class="dim" x="{LEFT - 8}" y="{y + 4:.1f}" text-anchor="end">{_number(value / 10.0**exponent)}</text>')

@@ -35,8 +35,7 @@ impl Refined {
 
     /// The result, with the file that the model was written to.
     pub fn result(&self, written: Option<&str>) -> results::Refinement {
-        let steps = self.refinement.steps.iter().map(|step| (step.added.as_deref(), step.comparisons.as_slice()));
-        results::Refinement::of(self.refinement.verdict(), steps, written)
+        results::Refinement::of(self.refinement.verdict(), self.refinement.compared_steps(), written)
     }
 }
 
