@@ -2,14 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
-#[path = "common/diffsol_reference.rs"]
-mod diffsol_reference;
 
-use diffsol_reference::{Method, solve};
+use common::references::{Motion, STATES, arm, distance, stored, two_joints};
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{Catalogue, Site};
-use excavator_model::equations::{Inputs, System};
+use excavator_model::equations::System;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{InputSignals, Integrator, Tolerances};
 
@@ -25,12 +23,6 @@ fn trajectory(model: &Model, recording: &Recording, start: &[f64], tolerances: T
         states.push(state.clone());
     }
     states
-}
-
-/// Largest distance of one state between two trajectories.
-fn distance(a: &[Vec<f64>], b: &[Vec<f64>], state: usize) -> f64 {
-    assert_eq!(a.len(), b.len());
-    a.iter().zip(b).map(|(a, b)| (a[state] - b[state]).abs()).fold(0.0, f64::max)
 }
 
 /// The EMPS drive without Coulomb friction under a force that rises as a ramp: `M dv/dt + Fd v = k t` has
@@ -145,25 +137,6 @@ fn pressure_builds_up_with_its_time_constant() {
     assert!(states.last().unwrap()[2] > 4.9e6);
 }
 
-/// The identification motion of \[A\], its sine given to both solvers as the same straight lines between 1 ms samples.
-fn arm_and_reference(duration: f64) -> (Model, Recording, Vec<f64>, impl Fn(f64, &mut Inputs<f64>)) {
-    let model = built_in("zx30u-arm").unwrap();
-    // Not starting at zero, so that the opening crosses zero inside a step of any size.
-    let area = |t: f64| 1e-4 * (std::f64::consts::TAU * 0.5 * t + 0.4).sin();
-    let recording = common::driven(&model, duration, 1e-3, |_, t| area(t), |_| 0.0);
-    let start = common::at_rest(&System::new(&model));
-    let signals = InputSignals::from_recording(&model, &recording).unwrap();
-    let inputs_at = move |t: f64, inputs: &mut Inputs<f64>| {
-        let index = ((t / 1e-3) as usize).min(signals.len() - 2);
-        signals.between(index, ((t - signals.time[index]) / 1e-3).clamp(0.0, 1.0), inputs);
-    };
-    (model, recording, start, inputs_at)
-}
-
-/// Units of the five states of the arm in messages, and what a good sensor of each resolves: 0.05 mm of piston are about
-/// 2e-4 rad, pressure sensors have 2 kPa of noise.
-const STATES: [(&str, f64); 5] = [("rad", 2e-4), ("rad/s", 5e-3), ("Pa", 2e3), ("Pa", 2e3), ("Pa", 2e3)];
-
 /// How far the default tolerance may be from the truth at any one sample, in units of sensor noise. It is reached for
 /// some milliseconds where a chamber leaves cavitation while the valve changes direction, two corners inside one step,
 /// which no error estimate of a smooth method sees.
@@ -179,43 +152,48 @@ fn mean_distance(a: &[Vec<f64>], b: &[Vec<f64>], state: usize) -> f64 {
     (squares / a.len() as f64).sqrt()
 }
 
-#[test]
-fn the_arm_moves_as_diffsol_says() {
-    let (model, recording, start, inputs_at) = arm_and_reference(4.0);
-    let reference = solve(&model, &start, &recording.time, &inputs_at, Method::Bdf, 1e-10).unwrap();
-    let second = solve(&model, &start, &recording.time, &inputs_at, Method::Esdirk34, 1e-9).unwrap();
-    let ours = trajectory(&model, &recording, &start, Tolerances::default());
-    let tight = trajectory(&model, &recording, &start, Tolerances::default().scaled(1e-6));
-    for (state, (unit, noise)) in STATES.iter().enumerate() {
-        let agreement = distance(&reference, &second, state);
+/// Checks both tolerances against the solution of diffsol.
+fn moves_as_diffsol_says(motion: &Motion) {
+    let reference = stored(motion);
+    let follow = |tolerances| trajectory(&motion.model, &motion.recording, &motion.start, tolerances);
+    let (ours, tight) = (follow(Tolerances::default()), follow(Tolerances::default().scaled(1e-6)));
+    for (state, kind) in motion.kinds().into_iter().enumerate() {
+        let (unit, noise) = STATES[kind];
         let (default, tight) = (distance(&ours, &reference, state), distance(&tight, &reference, state));
-        println!(
-            "state {state}: default {default:.1e} {unit}, tight {tight:.1e} {unit}, solvers agree {agreement:.1e}"
-        );
         let mean = mean_distance(&ours, &reference, state);
-        println!("         default, root mean square {mean:.1e} {unit}");
+        println!(
+            "{}, state {state}: default {default:.1e} {unit}, root mean square {mean:.1e}, tight {tight:.1e}",
+            motion.name
+        );
         assert!(default < DEFAULT_LARGEST * noise, "default tolerance, state {state}: {default} {unit}");
         assert!(mean < DEFAULT_MEAN * noise, "default tolerance, state {state}: {mean} {unit}");
         assert!(tight < 1e-4 * noise, "tight tolerance, state {state}: {tight} {unit}");
-        assert!(agreement < 1e-4 * noise, "diffsol's solvers, state {state}: {agreement} {unit}");
     }
-    let travel = reference.iter().map(|s| model.machine.cylinders[0].linkage.displacement(s[0]));
+    let travel = reference.iter().map(|state| motion.model.machine.cylinders[0].linkage.displacement(state[0]));
     let (low, high) = travel.fold((f64::MAX, f64::MIN), |(low, high), s| (low.min(s), high.max(s)));
     assert!(high - low > 0.05, "the arm moves: {low} to {high} m");
+}
+
+#[test]
+fn the_arm_moves_as_diffsol_says() {
+    moves_as_diffsol_says(&arm());
+}
+
+/// The same for the two joints that pull on each other.
+#[test]
+fn two_joints_move_as_diffsol_says() {
+    moves_as_diffsol_says(&two_joints());
 }
 
 /// Errors follow tolerances: ten thousand times tighter, at least a thousand times nearer.
 #[test]
 fn errors_shrink_with_the_tolerance() {
-    let (model, recording, start, inputs_at) = arm_and_reference(2.0);
-    let reference = solve(&model, &start, &recording.time, &inputs_at, Method::Bdf, 1e-11).unwrap();
+    let motion = arm();
+    let reference = stored(&motion);
     let error = |factor: f64| {
-        let states = trajectory(&model, &recording, &start, Tolerances::default().scaled(factor));
-        STATES
-            .iter()
-            .enumerate()
-            .map(|(state, (_, noise))| distance(&states, &reference, state) / noise)
-            .fold(0.0, f64::max)
+        let states = trajectory(&motion.model, &motion.recording, &motion.start, Tolerances::default().scaled(factor));
+        let relative = |(state, kind): (usize, usize)| distance(&states, &reference, state) / STATES[kind].1;
+        motion.kinds().into_iter().enumerate().map(relative).fold(0.0, f64::max)
     };
     let errors: Vec<f64> = [1.0, 1e-2, 1e-4, 1e-6].into_iter().map(error).collect();
     println!("errors in units of sensor noise, tolerances 1, 1e-2, 1e-4, 1e-6: {errors:?}");
@@ -223,28 +201,4 @@ fn errors_shrink_with_the_tolerance() {
         assert!(pair[1] < 0.5 * pair[0], "{errors:?}");
     }
     assert!(errors[3] < errors[1] / 1000.0, "{errors:?}");
-}
-
-/// The same for the two joints that pull on each other.
-#[test]
-fn two_joints_move_as_diffsol_says() {
-    let model = built_in("zx30u").unwrap();
-    let area = |number: usize, t: f64| 7e-5 * (std::f64::consts::TAU * 0.6 * t + 0.3 + number as f64).sin();
-    let recording = common::driven(&model, 2.0, 1e-3, area, |_| 0.0);
-    let start = common::at_rest(&System::new(&model));
-    let signals = InputSignals::from_recording(&model, &recording).unwrap();
-    let inputs_at = |t: f64, inputs: &mut Inputs<f64>| {
-        let index = ((t / 1e-3) as usize).min(signals.len() - 2);
-        signals.between(index, ((t - signals.time[index]) / 1e-3).clamp(0.0, 1.0), inputs);
-    };
-    let reference = solve(&model, &start, &recording.time, inputs_at, Method::Bdf, 1e-9).unwrap();
-    let ours = trajectory(&model, &recording, &start, Tolerances::default());
-    for state in 0..start.len() {
-        let noise = [2e-4, 2e-4, 5e-3, 5e-3].get(state).copied().unwrap_or(2e3);
-        let error = distance(&ours, &reference, state);
-        let mean = mean_distance(&ours, &reference, state);
-        println!("two joints, state {state}: largest {error:.1e}, root mean square {mean:.1e}");
-        assert!(error < DEFAULT_LARGEST * noise, "state {state}: {error}");
-        assert!(mean < DEFAULT_MEAN * noise, "state {state}: {mean}");
-    }
 }

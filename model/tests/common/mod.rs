@@ -1,6 +1,8 @@
 //! What several tests need: machines, random states that a machine could be in, and drives.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+pub mod references;
+
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse_catalogue};
 use excavator_model::effects::{AnyEffect, Catalogue, Site};

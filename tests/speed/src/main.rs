@@ -3,8 +3,7 @@
 mod clock;
 #[path = "../../../model/tests/common/mod.rs"]
 mod common;
-#[path = "../../../model/tests/common/diffsol_reference.rs"]
-mod diffsol_reference;
+mod diffsol;
 mod figures;
 mod growth;
 mod identification;
@@ -13,6 +12,7 @@ mod page;
 mod peers;
 mod reading;
 mod recordings;
+mod references;
 mod simulation;
 mod truth;
 mod verbs;
@@ -26,7 +26,7 @@ use figures::{Figures, Group, Part};
 use peers::Peers;
 use verbs::Program;
 
-/// What reading, simulation, identification and diagnosis cost
+/// What reading, simulation, identification and diagnosis cost, and what another solver says
 #[derive(Parser)]
 #[command(name = "speed")]
 struct Words {
@@ -42,6 +42,12 @@ enum Wanted {
     Growth(Measure),
     /// Write docs/speed.md from docs/speed.json
     Page,
+    /// Solve the motions that the tests of the model compare with, by diffsol
+    References {
+        /// Compare with the stored solutions instead of writing them
+        #[arg(long)]
+        check: bool,
+    },
 }
 
 #[derive(clap::Args)]
@@ -77,11 +83,12 @@ const GROWTH: [Measured; 3] = [
 
 fn main() -> ExitCode {
     let done = match Words::parse().command {
-        Wanted::Measure(words) => measure(&words, &COSTS),
-        Wanted::Growth(words) => measure(&words, &GROWTH),
-        Wanted::Page => Ok(()),
+        Wanted::Measure(words) => measure(&words, &COSTS).and_then(|()| write_page()),
+        Wanted::Growth(words) => measure(&words, &GROWTH).and_then(|()| write_page()),
+        Wanted::Page => write_page(),
+        Wanted::References { check } => references::references(check),
     };
-    match done.and_then(|()| write_page()) {
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(reason) => {
             eprintln!("{reason}");

@@ -7,13 +7,13 @@ use std::time::Instant;
 
 use excavator_model::Model;
 use excavator_model::document::{built_in, to_text};
-use excavator_model::equations::{Inputs, System};
+use excavator_model::equations::System;
 use excavator_model::simulation::{InputSignals, Integrator, Sensitivity, Tolerances};
 use serde_json::json;
 
 use crate::clock::best_of;
 use crate::common;
-use crate::diffsol_reference::{Method, solve};
+use crate::diffsol::{Method, solve};
 use crate::figures::{Group, Run};
 use crate::peers::Peers;
 
@@ -116,11 +116,7 @@ fn distance(model: &Model, a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 }
 
 fn other(model: &Model, signals: &InputSignals, method: Method, tolerance: f64) -> Result<Vec<Vec<f64>>, String> {
-    let inputs_at = |time: f64, inputs: &mut Inputs<f64>| {
-        let index = ((time / INTERVAL) as usize).min(signals.len() - 2);
-        signals.between(index, ((time - signals.time[index]) / INTERVAL).clamp(0.0, 1.0), inputs);
-    };
-    solve(model, &common::at_rest(&System::new(model)), &signals.time, inputs_at, method, tolerance)
+    solve(model, signals, &common::at_rest(&System::new(model)), method, tolerance)
 }
 
 /// diffsol at the coarsest tolerance at which its error is at most `error`.

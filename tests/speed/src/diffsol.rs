@@ -1,12 +1,10 @@
 //! The same model solved by `diffsol`, an independent solver with its own error control.
-#![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
-
 use std::cell::RefCell;
 
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod};
 use excavator_model::Model;
 use excavator_model::equations::{Inputs, System};
-use excavator_model::simulation::Linearisation;
+use excavator_model::simulation::{InputSignals, Linearisation};
 
 /// Which of diffsol's stiff solvers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,16 +17,24 @@ pub enum Method {
     Esdirk34,
 }
 
-/// States of `model` at `times` (s, from zero), driven by `inputs_at`. `relative` is diffsol's relative tolerance, the
-/// absolute ones are it times 0.01 rad, 0.1 rad/s, 1 MPa and 1e-5 m². The error is diffsol's, when it gives up.
+/// States of `model` at the samples of evenly spaced `signals`, from `start`. `relative` is diffsol's relative tolerance, the
+/// absolute ones are it times 0.01 rad, 0.1 rad/s, 1 MPa and 1e-5 m².
+///
+/// # Errors
+/// Diffsol's words, when it gives up.
 pub fn solve(
     model: &Model,
+    signals: &InputSignals,
     start: &[f64],
-    times: &[f64],
-    inputs_at: impl Fn(f64, &mut Inputs<f64>),
     method: Method,
     relative: f64,
 ) -> Result<Vec<Vec<f64>>, String> {
+    let times = &signals.time;
+    let interval = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+    let inputs_at = |time: f64, inputs: &mut Inputs<f64>| {
+        let index = ((time / interval) as usize).min(signals.len() - 2);
+        signals.between(index, ((time - times[index]) / interval).clamp(0.0, 1.0), inputs);
+    };
     let system = System::new(model);
     let layout = system.layout().clone();
     let parameters = model.parameter_values();
@@ -69,14 +75,14 @@ pub fn solve(
         .rhs_implicit(rates, jacobian)
         .init(|_: &[f64], _: f64, state: &mut [f64]| state.copy_from_slice(start), layout.len)
         .build()
-        .unwrap();
+        .map_err(|error| error.to_string())?;
     // diffsol counts these over the whole trajectory and gives up after 50; each corner of the physics costs a few.
     problem.ode_options.max_nonlinear_solver_failures = 1_000_000;
     problem.ode_options.max_error_test_failures = 1_000_000;
     let (values, _) = match method {
-        Method::Bdf => problem.bdf::<NalgebraLU<f64>>().unwrap().solve_dense(times),
-        Method::TrBdf2 => problem.tr_bdf2::<NalgebraLU<f64>>().unwrap().solve_dense(times),
-        Method::Esdirk34 => problem.esdirk34::<NalgebraLU<f64>>().unwrap().solve_dense(times),
+        Method::Bdf => problem.bdf::<NalgebraLU<f64>>().and_then(|mut solver| solver.solve_dense(times)),
+        Method::TrBdf2 => problem.tr_bdf2::<NalgebraLU<f64>>().and_then(|mut solver| solver.solve_dense(times)),
+        Method::Esdirk34 => problem.esdirk34::<NalgebraLU<f64>>().and_then(|mut solver| solver.solve_dense(times)),
     }
     .map_err(|error| error.to_string())?;
     Ok((0..times.len()).map(|column| (0..layout.len).map(|row| values[(row, column)]).collect()).collect())
