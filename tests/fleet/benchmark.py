@@ -7,7 +7,7 @@ in ten. A worker and the driver are killed on the way. Then every result is comp
     target/release/blind --seed 9191 --cases 150 --only-draw --write blind-bags
     python tests/fleet/benchmark.py --program target/release/excavator --bags blind-bags --json docs/fleet.json
 
-150 pairs are 300 recordings. On two cores they take an hour and a half, half of it the program's.
+150 pairs are 300 recordings. On two cores they take an hour and a half, half of it the program's: --compare repeats that part alone.
 """
 
 from __future__ import annotations
@@ -144,32 +144,50 @@ def wait_for(client, count: int, wanted: int, driver: subprocess.Popen[str]) -> 
         time.sleep(0.5)
 
 
-def compared(program: Path, endpoint: str, bags: Path, count: int, workers: int) -> dict[str, object]:
-    """Results beside those of the program on the same bags."""
+def keep(endpoint: str, count: int, folder: Path) -> None:
+    """Copies the results of a run to a folder, a file for each machine."""
     from excavator import fleet
 
     store = fleet.Store(options_of(endpoint))
     results = fleet.Results(f"s3://{BUCKET}/results-{count}", store)
-    rows = {json.loads(store.get(one.url))["machine"]: one.url for one in store.list(f"{results.address}/rows")}
+    folder.mkdir(parents=True, exist_ok=True)
+    for one in store.list(f"{results.address}/rows"):
+        machine = json.loads(store.get(one.url))["machine"]
+        found = results.json(one.url.rpartition("/")[2].removesuffix(".json"))
+        (folder / f"{machine}.json").write_text(found)
+
+
+def compared(program: Path, kept: Path, bags: Path, count: int, workers: int) -> dict[str, object]:
+    """Results beside those of the program on the same bags."""
 
     def is_same(case: Path) -> tuple[str, bool, float]:
-        found = results.json(rows[case.name].rpartition("/")[2].removesuffix(".json"))
-        found = found.replace(f"s3://{BUCKET}/bags/{case.name}/identification/", str(case / "identification"))
-        found = found.replace(f"s3://{BUCKET}/bags/{case.name}/validation/", str(case / "validation"))
-        with tempfile.TemporaryDirectory() as folder:
-            target = Path(folder) / "own.json"
-            words = ["diagnose", "--model", MODEL, "--identification", case / "identification", "--validation", case / "validation", "--json", target]
-            began = time.monotonic()
-            environment = os.environ | {"RAYON_NUM_THREADS": "1"}
-            done = subprocess.run([program, *map(str, words)], capture_output=True, text=True, env=environment)
-            if not target.exists():
-                sys.exit(f"{case}: {done.stderr}")
-            return case.name, target.read_text() == found, time.monotonic() - began
+        found = (kept / f"{case.name}.json").read_text()
+        for role in ("identification", "validation"):
+            found = found.replace(f"s3://{BUCKET}/bags/{case.name}/{role}/", str(case / role))
+        own = kept / f"{case.name}.program.json"
+        began = time.monotonic()
+        if not own.exists():  # else from a comparison that was interrupted
+            with tempfile.TemporaryDirectory() as folder:
+                target = Path(folder) / "own.json"
+                roles = ["--identification", case / "identification", "--validation", case / "validation"]
+                words = [program, "diagnose", "--model", MODEL, *roles, "--json", target]
+                environment = os.environ | {"RAYON_NUM_THREADS": "1"}
+                done = subprocess.run([str(word) for word in words], capture_output=True, text=True, env=environment)
+                if not target.exists():
+                    sys.exit(f"{case}: {done.stderr}")
+                own.write_text(target.read_text())
+        return case.name, own.read_text() == found, time.monotonic() - began
 
     with ThreadPoolExecutor(workers) as threads:
         answers = list(threads.map(is_same, cases_of(bags, count)))
     different = [name for name, same, _ in answers if not same]
     return {"compared": len(answers), "different": different, "program_seconds_per_pair": sum(one[2] for one in answers) / len(answers)}
+
+
+def write(path: Path | None, figures: dict[str, object]) -> None:
+    """Writes the figures where they are wanted."""
+    if path:
+        path.write_text(json.dumps(figures, indent=2) + "\n")
 
 
 def main() -> None:
@@ -180,12 +198,17 @@ def main() -> None:
     words.add_argument("--counts", type=int, nargs="+", default=[15, 150], help="pairs of each run")
     words.add_argument("--workers", type=int, default=2)
     words.add_argument("--json", type=Path)
+    words.add_argument("--keep", type=Path, default=Path("fleet-results"), help="folder for the results, for --compare")
+    words.add_argument("--compare", action="store_true", help="only compare results that an earlier run kept with the program's")
     words.add_argument("--drive", help=argparse.SUPPRESS)
     words.add_argument("--results", help=argparse.SUPPRESS)
     given = words.parse_args()
     bags = given.bags.resolve()
     if given.drive:
         return drive(given.drive, bags, given.counts[0], given.workers, given.results)
+    largest = max(given.counts)
+    if given.compare:
+        return finish(given, json.loads(given.json.read_text()), largest)
     import boto3
     from failing_proxy import FailingProxy
     from moto.server import ThreadedMotoServer
@@ -197,7 +220,6 @@ def main() -> None:
     own = {"region_name": "us-east-1", "aws_access_key_id": "x", "aws_secret_access_key": "x"}
     client = boto3.client("s3", endpoint_url=f"http://{host}:{port}", **own)
     client.create_bucket(Bucket=BUCKET)
-    largest = max(given.counts)
     figures: dict[str, object] = {"workers": given.workers, "bytes": upload(client, cases_of(bags, largest)), "runs": {}}
     proxy = FailingProxy(port, every=10)
     with proxy as endpoint:
@@ -205,14 +227,19 @@ def main() -> None:
             run = measured(client, endpoint, bags, count, given.workers, kill=count == largest)
             figures["runs"][str(count)] = run
             print(count, run, flush=True)
-        if given.program:
-            figures |= compared(given.program.resolve(), endpoint, bags, largest, given.workers)
+        keep(endpoint, largest, given.keep)
     figures |= {"requests": proxy.requests, "requests_failed": proxy.failures, "threads": threading.active_count()}
     server.stop()
-    text = json.dumps(figures, indent=2) + "\n"
-    print(text)
-    if given.json:
-        given.json.write_text(text)
+    finish(given, figures, largest)
+
+
+def finish(given: argparse.Namespace, figures: dict[str, object], largest: int) -> None:
+    """Compares with the program and writes the figures: before it, too, for it takes as long as the run."""
+    write(given.json, figures)
+    if given.program:
+        figures |= compared(given.program.resolve(), given.keep, given.bags.resolve(), largest, given.workers)
+        write(given.json, figures)
+    print(json.dumps(figures, indent=2))
     last = figures["runs"][str(largest)]
     if last["results"] != largest or last.get("written_again") or figures.get("different"):
         sys.exit("something was lost, done twice, or is different")
