@@ -28,17 +28,17 @@
 //!
 //! # Faults of the middleware
 //!
-//! RustDDS 0.15.1 has faults that a peer of another make meets. Each has a file that works around it and says when it is needed no more:
+//! RustDDS 0.15.1 has faults that show with other DDS implementations. Each workaround has its own file, which says when it can be removed:
 //!
 //! | fault | remedy |
 //! |---|---|
 //! | a peer whose lease ran out is never matched again | `health.rs`: a scout looks for it, the link is built anew |
 //! | threads end when a system call is interrupted | `threads.rs`: they are counted, the link is built anew |
-//! | a lock waits for itself | `patience.rs`: what may hang runs on a thread of its own |
-//! | each fragment of a sample with inline parameters has a byte too many | `large_replies.rs`: long replies go another way |
-//! | Fast DDS does not understand its good-bye | `farewell.rs`: it is said once more in Fast DDS's words |
-//! | its announcements have no time of writing, and Fast DDS may lose those that were overtaken | `probe.rs`: two probes prove it, the link is built anew |
-//! | Fast DDS does not hear its first question | `reminder.rs`: the question is asked once more |
+//! | a call can deadlock | `patience.rs`: what may hang runs on a thread of its own |
+//! | each fragment of a sample with inline QoS has one byte too many | `large_replies.rs`: long replies go another way |
+//! | Fast DDS does not see that a participant has left | `farewell.rs`: the message is sent once more in the form of Fast DDS |
+//! | announcements carry no timestamp, and Fast DDS may drop those that arrive out of order | `probe.rs`: two probes prove it, the link is built anew |
+//! | Fast DDS ignores the first request for missing samples | `reminder.rs`: the request is sent once more |
 //! | malformed packets end threads or exhaust memory | `guard`: a filter in the kernel, in front of the sockets |
 
 mod arguments;

@@ -1,8 +1,8 @@
 //! Object storage for fleets of machines: S3, GCS, Azure and files behind one set of functions.
 //!
 //! An address is a URL (`s3://bucket/path`, `gs://bucket/path`, `az://container/path`, `file:///path`) or a plain path. [`Options`] are those
-//! of the crate `object_store` (`endpoint`, `allow_http`, `region`, `access_key_id`, ...); variables of the environment (`AWS_*`,
-//! `GOOGLE_*`, `AZURE_*`) are read first.
+//! of the crate `object_store` (`endpoint`, `allow_http`, `region`, `access_key_id`, ...). They override variables of the environment
+//! (`AWS_*`, `GOOGLE_*`, `AZURE_*`).
 //!
 //! [`thin_copy`] copies of an MCAP bag only what a piece of work needs: it reads the index at the end of the file, and then the chunks with
 //! wanted topics.
