@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::value_text::from_text;
 use super::{Remap, RosError, Value};
 
-/// Least severe message that is told.
+/// Least severe level that is logged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs)]
 pub enum Level {
@@ -51,7 +51,7 @@ pub struct Override {
     pub value: Value,
 }
 
-/// What stood after `--ros-args`.
+/// The arguments after `--ros-args`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RosArguments {
     /// `-r`, `--remap`.
@@ -70,9 +70,9 @@ pub struct RosArguments {
     pub log_to_rosout: bool,
     /// `--disable-external-lib-logs` turns it off.
     pub log_to_file: bool,
-    /// `--log-file-name`: how the name of the log file begins.
+    /// `--log-file-name`: prefix of the name of the log file.
     pub log_file_name: Option<String>,
-    /// Arguments that have no effect, in words.
+    /// Arguments that have no effect, as messages for the user.
     pub ignored: Vec<String>,
 }
 
@@ -94,7 +94,7 @@ impl Default for RosArguments {
 }
 
 impl RosArguments {
-    /// Splits `arguments` into what is for ROS and what is not.
+    /// Splits `arguments` into those for ROS and all others.
     ///
     /// ```
     /// use excavator_ros::RosArguments;
@@ -153,14 +153,14 @@ impl RosArguments {
     }
 }
 
-/// The words of a command line from `--ros-args` on, to be handed to another node.
+/// The arguments from `--ros-args` on, to pass to another node.
 pub fn ros_words(arguments: &[String]) -> &[String] {
     let start = arguments.iter().position(|word| word == "--ros-args").unwrap_or(arguments.len());
     &arguments[start..]
 }
 
 fn level(text: &str) -> Result<Level, RosError> {
-    // `--log-level name:=debug` sets the level of one logger; a node has only one here.
+    // `--log-level name:=debug` sets the level of one logger. A node has only one logger here.
     let word = text.split_once(":=").map_or(text, |(_, level)| level);
     Level::parse(word)
         .ok_or_else(|| RosError::Arguments(format!("--log-level {text} is none of debug, info, warn, error, fatal")))

@@ -1,4 +1,4 @@
-//! ROS time: the system's clock, or `/clock`.
+//! ROS time: the system clock or `/clock`.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
@@ -17,21 +17,21 @@ pub struct RosClock {
 
 #[derive(Default)]
 struct Shared {
-    /// Whether `/clock` counts.
+    /// Whether the time of `/clock` is used.
     follows: AtomicBool,
     /// Whether `/clock` is subscribed.
     listens: AtomicBool,
-    /// The newest time of `/clock`, ns.
+    /// The newest time from `/clock`, ns.
     simulated: AtomicI64,
 }
 
 impl RosClock {
-    /// The system's clock.
+    /// The system clock.
     pub fn system() -> Self {
         RosClock::default()
     }
 
-    /// The clock of a node: `/clock` where `use_sim_time` is set.
+    /// The clock of a node: `/clock` if `use_sim_time` is set.
     ///
     /// # Errors
     /// [`RosError::Endpoint`].
@@ -41,11 +41,11 @@ impl RosClock {
         Ok(clock)
     }
 
-    /// Changes over to `/clock`, or back to the system's clock. The library's own subscription asks for another type than
-    /// rosgraph_msgs/Clock, so this one is ours.
+    /// Switches to `/clock`, or back to the system clock. The subscription of the library expects a type other than
+    /// rosgraph_msgs/Clock, so this one is our own.
     ///
     /// # Errors
-    /// [`RosError::Endpoint`]; the clock stays what it was.
+    /// [`RosError::Endpoint`]; the clock is then unchanged.
     pub(super) fn follow(&self, link: &Link, use_sim_time: bool) -> Result<(), RosError> {
         if use_sim_time && !self.shared.listens.load(Ordering::Relaxed) {
             let newest = Arc::clone(&self.shared);
@@ -69,12 +69,12 @@ impl RosClock {
 
     /// Now.
     pub fn now(&self) -> Time {
-        // Stamps end in 2038; an impossible clock must not stop a node.
+        // Timestamps end in 2038. An impossible clock must not stop a node.
         Time::from_nanoseconds(self.nanoseconds()).unwrap_or_default()
     }
 }
 
-/// The system's clock, ns since the epoch.
+/// The system clock, ns since the epoch.
 pub fn system_nanoseconds() -> i64 {
     SystemTime::now()
         .duration_since(UNIX_EPOCH)

@@ -1,4 +1,4 @@
-//! One life in the ROS graph, and what exists only as long as it lasts.
+//! One connection to the ROS graph, and everything that exists only as long as the connection.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -13,29 +13,29 @@ use super::probe::Probe;
 use super::threads::Threads;
 use super::{Environment, NodeIdentity, RosError, Security};
 
-/// Something that runs as long as an endpoint is open.
+/// A task that runs as long as an endpoint is open.
 pub type Task = tokio::task::JoinHandle<()>;
 
-/// Puts what was created on a new connection into its place. Creating may hang, this must not.
+/// Installs what was created on a new connection. Creating may hang; installing must not.
 pub type Install = Box<dyn FnOnce(&Handle) + Send>;
 
-/// What is left of an endpoint that was closed.
+/// What remains of a closed endpoint.
 #[derive(Default)]
 #[must_use = "tasks must be ended, and what remains be dropped where that may hang"]
 pub struct Closed {
-    /// To be ended.
+    /// Tasks to abort.
     pub tasks: Vec<Task>,
-    /// To be dropped, which may hang.
+    /// Values to drop. Dropping may hang.
     pub remains: Vec<Box<dyn Any + Send>>,
 }
 
 impl Closed {
-    /// Nothing but tasks.
+    /// Only tasks.
     pub fn tasks(tasks: impl IntoIterator<Item = Task>) -> Self {
         Closed { tasks: tasks.into_iter().collect(), remains: Vec::new() }
     }
 
-    /// Nothing but a writer, where there was one.
+    /// Only a writer, if there was one.
     pub fn writer<W: Send + 'static>(writer: Option<W>) -> Self {
         let boxed = writer.map(|writer| Box::new(writer) as Box<dyn Any + Send>);
         Closed { tasks: Vec::new(), remains: boxed.into_iter().collect() }
@@ -51,16 +51,16 @@ impl Extend<Closed> for Closed {
     }
 }
 
-/// Something that exists on a connection and is opened again on the next one.
+/// An endpoint that exists on a connection and is opened again on the next one.
 pub trait Endpoint: Send + Sync {
-    /// Creates the endpoint on a new connection. It is not in use before it is installed: a connection may turn out to be
-    /// dead while the next one is there already.
+    /// Creates the endpoint on a new connection. It is not used before it is installed: a connection may turn out to be
+    /// dead when the next one already exists.
     fn open(self: Arc<Self>, connection: &mut Connection) -> Result<Install, RosError>;
 
-    /// Gives up what belongs to the connection.
+    /// Releases everything that belongs to the connection.
     fn close(&self) -> Closed;
 
-    /// Full name and ROS type of the topic, where it is one.
+    /// Full name and ROS type of the topic, if the endpoint is a topic.
     fn interface(&self) -> Option<(String, String)> {
         None
     }
@@ -68,13 +68,13 @@ pub trait Endpoint: Send + Sync {
 
 /// One participant with its node.
 pub struct Connection {
-    // Dropped in this order: the node says good-bye through the context.
+    // Dropped in this order: the node leaves the graph through the context.
     probe: Option<Probe>,
     node: Node,
     context: Context,
     threads: Threads,
     guard: Result<Guard, GuardError>,
-    // Last: it speaks when the participant has gone.
+    // Last: it sends its message after the participant has gone.
     farewell: Farewell,
 }
 
@@ -89,11 +89,11 @@ impl Connection {
         let failed = |reason: String| RosError::Join { domain: environment.domain, reason };
         let (participant, threads) = Threads::started_by(|| participant(environment));
         let (participant, guard) = participant.map_err(failed)?;
-        // Before all others: see the probe.
+        // Before all other endpoints; see `probe.rs`.
         let probe = Some(Probe::open(&participant).map_err(failed)?);
         let context = Context::from_domain_participant(participant).map_err(|error| failed(error.to_string()))?;
         let name = NodeName::new(identity.namespace(), identity.name()).map_err(|error| failed(error.to_string()))?;
-        // Parameter services and log are ours: the library's are bound to one mapping and to its own spinner.
+        // Parameter services and log are our own: those of the library are bound to one mapping and to its own spinner.
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
         let node = context.new_node(name, options).map_err(|error| failed(error.to_string()))?;
         Ok(Connection { node, context, threads, guard, probe, farewell: Farewell::new(environment) })
@@ -105,12 +105,12 @@ impl Connection {
         (self, opened)
     }
 
-    /// The node, for what it creates.
+    /// The node, to create endpoints with.
     pub fn node(&mut self) -> &mut Node {
         &mut self.node
     }
 
-    /// The participant; a handle that shares it.
+    /// A handle to the participant.
     pub fn participant(&self) -> DomainParticipant {
         self.context.domain_participant()
     }
@@ -120,20 +120,20 @@ impl Connection {
         self.threads.clone()
     }
 
-    /// The first endpoints of the connection, once: for who watches it.
+    /// The first endpoints of the connection, for its watch. Returned only once.
     pub(super) fn take_probe(&mut self) -> Option<Probe> {
         self.probe.take()
     }
 
-    /// The filter in front of the participant's sockets, or why there is none.
+    /// The filter in front of the sockets of the participant, or the reason why there is none.
     pub(super) fn guard(&self) -> Result<Guard, GuardError> {
         self.guard.clone()
     }
 
-    /// A topic by its name and type in DDS.
+    /// Creates a topic from its name and type in DDS.
     ///
     /// # Errors
-    /// The middleware's words.
+    /// The error message of the middleware.
     pub fn create_topic(&self, dds_name: &str, dds_type: &str, qos: &QosPolicies) -> Result<Topic, String> {
         self.participant()
             .create_topic(dds_name.to_string(), dds_type.to_string(), qos, TopicKind::NoKey)
@@ -141,8 +141,8 @@ impl Connection {
     }
 }
 
-/// A participant in the domain and on the networks of the environment, with a filter in front of its sockets before it can
-/// have met a peer.
+/// Creates a participant in the domain and on the networks of the environment. The filter is attached to its sockets
+/// before it can have met a peer.
 pub(super) fn participant(environment: &Environment) -> Result<(DomainParticipant, Result<Guard, GuardError>), String> {
     let builder = DomainParticipantBuilder::new(environment.domain);
     let builder = match environment.networks() {

@@ -1,11 +1,11 @@
-//! How names of ROS 2 appear in DDS (design article "Topic and Service name mapping to DDS").
+//! Mapping of ROS 2 names to DDS (design article "Topic and Service name mapping to DDS").
 
 /// DDS topic of a ROS topic: `/arm/state` is `rt/arm/state`.
 pub fn dds_topic(full_name: &str) -> String {
     format!("rt{full_name}")
 }
 
-/// ROS topic of a DDS topic; `None` for services, actions' parts and what is not of ROS.
+/// ROS topic of a DDS topic; `None` for services, parts of actions and topics that are not from ROS.
 pub fn ros_topic(dds_topic: &str) -> Option<&str> {
     dds_topic.strip_prefix("rt").filter(|name| name.starts_with('/'))
 }
@@ -16,7 +16,7 @@ pub fn dds_type(ros_type: &str) -> String {
     format!("{}::dds_::{name}_", package.replace('/', "::"))
 }
 
-/// ROS type of a DDS type; `None` for what is not of ROS.
+/// ROS type of a DDS type; `None` for types that are not from ROS.
 pub fn ros_type(dds_type: &str) -> Option<String> {
     let (package, name) = dds_type.rsplit_once("::dds_::")?;
     Some(format!("{}/{}", package.replace("::", "/"), name.strip_suffix('_')?))

@@ -1,4 +1,4 @@
-//! `/diagnostics`: how each part of the node is, once per second and on change.
+//! `/diagnostics`: state of each part of the node, once per second and on change.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,12 +10,12 @@ use tokio::sync::Notify;
 
 use super::{Link, Outlet, RosClock, RosError, TopicQos};
 
-/// Time between two messages when nothing changes: what `diagnostic_aggregator` expects.
+/// Time between two messages when nothing changes, as `diagnostic_aggregator` expects.
 const PERIOD: Duration = Duration::from_secs(1);
-/// Least time between two messages when much changes.
+/// Minimum time between two messages when many values change.
 const LEAST: Duration = Duration::from_millis(50);
 
-/// How a part is.
+/// State of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs)]
 pub enum Health {
@@ -32,7 +32,7 @@ struct Part {
     values: Vec<(String, String)>,
 }
 
-/// How the parts of a node are; clones share it.
+/// States of the parts of a node; clones share them.
 #[derive(Clone)]
 pub struct Diagnostics {
     shared: Arc<Shared>,
@@ -40,7 +40,7 @@ pub struct Diagnostics {
 
 struct Shared {
     node: String,
-    /// What the parts belong to: the machine, or nothing yet.
+    /// Hardware that the parts belong to: the machine, or empty.
     hardware: Mutex<String>,
     parts: Mutex<BTreeMap<String, Part>>,
     changed: Notify,
@@ -63,7 +63,7 @@ impl Diagnostics {
             loop {
                 let _ = tokio::time::timeout(PERIOD, publishing.shared.changed.notified()).await;
                 let header = Header { stamp: clock.now(), frame_id: String::new() };
-                // The next second brings the next message.
+                // A lost message is replaced one second later.
                 let _ = outlet.publish(DiagnosticArray { header, status: publishing.statuses() });
                 tokio::time::sleep(LEAST).await;
             }
@@ -71,12 +71,12 @@ impl Diagnostics {
         Ok(diagnostics)
     }
 
-    /// Says which machine the parts are of, as REP 107 wants it.
+    /// Sets the machine that the parts belong to, as REP 107 requires.
     pub fn set_hardware(&self, name: &str) {
         name.clone_into(&mut self.shared.hardware.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
-    /// Tells how a part is. A new level or message is published at once, new values with the next message.
+    /// Sets the state of a part. A new level or message is published at once, new values with the next message.
     ///
     /// ```no_run
     /// use excavator_ros::{Health, RosArguments, Supervisor};

@@ -1,32 +1,32 @@
-//! What the environment says about the network.
+//! Network settings from the environment variables.
 
 use std::net::{IpAddr, Ipv4Addr};
 
 use super::security::choose;
 use super::{RosError, Security};
 
-/// How far peers are looked for.
+/// Range of discovery.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DiscoveryRange {
-    /// Other programs on this machine.
+    /// Other processes on this machine.
     Localhost,
-    /// Everybody whom multicast reaches.
+    /// All peers that multicast reaches.
     Subnet,
 }
 
-/// How services are laid over topics.
+/// How services are mapped to topics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mapping {
-    /// As rmw_cyclonedds_cpp does: the request's identity stands before the request.
+    /// As in rmw_cyclonedds_cpp: the identity of the request precedes the request in the payload.
     Cyclone,
-    /// As rmw_fastrtps_cpp and rmw_connextdds do: the identity travels as inline quality of service.
+    /// As in rmw_fastrtps_cpp and rmw_connextdds: the identity is sent as inline QoS.
     Enhanced,
 }
 
-/// Largest sample in fragments that a node takes where nothing else is asked for, bytes: a model has some kB.
+/// Default limit for samples in fragments, bytes. A model has some kB.
 const LARGEST_SAMPLE: u32 = 1 << 20;
 
-/// What the environment says about the network.
+/// Network settings from the environment variables.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Environment {
     /// `ROS_DOMAIN_ID`, 0 to 232.
@@ -35,16 +35,17 @@ pub struct Environment {
     pub range: DiscoveryRange,
     /// From `RMW_IMPLEMENTATION`; the default of ROS 2 is rmw_fastrtps_cpp.
     pub mapping: Mapping,
-    /// `EXCAVATOR_LARGEST_SAMPLE`: samples in fragments that are larger are dropped, bytes. Rounded up to a power of two.
+    /// `EXCAVATOR_LARGEST_SAMPLE`: samples in fragments above this limit are dropped, bytes. Rounded up to a power of
+    /// two.
     pub largest_sample: u32,
     /// `ROS_SECURITY_ENABLE`, `ROS_SECURITY_STRATEGY`, `ROS_SECURITY_KEYSTORE`, `ROS_SECURITY_ENCLAVE_OVERRIDE`.
     pub security: Security,
-    /// What the user should hear of it.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
 impl Environment {
-    /// Reads the environment of this process; `enclave` is that of the command line.
+    /// Reads the environment of this process. `enclave` is the one from the command line.
     ///
     /// # Errors
     /// [`RosError::Environment`], [`RosError::Security`].
@@ -52,7 +53,7 @@ impl Environment {
         Self::from_lookup(|name| std::env::var(name).ok(), enclave)
     }
 
-    /// The same, for a node that takes samples in fragments up to `bytes`, unless the environment says otherwise.
+    /// Accepts samples in fragments up to `bytes`, unless the environment sets the limit.
     #[must_use]
     pub fn with_samples_of(mut self, bytes: u32) -> Self {
         if self.largest_sample == LARGEST_SAMPLE {

@@ -1,8 +1,8 @@
-//! Why a node cannot start or go on.
+//! Errors that prevent a node from starting or running on.
 
 use std::path::PathBuf;
 
-/// Why a node cannot start or go on.
+/// Why a node cannot start or run on.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)]
 #[non_exhaustive]

@@ -1,8 +1,8 @@
-//! Good-bye in words that every peer understands.
+//! Announces that a participant has left, in the form that every peer understands.
 //!
-//! RustDDS tells its peers that a participant goes by the participant's key as content. Fast DDS wants the hash of the key
-//! instead and takes no other word for it, so a node that had ended, or whose link was built anew, stood on its graph
-//! until its lease ran out, a minute later.
+//! When a participant leaves, RustDDS sends the key of the participant as payload. Fast DDS accepts only the hash of
+//! the key. A node that had ended, or whose link was rebuilt, therefore stayed on the graph of Fast DDS until its lease
+//! expired a minute later.
 
 use std::net::{Ipv4Addr, SocketAddr};
 
@@ -11,16 +11,16 @@ use rustdds::{DomainParticipant, GUID, RTPSEntity};
 use super::rtps::{Packet, identity, is_fast_dds, parameter};
 use super::{DiscoveryRange, Environment};
 
-/// Entities that announce participants and hear of them, RTPS 9.3.1.5.
+/// Builtin writer and reader of participant announcements, RTPS 9.3.1.5.
 const ANNOUNCER: [u8; 4] = [0, 1, 0, 0xc2];
 const HEARER: [u8; 4] = [0, 1, 0, 0xc7];
-/// A number that no announcement reaches: one a second for many thousand years.
+/// A sequence number that announcements never reach: at one per second it takes many thousand years.
 const LAST_WORD: i64 = 1 << 40;
 /// Disposed and unregistered.
 const GONE: [u8; 4] = [0, 0, 0, 3];
 
-/// Says good-bye for a participant when it is dropped, which must be after the participant has gone: an announcement that
-/// comes later would call it back.
+/// Announces on drop that a participant has left. Drop it only after the participant: a later announcement would bring
+/// the participant back.
 pub(super) struct Farewell {
     environment: Environment,
     speaker: Option<GUID>,
@@ -32,7 +32,7 @@ impl Farewell {
         Farewell { environment: environment.clone(), speaker: None, addresses: Vec::new() }
     }
 
-    /// Notes who goes, and where the peers are that must hear of it.
+    /// Stores the participant that leaves and the addresses of the peers to notify.
     pub fn prepare(&mut self, participant: &DomainParticipant) {
         self.speaker = Some(participant.guid());
         let readers = participant.discovered_readers();
@@ -47,8 +47,8 @@ impl Farewell {
     }
 }
 
-/// Where the participants of a domain listen for others (RTPS 9.6.2.3): those on this machine where they can be expected, as
-/// many as RustDDS looks for there, and everybody by multicast.
+/// Discovery addresses of the participants of a domain (RTPS 9.6.2.3): the usual ports on this machine, as many as
+/// RustDDS tries there, and the multicast address.
 fn everybody(environment: &Environment) -> Vec<SocketAddr> {
     let first = 7400 + 250 * environment.domain;
     let here = (0..PARTICIPANTS_HERE).map(|number| SocketAddr::from((Ipv4Addr::LOCALHOST, first + 10 + 2 * number)));
@@ -57,7 +57,7 @@ fn everybody(environment: &Environment) -> Vec<SocketAddr> {
 }
 const PARTICIPANTS_HERE: u16 = 12;
 
-/// Where the participant with this address for user traffic listens for others: one port below, RTPS 9.6.2.3.
+/// Discovery address of the participant with this address for user traffic: one port below, RTPS 9.6.2.3.
 fn discovery(mut user: SocketAddr) -> Option<SocketAddr> {
     user.set_port(user.port().checked_sub(1)?);
     Some(user)

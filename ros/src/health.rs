@@ -1,12 +1,16 @@
-//! Finding out that the middleware is broken for good.
+//! Detects permanent faults of the middleware.
 //!
-//! Three faults of the middleware end communication silently, and a fourth lets it grow without bound ([`super::memory`]). A
-//! peer whose lease expired is never matched again, since its announcements look like duplicates; its threads end when a
-//! system call is interrupted (SIGSTOP and SIGCONT, a frozen container, suspend to disk); and a peer of Fast DDS may
-//! miss a part of our endpoints for good ([`super::probe`]). The remedy for all is a new participant. Building one disturbs
-//! every other peer, so it is done only on proof: a dead thread, a lost peer that is back and had something to do with us,
-//! a peer that answers what is new and not what is old. Since our own participant cannot see that a lost peer is back, a
-//! second one without any endpoint, the scout, looks out for it.
+//! Three faults of the middleware end communication silently. A fourth lets its memory grow without bound
+//! ([`super::memory`]).
+//!
+//! A peer whose lease expired is never matched again, since its announcements look like duplicates. The threads of the
+//! middleware end when a system call is interrupted (SIGSTOP and SIGCONT, a frozen container, suspend to disk). A peer
+//! that uses Fast DDS may permanently miss some of our endpoints ([`super::probe`]).
+//!
+//! The remedy for all of them is a new participant. Creating one disturbs every other peer, so it needs proof: a dead
+//! thread, a lost peer that is back and communicated with this node, or a peer that answers new endpoints but not old
+//! ones. Our own participant cannot see that a lost peer is back. A second participant without endpoints, the scout,
+//! detects this.
 
 use std::collections::BTreeSet;
 use std::net::Ipv4Addr;
@@ -23,21 +27,21 @@ use super::probe::{Probe, Probes};
 use super::reminder::ask_again;
 use super::threads::{Died, Threads};
 
-/// Identity of a participant.
+/// GUID prefix of a participant.
 pub(super) type Prefix = [u8; 12];
 
-/// Why the link must be built anew.
+/// Why the link must be rebuilt.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Fault {
     /// Threads of the middleware have ended.
     ThreadsDied(Died),
-    /// A peer that was lost is there again, but out of reach of our participant.
+    /// A lost peer is back, but our participant cannot reach it.
     PeerReturned(Prefix),
-    /// A peer is there that does not know our first endpoints.
+    /// A peer does not know our first endpoints.
     HalfKnown,
-    /// The process needs much more memory than before, MB.
+    /// The memory of the process has grown too much, MB.
     MemoryGrown { before: u64, now: u64 },
-    /// There is a network that our participant does not know, and nobody else to be disturbed.
+    /// Our participant does not use a new network, and there is no other peer that a rebuild would disturb.
     NewNetwork(String),
 }
 
@@ -58,7 +62,7 @@ impl std::fmt::Display for Fault {
     }
 }
 
-/// What the watch has seen since it was asked last.
+/// What the watch has observed since the last call.
 #[derive(Debug, Default)]
 pub(super) struct Observations {
     pub fault: Option<Fault>,
@@ -72,7 +76,8 @@ pub(super) struct Watch {
     participant: DomainParticipant,
     threads: Threads,
     present: BTreeSet<Prefix>,
-    /// Those that have read or written what is ours. The others, such as the daemon of the command line, may come and go.
+    /// Peers that have read or written our topics or services. Others, such as the daemon of the command line, may come
+    /// and go.
     partners: BTreeSet<Prefix>,
     lost: BTreeSet<Prefix>,
     scout: Option<Scout>,
@@ -82,7 +87,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Watches a connection that was built a moment ago, and the memory of this process where that is asked for.
+    /// Watches a newly built connection and, if `watch_memory` is set, the memory of this process.
     pub fn new(
         environment: Environment,
         participant: DomainParticipant,
@@ -104,17 +109,17 @@ impl Watch {
         }
     }
 
-    /// Number of peers that are here.
+    /// Number of peers that are present.
     pub fn peers(&self) -> usize {
         self.present.len()
     }
 
-    /// Number of peers that were lost and may come back.
+    /// Number of lost peers that may come back.
     pub fn lost(&self) -> usize {
         self.lost.len()
     }
 
-    /// Looks. `ours` says whose topics and services are of this node.
+    /// Checks the connection. `ours` has the topics and services of this node.
     pub fn look(&mut self, ours: &Ours) -> Observations {
         let died = self.threads.died().map(Fault::ThreadsDied);
         let grown = self.memory.as_mut().and_then(Memory::grown);
@@ -125,7 +130,7 @@ impl Watch {
         }
         self.note_partners(ours);
         let mut newly_lost = false;
-        // Our own announcements come back to us, and stop coming when the network is down.
+        // Our own announcements are also received here. They stop when the network is down.
         let own = prefix_of(self.participant.guid().prefix.as_ref());
         let listener = self.participant.status_listener();
         while let Some(event) = listener.try_recv_status() {
@@ -184,7 +189,7 @@ impl Watch {
         seen
     }
 
-    /// Peers of which an endpoint was discovered that has to do with ours.
+    /// Adds the peers with a discovered endpoint that matches one of ours.
     fn note_partners(&mut self, ours: &Ours) {
         if self.present.is_subset(&self.partners) {
             return;
@@ -205,7 +210,7 @@ impl Watch {
 
     fn send_scout(&mut self, newly_lost: bool, seen: &mut Observations) {
         let blind = self.scout.as_mut().is_some_and(|scout| scout.threads.died().is_some());
-        // A scout has met the peer that is lost since, and would miss its return just as we do.
+        // A scout that has already met the lost peer would miss its return, just as our participant does.
         if self.lost.is_empty() || newly_lost || blind {
             self.dismiss_scout();
         }
@@ -246,17 +251,17 @@ impl Drop for Watch {
     }
 }
 
-/// What a node has on its graph, by names of DDS.
+/// Topics and services of a node, with their DDS names.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Ours {
     /// Topics.
     topics: BTreeSet<String>,
-    /// How topics of our own services begin, after `rq` or `rr`.
+    /// Prefix of the topics of our own services, after `rq` or `rr`.
     services: String,
 }
 
 impl Ours {
-    /// Of the node with this full name and these topics.
+    /// For the node with this full name and these topics.
     pub fn new(node: &str, topics: impl IntoIterator<Item = String>) -> Self {
         Ours { topics: topics.into_iter().map(|topic| dds_topic(&topic)).collect(), services: format!("{node}/") }
     }
@@ -265,7 +270,7 @@ impl Ours {
         self.topics.contains(topic) || self.is_service(topic)
     }
 
-    /// Every node writes its log and its parameter events where all others do: that has nothing to do with us.
+    /// Every node writes to the shared topics of log and parameter events. This does not make it a partner.
     fn is_written_by(&self, topic: &str) -> bool {
         !matches!(topic, "rt/rosout" | "rt/parameter_events") && self.is_read_by(topic)
     }

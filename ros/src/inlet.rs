@@ -15,21 +15,21 @@ use super::connection::{Closed, Connection, Endpoint, Install, Task};
 use super::dds_names::{dds_topic, dds_type};
 use super::{RosError, TopicQos};
 
-/// What is known about a message beside its content.
+/// Metadata of a received message.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct Received {
-    /// When it came, on the steady clock of this machine.
+    /// Time of reception, on the monotonic clock of this machine.
     pub at: Instant,
-    /// When it was published, ns since the epoch by the publisher's clock, where it says so.
+    /// Time of publication, ns since the epoch by the clock of the publisher, if the publisher sends it.
     pub published: Option<i64>,
-    /// Who published it.
+    /// The publisher.
     pub publisher: Gid,
-    /// Its number among the messages of that publisher.
+    /// Sequence number of the publisher.
     pub sequence: i64,
 }
 
-/// What is done with each message, on the thread of the link: be brief.
+/// Called for each message on the thread of the link; must be brief.
 type Callback<M> = Box<dyn FnMut(M, Received) + Send>;
 
 pub(super) struct Inlet<M> {
@@ -46,7 +46,7 @@ impl<M: Message + Send + 'static> Inlet<M> {
         Inlet { topic, qos, callback, undecodable: Arc::default(), task: Mutex::new(None) }
     }
 
-    /// Messages that could not be decoded, or were of another type, so far.
+    /// Number of messages so far that could not be decoded or had another type.
     pub(super) fn undecodable(&self) -> Arc<AtomicU64> {
         Arc::clone(&self.undecodable)
     }
@@ -81,7 +81,7 @@ impl<M: Message + Send + Sync + 'static> Endpoint for Inlet<M> {
                     }
                     Err(_) => {
                         undecodable.fetch_add(1, Ordering::Relaxed);
-                        // A reader that is broken for good fails at once, again and again.
+                        // A reader with a permanent fault fails at once on every call.
                         tokio::time::sleep(Duration::from_millis(1)).await;
                     }
                 }
@@ -101,7 +101,8 @@ impl<M: Message + Send + Sync + 'static> Endpoint for Inlet<M> {
     }
 }
 
-/// The middleware matches by topic name alone; a writer of another type would be decoded into nonsense.
+/// Types of the writers. The middleware matches by topic name alone, so messages of a writer with another type would be
+/// decoded into wrong values.
 struct WriterTypes {
     participant: DomainParticipant,
     wanted: String,
@@ -119,7 +120,7 @@ impl WriterTypes {
         }
         let writers = self.participant.discovered_writers();
         let found = writers.iter().find(|data| Gid::from(data.publication_topic_data.key) == writer);
-        // A writer that discovery does not know (yet) is of this process, or will be looked up with its next message.
+        // A writer that discovery does not know (yet) is in this process, or is looked up again with its next message.
         let Some(found) = found else { return true };
         let fits = found.publication_topic_data.type_name == self.wanted;
         self.known.insert(writer, fits);

@@ -1,11 +1,12 @@
-//! Replies of services that are too long for one packet of the network.
+//! Service replies that are too long for one packet of the network.
 //!
-//! RustDDS cuts a long sample into fragments, and puts one byte too many in front of the inline parameters of each. The
-//! library sends those with every reply, so that a reply of more than some 1400 bytes reaches nobody, unless the way is over
-//! the loopback interface with its long packets: results of actions, descriptions of parameters. Replies of that length take
-//! another way here, a writer of the same topic without inline parameters. Where the request's identity must be in them
-//! (`Enhanced` mapping), the whole sample goes ahead in one datagram that the network may cut as it likes; the fragments
-//! that follow, the same sample again, keep the writer's numbers in order.
+//! RustDDS splits a long sample into fragments, and puts one byte too many in front of the inline QoS of each fragment.
+//! The library sends inline QoS with every reply. A reply of more than some 1400 bytes (results of actions,
+//! descriptions of parameters) is therefore lost, except over the loopback interface with its large packets.
+//!
+//! Long replies are sent here by a second writer of the same topic, without inline QoS. If the reply must have the
+//! identity of the request (`Enhanced` mapping), the whole sample is first sent in one datagram, which IP may fragment.
+//! The same sample follows in RTPS fragments, which keeps the sequence numbers of the writer consistent.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -23,27 +24,27 @@ use super::rtps::{Packet, entity, parameter, sequence_number};
 use super::services::SERVICE_DEPTH;
 use super::{Mapping, PublishError, TopicQos};
 
-/// Content up to which a reply is left to the library: with all headers it fits into the 1452 bytes that RustDDS allows
-/// for a packet of Ethernet, with 100 to spare.
+/// Longest reply that is left to the library, bytes. With all headers it fits into the 1452 bytes that RustDDS allows
+/// for an Ethernet packet, with 100 to spare.
 const SMALL: usize = 1200;
-/// Where rmw_fastrtps_cpp of older distributions looks for the identity of the request.
+/// Parameter in which rmw_fastrtps_cpp of older distributions expects the identity of the request.
 const OLD_RELATED_SAMPLE_IDENTITY: u16 = 0x800f;
 
-/// The way of long replies of one service.
+/// Sends long replies of one service.
 pub struct LargeReplies {
     participant: DomainParticipant,
     topic: String,
     mapping: Mapping,
     writer: DataWriter<RawBytes, RawAdapter>,
-    /// Never read. A client of rmw_fastrtps_cpp takes a service for ready when its topics have as many readers of requests
-    /// as writers of replies.
+    /// Never read. A client of rmw_fastrtps_cpp considers a service ready when its topics have as many readers of
+    /// requests as writers of replies.
     _partner: SimpleDataReader<RawBytes, RawAdapter>,
-    /// Number of the last sample.
+    /// Sequence number of the last sample.
     last: Mutex<i64>,
 }
 
 impl LargeReplies {
-    /// For the service `name` (full name), whose type in DDS begins with `dds_type`, as in
+    /// For the service `name` (full name). Its type in DDS begins with `dds_type`, as in
     /// `rcl_interfaces::srv::dds_::GetParameters`.
     pub fn open(connection: &Connection, mapping: Mapping, name: &str, dds_type: &str) -> Result<Self, String> {
         let qos = TopicQos::reliable(SERVICE_DEPTH).to_dds();
@@ -59,7 +60,7 @@ impl LargeReplies {
         Ok(LargeReplies { participant, topic: reply_topic(name), mapping, writer, _partner: partner, last })
     }
 
-    /// Sends a reply that is too long for the library; `None` for any other, which is left to it.
+    /// Sends a reply that is too long for the library. Returns `None` for shorter replies, which the library sends.
     pub fn send<A: Serialize>(&self, request: RmwRequestId, answer: &A) -> Option<Result<(), PublishError>> {
         let content = match cdr::encode(answer) {
             Ok(content) => content,
@@ -83,7 +84,7 @@ impl LargeReplies {
         Ok(())
     }
 
-    /// The whole sample in one datagram, with the identity of the request.
+    /// Sends the whole sample in one datagram, with the identity of the request.
     fn send_ahead(&self, request: RmwRequestId, sequence: i64, content: &[u8]) -> Result<(), PublishError> {
         let mut related = request.writer_gid.to_bytes16().to_vec();
         related.extend(sequence_number(request.sequence_number));
@@ -107,9 +108,9 @@ impl LargeReplies {
     }
 }
 
-/// Readers of a topic in DDS that the participant of a client has.
+/// Readers of a DDS topic that belong to the participant of a client.
 pub(super) fn readers_of(client: Gid, topic: &str, participant: &DomainParticipant) -> Vec<DiscoveredReaderData> {
-    // The first twelve bytes name the participant.
+    // The first twelve bytes are the GUID prefix of the participant.
     let owner = &client.to_bytes16()[..12];
     let mut readers = participant.discovered_readers();
     readers.retain(|reader| {
@@ -119,13 +120,13 @@ pub(super) fn readers_of(client: Gid, topic: &str, participant: &DomainParticipa
     readers
 }
 
-/// Topic in DDS of the replies of a service.
+/// DDS topic for the replies of a service.
 pub(super) fn reply_topic(service: &str) -> String {
     format!("rr{service}Reply")
 }
 
-/// As rmw_cyclonedds_cpp wants it: behind the encapsulation, the second half of the client's identity and the number of the
-/// request, high part first.
+/// As rmw_cyclonedds_cpp expects it: the encapsulation is followed by the second half of the client's identity and the
+/// sequence number of the request, high part first.
 fn behind_header(request: RmwRequestId, content: &[u8]) -> Vec<u8> {
     let (encapsulation, body) = content.split_at(4.min(content.len()));
     let mut sample = encapsulation.to_vec();

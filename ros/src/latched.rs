@@ -1,4 +1,4 @@
-//! A publisher whose last message late joiners get, also those who join after the link was built anew.
+//! A publisher whose last message is sent to late joiners, also after the link was rebuilt.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -24,10 +24,10 @@ impl<M: Message + Clone + Send + Sync + 'static> Latched<M> {
         Latched { outlet, last: Arc::new(Mutex::new(None)) }
     }
 
-    /// Publishes; the message stays for those who come later.
+    /// Publishes. The message is kept for late joiners.
     ///
     /// # Errors
-    /// [`PublishError`]; while the link is down the message is published as soon as it is up.
+    /// [`PublishError`]. A message that is published while the link is down is sent as soon as it is up.
     pub fn publish(&self, message: M) -> Result<(), PublishError> {
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(message.clone());
         self.outlet.publish(message)
@@ -40,7 +40,7 @@ impl<M: Message + Clone + Send + Sync + 'static> Endpoint for Latched<M> {
         Ok(Box::new(move |runtime| {
             install(runtime);
             if let Some(last) = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone() {
-                // A new writer has an empty history: it cannot be full.
+                // A new writer has an empty history, so it cannot be full.
                 let _ = self.outlet.publish(last);
             }
         }))

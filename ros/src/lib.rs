@@ -1,9 +1,9 @@
-//! Everything that has to do with ROS 2, in one place: arguments, parameters, connection, clock, diagnostics, log.
+//! The ROS 2 layer: arguments, parameters, connection, clock, diagnostics, log.
 //!
 //! A process has one [`Link`]: one participant, one node, one tokio worker. A node declares its parameters, opens its
 //! endpoints on the link and runs its own loop on a plain thread; the main thread of the process supervises the link
-//! ([`Supervisor`]) and waits for SIGINT or SIGTERM. Endpoints outlive the connection underneath them: when the
-//! middleware has lost a peer for good or one of its threads has died, the link is built anew and every endpoint with it.
+//! ([`Supervisor`]) and waits for SIGINT or SIGTERM. Endpoints outlive the connection below them: if the middleware has
+//! permanently lost a peer or one of its threads has died, the link is rebuilt with every endpoint.
 //!
 //! ```no_run
 //! use excavator_msgs::common::Text;
@@ -37,7 +37,7 @@
 //! | a call can deadlock | `patience.rs`: what may hang runs on a thread of its own |
 //! | each fragment of a sample with inline QoS has one byte too many | `large_replies.rs`: long replies go another way |
 //! | Fast DDS does not see that a participant has left | `farewell.rs`: the message is sent once more in the form of Fast DDS |
-//! | announcements carry no timestamp, and Fast DDS may drop those that arrive out of order | `probe.rs`: two probes prove it, the link is built anew |
+//! | announcements carry no timestamp; Fast DDS may drop those out of order | `probe.rs`: two probes prove it, the link is rebuilt |
 //! | Fast DDS ignores the first request for missing samples | `reminder.rs`: the request is sent once more |
 //! | malformed packets end threads or exhaust memory | `guard`: a filter in the kernel, in front of the sockets |
 

@@ -1,7 +1,8 @@
-//! A managed node: states and transitions of `lifecycle_msgs`, as `ros2 lifecycle` and launch files drive them.
+//! A managed node: states and transitions of `lifecycle_msgs`, as used by `ros2 lifecycle` and launch files.
 //!
-//! Every node does its work at once unless its parameter `managed` is set: then it waits, unconfigured, for somebody to configure and
-//! activate it. Only a managed node offers the services; whoever may call them may stop a machine.
+//! Every node starts to work at once unless its parameter `managed` is set. A managed node waits, unconfigured, until
+//! it is configured and activated. Only a managed node offers the services, since every client that may call them may
+//! stop a machine.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -107,7 +108,7 @@ impl Primary {
     }
 }
 
-/// Number and label of each transition, from where to where.
+/// Number, label, start and goal of each transition.
 const TRANSITIONS: [(u8, &str, Primary, Primary); 7] = [
     (1, "configure", Primary::Unconfigured, Primary::Inactive),
     (2, "cleanup", Primary::Inactive, Primary::Unconfigured),
@@ -118,20 +119,21 @@ const TRANSITIONS: [(u8, &str, Primary, Primary); 7] = [
     (7, "shutdown", Primary::Active, Primary::Finalized),
 ];
 
-/// What a node may do; clones share it.
+/// State of a node, which decides what it may do; clones share it.
 #[derive(Clone)]
 pub struct Lifecycle {
     state: Arc<Mutex<Primary>>,
 }
 
 impl Lifecycle {
-    /// The parameter that says whether somebody manages a node.
+    /// The parameter that makes a node a managed one.
     pub fn parameter() -> Parameter {
         let meaning = "wait to be configured and activated, as a lifecycle node; nothing is published and nobody followed until then";
         Parameter::new("managed", Value::Boolean(false), meaning).read_only()
     }
 
-    /// Of a node that works from the start, or, `managed`, when it is told to. A managed node that is shut down sets `stop`.
+    /// Starts a node that is active from the start or, if `managed`, waits for its transitions. A managed node that is
+    /// shut down sets `stop`.
     ///
     /// # Errors
     /// [`RosError::Endpoint`].
@@ -146,7 +148,7 @@ impl Lifecycle {
         Ok(lifecycle)
     }
 
-    /// Whether the node publishes and follows commands.
+    /// Whether the node publishes and executes commands.
     pub fn is_active(&self) -> bool {
         *self.lock() == Primary::Active
     }
@@ -176,7 +178,7 @@ impl Desk {
     fn change(&self, request: ChangeState) -> Changed {
         let Transition { id, label } = request.transition;
         let mut state = self.lifecycle.lock();
-        // As rcl_lifecycle: by the number, unless that is zero and there is a label.
+        // As in rcl_lifecycle: selected by number, or by label if the number is zero.
         let wanted = |(number, name, start, _): &&(u8, &str, Primary, Primary)| {
             *start == *state && (*number == id || (id == 0 && *name == label))
         };
@@ -193,7 +195,7 @@ impl Desk {
             start_state: start.message(),
             goal_state: goal.message(),
         };
-        // The state can be asked for.
+        // A lost event does no harm: clients can request the state.
         let _ = self.events.publish(event);
         if goal == Primary::Finalized {
             self.stop.store(true, Ordering::Relaxed);
