@@ -52,12 +52,12 @@ impl Link {
         &self.shared.environment
     }
 
-    /// What tasks of the link run on.
+    /// The runtime for tasks of the link.
     pub fn runtime(&self) -> &Handle {
         &self.shared.runtime
     }
 
-    /// A publisher.
+    /// Creates a publisher.
     ///
     /// # Errors
     /// [`RosError::Name`], [`RosError::Endpoint`].
@@ -71,7 +71,7 @@ impl Link {
         Ok(outlet)
     }
 
-    /// A publisher whose last message late joiners get.
+    /// Creates a publisher whose last message is sent to late joiners.
     ///
     /// # Errors
     /// [`RosError::Name`], [`RosError::Endpoint`].
@@ -84,8 +84,8 @@ impl Link {
         Ok(latched)
     }
 
-    /// A subscription; `callback` runs on the thread of the link and must be brief. Returns the counter of messages
-    /// that could not be decoded.
+    /// Creates a subscription. `callback` runs on the thread of the link and must be brief. Returns the counter of
+    /// messages that could not be decoded.
     ///
     /// # Errors
     /// [`RosError::Name`], [`RosError::Endpoint`].
@@ -101,11 +101,11 @@ impl Link {
         Ok(undecodable)
     }
 
-    /// Opens an endpoint, now and on every connection to come. Where the middleware breaks meanwhile, the endpoint waits for
+    /// Opens an endpoint, now and on every later connection. If the middleware fails meanwhile, the endpoint waits for
     /// the next connection.
     ///
     /// # Errors
-    /// [`RosError::Endpoint`]: it cannot be opened, and not later either.
+    /// [`RosError::Endpoint`]: the endpoint cannot be opened, and later connections do not open it either.
     pub fn add(&self, endpoint: Arc<dyn Endpoint>) -> Result<(), RosError> {
         let mut state = self.lock();
         if let Some(connection) = state.connection.take() {
@@ -126,7 +126,7 @@ impl Link {
         Ok(())
     }
 
-    /// Closes all endpoints for good, with what their callbacks hold. Must not be called from the runtime.
+    /// Closes all endpoints permanently and drops their callbacks. Must not be called from the runtime.
     pub fn forget_endpoints(&self) {
         let (endpoints, closed) = {
             let mut state = self.lock();
@@ -143,19 +143,21 @@ impl Link {
         self.lock().connection.as_ref().map(Connection::participant)
     }
 
-    /// The participant of the connection, its threads and, once, its probe; `None` while there is none.
+    /// The participant of the connection, its threads and its probe (returned only once); `None` while there is no
+    /// connection.
     pub(super) fn alive(&self) -> Option<(DomainParticipant, Threads, Option<Probe>)> {
         let mut state = self.lock();
         let connection = state.connection.as_mut()?;
         Some((connection.participant(), connection.threads(), connection.take_probe()))
     }
 
-    /// The filter in front of the middleware's sockets, or why there is none; `None` while there is no connection.
+    /// The filter in front of the sockets of the middleware, or the reason why there is none; `None` while there is no
+    /// connection.
     pub(super) fn guard(&self) -> Option<Result<Guard, GuardError>> {
         self.lock().connection.as_ref().map(Connection::guard)
     }
 
-    /// Whether somebody on the graph reads a topic.
+    /// Whether a topic has readers on the graph.
     pub fn has_readers(&self, name: &str) -> bool {
         let (Some(participant), Ok(name)) = (self.participant(), self.shared.identity.resolve(name)) else {
             return false;
@@ -172,10 +174,10 @@ impl Link {
     /// Leaves the graph and joins it again with all endpoints. Must not be called from the runtime.
     ///
     /// # Errors
-    /// [`RosError`]; the link is down then, and this can be tried again.
+    /// [`RosError`]. The link is then down, and the call can be repeated.
     pub(super) fn rebuild(&self) -> Result<(), RosError> {
         self.leave();
-        // Whoever wants to add an endpoint waits until the new connection is there.
+        // Calls that add an endpoint wait for the lock until the new connection exists.
         let mut state = self.lock();
         let (connection, installs) = build(&self.shared.identity, &self.shared.environment, state.endpoints.clone())?;
         installs.into_iter().for_each(|install| install(&self.shared.runtime));
@@ -196,7 +198,7 @@ impl Link {
 
     fn end(&self, tasks: Vec<Task>) {
         tasks.iter().for_each(Task::abort);
-        // A task holds its reader until it has seen the abort.
+        // A task keeps its reader until it has processed the abort.
         self.shared.runtime.block_on(async {
             let all = futures::future::join_all(tasks);
             let _ = tokio::time::timeout(FAREWELL, all).await;
@@ -208,14 +210,14 @@ impl Link {
     }
 }
 
-/// Gives up what belongs to the connection.
+/// Releases everything that belongs to the connection.
 fn close(endpoints: &[Arc<dyn Endpoint>]) -> Closed {
     let mut closed = Closed::default();
     closed.extend(endpoints.iter().map(|endpoint| endpoint.close()));
     closed
 }
 
-/// A new connection, with endpoints that wait to be installed.
+/// Creates a connection with endpoints that are not installed yet.
 fn build(
     identity: &NodeIdentity,
     environment: &Environment,

@@ -1,4 +1,4 @@
-//! The log of a process on disk, where and as rcl keeps it.
+//! The log file of a process, with the folder and name that rcl uses.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -18,7 +18,7 @@ impl LogFile {
     /// Opens `PREFIX_PID_MILLISECONDS.log` in the log folder.
     ///
     /// # Errors
-    /// In words, for people.
+    /// A message for the user.
     pub fn open(prefix: &str) -> Result<Self, String> {
         let folder = folder(|name| std::env::var_os(name)).ok_or("no home folder")?;
         let path = folder.join(format!("{prefix}_{}_{}.log", std::process::id(), system_nanoseconds() / 1_000_000));

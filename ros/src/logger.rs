@@ -8,7 +8,7 @@ use super::clock::system_nanoseconds;
 use super::log_file::LogFile;
 use super::{Level, Link, Outlet, RosArguments, RosError, TopicQos};
 
-/// Log lines that late joiners of `/rosout` get, and for how long, s: as rcl has it.
+/// Number of log lines for late joiners of `/rosout`, and their lifespan, s: as in rcl.
 const ROSOUT: TopicQos = TopicQos { depth: 1000, lifespan: Some(10), ..TopicQos::latched() };
 
 /// The log of a node; clones share it.
@@ -40,17 +40,17 @@ impl Logger {
         Ok(logger)
     }
 
-    /// Says something that people may want to follow.
+    /// Logs information that users may want to follow.
     pub fn info(&self, message: impl Into<String>) {
         self.say(Level::Info, message.into());
     }
 
-    /// Says something that should not be so.
+    /// Logs an unexpected condition.
     pub fn warn(&self, message: impl Into<String>) {
         self.say(Level::Warn, message.into());
     }
 
-    /// Says that something does not work.
+    /// Logs a failure.
     pub fn error(&self, message: impl Into<String>) {
         self.say(Level::Error, message.into());
     }
@@ -78,7 +78,7 @@ impl Logger {
                 function: String::new(),
                 line: 0,
             };
-            // The console has it; a log must not fail over its own trouble.
+            // The line is already on the console. The log must not fail because of its own errors.
             let _ = rosout.publish(log);
         }
     }

@@ -1,31 +1,31 @@
-//! Memory of this process: a second line of defence behind the packet filter.
+//! Memory of this process: a second protection behind the packet filter.
 //!
-//! Numbers in packets are bounded by the filter, but the number of packets is not: a flood of small ones makes the
-//! middleware grow, and what it has noted of peers that never were it keeps. A node of ours needs as much memory after an
-//! hour as after a second; one that has grown much gets a new participant, which knows nothing of them.
+//! The filter bounds the numbers in packets, but not the number of packets. A flood of small packets makes the
+//! middleware grow, and it never frees its records of peers that do not exist. A node needs as much memory after an
+//! hour as after a second. A node that has grown too much gets a new participant, which starts without these records.
 
 use std::time::{Duration, Instant};
 
-/// Growth at which the link is built anew, MB: a node has 20 to 60.
+/// Growth at which the link is rebuilt, MB. A node has 20 to 60.
 const MOST_GROWTH: u64 = 96;
 /// Time after which a node has opened its endpoints and met its peers.
 const SETTLED: Duration = Duration::from_secs(3);
 
-/// Watches how this process grows.
+/// Watches the memory of this process.
 pub(super) struct Memory {
     since: Instant,
-    /// What the process had at the first look, MB, and what it is measured against.
+    /// Memory at the first look and reference for later looks, MB.
     first: Option<u64>,
     before: u64,
 }
 
 impl Memory {
-    /// Starts with what the process has when it has settled.
+    /// The reference is the memory once the process has settled.
     pub fn new() -> Self {
         Memory { since: Instant::now(), first: None, before: 0 }
     }
 
-    /// Memory before and now, MB, where it has grown too much.
+    /// Memory before and now, MB, if it has grown too much.
     pub fn grown(&mut self) -> Option<(u64, u64)> {
         self.judge(resident()?, self.since.elapsed())
     }
@@ -33,7 +33,7 @@ impl Memory {
     fn judge(&mut self, now: u64, age: Duration) -> Option<(u64, u64)> {
         let first = *self.first.get_or_insert(now);
         if age < SETTLED {
-            // A flood from the first moment on must not become the measure.
+            // A flood from the first moment on must not raise the reference.
             self.before = self.before.max(now.min(first + MOST_GROWTH / 2));
         }
         let before = self.before.max(first);

@@ -1,10 +1,10 @@
-//! What the middleware complains of, counted: it logs and goes on, and nobody reads its log.
+//! Counts warnings and errors of the middleware. It logs them and goes on, and nobody reads its log.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use log::{Level, LevelFilter, Log, Metadata, Record};
 
-/// Where packets are taken apart: its warnings are of packets that make no sense.
+/// Log target of the packet parser. Its warnings are about malformed packets.
 const RECEIVER: &str = "rustdds::rtps::message_receiver";
 
 static COUNTER: Counter = Counter { malformed: AtomicU64::new(0), others: AtomicU64::new(0) };
@@ -19,7 +19,7 @@ impl Log for Counter {
         metadata.level() <= Level::Warn
     }
 
-    /// Counts and forgets: whoever floods us with nonsense must not make us write it all down.
+    /// Counts the record and drops it: a flood of malformed packets must not fill the log.
     fn log(&self, record: &Record<'_>) {
         if self.enabled(record.metadata()) {
             let counter = if record.target() == RECEIVER { &self.malformed } else { &self.others };
@@ -30,14 +30,14 @@ impl Log for Counter {
     fn flush(&self) {}
 }
 
-/// Counts from now on; a program that has a logger of its own keeps it, and nothing is counted.
+/// Counts from now on. If the program already has a logger, that logger stays and nothing is counted.
 pub(super) fn count_complaints() {
     if log::set_logger(&COUNTER).is_ok() {
         log::set_max_level(LevelFilter::Warn);
     }
 }
 
-/// Packets that made no sense, and other warnings and errors of the middleware, since the start.
+/// Number of malformed packets, and of other warnings and errors of the middleware, since the start.
 pub(super) fn complaints() -> (u64, u64) {
     (COUNTER.malformed.load(Ordering::Relaxed), COUNTER.others.load(Ordering::Relaxed))
 }

@@ -2,14 +2,14 @@
 
 use super::RosError;
 
-/// One `from:=to`, for every node or for one.
+/// One rule `from:=to`, for all nodes or for one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Remap {
-    /// Node that the rule is for, `None` for all.
+    /// Node that the rule applies to, `None` for all.
     pub node: Option<String>,
     /// Name as the program uses it.
     pub from: String,
-    /// Name that it gets.
+    /// Name that replaces it.
     pub to: String,
 }
 
@@ -34,14 +34,14 @@ pub struct NodeIdentity {
 }
 
 impl NodeIdentity {
-    /// The node called `default_name` by the program, after the rules `__node` and `__ns`.
+    /// The node that the program calls `default_name`, after the rules `__node` and `__ns`.
     ///
     /// # Errors
     /// [`RosError::Name`] for a name that ROS does not allow.
     pub fn new(default_name: &str, remaps: &[Remap]) -> Result<Self, RosError> {
         let for_us = |rule: &&Remap| rule.node.as_deref().is_none_or(|node| node == default_name);
         let last = |special: &[&str]| remaps.iter().filter(for_us).rfind(|rule| special.contains(&rule.from.as_str()));
-        // rcl takes both words.
+        // rcl accepts both names.
         let name = last(&["__node", "__name"]).map_or(default_name, |rule| rule.to.as_str()).to_string();
         check_token(&name, &name)?;
         let namespace = last(&["__ns"]).map_or("/", |rule| rule.to.as_str());

@@ -5,7 +5,7 @@ use std::net::Ipv4Addr;
 use nix::ifaddrs::getifaddrs;
 use nix::net::if_::InterfaceFlags;
 
-/// Names and addresses of the networks that are up, and whether they take multicast.
+/// Names and addresses of the networks that are up, and whether they support multicast.
 pub(super) fn networks() -> Vec<(String, Ipv4Addr, bool)> {
     let Ok(interfaces) = getifaddrs() else { return Vec::new() };
     interfaces

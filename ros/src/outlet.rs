@@ -10,7 +10,7 @@ use super::connection::{Closed, Connection, Endpoint, Install};
 use super::dds_names::{dds_topic, dds_type};
 use super::{RosError, TopicQos};
 
-/// Why a message was not taken.
+/// Why a message was not published.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PublishError {
@@ -51,10 +51,10 @@ impl<M: Message + Send + Sync + 'static> Outlet<M> {
         Outlet { shared: Arc::new(Shared { topic, qos, publisher, published: counts.0, refused: counts.1 }) }
     }
 
-    /// Publishes, never waits.
+    /// Publishes without blocking.
     ///
     /// # Errors
-    /// [`PublishError`]; the message is gone then, and counted by [`Outlet::refused`].
+    /// [`PublishError`]. The message is then lost, and [`Outlet::refused`] counts it.
     pub fn publish(&self, message: M) -> Result<(), PublishError> {
         let slot = self.shared.publisher.lock().unwrap_or_else(PoisonError::into_inner);
         let result = match slot.as_ref() {
@@ -69,12 +69,12 @@ impl<M: Message + Send + Sync + 'static> Outlet<M> {
         result
     }
 
-    /// Messages taken so far.
+    /// Number of messages published so far.
     pub fn published(&self) -> u64 {
         self.shared.published.load(Ordering::Relaxed)
     }
 
-    /// Messages refused so far, for whatever reason.
+    /// Number of messages refused so far, for any reason.
     pub fn refused(&self) -> u64 {
         self.shared.refused.load(Ordering::Relaxed)
     }

@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 use nix::sys::time::TimeSpec;
 use nix::time::{ClockId, ClockNanosleepFlags, clock_gettime, clock_nanosleep};
 
-/// A delay after which the schedule starts anew instead of being caught up with, s: a burst of late samples helps nobody.
+/// Delay after which the schedule restarts instead of catching up, s: a burst of late samples is of no use.
 const GIVE_UP: Duration = Duration::from_millis(50);
 
-/// Absolute sleeps on the steady clock: lateness of one round does not shift the next.
+/// Absolute sleeps on the monotonic clock: a late round does not shift the next one.
 ///
 /// ```
 /// use excavator_ros::Pace;
@@ -35,7 +35,7 @@ impl Pace {
         Pace { period, next: steady_now(), late: 0, missed: 0 }
     }
 
-    /// Sleeps until the next round. Returns whether it comes in time; if not, the schedule starts anew.
+    /// Sleeps until the next round. Returns `false` if the round is too late; the schedule then restarts.
     pub fn wait(&mut self) -> bool {
         self.next += self.period;
         let now = steady_now();
@@ -50,12 +50,12 @@ impl Pace {
         true
     }
 
-    /// Rounds that were left out since this was asked last.
+    /// Number of rounds skipped since the last call.
     pub fn take_missed(&mut self) -> u64 {
         std::mem::take(&mut self.missed)
     }
 
-    /// How often the schedule had to start anew.
+    /// How often the schedule had to restart.
     pub fn late(&self) -> u64 {
         self.late
     }
@@ -72,7 +72,7 @@ fn sleep_until(time: Duration) {
             Err(nix::Error::EINTR) => {}
             Ok(_) => return,
             Err(_) => {
-                // No absolute sleep on this system: sleep what is left.
+                // No absolute sleep on this system: sleep for the remaining time.
                 let start = Instant::now();
                 std::thread::sleep(time.saturating_sub(steady_now()));
                 if start.elapsed() == Duration::ZERO {

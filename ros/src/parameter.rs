@@ -1,6 +1,6 @@
-//! One parameter: its value, what it means, and what it may be.
+//! One parameter: value, description, type and range.
 
-/// Value of a parameter, in the types that ROS 2 has for them.
+/// Value of a parameter, in one of the types of ROS 2.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
 pub enum Value {
@@ -29,7 +29,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Name as `ros2 param describe` has it.
+    /// Name as `ros2 param describe` prints it.
     pub fn name(self) -> &'static str {
         match self {
             Kind::Boolean => "boolean",
@@ -83,8 +83,8 @@ impl Value {
         if let Value::String(value) = self { Some(value) } else { None }
     }
 
-    /// The value as one of `kind` where nothing is lost: whole numbers for doubles, empty lists for any list, and text
-    /// for what YAML took for a number. ROS itself refuses `-p rate:=500` for a double; nobody is served by that.
+    /// Converts the value to `kind` if nothing is lost: integers to doubles, empty lists to any list, and numbers from
+    /// YAML to text. ROS itself refuses `-p rate:=500` for a double, which helps nobody.
     pub fn fitted_to(self, kind: Kind) -> Option<Value> {
         if self.kind() == kind {
             return Some(self);
@@ -106,7 +106,7 @@ impl Value {
     }
 }
 
-/// What a numeric parameter may be, both ends included.
+/// Range of a numeric parameter, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Least value.
@@ -120,13 +120,13 @@ pub struct Range {
 pub struct Parameter {
     /// Name.
     pub name: &'static str,
-    /// What it does, with its unit.
+    /// What the parameter does, with its unit.
     pub description: &'static str,
-    /// What a number may be; of every element, for arrays.
+    /// Range of a number; for arrays, of every element.
     pub range: Option<Range>,
-    /// Whether the value is fixed once the node runs.
+    /// Whether the value is fixed while the node runs.
     pub read_only: bool,
-    /// Value now.
+    /// Current value.
     pub value: Value,
 }
 
@@ -142,13 +142,13 @@ impl Parameter {
         Parameter { range: Some(Range { from, to }), ..self }
     }
 
-    /// The same, fixed once the node runs.
+    /// The same, fixed while the node runs.
     #[must_use]
     pub fn read_only(self) -> Self {
         Parameter { read_only: true, ..self }
     }
 
-    /// The value as this parameter takes it, or why it does not.
+    /// Converts and checks a value for this parameter, or returns the reason why it does not fit.
     pub fn checked(&self, value: Value) -> Result<Value, String> {
         let found = value.kind();
         let value = value

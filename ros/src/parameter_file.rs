@@ -8,7 +8,7 @@ use rosbag2::{ReadLimits, read_regular_text};
 use super::value_text::from_yaml;
 use super::{NodeIdentity, RosError, Value};
 
-/// The parameters that the file at `path` has for a node, in the order of the file.
+/// The parameters for a node in the file at `path`, in the order of the file.
 ///
 /// # Errors
 /// [`RosError::ParameterFile`].
@@ -64,7 +64,7 @@ fn flatten(yaml: &Yaml, prefix: &str, found: &mut Vec<(String, Value)>) -> Resul
     }
 }
 
-/// Whether `pattern` (`/**`, `/*`, `/ns/**/name`) stands for the node; `*` is one part, `**` any number of parts.
+/// Whether `pattern` (`/**`, `/*`, `/ns/**/name`) matches the node; `*` is one part, `**` any number of parts.
 fn matches(pattern: &str, full_name: &str) -> bool {
     fn tokens(text: &str) -> Vec<&str> {
         text.split('/').filter(|token| !token.is_empty()).collect()

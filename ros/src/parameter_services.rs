@@ -1,6 +1,6 @@
 //! The six parameter services of a node, and `/parameter_events`.
 //!
-//! The library has them too, but bound to the service mapping of Fast DDS, without descriptions and without ranges.
+//! The library has them too, but bound to the service mapping of Fast DDS and without descriptions and ranges.
 
 use excavator_msgs::Time;
 use ros2_client::parameters::raw;
@@ -28,7 +28,7 @@ impl excavator_msgs::Message for ParameterEvent {
     const TYPE_NAME: &'static str = "rcl_interfaces/msg/ParameterEvent";
 }
 
-/// Offers the parameters of the link's node to other nodes.
+/// Offers the parameters of the node to other nodes.
 ///
 /// # Errors
 /// [`RosError::Endpoint`].
@@ -132,12 +132,12 @@ impl Desk {
             changed_parameters,
             deleted_parameters: Vec::new(),
         };
-        // Whoever wants to be sure asks the service.
+        // Events may be lost. Clients that need the exact value call the service.
         let _ = self.events.publish(event);
     }
 }
 
-/// Whether a list request asks for `name`: below one of the prefixes, at most `depth` dots deep (0 = any).
+/// Whether a list request includes `name`: below one of the prefixes, at most `depth` levels deep (0 = any).
 fn listed(name: &str, prefixes: &[String], depth: u64) -> bool {
     let shallow = |rest: &str| depth == 0 || (rest.matches('.').count() as u64) < depth;
     if prefixes.is_empty() {

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::{Parameter, RosError, Value};
 
-/// Asked with a parameter and its new value before the value is taken; refuses with a reason. It only looks: nodes read
-/// their parameters where they use them.
+/// Checks a new value of a parameter before it is set, and returns the reason if it refuses it. It has no side effects:
+/// nodes read parameters where they use them.
 pub type OnSet = Box<dyn Fn(&str, &Value) -> Result<(), String> + Send>;
 
 /// All parameters of a node; clones share them.
@@ -21,8 +21,8 @@ struct Shared {
 }
 
 impl Parameters {
-    /// Declares `parameters` with the `overrides` of command line and files. Overrides of parameters that do not exist
-    /// come back as warnings, with the nearest name, since a mistyped name must not pass in silence.
+    /// Declares `parameters` with the `overrides` of command line and files. Overrides of unknown parameters are
+    /// returned as warnings with the nearest name, so that a mistyped name does not go unnoticed.
     ///
     /// ```
     /// use excavator_ros::{Parameter, Parameters, Value};
@@ -55,7 +55,7 @@ impl Parameters {
         Ok((Parameters { shared: Arc::new(Mutex::new(Shared { parameters: all, on_set: None })) }, warnings))
     }
 
-    /// What is asked before a parameter changes while the node runs.
+    /// Sets the check that runs before a parameter changes while the node runs.
     pub fn on_set(&self, check: OnSet) {
         self.lock().on_set = Some(check);
     }
@@ -63,7 +63,7 @@ impl Parameters {
     /// Sets several parameters, or none of them.
     ///
     /// # Errors
-    /// Why the first that cannot be set cannot, for people.
+    /// The reason why the first refused parameter cannot be set, as a message for the user.
     pub fn set_all(&self, values: Vec<(String, Value)>) -> Result<Vec<(String, Value)>, String> {
         let mut shared = self.lock();
         let mut checked = Vec::new();
@@ -89,7 +89,7 @@ impl Parameters {
         self.lock().parameters.values().cloned().collect()
     }
 
-    /// Value of a numeric parameter; `NaN` for one that does not exist, which no range lets pass.
+    /// Value of a numeric parameter; `NaN` for one that does not exist, which every range rejects.
     pub fn double(&self, name: &str) -> f64 {
         self.get(name).and_then(|parameter| parameter.value.as_double()).unwrap_or(f64::NAN)
     }
@@ -126,7 +126,7 @@ impl Parameters {
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Shared> {
-        // A panic in a callback leaves whole values behind: the data is usable.
+        // A panic in a callback leaves only complete values behind, so the data is usable.
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

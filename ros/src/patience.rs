@@ -1,32 +1,34 @@
-//! Calls into the middleware that may never return.
+//! Runs calls into the middleware that may never return.
 //!
-//! RustDDS waits for itself where its threads end at the wrong moment: a writer that cannot be registered any more is
-//! dropped by the very call that holds the lock which the drop asks for (so still in 0.15.1, `create_datawriter`). Nobody may wait for that for ever, so such calls
-//! run on threads of their own, which are left behind with what they hold.
+//! RustDDS can deadlock with itself when its threads end at the wrong moment. If a writer can no longer be registered,
+//! it is dropped by the call that already holds the lock which the drop needs (still so in 0.15.1,
+//! `create_datawriter`). No caller may wait for that forever. Such calls run on threads of their own, which are
+//! abandoned with everything they hold.
 
 use std::sync::mpsc::channel;
 use std::thread::Builder;
 use std::time::Duration;
 
-/// Time to join the graph and to open all endpoints: twenty times what it takes on a busy machine.
+/// Time to join the graph and open all endpoints: twenty times what it takes on a busy machine.
 pub(super) const BUILDING: Duration = Duration::from_secs(4);
 
-/// How long something old may take to go before it is left to itself.
+/// Time that dropping an old value may take before its thread is abandoned.
 pub(super) const FAREWELL: Duration = Duration::from_secs(2);
 
-/// What `work` returns, or `None` where it takes longer than `limit`; what it returns later is dropped where it runs.
+/// Returns the result of `work`, or `None` if it takes longer than `limit`. A later result is dropped on its own
+/// thread.
 pub(super) fn within<T: Send + 'static>(limit: Duration, work: impl FnOnce() -> T + Send + 'static) -> Option<T> {
     let (done, wait) = channel();
     let worker = move || {
-        // Nobody listens any more when it was too late.
+        // After the limit, nobody receives the result.
         let _ = done.send(work());
     };
-    // A system without a thread to spare is as good as one that hangs.
+    // If no thread can be started, the call is treated as one that hangs.
     Builder::new().name("patience".into()).spawn(worker).ok()?;
     wait.recv_timeout(limit).ok()
 }
 
-/// Drops something, and waits for that only so long.
+/// Drops a value, and waits only for a limited time.
 pub(super) fn let_go(thing: impl Send + 'static) {
     let _ = within(FAREWELL, move || drop(thing));
 }

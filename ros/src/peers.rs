@@ -1,6 +1,6 @@
-//! Who is behind a DDS writer: the name of its node and its addresses.
+//! Identifies the node behind a DDS writer: its name and its addresses.
 //!
-//! Nodes announce which writers are theirs on `ros_discovery_info`. Without DDS Security anybody can announce anything there.
+//! Nodes announce their writers on `ros_discovery_info`. Without DDS Security, anybody can announce anything there.
 
 use std::collections::BTreeMap;
 use std::net::{IpAddr, SocketAddr};
@@ -33,9 +33,9 @@ struct NodeEntities {
     writers: Vec<[u8; 16]>,
 }
 
-/// Participants whose nodes are remembered: more than a network of machines has, so that nobody fills the memory.
+/// Largest number of participants whose nodes are stored. A network of machines has fewer; the limit bounds the memory.
 const MOST_PARTICIPANTS: usize = 512;
-/// Largest announcement that is read, bytes: a participant with a thousand readers and writers.
+/// Largest announcement that is decoded, bytes: a participant with a thousand readers and writers.
 const LARGEST_ANNOUNCEMENT: usize = 64 * 1024;
 
 type NodesByWriter = BTreeMap<[u8; 16], String>;
@@ -48,7 +48,7 @@ pub struct Peers {
 }
 
 impl Peers {
-    /// Listens to what nodes announce from now on.
+    /// Subscribes to the announcements of nodes.
     ///
     /// # Errors
     /// [`RosError::Endpoint`].
@@ -65,20 +65,20 @@ impl Peers {
         Ok(peers)
     }
 
-    /// Full name of the node that a writer belongs to, where it has announced itself.
+    /// Full name of the node that owns a writer, if the node has announced it.
     pub fn node_of(&self, writer: &[u8; 16]) -> Option<String> {
         let nodes = self.nodes.lock().unwrap_or_else(PoisonError::into_inner);
         nodes.values().find_map(|writers| writers.get(writer).cloned())
     }
 
-    /// Addresses at which the participant of a writer takes packets.
+    /// Addresses at which the participant of a writer receives packets.
     pub fn addresses_of(&self, writer: &[u8; 16]) -> Vec<IpAddr> {
         let found = self.writers().into_iter().find(|data| identity(data) == *writer);
         let locators = found.map(|data| data.writer_proxy.unicast_locator_list).unwrap_or_default();
         locators.into_iter().map(|locator| SocketAddr::from(locator).ip()).collect()
     }
 
-    /// Whether a writer is on the graph no more.
+    /// Whether a writer has left the graph.
     pub fn has_left(&self, writer: &[u8; 16]) -> bool {
         !self.writers().iter().any(|data| identity(data) == *writer)
     }

@@ -1,6 +1,6 @@
-//! What most nodes need: `use excavator_ros::prelude::*;`.
+//! Imports that most nodes need: `use excavator_ros::prelude::*;`.
 //!
-//! Types of messages are those of the crate `excavator_msgs`.
+//! Message types are in the crate `excavator_msgs`.
 
 pub use crate::{
     Diagnostics, Health, Latched, Lifecycle, Link, Logger, Outlet, Pace, Parameter, Parameters, PublishError, Received,

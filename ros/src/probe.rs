@@ -1,12 +1,13 @@
-//! Finding out that a peer does not know all that we have.
+//! Detects that a peer does not know all of our endpoints.
 //!
-//! RustDDS announces its endpoints without a time of writing. Fast DDS sorts announcements by that time, and by their arrival
-//! where there is none; one that overtakes the others, because it was made while the two participants met, buries all
-//! that came before it. They are acknowledged, never asked for again, and never matched.
+//! RustDDS announces its endpoints without a source timestamp. Fast DDS orders announcements by that timestamp, or by
+//! arrival if there is none. An announcement made while the two participants meet can overtake earlier ones. Fast DDS
+//! then discards these: it acknowledges them, but never requests them again and never matches them.
 //!
-//! Every participant of ROS 2 reads and writes one topic, where it tells its nodes. A probe is a writer and a reader on that
-//! topic. The first probe is the first that a connection opens, so it is among what is buried. When it stays without an
-//! acknowledgement, or hears nothing of a peer, a second probe is opened: a peer that answers the second one and not the
+//! Every ROS 2 participant reads and writes one topic to announce its nodes. A probe is a writer and a reader on that
+//! topic. The first probe is created before all other endpoints of a connection, so it is among the discarded ones. If
+//! it is not acknowledged, or receives nothing from a peer, a second probe is opened. A peer that answers the second
+//! probe but not the first does not know the first. A peer that is stopped or starved of CPU time answers neither.
 //! first does not know the first. A peer that is stopped or starved answers neither.
 
 use std::collections::BTreeSet;
@@ -24,12 +25,13 @@ use super::TopicQos;
 use super::health::{Prefix, prefix_of};
 use super::raw::{RawAdapter, RawBytes};
 
-/// Time that a peer has for its answer before it is suspected: ten times what it takes beside four busy loops.
+/// Time for a peer to answer before it is suspected: ten times what it takes beside four busy loops.
 const ANSWER: Duration = Duration::from_secs(3);
-/// Time for which the second probe must be ahead of the first. A peer that has woken up answers both within milliseconds.
+/// Time by which the second probe must be ahead of the first. A peer that has woken up answers both within
+/// milliseconds.
 const AHEAD: Duration = Duration::from_secs(1);
 
-/// A writer and a reader on the topic where participants tell their nodes.
+/// A writer and a reader on the topic where participants announce their nodes.
 pub(super) struct Probe {
     writer: DataWriter<RawBytes, RawAdapter>,
     reader: SimpleDataReader<RawBytes, RawAdapter>,
@@ -37,10 +39,10 @@ pub(super) struct Probe {
 }
 
 impl Probe {
-    /// Opens both.
+    /// Opens both endpoints.
     ///
     /// # Errors
-    /// The middleware's words.
+    /// The error message of the middleware.
     pub fn open(participant: &DomainParticipant) -> Result<Self, String> {
         let qos = TopicQos::latched().to_dds();
         let (name, type_name) = (ros_discovery::TOPIC_NAME.to_string(), ros_discovery::TYPE_NAME.to_string());
@@ -55,7 +57,7 @@ impl Probe {
         Ok(probe)
     }
 
-    /// Says that a participant by the name of this writer has no nodes, which changes nothing for those who listen.
+    /// Announces a participant without nodes, identified by the GUID of this writer. Other listeners are not affected.
     fn speak(&self) -> Result<(), String> {
         let nobody = ParticipantEntitiesInfo::new(Gid::from(self.writer.guid()), Vec::new());
         let bytes = cdr::encode(&nobody).map_err(|error| error.to_string())?;
@@ -63,12 +65,12 @@ impl Probe {
         written.map_err(|error| error.to_string())
     }
 
-    /// Whether everybody who reads has acknowledged.
+    /// Whether all readers have acknowledged.
     fn is_acknowledged(&self) -> bool {
         self.writer.wait_for_acknowledgments(Duration::ZERO).unwrap_or(true)
     }
 
-    /// Takes what has come.
+    /// Takes all received samples.
     fn listen(&mut self) {
         while let Ok(Some(sample)) = self.reader.try_take_one() {
             self.heard.insert(prefix_of(sample.writer_guid().prefix.as_ref()));
@@ -81,28 +83,28 @@ impl Probe {
     }
 }
 
-/// What a probe has been answered.
+/// The answers that a probe has received.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Answers {
-    /// By all who read it.
+    /// Whether all readers have acknowledged.
     acknowledged: bool,
-    /// Participants that it has heard.
+    /// Participants that it has received samples from.
     heard: BTreeSet<Prefix>,
 }
 
 impl Answers {
-    /// Whether somebody who is `present` and speaks on the topic has not answered.
+    /// Whether one of the `speakers` has not answered.
     fn lack(&self, speakers: &BTreeSet<Prefix>) -> bool {
         !self.acknowledged || !speakers.is_subset(&self.heard)
     }
 
-    /// Whether somebody has answered this probe and not `first`.
+    /// Whether a peer has answered this probe but not `first`.
     fn are_ahead_of(&self, first: &Answers) -> bool {
         (self.acknowledged && !first.acknowledged) || !self.heard.is_subset(&first.heard)
     }
 }
 
-/// The first probe of a connection, and the second one while somebody is suspected.
+/// The first probe of a connection, and the second one while a peer is suspected.
 pub(super) struct Probes {
     first: Probe,
     second: Option<Probe>,
@@ -110,14 +112,14 @@ pub(super) struct Probes {
 }
 
 impl Probes {
-    /// Of a connection that has opened this one before all else.
+    /// For a connection that has opened `first` before all other endpoints.
     pub fn new(first: Probe) -> Self {
         Probes { first, second: None, verdict: Suspicion::default() }
     }
 
-    /// Whether a peer certainly does not know our first endpoints. `present`: the peers that are here.
+    /// Whether a peer provably does not know our first endpoints. `present` has the peers that are present.
     pub fn look(&mut self, participant: &DomainParticipant, present: &BTreeSet<Prefix>) -> bool {
-        // The order matters: who answers both in between has answered the first as well.
+        // The order matters: a peer that answers both in between is then seen to have answered the first one too.
         let second = self.second.as_mut().map(Probe::answers);
         let first = self.first.answers();
         let silent = !present.is_subset(&first.heard);
@@ -133,7 +135,7 @@ impl Probes {
     }
 }
 
-/// Those of the participants `present` that have a writer on the topic.
+/// The participants among `present` that have a writer on the topic.
 fn speakers(participant: &DomainParticipant, present: &BTreeSet<Prefix>) -> BTreeSet<Prefix> {
     let writers = participant.discovered_writers();
     let speaking =
@@ -151,7 +153,7 @@ enum Step {
     Proven,
 }
 
-/// Since when something is wrong.
+/// Start times of the current suspicion.
 #[derive(Debug, Clone, Default)]
 struct Suspicion {
     lacking_since: Option<Instant>,
@@ -199,7 +201,7 @@ mod tests {
         assert_eq!(suspicion.step(&late, None, &speakers, start), Step::Wait);
         assert_eq!(suspicion.step(&late, None, &speakers, start + seconds(2)), Step::Wait);
         assert_eq!(suspicion.step(&answers(true, &[PEER]), None, &speakers, start + seconds(4)), Step::Wait);
-        // It starts again from nothing.
+        // It restarts from zero.
         assert_eq!(suspicion.step(&late, None, &speakers, start + seconds(5)), Step::Wait);
         assert_eq!(suspicion.step(&late, None, &speakers, start + seconds(8)), Step::Probe);
     }

@@ -4,10 +4,11 @@ use rustdds::policy::{Durability, History, Lifespan, Reliability, ResourceLimits
 use rustdds::{Duration, QosPolicies, QosPolicyBuilder};
 
 /// Unacknowledged samples that a reliable writer holds before it refuses new ones: one minute at 1 kHz. A reader that
-/// hangs stops the others only after that, and is taken for dead long before (10 s with Cyclone DDS, 20 s with Fast DDS).
+/// hangs blocks the others only after that. It is considered dead long before (10 s with Cyclone DDS, 20 s with Fast
+/// DDS).
 const UNACKNOWLEDGED: i32 = 60_000;
 
-/// What a topic is offered or asked with.
+/// QoS that an endpoint offers or requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TopicQos {
     /// Samples kept.
@@ -16,37 +17,38 @@ pub struct TopicQos {
     pub reliable: bool,
     /// Whether late joiners get the last samples.
     pub transient_local: bool,
-    /// Seconds after which a sample is of no use, `None` for never.
+    /// Seconds after which a sample expires, `None` for never.
     pub lifespan: Option<u32>,
-    /// Samples that a reliable endpoint has room for.
+    /// Number of samples that a reliable endpoint can hold.
     pub room: i32,
 }
 
 impl TopicQos {
-    /// Reliable, volatile, the last `depth` samples.
+    /// Reliable, volatile, history of `depth` samples.
     pub const fn reliable(depth: u32) -> Self {
         TopicQos { depth, reliable: true, transient_local: false, lifespan: None, room: UNACKNOWLEDGED }
     }
 
-    /// The same for a reader that only ever wants the newest: middleware keeps what was read until the room is full.
+    /// The same for a reader that only needs the newest sample: the middleware keeps read samples until this many are
+    /// stored.
     #[must_use]
     pub const fn with_room(self, samples: i32) -> Self {
         TopicQos { room: samples, ..self }
     }
 
-    /// Reliable, the last sample also for late joiners.
+    /// Reliable, the last sample is also sent to late joiners.
     pub const fn latched() -> Self {
         TopicQos { depth: 1, reliable: true, transient_local: true, lifespan: None, room: UNACKNOWLEDGED }
     }
 
-    /// Sent once, volatile.
+    /// Best effort, volatile.
     pub const fn best_effort(depth: u32) -> Self {
         TopicQos { depth, reliable: false, transient_local: false, lifespan: None, room: UNACKNOWLEDGED }
     }
 
-    /// As policies of DDS.
+    /// As DDS policies.
     pub fn to_dds(self) -> QosPolicies {
-        // No waiting: a writer that waits for a slow reader would stop its control loop.
+        // No blocking: a writer that waits for a slow reader would stop its control loop.
         let reliability = if self.reliable {
             Reliability::Reliable { max_blocking_time: Duration::ZERO }
         } else {

@@ -1,4 +1,4 @@
-//! Messages as bytes, whatever their type.
+//! Messages as bytes, of any type.
 
 use std::pin::pin;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -74,19 +74,19 @@ impl SerializerAdapter<RawBytes> for RawAdapter {
     }
 }
 
-/// A message as it came.
+/// A message as received.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct RawSample {
     /// Content with encapsulation.
     pub data: Bytes,
-    /// When it came, ns since the epoch, system's clock.
+    /// Time of reception, ns since the epoch, system clock.
     pub received: u64,
-    /// When it was published, ns since the epoch, as the publisher says.
+    /// Time of publication, ns since the epoch, by the clock of the publisher.
     pub published: Option<u64>,
-    /// Who published it.
+    /// The publisher.
     pub writer: [u8; 16],
-    /// Its number among the messages of that publisher.
+    /// Sequence number of the publisher.
     pub sequence: i64,
 }
 
@@ -94,7 +94,7 @@ type Callback = Box<dyn FnMut(RawSample) + Send>;
 
 /// A reader of one topic of any type.
 pub struct RawInlet {
-    /// Name and type as they are in DDS.
+    /// Name and type in DDS.
     topic: String,
     type_name: String,
     qos: QosPolicies,
@@ -114,7 +114,7 @@ impl RawInlet {
         RawInlet::open_dds(link, &dds_topic(topic), &dds_type(type_name), qos, callback)
     }
 
-    /// Reads a topic by the names that it has in DDS.
+    /// Reads a topic given by its DDS names.
     pub fn open_dds(
         link: &Link,
         dds_topic: &str,
@@ -203,24 +203,25 @@ impl RawOutlet {
         })
     }
 
-    /// Waits until readers have what was published.
+    /// Waits until readers have acknowledged all published messages.
     pub fn wait_for_readers(&self, time: Duration) {
         let slot = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(writer) = slot.as_ref() {
-            // Who has not read by then does not hold up the end.
+            // Readers that have not acknowledged in time do not delay the end.
             let _ = writer.wait_for_acknowledgments(time);
         }
     }
 }
 
-/// Uses up the first sequence number for nobody, so that the writer has something to announce in its heartbeats.
+/// Uses up the first sequence number without a receiver, so that the writer has something to announce in its
+/// heartbeats.
 ///
-/// Eclipse Cyclone drops what a reliable writer sends before its first heartbeat, and RustDDS sends none to a reader that
-/// asks while nothing was written yet: without this the first message is lost whenever the reader learns of the writer
-/// after the writer learned of the reader.
+/// Eclipse Cyclone DDS drops the samples of a reliable writer that arrive before its first heartbeat. RustDDS does not
+/// answer the ACKNACK of a reader with a heartbeat while nothing has been written. Without this call, the first message
+/// is lost whenever the reader discovers the writer after the writer has discovered the reader.
 fn announce(writer: &DataWriter<RawBytes, RawAdapter>) {
     let nobody = WriteOptionsBuilder::new().to_single_reader(GUID::GUID_UNKNOWN).build();
-    // A writer that cannot take even this refuses the messages that follow, where it is counted.
+    // A writer that refuses this sample also refuses the following messages, which are counted there.
     let _ = writer.write_with_options(RawBytes(Bytes::from_static(&[0, 1, 0, 0])), nobody);
 }
 

@@ -1,18 +1,18 @@
-//! A question for what a client of Fast DDS asked before we knew it.
+//! Requests samples that a Fast DDS client sent before we knew it.
 //!
-//! A client of Fast DDS asks as soon as it has met our reader, which may be before our reader has met its writer. What is
-//! said then is dropped here. RustDDS asks again when the writer announces what it has; but its first question has the
-//! number 0, which Fast DDS takes for one that it has heard already, and the writer repeats itself three seconds later. This
-//! question has the number 1.
+//! A Fast DDS client sends its request as soon as it has matched our reader. Our reader may not have matched its writer
+//! by then, and drops the request. RustDDS asks for the missing sample after the next heartbeat. But its first ACKNACK
+//! has the count 0, which Fast DDS ignores as a duplicate; the writer repeats its heartbeat only three seconds later.
+//! The ACKNACK sent here has the count 1.
 
 use rustdds::{DomainParticipant, GUID};
 
 use super::rtps::{Packet, entity, is_fast_dds};
 
-/// Beginning of the topics of requests.
+/// Prefix of request topics.
 const REQUESTS: &str = "rq/";
 
-/// Asks a client's writer, which our reader has just been matched with, for its first request.
+/// Asks a client's writer, which our reader has just matched, for its first request.
 pub(super) fn ask_again(participant: &DomainParticipant, reader: GUID, writer: GUID) {
     if !is_fast_dds(writer) {
         return;

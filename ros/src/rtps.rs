@@ -1,7 +1,7 @@
-//! Single messages of the wire protocol (RTPS 2.5) that the middleware cannot be asked for.
+//! Single messages of the wire protocol (RTPS 2.5) that the middleware has no API for.
 //!
-//! They are sent beside the middleware in the name of its participant, from a socket of their own: receivers go by the
-//! identities inside a message, not by the port that it comes from.
+//! They are sent in the name of its participant, from a separate socket. Receivers identify the sender by the GUIDs in
+//! a message, not by its source port.
 
 use std::net::{SocketAddr, UdpSocket};
 
@@ -10,11 +10,11 @@ use socket2::SockRef;
 
 use super::networks::networks;
 
-/// Vendor of the participant in whose name is spoken: RustDDS.
+/// Vendor ID of the participant that the messages are sent for: RustDDS.
 const VENDOR: [u8; 2] = [1, 18];
-/// Vendor of eProsima Fast DDS, the first two bytes of its identities.
+/// Vendor ID of eProsima Fast DDS, the first two bytes of its GUIDs.
 const FAST_DDS: [u8; 2] = [1, 15];
-/// Most bytes of a datagram over IPv4.
+/// Largest datagram over IPv4, bytes.
 const LARGEST: usize = 65_507;
 
 /// Kinds of submessages, RTPS 9.4.5.
@@ -24,14 +24,14 @@ mod kind {
     pub const DATA: u8 = 0x15;
 }
 
-/// Flags of submessages, RTPS 9.4.5: all numbers little endian; of DATA: inline parameters, a sample.
+/// Flags of submessages, RTPS 9.4.5: little endian; for DATA: inline QoS, payload.
 mod flag {
     pub const LITTLE_ENDIAN: u8 = 0x01;
     pub const INLINE_QOS: u8 = 0x02;
     pub const SAMPLE: u8 = 0x04;
 }
 
-/// Inline parameters of a DATA submessage, RTPS 9.6.4.
+/// Inline QoS parameters of a DATA submessage, RTPS 9.6.4.
 pub(super) mod parameter {
     pub const KEY_HASH: u16 = 0x0070;
     pub const STATUS_INFO: u16 = 0x0071;
@@ -39,7 +39,7 @@ pub(super) mod parameter {
 }
 const SENTINEL: u16 = 0x0001;
 
-/// The sixteen bytes of an identity as they are on the wire.
+/// The sixteen bytes of a GUID on the wire.
 pub(super) fn identity(guid: GUID) -> [u8; 16] {
     ros2_client::Gid::from(guid).to_bytes16()
 }
@@ -49,11 +49,11 @@ pub(super) fn is_fast_dds(guid: GUID) -> bool {
     identity(guid).starts_with(&FAST_DDS)
 }
 
-/// A message that grows submessage by submessage.
+/// A message, built submessage by submessage.
 pub(super) struct Packet(Vec<u8>);
 
 impl Packet {
-    /// An empty message in the name of the participant that `speaker` belongs to.
+    /// An empty message from the participant of `speaker`.
     pub fn of(speaker: GUID) -> Self {
         let mut bytes = b"RTPS\x02\x04".to_vec();
         bytes.extend(VENDOR);
@@ -61,13 +61,13 @@ impl Packet {
         Packet(bytes)
     }
 
-    /// What follows is for the participant of `peer` only.
+    /// Addresses the following submessages to the participant of `peer` only.
     pub fn to(self, peer: GUID) -> Self {
         self.with(kind::INFO_DESTINATION, flag::LITTLE_ENDIAN, &identity(peer)[..12])
     }
 
-    /// A sample of `writer` for `reader` (entities, the last four bytes of their identities), or, without `content`, the
-    /// message that an instance is gone. `content` begins with its encapsulation.
+    /// A sample of `writer` for `reader` (entity IDs, the last four bytes of their GUIDs). Without `content`, it
+    /// announces that an instance is disposed. `content` begins with its encapsulation.
     pub fn data(
         self,
         reader: [u8; 4],
@@ -76,7 +76,7 @@ impl Packet {
         inline: &[(u16, &[u8])],
         content: Option<&[u8]>,
     ) -> Self {
-        // Nothing extra; sixteen bytes from here to the inline parameters.
+        // No extra flags; sixteen bytes from here to the inline QoS.
         let mut body = vec![0, 0, 16, 0];
         body.extend(reader);
         body.extend(writer);
@@ -93,25 +93,26 @@ impl Packet {
         self.with(kind::DATA, flag::LITTLE_ENDIAN | flag::INLINE_QOS | sample, &body)
     }
 
-    /// `reader` asks `writer` for its first sample, and acknowledges none.
+    /// An ACKNACK with which `reader` requests the first sample of `writer` and acknowledges none.
     ///
-    /// For no other: Fast DDS declares a sample that it is asked for before it is written to be irrelevant, unless nothing was
-    /// written at all.
+    /// Use it for the first sample only: Fast DDS declares a sample that is requested before it is written irrelevant,
+    /// unless nothing was written at all.
     pub fn ask_for_first(self, reader: [u8; 4], writer: [u8; 4]) -> Self {
         let mut body = Vec::new();
         body.extend(reader);
         body.extend(writer);
         body.extend(sequence_number(1));
-        // A set of one: the first of the bits from the base on.
+        // A set with one member: the first bit after the base.
         body.extend(1_u32.to_le_bytes());
         body.extend(0x8000_0000_u32.to_le_bytes());
-        // The first count that Fast DDS listens to.
+        // The first count that Fast DDS accepts.
         body.extend(1_i32.to_le_bytes());
         self.with(kind::ACKNACK, flag::LITTLE_ENDIAN, &body)
     }
 
     fn with(mut self, kind: u8, flags: u8, body: &[u8]) -> Self {
-        // A last submessage that is too long for the field has 0 there: it goes to the end of the message.
+        // If the last submessage is too long for the length field, the field is 0: it extends to the end of the
+        // message.
         let length = u16::try_from(body.len()).unwrap_or_default();
         self.0.extend([kind, flags]);
         self.0.extend(length.to_le_bytes());
@@ -119,7 +120,7 @@ impl Packet {
         self
     }
 
-    /// Sends the message to each address. Whether it arrives nobody knows, as with every datagram.
+    /// Sends the message to each address. As with every datagram, arrival is not confirmed.
     pub fn send(&self, addresses: impl IntoIterator<Item = impl Into<SocketAddr>>) {
         if !self.fits() {
             return;
@@ -138,7 +139,7 @@ impl Packet {
         }
     }
 
-    /// Whether it fits into one datagram.
+    /// Whether the message fits into one datagram.
     pub fn fits(&self) -> bool {
         self.0.len() <= LARGEST
     }
@@ -153,7 +154,7 @@ pub(super) fn sequence_number(number: i64) -> [u8; 8] {
     bytes
 }
 
-/// The last four bytes of an identity.
+/// Entity ID: the last four bytes of a GUID.
 pub(super) fn entity(guid: GUID) -> [u8; 4] {
     let mut entity = [0; 4];
     entity.copy_from_slice(&identity(guid)[12..]);
@@ -180,7 +181,7 @@ mod tests {
         // header: kind, flags, length of all that follows
         assert_eq!(&bytes[20..24], &[0x15, 0x07, (bytes.len() - 24) as u8, 0]);
         assert_eq!(&bytes[24..28], &[0, 0, 16, 0]);
-        // the inline parameters begin sixteen bytes behind the field that says so
+        // the inline QoS begins sixteen bytes after the offset field
         assert_eq!(&bytes[28..36], &[1, 2, 3, 4, 5, 6, 7, 8]);
         assert_eq!(&bytes[36..44], &[1, 0, 0, 0, 2, 0, 0, 0]);
         assert_eq!(&bytes[44..52], &[0x70, 0, 4, 0, 9, 9, 9, 9]);
@@ -191,7 +192,7 @@ mod tests {
     #[test]
     fn a_question_asks_for_number_one_and_acknowledges_nothing() {
         let bytes = Packet::of(GUID::GUID_UNKNOWN).ask_for_first([1; 4], [2; 4]).0;
-        // not final: an answer is wanted
+        // not final: a response is requested
         assert_eq!(bytes[20..24], [0x06, 0x01, 28, 0]);
         assert_eq!(bytes[24..32], [1, 1, 1, 1, 2, 2, 2, 2]);
         assert_eq!(bytes[32..], [0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 128, 1, 0, 0, 0]);
