@@ -1,4 +1,4 @@
-//! What the environment says about DDS Security: the variables and the key store of ROS 2 (SROS2).
+//! DDS Security settings from the environment variables and the key store of ROS 2 (SROS2).
 
 use std::path::{Path, PathBuf};
 
@@ -12,34 +12,34 @@ const OVERRIDE: &str = "ROS_SECURITY_ENCLAVE_OVERRIDE";
 /// Files of an enclave that a participant needs.
 const FILES: [&str; 6] =
     ["identity_ca.cert.pem", "cert.pem", "key.pem", "permissions_ca.cert.pem", "governance.p7s", "permissions.p7s"];
-/// A list of certificates that are not valid any more, which RustDDS does not read.
+/// List of revoked certificates, which RustDDS does not read.
 const REVOKED: &str = "crl.pem";
 
-/// Whether this build can secure its participants.
+/// Whether this build supports DDS Security.
 const BUILT_IN: bool = cfg!(feature = "security");
 
 /// How participants are secured.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Security {
-    /// Not at all.
+    /// No security.
     #[default]
     Off,
-    /// With the keys of an enclave, in this folder.
+    /// With the keys of the enclave in this folder.
     Enclave(PathBuf),
 }
 
-/// What was asked for and what can be had.
+/// The selected security and its warnings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Chosen {
     pub security: Security,
-    /// What the user should hear.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
-/// Reads the variables; `enclave` is that of the command line (`--enclave`).
+/// Reads the variables. `enclave` is the one from the command line (`--enclave`).
 ///
 /// # Errors
-/// [`RosError::Environment`] for values that are none, [`RosError::Security`] where `Enforce` asks for what cannot be had.
+/// [`RosError::Environment`] for invalid values, [`RosError::Security`] if `Enforce` requires what is not available.
 pub(super) fn choose(lookup: impl Fn(&str) -> Option<String>, enclave: Option<&str>) -> Result<Chosen, RosError> {
     choose_for(BUILT_IN, lookup, enclave)
 }
@@ -50,7 +50,7 @@ fn choose_for(
     enclave: Option<&str>,
 ) -> Result<Chosen, RosError> {
     let value = |name: &str| lookup(name).filter(|text| !text.is_empty());
-    // ROS 2 takes any other value for "no", "True" too: whoever writes that wants security.
+    // ROS 2 takes any other value for "no", even "True". But a user who writes "True" wants security.
     let enabled = match value(ENABLE).as_deref() {
         None | Some("false") => false,
         Some("true") => true,
@@ -90,7 +90,7 @@ fn refused(problem: String) -> RosError {
     RosError::Security { strategy: "Enforce", problem }
 }
 
-/// The folder of an enclave with all its files, and what it has that will not be followed.
+/// The folder of an enclave with all its files, and a warning for files that have no effect.
 fn folder(keystore: Option<&str>, enclave: &str) -> Result<(PathBuf, Option<String>), String> {
     let keystore = keystore.ok_or_else(|| format!("{KEYSTORE} is not set"))?;
     let word =

@@ -1,7 +1,7 @@
-//! Services of a node: opened on every connection anew, answered beside everything else.
+//! Services of a node. They are opened again on every connection.
 //!
-//! The library has servers too, but each is bound to the mapping that it was made for, and a reply may be lost on a client that was not
-//! yet discovered.
+//! The library has servers too, but each is bound to the mapping that it was created for, and a reply may be lost if
+//! the client was not yet discovered.
 
 use std::collections::HashSet;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,10 +16,10 @@ use super::connection::{Closed, Connection, Endpoint, Install, Task};
 use super::large_replies::{LargeReplies, readers_of, reply_topic};
 use super::{Link, Mapping, RosError};
 
-/// Requests that wait: rmw_qos_profile_services_default.
+/// Depth of the request queue: rmw_qos_profile_services_default.
 pub(super) const SERVICE_DEPTH: u32 = 10;
 
-/// The library's word for a mapping.
+/// The mapping as a type of the library.
 pub fn service_mapping(mapping: Mapping) -> ServiceMapping {
     match mapping {
         Mapping::Cyclone => ServiceMapping::Cyclone,
@@ -27,19 +27,19 @@ pub fn service_mapping(mapping: Mapping) -> ServiceMapping {
     }
 }
 
-/// Quality of service of requests and replies.
+/// QoS of requests and replies.
 pub fn service_qos() -> QosProfile {
     QosProfile::publisher_default().history(ros2_client::qos::History::KeepLast { depth: SERVICE_DEPTH as usize })
 }
 
-/// A service by its name below the node's, and its type.
+/// A service: its name relative to the node, and its type.
 pub(super) struct Service {
     pub name: &'static str,
     pub package: &'static str,
     pub kind: &'static str,
 }
 
-/// Offers services below the node's name; `desk` answers them, `open` says which there are.
+/// Offers services below the node's name. `desk` answers the requests, `open` creates the services.
 ///
 /// # Errors
 /// [`RosError::Endpoint`].
@@ -76,7 +76,7 @@ impl<D: Send + Sync + 'static> Endpoint for Services<D> {
     }
 }
 
-/// Services that are being created; at each counter somebody will answer one kind of request.
+/// Services that are being created. Each counter is a task that answers the requests of one service.
 pub(super) struct Opening<'o, D> {
     services: &'o Services<D>,
     connection: &'o mut Connection,
@@ -114,11 +114,11 @@ impl<D: Send + Sync + 'static> Opening<'_, D> {
         self.counters.push(Box::pin(async move {
             let mut requests = server.receive_request_stream();
             while let Some(request) = requests.next().await {
-                // A request that cannot be decoded has nobody to be answered.
+                // A request that cannot be decoded has no client to answer.
                 if let Ok((id, request)) = request {
                     clients.wait_for(id.writer_gid).await;
                     let answer = answer(&desk, request);
-                    // Whoever asks hears nothing when an answer cannot be sent, and asks again.
+                    // If an answer cannot be sent, the client times out and asks again.
                     if large.send(id, &answer).is_none() {
                         let _ = server.async_send_response(id, answer).await;
                     }
@@ -129,13 +129,13 @@ impl<D: Send + Sync + 'static> Opening<'_, D> {
     }
 }
 
-/// Longest wait for a client's reader; rmw_fastrtps_cpp waits as long.
+/// Longest wait for the reader of a client, the same as in rmw_fastrtps_cpp.
 const READER: Duration = Duration::from_millis(100);
 /// Time from the discovery of a reader until our writer sends to it.
 const MATCHING: Duration = Duration::from_millis(10);
 
-/// Clients whose reader of our replies is known to be there. A client may ask before we have discovered its reader, and a
-/// reply that is sent then is lost.
+/// Clients whose reply reader has been discovered. A client may send a request before we have discovered its reader. A
+/// reply sent at that time is lost.
 struct Clients {
     participant: DomainParticipant,
     reply_topic: String,

@@ -1,4 +1,4 @@
-//! SIGINT and SIGTERM as something to wait for.
+//! Waiting for SIGINT and SIGTERM.
 
 use std::process::Command;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -11,25 +11,26 @@ use nix::unistd::{Pid, getpid, getppid};
 
 use super::RosError;
 
-/// Signals that ask for an end, after which the process ends at once, whatever it is doing.
+/// Number of requests to end after which the process ends at once.
 const AT_ONCE: u32 = 3;
-/// Signals within this time are one request: a terminal signals a whole process group, and the parent in it its children.
+/// Signals within this time count as one request: a terminal signals a whole process group, and a parent in it also
+/// signals its children.
 const ONE_REQUEST: Duration = Duration::from_millis(500);
-/// Number of the process that has started this one and ends with it.
+/// ID of the process that has started this one and that this one ends with.
 const PARENT: &str = "EXCAVATOR_PARENT";
 
-/// Signals that end this process, waited for on a thread of their own.
+/// Signals that end this process, received by a separate thread.
 pub struct Signals {
     arrived: Mutex<Receiver<Signal>>,
 }
 
 impl Signals {
-    /// Blocks the signals in this thread, and so in every thread that it starts from now on: an interrupted system call
-    /// ends the middleware's threads for good. Call it before anything else is started.
+    /// Blocks the signals in this thread and in every thread that it starts later, because an interrupted system call
+    /// ends the middleware's threads permanently. Call it before anything else is started.
     ///
-    /// The first request to end is to be followed; the second is ignored, since the process closes its files by then; the
-    /// third ends the process at once. A process whose parent has named itself ([`end_with_this_process`]) gets SIGTERM
-    /// when the parent has gone.
+    /// The caller must act on the first request to end. The second is ignored, since the process is then closing its
+    /// files. The third ends the process at once. If the parent has set its process ID ([`end_with_this_process`]),
+    /// this process gets SIGTERM when the parent has gone.
     ///
     /// # Errors
     /// [`RosError::System`].
@@ -60,7 +61,7 @@ impl Signals {
         let parent = std::env::var(PARENT).ok().and_then(|number| number.parse().ok()).map(Pid::from_raw);
         if let Some(parent) = parent {
             set_pdeathsig(Signal::SIGTERM).map_err(failed("end with the parent"))?;
-            // It may have gone before.
+            // The parent may have ended earlier.
             if getppid() != parent {
                 kill(getpid(), Signal::SIGTERM).map_err(failed("end with the parent"))?;
             }
@@ -73,7 +74,7 @@ impl Signals {
         match self.arrived.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(time) {
             Ok(signal) => Some(signal),
             Err(RecvTimeoutError::Timeout) => None,
-            // The thread is gone: nothing will ever come, but the pace of the caller stays.
+            // The thread has ended and no signal will come, but the caller keeps its pace.
             Err(RecvTimeoutError::Disconnected) => {
                 std::thread::sleep(time);
                 None
@@ -82,7 +83,7 @@ impl Signals {
     }
 }
 
-/// Lets a child that waits for signals end with this process, however this process ends; to be called by the thread that
+/// Makes a child that waits for signals end with this process, however this process ends. Call it on the thread that
 /// starts the child and lives as long.
 pub fn end_with_this_process(child: &mut Command) -> &mut Command {
     child.env(PARENT, getpid().to_string())

@@ -1,4 +1,4 @@
-//! The life of a node's process: start, watch, rebuild, stop.
+//! Runs the process of a node: start, watch, rebuild, stop.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,16 +18,16 @@ use super::{
 };
 use super::{parameter_services, type_descriptions};
 
-/// Pace of the supervision: a dead thread or a returned peer is found within this time.
+/// Period of the supervision: a dead thread or a returned peer is found within this time.
 const TICK: Duration = Duration::from_millis(250);
 /// Pause after a rebuild that failed or did not help.
 const PAUSE: Duration = Duration::from_secs(2);
 
-/// Largest sample in fragments that recorder and player handle, bytes, if the environment does not say otherwise: a point
-/// cloud of a lidar has 1 to 6 MB, an image of 1920 by 1080 without compression 6.2 MB.
+/// Largest sample in fragments for recorder and player, bytes, unless the environment sets the limit: a point cloud of
+/// a lidar has 1 to 6 MB, an uncompressed image of 1920 by 1080 6.2 MB.
 const LARGE_SAMPLE: u32 = 1 << 23;
 
-/// Everything that a node's process has beside its own work.
+/// Everything that the process of a node has besides its own work.
 pub struct Supervisor {
     /// Connection to the graph.
     pub link: Link,
@@ -35,7 +35,7 @@ pub struct Supervisor {
     pub parameters: Parameters,
     /// ROS time.
     pub clock: RosClock,
-    /// How the parts are.
+    /// State of the parts.
     pub diagnostics: Diagnostics,
     /// Log.
     pub logger: Logger,
@@ -46,7 +46,7 @@ pub struct Supervisor {
     _runtime: Background,
 }
 
-/// The runtime of the link. What hangs on it when the process ends is left behind.
+/// The runtime of the link. Tasks that hang when the process ends are abandoned.
 struct Background(Option<Runtime>);
 
 impl Drop for Background {
@@ -67,7 +67,7 @@ impl Supervisor {
         Self::start_in(environment, default_name, arguments, declared, true)
     }
 
-    /// The same for a node that handles large samples or has much memory of its own: the memory is not watched.
+    /// The same for a node that handles large samples or needs much memory itself: its memory is not watched.
     ///
     /// # Errors
     /// As [`Supervisor::start`].
@@ -122,7 +122,7 @@ impl Supervisor {
         Ok(Supervisor { link, parameters, clock, diagnostics, logger, signals, stop, watch_memory, _runtime: runtime })
     }
 
-    /// The states of a node whose parameter `managed` says whether somebody manages it.
+    /// Lifecycle of a node. Its parameter `managed` states whether it is a managed node.
     ///
     /// # Errors
     /// [`RosError::Endpoint`].
@@ -130,7 +130,7 @@ impl Supervisor {
         Lifecycle::start(&self.link, self.parameters.flag("managed"), &self.logger, self.stop_flag())
     }
 
-    /// The flag that ends the process: set by a signal, or by a node that has finished its work.
+    /// The flag that ends the process. It is set by a signal, or by a node that has finished its work.
     pub fn stop_flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.stop)
     }
@@ -180,7 +180,7 @@ impl Supervisor {
         }
     }
 
-    /// Leaves the graph in good order.
+    /// Leaves the graph cleanly.
     pub fn leave(self) {
         self.link.leave();
     }
@@ -190,7 +190,7 @@ impl Supervisor {
         Some(Watch::new(self.link.environment().clone(), participant, threads, probe, self.watch_memory))
     }
 
-    /// What this node has on the graph.
+    /// Topics and services of this node.
     fn ours(&self) -> Ours {
         Ours::new(&self.link.identity().full_name(), self.link.interfaces().into_iter().map(|(topic, _)| topic))
     }
@@ -220,7 +220,7 @@ impl Supervisor {
         }
     }
 
-    /// Topics of ours on which somebody speaks another type. The middleware matches by topic name alone.
+    /// Our topics that another node publishes with a different type. The middleware matches by topic name alone.
     fn foreign_types(&self) -> Vec<String> {
         let Some(participant) = self.link.participant() else { return Vec::new() };
         let writers = participant.discovered_writers();

@@ -1,5 +1,5 @@
-//! The threads of the middleware: they end, and say nothing, when a system call of theirs is interrupted (SIGSTOP and
-//! SIGCONT, a frozen container, suspend to disk).
+//! Watches the threads of the middleware. They end silently when a system call is interrupted (SIGSTOP and SIGCONT, a
+//! frozen container, suspend to disk).
 
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
@@ -7,19 +7,19 @@ use std::time::{Duration, Instant};
 /// Threads that the middleware starts for a participant: one for the wire, one for discovery.
 const STARTED: usize = 2;
 
-/// Time after which these have started: a hundred times what it takes.
+/// Time after which these threads have started: a hundred times what it takes.
 const SETTLED: Duration = Duration::from_secs(1);
 
 /// The threads of one participant.
 #[derive(Debug, Clone)]
 pub(super) struct Threads {
     since: Instant,
-    /// Threads of others, and of participants that were left behind.
+    /// Threads of others, and of abandoned participants.
     others: BTreeSet<u32>,
     own: BTreeSet<u32>,
 }
 
-/// How many of a participant's threads are left.
+/// Number of remaining threads of a participant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Died {
     pub alive: usize,
@@ -27,8 +27,8 @@ pub(super) struct Died {
 }
 
 impl Threads {
-    /// What `build` makes, and the threads that it has started. They are counted when it is done, however long it takes: a
-    /// copy that is asked later knows them.
+    /// Runs `build` and returns its result with the threads that it has started. They are counted when `build` returns,
+    /// however long it takes; a clone that is checked later has them too.
     pub fn started_by<T>(build: impl FnOnce() -> T) -> (T, Self) {
         let others = running().unwrap_or_default();
         let built = build();
@@ -36,9 +36,9 @@ impl Threads {
         (built, Threads { since: Instant::now(), others, own })
     }
 
-    /// Whether some have ended; `None` too where the system does not tell.
+    /// Returns the counts if some threads have ended; `None` also if the system does not list threads.
     ///
-    /// Threads may end before they were ever counted; and they take a name, which they are known by, a moment after their
+    /// Threads may end before they are first counted. A thread gets the name that identifies it a moment after its
     /// start.
     pub fn died(&mut self) -> Option<Died> {
         self.judge(&running()?)
@@ -55,7 +55,7 @@ impl Threads {
     }
 }
 
-/// Threads of this process that the middleware has started; `None` where the system does not tell.
+/// Threads of this process that the middleware has started; `None` if the system does not list threads.
 fn running() -> Option<BTreeSet<u32>> {
     let entries = std::fs::read_dir("/proc/self/task").ok()?;
     let started = entries

@@ -1,4 +1,4 @@
-//! `~/get_type_description`: what the types of a node's topics are (REP 2011).
+//! `~/get_type_description`: describes the types of the node's topics (REP 2011).
 
 use excavator_msgs::{TypeDescription, definitions};
 use serde::{Deserialize, Serialize};

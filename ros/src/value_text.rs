@@ -1,11 +1,11 @@
-//! Parameter values as people write them: YAML.
+//! Parameter values written as YAML.
 
 use rosbag2::ReadLimits;
 use rosbag2::yaml::{self, Yaml};
 
 use super::Value;
 
-/// The value that a YAML scalar or a YAML list of scalars of one type stands for; `None` for anything else.
+/// The value of a YAML scalar or of a YAML list of scalars of one type; `None` for anything else.
 pub(super) fn from_yaml(yaml: &Yaml) -> Option<Value> {
     match yaml {
         Yaml::Bool(value) => Some(Value::Boolean(*value)),
@@ -20,7 +20,7 @@ pub(super) fn from_yaml(yaml: &Yaml) -> Option<Value> {
 /// The value of the text after `name:=`.
 pub(super) fn from_text(text: &str) -> Option<Value> {
     let yaml: Yaml = yaml::from_str(text, &ReadLimits::DEFAULT).ok()?;
-    // What YAML reads as nothing or as a map was meant as text: `-p model:=`, `-p model:=a: b`.
+    // If YAML reads null or a map, text was meant: `-p model:=`, `-p model:=a: b`.
     from_yaml(&yaml).or_else(|| (!matches!(yaml, Yaml::Sequence(_))).then(|| Value::String(text.to_string())))
 }
 

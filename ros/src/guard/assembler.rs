@@ -1,15 +1,15 @@
-//! Programs of the classic Berkeley packet filter, with labels instead of distances.
+//! Assembles programs of the classic Berkeley packet filter, with labels instead of distances.
 //!
-//! The machine has an accumulator, an index register and sixteen cells of memory. A load outside the packet ends the
-//! program, and the packet is dropped. Jumps go forward only, so a program has no loops.
+//! The machine has an accumulator, an index register and sixteen memory cells. A load outside the packet ends the
+//! program, and the packet is dropped. Jumps only go forward, so a program has no loops.
 
-/// One instruction as the kernel takes it (`struct sock_filter`).
+/// One instruction in the format of the kernel (`struct sock_filter`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Instruction {
     pub code: u16,
-    /// Instructions to skip where a condition holds.
+    /// Instructions to skip if the condition holds.
     pub yes: u8,
-    /// Instructions to skip where it does not.
+    /// Instructions to skip if it does not.
     pub no: u8,
     pub operand: u32,
 }
@@ -44,7 +44,7 @@ pub(super) mod code {
     pub const ACCUMULATOR_FROM_INDEX: u16 = 0x87;
 }
 
-/// Most instructions that the kernel takes (`BPF_MAXINSNS`).
+/// Most instructions that the kernel accepts (`BPF_MAXINSNS`).
 pub(super) const MOST_INSTRUCTIONS: usize = 4096;
 
 /// A place in a program.
@@ -67,51 +67,52 @@ pub(super) struct Assembler {
 }
 
 impl Assembler {
-    /// A label, to be placed later.
+    /// Creates a label, which is placed later.
     pub fn label(&mut self) -> Label {
         self.labels += 1;
         Label(self.labels - 1)
     }
 
-    /// Puts a label here.
+    /// Places a label here.
     pub fn place(&mut self, label: Label) {
         self.items.push(Item::Place(label));
     }
 
-    /// An instruction without a jump.
+    /// Adds an instruction without a jump.
     pub fn plain(&mut self, code: u16, operand: u32) {
         self.items.push(Item::Plain { code, operand });
     }
 
-    /// Goes to a label further down.
+    /// Jumps to a label further down.
     pub fn jump(&mut self, label: Label) {
         self.items.push(Item::Jump(label));
     }
 
-    /// Goes to one of two labels further down.
+    /// Jumps to one of two labels further down.
     pub fn branch(&mut self, code: u16, operand: u32, yes: Label, no: Label) {
         self.items.push(Item::Branch { code, operand, yes, no });
     }
 
-    /// Goes to `yes`, or on with the next instruction.
+    /// Jumps to `yes`, or continues with the next instruction.
     pub fn branch_if(&mut self, code: u16, operand: u32, yes: Label) {
         let next = self.label();
         self.branch(code, operand, yes, next);
         self.place(next);
     }
 
-    /// Goes to `no`, or on with the next instruction.
+    /// Jumps to `no`, or continues with the next instruction.
     pub fn branch_unless(&mut self, code: u16, operand: u32, no: Label) {
         let next = self.label();
         self.branch(code, operand, next, no);
         self.place(next);
     }
 
-    /// The finished program; `None` where a label is missing, lies behind its jump, or the program is too long.
+    /// Returns the finished program; `None` if a label is missing or lies before its jump, or if the program is too
+    /// long.
     ///
-    /// A condition reaches 255 instructions far. Where that is not enough, a jump follows it, which reaches any distance.
+    /// A condition reaches 255 instructions. For longer distances it is followed by a jump, which reaches any distance.
     pub fn assemble(&self) -> Option<Vec<Instruction>> {
-        // For each item: whether its `yes` and its `no` need a jump of their own.
+        // For each item: whether its `yes` and its `no` need a separate jump.
         let mut far = vec![(false, false); self.items.len()];
         let places = loop {
             let places = self.places(&far);

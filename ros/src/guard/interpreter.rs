@@ -1,4 +1,4 @@
-//! The packet filter's machine, for tests: what the kernel does with a program.
+//! Interpreter for packet filter programs, for tests: behaves as the kernel does.
 
 use super::assembler::{Instruction, code};
 

@@ -1,11 +1,11 @@
 //! A filter in the kernel in front of the middleware's sockets.
 //!
-//! RustDDS believes the numbers in a packet: a HEARTBEAT of 52 bytes in the name of a known writer makes it list 2^60
-//! missing samples, and the process is out of memory within seconds. Identities are visible to anybody on the network. The
+//! RustDDS trusts the numbers in a packet. A HEARTBEAT of 52 bytes in the name of a known writer makes it list 2^60
+//! missing samples, and the process is out of memory within seconds. GUIDs are visible to anybody on the network. The
 //! guard drops such packets before the middleware reads them ([`program`] has the list). It needs no privileges.
 //!
-//! What it cannot do: it keeps no state, so it does not know what a writer has sent so far. See `docs/security.md` for what
-//! remains.
+//! The guard keeps no state, so it does not know what a writer has sent so far. See `docs/security.md` for the
+//! remaining risks.
 
 mod assembler;
 #[cfg(test)]
@@ -27,26 +27,26 @@ use sockets::{Inode, duplicates, own, table};
 
 use super::Environment;
 
-/// Switches the guard off: for measurements.
+/// Switches the guard off, for measurements.
 const SWITCH: &str = "EXCAVATOR_PACKET_GUARD";
 
-/// What the kernel answers where a program is larger than a socket's optional memory (20 kB before Linux 6.7, 128 kB since).
+/// Error of the kernel if a program is larger than a socket's optional memory (20 kB before Linux 6.7, 128 kB since).
 const NO_MEMORY: i32 = nix::errno::Errno::ENOMEM as i32;
 
-/// Bytes of a fragment of RustDDS: what it is asked for again is counted in these.
+/// Bytes of a fragment in RustDDS. Requests for missing fragments count in these.
 const FRAGMENT: u32 = 256;
 
 impl Limits {
-    /// A HEARTBEAT: twice what a writer of 1 kHz has after a minute without an answer (60 000); RustDDS itself keeps at most
-    /// 8192. It costs 1 MB for a moment. A GAP: 8192, since RustDDS throws away what it notes beyond that.
+    /// HEARTBEAT: twice the samples of a 1 kHz writer after a minute without an answer (60 000). RustDDS itself keeps
+    /// at most 8192. The list takes 1 MB for a short time. GAP: 8192, since RustDDS discards entries beyond that.
     fn of_samples(sample_bytes: u32) -> Self {
         let sample_bytes = sample_bytes.clamp(1 << 16, 1 << 30).next_power_of_two();
         Limits { heartbeat_span: 1 << 17, gap_span: 8192, sample_bytes, fragments: sample_bytes / FRAGMENT }
     }
 }
 
-/// Fourteen submessages of any kind, as many as Cyclone DDS packs into a datagram of fragments, and 144 samples: as many of 24
-/// bytes as RustDDS packs into one repair round of 8192 bytes.
+/// Fourteen submessages of any kind, as many as Cyclone DDS packs into a datagram of fragments, and 144 samples: enough
+/// for the samples of 24 bytes that RustDDS packs into one repair round of 8192 bytes.
 const SHAPE: Shape = Shape { first: 5, samples: 48, more: 3, blocks: 3 };
 
 /// Why packets are not checked.
@@ -68,13 +68,13 @@ pub(super) enum GuardError {
 pub(super) struct Before(BTreeSet<Inode>);
 
 impl Before {
-    /// Looks.
+    /// Lists the current sockets.
     pub fn look() -> Self {
         Before(own().map(|found| found.into_keys().collect()).unwrap_or_default())
     }
 }
 
-/// A filter on the sockets of one participant; it goes with them.
+/// A filter on the sockets of one participant. It is removed when they close.
 #[derive(Debug, Clone)]
 pub(super) struct Guard {
     sockets: BTreeSet<Inode>,
@@ -82,7 +82,7 @@ pub(super) struct Guard {
 }
 
 impl Guard {
-    /// Attaches the filter to the sockets on which the middleware listens since `before`.
+    /// Attaches the filter to the sockets that the middleware has opened since `before`.
     pub fn attach(before: &Before, environment: &Environment) -> Result<Self, GuardError> {
         match std::env::var(SWITCH) {
             Ok(word) if word == "off" => return Err(GuardError::SwitchedOff),
@@ -117,7 +117,7 @@ impl Guard {
         }
     }
 
-    /// Packets that were refused or found the buffer full, on all sockets.
+    /// Packets on all sockets that were refused or found the buffer full.
     pub fn dropped(&self) -> u64 {
         let Ok(table) = table() else { return 0 };
         self.sockets.iter().filter_map(|inode| table.get(inode)).map(|row| row.dropped).sum()

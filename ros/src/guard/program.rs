@@ -1,21 +1,22 @@
-//! What the guard lets through, as a program of the packet filter.
+//! The rules of the guard, as a program of the packet filter.
 //!
-//! The program walks the submessages of an RTPS message (RTPS 2.5, 9.4) as RustDDS does, and drops the whole message
-//! where one of them would make RustDDS loop or allocate in proportion to a number in it:
+//! The program walks the submessages of an RTPS message (RTPS 2.5, 9.4) as RustDDS does. It drops the whole message if
+//! one of them would make RustDDS loop or allocate in proportion to a number in it:
 //!
 //! | submessage | what RustDDS 0.15.1 does | what passes |
 //! |---|---|---|
-//! | HEARTBEAT | lists every number from `firstSN` to `lastSN` that it has not | a span of [`Limits::heartbeat_span`], numbers below 2^40 |
-//! | GAP | notes every number from `gapStart` to `gapList.base` one by one, unless it knows of `gapStart` | a span of [`Limits::gap_span`], or a gap from number 1 |
-//! | DATA_FRAG | allocates and clears `sampleSize` bytes, for writers it never heard of too | [`Limits::sample_bytes`] |
+//! | HEARTBEAT | lists every missing number from `firstSN` to `lastSN` | a span of [`Limits::heartbeat_span`], numbers below 2^40 |
+//! | GAP | lists `gapStart` to `gapList.base`, unless it knows `gapStart` | a span of [`Limits::gap_span`], or a gap from number 1 |
+//! | DATA_FRAG | allocates and clears `sampleSize` bytes, also for unknown writers | [`Limits::sample_bytes`] |
 //! | NACK_FRAG | allocates a bit for every fragment up to the number asked for; number 0 ends its thread | 1 to [`Limits::fragments`] |
 //!
-//! A program has no loops, so the walk is unrolled: [`Shape`] says how far. A message with more submessages is dropped.
-//! Spans are compared in steps of 256: a span within the limit always passes, one that is 256 longer never.
+//! A program has no loops, so the walk is unrolled; [`Shape`] sets its length. A message with more submessages is
+//! dropped. Spans are compared in steps of 256: a span within the limit always passes, one that is longer by 256 never
+//! does.
 
 use super::assembler::{Assembler, Instruction, Label, code};
 
-/// Bytes that stand before the RTPS message in what a filter on a UDP socket sees.
+/// Bytes before the RTPS message in the view of a filter on a UDP socket.
 const UDP_HEADER: u32 = 8;
 /// Bytes of the RTPS header.
 const RTPS_HEADER: u32 = 20;
@@ -35,37 +36,37 @@ mod kind {
     pub const DATA_FRAG: u32 = 0x16;
 }
 
-/// Header of an INFO_TS with a time stamp, little endian, as every peer on a PC or ARM sends it.
+/// Header of an INFO_TS with a timestamp, little endian, as every peer on a PC or ARM sends it.
 const TIME_STAMP: u32 = 0x0901_0800;
-/// Bytes of it.
+/// Its length, bytes.
 const TIME_STAMP_BYTES: u32 = 12;
 
-/// Cells of memory.
+/// Memory cells.
 const OFFSET: u32 = 0;
 const FIRST: u32 = 1;
 const PART: u32 = 2;
 const HIGH: u32 = 3;
 
-/// What passes.
+/// Limits of what passes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Limits {
     /// Most numbers that a HEARTBEAT may announce; a multiple of 256.
     pub heartbeat_span: u32,
     /// Most numbers that a GAP may declare irrelevant, unless it begins with number 1; a multiple of 256.
     pub gap_span: u32,
-    /// Samples in fragments are smaller than this; a power of two from 2^16 to 2^30.
+    /// Samples in fragments must be smaller than this; a power of two from 2^16 to 2^30.
     pub sample_bytes: u32,
-    /// Fragments that are asked for have numbers below this; a power of two from 2^8 to 2^30.
+    /// Numbers of requested fragments must be below this; a power of two from 2^8 to 2^30.
     pub fragments: u32,
 }
 
-/// How many submessages a message may have. A message is laid out in blocks of submessages of any kind, with samples between
-/// them; what is not there is skipped.
+/// How many submessages a message may have. A message consists of blocks of submessages of any kind, with samples
+/// between them. Any of these may be absent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// Submessages of any kind at the beginning, in either order of bytes.
+    /// Submessages of any kind at the beginning, in either byte order.
     pub first: usize,
-    /// Samples, each with its time stamp or without, between two blocks: RustDDS packs what waits into one datagram.
+    /// Samples between two blocks, each with or without its timestamp: RustDDS packs waiting samples into one datagram.
     pub samples: usize,
     /// Submessages of any kind in each further block; those with checks must be little endian.
     pub more: usize,
@@ -73,7 +74,7 @@ pub(super) struct Shape {
     pub blocks: usize,
 }
 
-/// The program, or `None` where it would be longer than the kernel takes.
+/// The program, or `None` if it is longer than the kernel accepts.
 pub(super) fn program(limits: &Limits, shape: &Shape) -> Option<Vec<Instruction>> {
     let mut writer = Writer { code: Assembler::default(), limits: *limits };
     writer.head();
@@ -92,7 +93,7 @@ pub(super) fn program(limits: &Limits, shape: &Shape) -> Option<Vec<Instruction>
     writer.code.assemble()
 }
 
-/// Orders in which submessages with checks are taken; refused in another.
+/// Byte orders in which submessages with checks are accepted; others are refused.
 #[derive(Clone, Copy)]
 enum Checked {
     BothOrders,
@@ -111,8 +112,8 @@ struct Writer {
 }
 
 impl Writer {
-    /// Passes what is no RTPS message: RustDDS refuses it by its first bytes. Puts the offset of the first submessage into
-    /// the index.
+    /// Passes a packet that is not an RTPS message, since RustDDS rejects it by its first bytes. Loads the offset of
+    /// the first submessage into the index.
     fn head(&mut self) {
         let (rtps, other) = (self.code.label(), self.code.label());
         self.code.plain(code::LOAD_LENGTH, 0);
@@ -125,7 +126,7 @@ impl Writer {
         self.code.plain(code::INDEX_FROM_CONSTANT, UDP_HEADER + RTPS_HEADER);
     }
 
-    /// Passes a message that ends here, and drops one that goes on.
+    /// Passes a message that ends here, and drops a longer one.
     fn tail(&mut self) {
         self.end_or_go_on();
         self.drop();
@@ -177,7 +178,7 @@ impl Writer {
         self.walk();
     }
 
-    /// Writes one part for either order of bytes; `each` ends where both go on.
+    /// Emits one part for each byte order. Both continue after the code of `each`.
     fn in_both_orders(&mut self, mut each: impl FnMut(&mut Self, Order)) {
         let (little, big, both) = (self.code.label(), self.code.label(), self.code.label());
         self.code.plain(code::LOAD_BYTE_AT_INDEX, 1);
@@ -190,8 +191,8 @@ impl Writer {
         self.code.place(both);
     }
 
-    /// Loads a sequence number at `place` behind the index, divided by 256; refuses numbers from 2^40 on. Where
-    /// sequence numbers are read, the index is in the cell `OFFSET`.
+    /// Loads a sequence number at `place` after the index, divided by 256; refuses numbers from 2^40 on. When sequence
+    /// numbers are read, the cell `OFFSET` has the index.
     fn load_number(&mut self, place: u32, order: Order, refuse: Label) {
         match order {
             Order::Big => {
@@ -200,7 +201,7 @@ impl Writer {
                 self.code.plain(code::LOAD_WORD_AT_INDEX, place + 3);
             }
             Order::Little => {
-                // The high word comes first, whatever the order: its bits 0 to 7 are the first byte.
+                // The high word comes first in both byte orders; its bits 0 to 7 are the first byte.
                 self.code.plain(code::LOAD_WORD_AT_INDEX, place);
                 self.code.branch_if(code::IF_BITS, 0x00ff_ffff, refuse);
                 self.code.plain(code::STORE, HIGH);
@@ -217,11 +218,11 @@ impl Writer {
         }
     }
 
-    /// Loads two bytes at `place` behind the index.
+    /// Loads two bytes at `place` after the index.
     fn load_half(&mut self, place: u32, order: Order) {
         self.code.plain(code::LOAD_HALF_AT_INDEX, place);
         if matches!(order, Order::Little) {
-            // 0xPPQQ times 0x10001 is 0xPPQQPPQQ, and QQPP stands in its middle.
+            // 0xPPQQ times 0x10001 is 0xPPQQPPQQ, which has QQPP in its middle.
             self.code.plain(code::MULTIPLY, 0x1_0001);
             self.code.plain(code::SHIFT_RIGHT, 8);
             self.code.plain(code::AND, 0xffff);
@@ -257,10 +258,10 @@ impl Writer {
         let longer = self.code.label();
         self.code.branch(code::IF_GREATER, self.limits.heartbeat_span / 256, longer, walk);
         self.code.place(longer);
-        // A writer that has nothing announces a last number one below the first.
+        // A writer without samples announces a last number one below the first.
         self.code.branch(code::IF_EQUAL, u32::MAX, walk, refuse);
         self.code.place(gap);
-        // Too long, unless it begins with number 1: RustDDS moves its mark then, and lists nothing.
+        // Too long, unless it begins with number 1: RustDDS then only moves its mark and lists nothing.
         self.code.plain(code::LOAD_WORD_AT_INDEX, first);
         self.code.branch_unless(code::IF_EQUAL, 0, refuse);
         self.word_by_order(orders, first + 4, refuse, |writer, swap| {
@@ -268,13 +269,14 @@ impl Writer {
         });
     }
 
-    /// Goes on where the submessage is little endian, else to `refuse`.
+    /// Continues if the submessage is little endian, else jumps to `refuse`.
     fn little_endian_or(&mut self, refuse: Label) {
         self.code.plain(code::LOAD_BYTE_AT_INDEX, 1);
         self.code.branch_unless(code::IF_BITS, 1, refuse);
     }
 
-    /// Loads a word as it stands in the packet, and has it judged: `judge` gets what turns a constant into that order.
+    /// Loads a word in the byte order of the packet. `judge` receives the function that converts a constant to that
+    /// order.
     fn word_by_order(&mut self, orders: Checked, place: u32, refuse: Label, judge: impl Fn(&mut Self, fn(u32) -> u32)) {
         let big = self.code.label();
         let other = if matches!(orders, Checked::BothOrders) { big } else { refuse };
@@ -305,7 +307,8 @@ impl Writer {
         });
     }
 
-    /// Goes on to the next submessage. A length of 0 is "to the end", but for kinds that may be empty.
+    /// Goes to the next submessage. A length of 0 extends to the end of the message, except for kinds that may be
+    /// empty.
     fn walk(&mut self) {
         let (empty, to_the_end, next) = (self.code.label(), self.code.label(), self.code.label());
         self.in_both_orders(|writer, order| writer.load_half(2, order));
@@ -328,7 +331,7 @@ impl Writer {
         self.code.place(next);
     }
 
-    /// A sample, little endian, after its time stamp where there is one; stays where it is where something else stands here.
+    /// Skips a little endian sample and its timestamp, if any. Stays in place at any other submessage.
     fn sample(&mut self) {
         let (plain, other) = (self.code.label(), self.code.label());
         self.end_or_go_on();
@@ -337,7 +340,7 @@ impl Writer {
         self.code.plain(code::ACCUMULATOR_FROM_INDEX, 0);
         self.code.plain(code::ADD, TIME_STAMP_BYTES);
         self.code.plain(code::INDEX_FROM_ACCUMULATOR, 0);
-        // Nobody ends a message with a time stamp: this load drops it.
+        // No message ends with a timestamp: this load drops one that does.
         self.code.plain(code::LOAD_WORD_AT_INDEX, 0);
         self.code.place(plain);
         self.code.plain(code::AND, 0xff01_0000);

@@ -1,4 +1,4 @@
-//! The UDP sockets of this process, which the middleware does not show.
+//! The UDP sockets of this process, which the middleware does not expose.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::IoSlice;
@@ -9,15 +9,15 @@ use nix::sys::socket::{ControlMessage, MsgFlags, UnixAddr, sendmsg};
 use rustix::net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recvmsg};
 use socket2::Socket;
 
-/// Number by which the kernel knows a socket.
+/// Number of a socket in the kernel.
 pub(super) type Inode = u64;
 
-/// The UDP table of the network namespace that this thread is in.
+/// The UDP table of the network namespace of this thread.
 const TABLE: &str = "/proc/thread-self/net/udp";
 /// Descriptors of this process.
 const DESCRIPTORS: &str = "/proc/self/fd";
 
-/// What the kernel tells about a UDP socket.
+/// Data of the kernel about a UDP socket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Row {
     pub port: u16,
@@ -40,11 +40,11 @@ fn parse(table: &str) -> BTreeMap<Inode, Row> {
     table.lines().skip(1).filter_map(row).collect()
 }
 
-/// Sockets of this process of whatever kind, with their descriptors.
+/// All sockets of this process, of any kind, with their descriptors.
 pub(super) fn own() -> std::io::Result<BTreeMap<Inode, RawFd>> {
     let mut found = BTreeMap::new();
     for entry in std::fs::read_dir(DESCRIPTORS)?.flatten() {
-        // A descriptor may be closed meanwhile.
+        // The descriptor may have been closed meanwhile.
         let Ok(target) = std::fs::read_link(entry.path()) else { continue };
         let inode = target.to_str().and_then(|name| name.strip_prefix("socket:[")?.strip_suffix(']')?.parse().ok());
         let descriptor = entry.file_name().to_str().and_then(|name| name.parse().ok());
@@ -55,8 +55,8 @@ pub(super) fn own() -> std::io::Result<BTreeMap<Inode, RawFd>> {
     Ok(found)
 }
 
-/// Duplicates of descriptors, as sockets: a descriptor is sent to oneself, and the kernel returns another one for the same
-/// socket. This works without privileges, in containers too.
+/// Duplicates descriptors, as sockets: the process sends a descriptor to itself, and the kernel returns a new one for
+/// the same socket. This works without privileges, also in containers.
 pub(super) fn duplicates(descriptors: &BTreeSet<RawFd>) -> std::io::Result<Vec<Socket>> {
     let (sender, receiver) = UnixDatagram::pair()?;
     let mut sockets = Vec::new();

@@ -1,4 +1,4 @@
-//! The filter's program against crafted and captured packets, by the machine in [`super::interpreter`].
+//! Tests the program of the filter with crafted and captured packets, on the machine in [`super::interpreter`].
 
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -19,7 +19,7 @@ fn passes(program: &[Instruction], message: &[u8]) -> bool {
     run(program, &[&[0; 8], message].concat()) != 0
 }
 
-/// An RTPS message that grows.
+/// An RTPS message that is built step by step.
 #[derive(Clone)]
 struct Message {
     bytes: Vec<u8>,
@@ -173,8 +173,8 @@ fn what_is_no_rtps_message_passes() {
     }
 }
 
-/// What RustDDS would make of a message, with the limits: `None` where the rule is fuzzy by a step of 256, or RustDDS would
-/// refuse the message.
+/// Whether a message should pass with the limits; `None` if the rule is only exact to a step of 256, or if RustDDS
+/// would reject the message itself.
 fn expected(message: &[u8], limits: &Limits) -> Option<bool> {
     let mut rest = message.get(20..)?;
     let mut every = true;
@@ -195,7 +195,7 @@ fn expected(message: &[u8], limits: &Limits) -> Option<bool> {
             0x07 => {
                 let (first, last) = (number(12)?, number(20)?);
                 let span = i128::from(last) - i128::from(first) + 1;
-                // Nonsense that makes nobody loop may pass or not.
+                // An invalid span that does not make RustDDS loop may pass or not.
                 if span < 0 && !far(first) && !far(last) {
                     return None;
                 }
