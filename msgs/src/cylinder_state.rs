@@ -26,7 +26,7 @@ pub struct CylinderState {
 }
 
 impl CylinderState {
-    /// A cylinder of which nothing is measured. There is no `Default`: zeros would be measurements.
+    /// A cylinder without measurements. There is no `Default`: zeros would be measurements.
     ///
     /// ```
     /// use excavator_msgs::CylinderState;

@@ -1,12 +1,12 @@
-//! The texts of the message definitions, as bags and tools carry them.
+//! Texts of the message definitions, as used by bags and tools.
 
 use crate::layout;
 
-/// What separates the definitions of a schema: exactly 80 `=`. Other lengths make `mcap-ros2-support` fail.
+/// Separator of the definitions in a schema: exactly 80 `=`. Other lengths make `mcap-ros2-support` fail.
 pub const SEPARATOR: &str = "================================================================================";
 
-/// Every definition that is known: name as `package/Type`, text of the `.msg` file. Those of other packages are for
-/// recordings of their topics: fields and constants as the packages of ROS 2 Jazzy have them.
+/// All known definitions: name as `package/Type`, text of the `.msg` file. Definitions of other packages are for
+/// recordings of their topics, with the fields and constants of ROS 2 Jazzy.
 const TEXTS: [(&str, &str); 42] = [
     ("excavator_msgs/ArmState", include_str!("../msg/ArmState.msg")),
     ("excavator_msgs/CylinderEnergy", include_str!("../msg/CylinderEnergy.msg")),
@@ -52,16 +52,16 @@ const TEXTS: [(&str, &str); 42] = [
     ("tf2_msgs/TFMessage", include_str!("../common_interfaces/tf2_msgs/TFMessage.msg")),
 ];
 
-/// Text of the `.msg` file of one type, `None` for a type that is not known.
+/// Text of the `.msg` file of a type, `None` for an unknown type.
 ///
-/// The name may be written `package/msg/Type` or `package/Type`.
+/// The name may be `package/msg/Type` or `package/Type`.
 pub fn message_text(type_name: &str) -> Option<&'static str> {
     let wanted = layout::short_name(type_name);
     TEXTS.iter().find(|(name, _)| *name == wanted).map(|(_, text)| *text)
 }
 
-/// The `ros2msg` schema of a type: its definition followed by those of all types that it contains, each once and
-/// headed by [`SEPARATOR`] and `MSG: package/Type`. `None` for a type that is not known.
+/// The `ros2msg` schema of a type: its definition followed by those of all types that it contains. Each appears once,
+/// headed by [`SEPARATOR`] and `MSG: package/Type`. `None` for an unknown type.
 ///
 /// ```
 /// let schema = excavator_msgs::definitions::schema("excavator_msgs/msg/OrificeCommand");
@@ -77,8 +77,8 @@ pub fn schema(type_name: &str) -> Option<String> {
     Some(text)
 }
 
-/// `package/Type` of a type and of all types that it contains, each once, in the order in which they are met. `None` where one of them is
-/// not known.
+/// `package/Type` of a type and of all types that it contains, each once, in order of first use. `None` if one of them
+/// is unknown.
 pub(crate) fn with_contained(type_name: &str) -> Option<Vec<String>> {
     let mut types = vec![layout::short_name(type_name)];
     let mut next = 0;

@@ -1,18 +1,18 @@
-//! What a `ros2msg` definition says about the order and the types of the bytes of a message.
+//! Reads order and types of the fields of a message from its `ros2msg` definition.
 //!
-//! A bag carries the definition that its messages were written with. Comparing the layouts of that definition and of
-//! ours tells whether we can decode it, however the two differ in comments and blank lines.
+//! A bag carries the definition that its messages were written with. Its layout is compared with the layout of our
+//! definition to decide whether we can decode the messages. Comments and blank lines make no difference.
 
 use std::collections::HashMap;
 
 use crate::definitions;
 
-/// More fields than any sane message has; a definition that nests itself stops here.
+/// More fields than any sane message has; stops at a definition that contains itself.
 const FIELD_LIMIT: usize = 10_000;
-/// Deeper than any sane message nests.
+/// More nesting levels than any sane message has.
 const DEPTH_LIMIT: usize = 32;
 
-/// The types that contain no other.
+/// Types that contain no other type.
 const PRIMITIVES: [&str; 15] = [
     "bool", "byte", "char", "float32", "float64", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64",
     "uint64", "string", "wstring",
@@ -44,7 +44,7 @@ impl Field {
     }
 }
 
-/// `package/Type` of a name that may be written `package/msg/Type`.
+/// `package/Type` of a name that may also be written `package/msg/Type`.
 pub fn short_name(type_name: &str) -> String {
     type_name.replacen("/msg/", "/", 1)
 }
@@ -59,7 +59,7 @@ pub fn resolve(type_name: &str, package: &str) -> String {
     if type_name.contains('/') { short_name(type_name) } else { format!("{package}/{type_name}") }
 }
 
-/// The fields of one definition in order; comments, blank lines and constants are left out.
+/// The fields of one definition in order, without comments, blank lines and constants.
 pub fn fields(text: &str) -> Vec<Field> {
     let mut fields = Vec::new();
     for line in text.lines() {
@@ -76,7 +76,7 @@ pub fn fields(text: &str) -> Vec<Field> {
     fields
 }
 
-/// All primitive fields of a schema in the order of their bytes, with the fields of contained types in their place.
+/// All primitive fields of a schema in the order of their bytes. Contained types are replaced by their fields.
 ///
 /// Types that the schema does not define are looked up in [`definitions`]; if unknown there too, the field stays as it
 /// is. Comments and spelling (`std_msgs/msg/Header` or `std_msgs/Header`) make no difference.
@@ -107,7 +107,7 @@ pub fn flat_fields(type_name: &str, schema: &str) -> Vec<Field> {
     flat.fields
 }
 
-/// The fields found so far, and how many were looked at: types without any field can nest without giving one.
+/// The fields found so far, and how many were visited: types without fields can nest without adding one.
 #[derive(Default)]
 struct Flat {
     fields: Vec<Field>,
@@ -140,7 +140,8 @@ fn flatten(
     }
 }
 
-/// Parts of a schema between lines of `=`. Any run of at least ten counts: not every writer gets the 80 right.
+/// Parts of a schema between separator lines. Any line of at least ten `=` counts, since not every writer uses exactly
+/// 80.
 fn split_at_separators(schema: &str) -> Vec<&str> {
     let mut parts = Vec::new();
     let mut start = 0;
@@ -189,7 +190,7 @@ mod tests {
     fn a_definition_that_contains_itself_twice_comes_to_an_end() {
         let schema = "A a\nA b\n====================\nMSG: p/A\nA a\nA b\n";
         assert!(flat_fields("p/A", schema).len() <= FIELD_LIMIT);
-        // Two of the next type in each of 31 types, and nothing in the last.
+        // 31 types that each contain the next type twice; the last type is empty.
         let types = (0..31).map(|n| format!("====================\nMSG: p/T{n}\nT{0} a\nT{0} b\n", n + 1));
         let empty = format!("T0 a\n{}====================\nMSG: p/T31\n", types.collect::<String>());
         assert!(flat_fields("p/A", &empty).is_empty());

@@ -31,7 +31,7 @@ impl Time {
         Some(Time { sec, nanosec })
     }
 
-    /// Nanoseconds since the epoch, ns. Exact for any content of the fields, also a `nanosec` above 999 999 999.
+    /// Nanoseconds since the epoch, ns. Exact for all field values, also for a `nanosec` above 999 999 999.
     pub fn nanoseconds(self) -> i64 {
         i64::from(self.sec) * NANOSECONDS_PER_SECOND + i64::from(self.nanosec)
     }

@@ -1,4 +1,4 @@
-//! What a type is, as tools ask a node for it (REP 2011), and the hash that names it (REP 2016).
+//! Type descriptions that tools request from a node (REP 2011), and their hashes (REP 2016).
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -62,7 +62,7 @@ const BOUNDED_SEQUENCE: u8 = 96;
 const SEQUENCE: u8 = 144;
 
 impl TypeDescription {
-    /// Of a type that is known, written `package/msg/Type`; `None` for any other.
+    /// For a known type, written `package/msg/Type`; `None` for any other.
     pub fn of(type_name: &str) -> Option<TypeDescription> {
         let mut described = with_contained(type_name)?.into_iter().map(|name| individual(&name));
         let type_description = described.next()??;
@@ -83,7 +83,7 @@ impl TypeDescription {
         format!("RIHS01_{digest}")
     }
 
-    /// The names of the type and of those that it contains.
+    /// The names of the type and of the types that it contains.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         std::iter::once(&self.type_description)
             .chain(&self.referenced_type_descriptions)
@@ -91,7 +91,7 @@ impl TypeDescription {
     }
 }
 
-/// Names are letters, digits, `_` and `/`: nothing has to be escaped.
+/// Names are letters, digits, `_` and `/`, so nothing needs escaping.
 fn json(description: &IndividualTypeDescription) -> String {
     let field = |field: &FieldDescription| {
         let FieldType { type_id, capacity, string_capacity, nested_type_name } = &field.field_type;
@@ -165,7 +165,7 @@ fn primitive(name: &str) -> Option<u8> {
     })
 }
 
-/// What follows the name of a field in its line; empty without a default value.
+/// The text after the name of a field in its line; empty without a default value.
 fn default_value(text: &str, name: &str) -> String {
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
     let of_field = lines.filter_map(|line| line.split_once(char::is_whitespace)?.1.trim_start().strip_prefix(name));
@@ -178,7 +178,7 @@ fn default_value(text: &str, name: &str) -> String {
 mod tests {
     use super::*;
 
-    /// As rosidl_generator_type_description of ROS 2 Jazzy has them.
+    /// As in rosidl_generator_type_description of ROS 2 Jazzy.
     #[test]
     fn hashes_are_those_of_ros() {
         for (name, hash) in [

@@ -1,10 +1,10 @@
-//! Why a store cannot be used.
+//! Errors of stores.
 
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// Something that cannot be read from a store or written to it, in one line.
+/// Why an object cannot be read or written, in one line.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StoreError {
@@ -16,7 +16,7 @@ pub enum StoreError {
         /// What is wrong with it.
         reason: String,
     },
-    /// An option that the store of this address does not have.
+    /// The store of this address does not have this option.
     #[error("{url}: a store of this kind has no option \"{key}\"")]
     Option {
         /// The address.
@@ -24,66 +24,66 @@ pub enum StoreError {
         /// The option.
         key: String,
     },
-    /// Nothing is there.
+    /// The object does not exist.
     #[error("{url} does not exist")]
     DoesNotExist {
         /// The address.
         url: String,
     },
-    /// The store cannot write an object only where there is none.
+    /// The store does not support conditional creation.
     #[error(
         "{url}: this store cannot write an object only where there is none ({reason}); use another store for results"
     )]
     NoCreate {
         /// The address.
         url: String,
-        /// What the store says.
+        /// Message of the store.
         reason: String,
     },
-    /// Others may read or write there, but not with these keys.
+    /// The store refuses access with these credentials.
     #[error("{url}: the store refuses access: {reason}")]
     Access {
         /// The address.
         url: String,
-        /// What the store says.
+        /// Message of the store.
         reason: String,
     },
-    /// An object that was replaced while it was read.
+    /// The object was replaced while it was read.
     #[error("{url} changed while it was read")]
     Changed {
         /// The address.
         url: String,
     },
-    /// An object that is larger than what is asked for can be.
+    /// The object is larger than the limit.
     #[error("{url} has {size} bytes, more than {limit}")]
     TooLarge {
         /// The address.
         url: String,
         /// Its size, bytes.
         size: u64,
-        /// What it may have, bytes.
+        /// Limit, bytes.
         limit: u64,
     },
-    /// The store or the network failed, and went on failing.
+    /// The store or the network failed on every attempt.
     #[error("cannot {action} {url}: {attempts} attempts failed, the last with: {reason}")]
     Failed {
-        /// What was tried: "read", "write", ...
+        /// The action: "read", "write", ...
         action: &'static str,
         /// The address.
         url: String,
-        /// How often it was tried.
+        /// Number of attempts.
         attempts: u32,
-        /// What the store says.
+        /// Message of the store.
         reason: String,
     },
-    /// A file on this machine.
+    /// An error of a local file.
     #[error("cannot {action} {}: {source}", path.display())]
     File {
-        /// What was tried: "create", "write", ...
+        /// The action: "create", "write", ...
         action: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// No runtime for requests.
@@ -92,12 +92,12 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// Whether the same request may well succeed later: nothing is wrong with what was asked for.
+    /// Whether a repeated request may succeed: the request itself is not at fault.
     pub fn is_passing(&self) -> bool {
         matches!(self, StoreError::Failed { .. } | StoreError::Changed { .. } | StoreError::Runtime(_))
     }
 
-    /// What `source` means for `url`.
+    /// Converts `source`, which occurred at `url`.
     pub(crate) fn of(source: object_store::Error, action: &'static str, url: &str, attempts: u32) -> Self {
         use object_store::Error as Given;
         let (url, reason) = (url.to_string(), one_line(&source));
@@ -112,7 +112,7 @@ impl StoreError {
     }
 }
 
-/// An error with all its causes in one line of at most 400 characters: stores answer with pages.
+/// An error with all its causes in one line of at most 400 characters, since stores return whole pages.
 pub(crate) fn one_line(error: &dyn std::fmt::Display) -> String {
     let text = error.to_string();
     let words: Vec<&str> = text.split_whitespace().collect();

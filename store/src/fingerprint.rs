@@ -1,4 +1,4 @@
-//! Which content is at an address.
+//! Identifies the content at an address.
 
 use std::fs::File;
 use std::io::Read;
@@ -12,13 +12,14 @@ use crate::objects::metas;
 use crate::opened::{Options, Place, open};
 use crate::runtime::{block_on, persistently};
 
-/// Identity of the content at an address: the same text for the same content, another for another.
+/// Identity of the content at an address. Different contents have different identities.
 ///
-/// - Of a file on this machine it is `sha256:` and the hash of its bytes: times and inodes say nothing of the content.
-/// - Of an object it is `etag:`, what the store calls its content, and its size. The store computed it when the object was written; to hash the
-///   bytes again, every bag would have to be read as a whole, which [`thin_copy`](crate::thin_copy) avoids. A store gives another ETag to
-///   other bytes. It may give another one to the same bytes, after an upload in other parts: then the work is done once more, and nothing worse.
-/// - Of a folder it is `folder:` and a hash over names and identities of what is in it.
+/// - File on this machine: `sha256:` and the hash of its bytes. Times and inodes do not identify the content.
+/// - Object: `etag:`, the ETag of the store, and the size. The store computed the ETag when the object was written.
+///   Hashing the bytes again would mean reading every bag as a whole, which [`thin_copy`](crate::thin_copy) avoids.
+///   Different bytes have different ETags. The same bytes may have another ETag after an upload in other parts; the
+///   work is then only repeated.
+/// - Folder: `folder:` and a hash over names and identities of its content.
 ///
 /// ```
 /// use excavator_store::{Options, fingerprint};
@@ -31,7 +32,7 @@ use crate::runtime::{block_on, persistently};
 /// ```
 ///
 /// # Errors
-/// [`StoreError::DoesNotExist`]; others.
+/// [`StoreError::DoesNotExist`] and others.
 pub fn fingerprint(url: &str, options: &Options) -> Result<String, StoreError> {
     let place = open(url, options)?;
     if let Some(file) = place.file() {

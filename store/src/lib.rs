@@ -1,14 +1,14 @@
 //! Object storage for fleets of machines: S3, GCS, Azure and files behind one set of functions.
 //!
-//! An address is a URL (`s3://bucket/path`, `gs://bucket/path`, `az://container/path`, `file:///path`) or a plain path. [`Options`] are those
-//! of the crate `object_store` (`endpoint`, `allow_http`, `region`, `access_key_id`, ...). They override variables of the environment
-//! (`AWS_*`, `GOOGLE_*`, `AZURE_*`).
+//! An address is a URL (`s3://bucket/path`, `gs://bucket/path`, `az://container/path`, `file:///path`) or a plain path.
+//! [`Options`] are those of the crate `object_store` (`endpoint`, `allow_http`, `region`, `access_key_id`, ...). They
+//! override environment variables (`AWS_*`, `GOOGLE_*`, `AZURE_*`).
 //!
-//! [`thin_copy`] copies of an MCAP bag only what a piece of work needs: it reads the index at the end of the file, and then the chunks with
-//! wanted topics.
+//! [`thin_copy`] copies only the needed topics of an MCAP bag: it reads the index at the end of the file, and then the
+//! chunks with wanted topics.
 //!
-//! Every function blocks. Requests run on one runtime of the process, so that connections are kept. Each is tried again when the store or
-//! the network fails.
+//! Every function blocks. Requests run on one runtime per process, so that connections are reused. Failed requests are
+//! retried.
 //!
 //! ```
 //! use excavator_store::{Options, get, list, put_if_absent};

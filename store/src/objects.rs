@@ -1,4 +1,4 @@
-//! Whole objects: documents and results.
+//! Reads and writes whole objects: documents and results.
 
 use futures::TryStreamExt;
 use object_store::{GetOptions, ObjectMeta, ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload};
@@ -7,7 +7,7 @@ use crate::opened::{Options, Place, open};
 use crate::runtime::{block_on, persistently};
 use crate::{StoreError, error::one_line};
 
-/// What a document or a table of results may have, bytes. Bags are larger, and are never in memory as a whole.
+/// Largest document or table of results, bytes. Bags are larger, but are never in memory as a whole.
 const LARGEST: u64 = 1 << 30;
 
 /// An object of a store.
@@ -18,7 +18,7 @@ pub struct Entry {
     pub url: String,
     /// Its size, bytes.
     pub size: u64,
-    /// What the store calls its content, if it does.
+    /// ETag of the store, if any.
     pub etag: Option<String>,
     /// When it was written, ns since the Unix epoch.
     pub last_modified: i64,
@@ -50,13 +50,13 @@ pub fn get(url: &str, options: &Options) -> Result<Vec<u8>, StoreError> {
     })
 }
 
-/// The content of an object that is known to be small enough.
+/// The content of an object whose size is known to be within the limit.
 async fn content(place: &Place) -> Result<Vec<u8>, StoreError> {
     let request = || async { place.store.get_opts(&place.path, GetOptions::default()).await?.bytes().await };
     persistently("read", &place.url, request).await.map(Vec::from)
 }
 
-/// Writes an object, or replaces it.
+/// Writes an object, replacing an existing one.
 ///
 /// # Errors
 /// [`StoreError`].
@@ -67,18 +67,18 @@ pub fn put(url: &str, content: &[u8], options: &Options) -> Result<(), StoreErro
     block_on(persistently("write", url, request)).map(drop)
 }
 
-/// Writes an object only where there is none; says whether the object is this content. Of many that write different contents at the same
-/// time one does; where another wrote the very same bytes, both are told so.
+/// Writes an object only if there is none. Returns whether the object now has this content. If several writers write
+/// different contents at the same time, one of them succeeds. If another writer wrote the same bytes, both get `true`.
 ///
 /// # Errors
-/// [`StoreError::NoCreate`] where the store has no such request; others.
+/// [`StoreError::NoCreate`] if the store does not support this request; others.
 pub fn put_if_absent(url: &str, content: &[u8], options: &Options) -> Result<bool, StoreError> {
     let place = open(url, options)?;
     block_on(create(&place, content))
 }
 
-/// As [`put_if_absent`]. Where an attempt failed after its bytes had arrived, the next one finds an object with the same bytes: its own.
-/// The library of the stores tries again by itself and does not say so, hence every object that is found is looked at.
+/// As [`put_if_absent`]. If an attempt failed after its bytes had arrived, the next one finds its own object with the
+/// same bytes. The client library retries by itself without reporting it, so every existing object is compared.
 async fn create(place: &Place, content: &[u8]) -> Result<bool, StoreError> {
     let payload = PutPayload::from(content.to_vec());
     let request = || {
@@ -88,7 +88,7 @@ async fn create(place: &Place, content: &[u8]) -> Result<bool, StoreError> {
             match store.put_opts(&path, payload, options).await {
                 Ok(_) => Ok(Ok(true)),
                 Err(object_store::Error::AlreadyExists { .. }) => Ok(Ok(false)),
-                // Not tried again: the store will not learn it.
+                // Not retried: the store does not support the request.
                 Err(error @ object_store::Error::NotImplemented { .. }) => Ok(Err(one_line(&error))),
                 Err(error) => Err(error),
             }
@@ -101,7 +101,7 @@ async fn create(place: &Place, content: &[u8]) -> Result<bool, StoreError> {
     }
 }
 
-/// All objects in a folder and the folders below it, by address. Nothing where there is no such folder.
+/// All objects in a folder and its subfolders, sorted by address. Empty if there is no such folder.
 ///
 /// # Errors
 /// [`StoreError`].
@@ -112,15 +112,15 @@ pub fn list(url: &str, options: &Options) -> Result<Vec<Entry>, StoreError> {
     Ok(found)
 }
 
-/// What the store knows of all objects below a place.
+/// Metadata of all objects below a place.
 pub(crate) async fn metas(place: &Place) -> Result<Vec<ObjectMeta>, StoreError> {
     persistently("list", &place.url, || place.store.list(Some(&place.path)).try_collect()).await
 }
 
-/// What the store knows of an object.
+/// Metadata of an object.
 ///
 /// # Errors
-/// [`StoreError::DoesNotExist`]; others.
+/// [`StoreError::DoesNotExist`] and others.
 pub fn head(url: &str, options: &Options) -> Result<Entry, StoreError> {
     let place = open(url, options)?;
     let meta = block_on(persistently("read", url, || place.store.head(&place.path)))?;

@@ -1,4 +1,4 @@
-//! From an address to a store.
+//! Opens the store of an address.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Component, Path as FilePath, PathBuf};
@@ -16,28 +16,28 @@ use url::Url;
 use crate::StoreError;
 use crate::error::one_line;
 
-/// Options of a store by name, as `object_store` has them.
+/// Options of a store by name, as in `object_store`.
 pub type Options = BTreeMap<String, String>;
 
-/// Stores that were opened, by address of their root, process, options and environment: a client keeps its connections, and making one
+/// Open stores by root address, process, options and environment. A client keeps its connections, and creating one
 /// reads certificates.
 type Opened = HashMap<(String, u32, Options), Arc<dyn ObjectStore>>;
 
 static OPENED: LazyLock<Mutex<Opened>> = LazyLock::new(Mutex::default);
 
-/// A place in a store.
+/// A location in a store.
 #[derive(Debug, Clone)]
 pub struct Place {
     /// The store.
     pub store: Arc<dyn ObjectStore>,
-    /// The path in it.
+    /// The path in the store.
     pub path: Path,
-    /// Address that was asked for.
+    /// The requested address.
     pub url: String,
     root: Root,
 }
 
-/// How addresses of this store begin.
+/// Root of the addresses in this store.
 #[derive(Debug, Clone)]
 enum Root {
     /// Plain paths.
@@ -47,7 +47,7 @@ enum Root {
 }
 
 impl Place {
-    /// The address of an object of the same store, as the place itself was given: a path or a URL.
+    /// The address of an object of the same store, in the form of this place's own address: a path or a URL.
     pub fn url_of(&self, path: &Path) -> String {
         match &self.root {
             Root::Folder => format!("/{path}"),
@@ -59,7 +59,7 @@ impl Place {
         }
     }
 
-    /// The file, where the store is this machine.
+    /// The local file, if the store is this machine.
     pub fn file(&self) -> Option<PathBuf> {
         match &self.root {
             Root::Folder => Some(PathBuf::from(&self.url)),
@@ -69,8 +69,9 @@ impl Place {
     }
 }
 
-/// Retries of the client. Ten of them, as by default, but the first after 50 ms instead of 100, and none later than 5 s: a store that fails one
-/// request in ten then fails one in 10^11 for good, and a unit of work waits a tenth of a second rather than a minute.
+/// Retry settings of the client. Ten retries, as by default, but the first after 50 ms instead of 100, and none later
+/// than 5 s. A store that fails one request in ten then fails one in 10^11 permanently, and a unit of work waits a
+/// tenth of a second instead of a minute.
 fn retries() -> RetryConfig {
     RetryConfig {
         backoff: BackoffConfig {
@@ -83,7 +84,7 @@ fn retries() -> RetryConfig {
     }
 }
 
-/// The store of an address, and the path in it.
+/// Opens the store of an address. Returns the store with the path in it.
 ///
 /// # Errors
 /// [`StoreError::Address`] and [`StoreError::Option`].
@@ -112,7 +113,8 @@ pub fn open(url: &str, options: &Options) -> Result<Place, StoreError> {
     Ok(Place { store, path, url: url.to_string(), root: Root::Url(parsed) })
 }
 
-/// The path without `..`, which paths of a store do not have. Behind a symbolic link, `..` is the parent of where the link leads.
+/// The path without `..`, which store paths do not support. Behind a symbolic link, `..` is the parent of the link
+/// target.
 fn without_parents(path: &FilePath) -> PathBuf {
     let mut plain = PathBuf::new();
     for component in path.components() {
@@ -131,7 +133,7 @@ fn local() -> Arc<dyn ObjectStore> {
     Arc::new(LocalFileSystem::new())
 }
 
-/// The store of this root, made where there is none yet.
+/// The store of this root; creates it if it is not open yet.
 fn opened(
     root: &str,
     options: &Options,
@@ -153,7 +155,7 @@ fn opened(
     Ok(store)
 }
 
-/// A store that is reached by requests.
+/// A remote store.
 fn remote(url: &Url, options: &Options) -> Result<Arc<dyn ObjectStore>, StoreError> {
     let wrong = |error: object_store::Error| StoreError::Address { url: url.to_string(), reason: one_line(&error) };
     let unknown = |key: &str| StoreError::Option { url: url.to_string(), key: key.to_string() };

@@ -1,4 +1,4 @@
-//! One runtime for all requests, and how often they are tried.
+//! One runtime for all requests, and their retries.
 
 use std::future::Future;
 use std::sync::{OnceLock, PoisonError, RwLock};
@@ -8,8 +8,8 @@ use tokio::runtime::{Builder, Runtime};
 
 use crate::StoreError;
 
-/// How often a request is made before its failure is told. The client of `object_store` tries most failures again by itself; this is for
-/// those that it leaves alone, such as a connection that ends in the middle of an answer.
+/// Number of attempts before a failure is reported. The client of `object_store` retries most failures by itself. These
+/// attempts are for those that it does not retry, such as a connection that ends in the middle of an answer.
 pub(crate) const ATTEMPTS: u32 = 6;
 
 /// Wait before the second attempt; it doubles each time, so that all waits together are 3 s.
@@ -17,16 +17,16 @@ const FIRST_WAIT: Duration = Duration::from_millis(100);
 
 static RUNTIME: OnceLock<RwLock<Option<(u32, &'static Runtime)>>> = OnceLock::new();
 
-/// The result of `work`, which runs on the runtime of the process. A thread of its own looks after connections between two calls; a runtime
-/// that only works during calls would not notice that a server closed them.
+/// Runs `work` on the runtime of the process. A separate thread serves connections between two calls: a runtime that
+/// only works during calls would not notice that a server closed them.
 ///
 /// # Errors
-/// [`StoreError::Runtime`], and those of `work`.
+/// [`StoreError::Runtime`], and the errors of `work`.
 pub(crate) fn block_on<T>(work: impl Future<Output = Result<T, StoreError>>) -> Result<T, StoreError> {
     runtime()?.block_on(work)
 }
 
-/// The runtime of this process. A process that was forked has none of its parent's threads, and gets its own.
+/// The runtime of this process. A forked process has no threads of its parent, so it gets its own runtime.
 fn runtime() -> Result<&'static Runtime, StoreError> {
     let place = RUNTIME.get_or_init(RwLock::default);
     let process = std::process::id();
@@ -47,10 +47,10 @@ fn runtime() -> Result<&'static Runtime, StoreError> {
     Ok(runtime)
 }
 
-/// Makes a request, and makes it again where that may help.
+/// Makes a request, and retries it if that may help.
 ///
 /// # Errors
-/// What the last attempt says.
+/// The error of the last attempt.
 pub(crate) async fn persistently<T, F>(
     action: &'static str,
     url: &str,

@@ -1,5 +1,5 @@
-//! Messages of other packages that live nodes exchange with the world: the same fields in the same order as
-//! `std_msgs`, `sensor_msgs`, `diagnostic_msgs`, `rosgraph_msgs` and `rcl_interfaces` define them.
+//! Messages of other packages that nodes exchange with the outside: the same fields in the same order as in `std_msgs`,
+//! `sensor_msgs`, `diagnostic_msgs`, `rosgraph_msgs` and `rcl_interfaces`.
 
 mod clock;
 mod diagnostics;

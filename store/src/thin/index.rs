@@ -1,4 +1,4 @@
-//! The index at the end of an MCAP file.
+//! Reads the index at the end of an MCAP file.
 
 use std::io::SeekFrom;
 
@@ -11,23 +11,24 @@ use super::source::Source;
 use super::{Unfit, lengths};
 use crate::StoreError;
 
-/// What is fetched of the end at first, bytes: indexes of bags of a few minutes fit, and a request for it takes no longer than for less.
+/// Bytes fetched from the end at first: indexes of bags of a few minutes fit, and a smaller request would not be
+/// faster.
 const TAIL: u64 = 64 << 10;
 
-/// An index may not have more than this, bytes.
+/// Largest index, bytes.
 const LARGEST: u64 = 256 << 20;
 
-/// What is fetched of the beginning, bytes.
+/// Bytes fetched from the beginning.
 const HEAD: u64 = 512;
 
-/// What the index says, and what lies outside chunks.
+/// The index, and the records outside chunks.
 pub(super) struct Index {
     pub(super) summary: Summary,
     /// Profile of the header, `ros2`.
     pub(super) profile: String,
-    /// Where the first record after the header begins, bytes.
+    /// Offset of the first record after the header, bytes.
     pub(super) data_start: u64,
-    /// Where the index begins, bytes.
+    /// Offset of the index, bytes.
     pub(super) end: u64,
     pub(super) metadata: Vec<Metadata>,
 }
@@ -35,7 +36,7 @@ pub(super) struct Index {
 /// Reads the index with two or three requests.
 ///
 /// # Errors
-/// [`StoreError`] of a request. Within: what makes the file unfit for a thin copy.
+/// [`StoreError`] of a request. The inner error states why the file does not allow a thin copy.
 pub(super) async fn read(source: &Source<'_>) -> Result<Result<Index, Unfit>, StoreError> {
     let mut tail = Tail { start: source.size.saturating_sub(TAIL), bytes: Bytes::new() };
     tail.bytes = source.tail(tail.start).await?;
@@ -78,7 +79,8 @@ struct Tail {
     bytes: Bytes,
 }
 
-/// Where the index begins, by the footer: a record of 20 bytes before the last 8, which begin and end every file.
+/// Offset of the index, from the footer: a record of 20 bytes before the last 8 bytes, which are the magic of every
+/// file.
 fn summary_start(tail: &[u8]) -> Option<u64> {
     let footer = tail.len().checked_sub(8 + 20 + 9)?;
     let (op, body) = lengths::record(tail.get(footer..)?)?;
@@ -86,7 +88,7 @@ fn summary_start(tail: &[u8]) -> Option<u64> {
     (op == mcap::records::op::FOOTER && ends_well).then(|| lengths::number(body)).flatten().filter(|start| *start > 0)
 }
 
-/// What the reader of the index says of these bytes.
+/// Parses the index in these bytes.
 fn summary(tail: &Tail, size: u64) -> McapResult<Option<Summary>> {
     let mut reader = SummaryReader::new_with_options(
         SummaryReaderOptions::default().with_file_size(size).with_record_length_limit(LARGEST as usize),

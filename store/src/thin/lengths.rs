@@ -1,4 +1,4 @@
-//! Records as bytes: a kind, a length and a body.
+//! Splits bytes into records: a kind, a length and a body.
 
 /// Eight bytes as a number.
 pub(super) fn number(bytes: &[u8]) -> Option<u64> {

@@ -1,4 +1,4 @@
-//! Copies of bags with only the topics that are needed.
+//! Copies bags with only the needed topics.
 
 mod index;
 mod lengths;
@@ -16,20 +16,21 @@ use crate::objects::metas;
 use crate::opened::{Options, Place, open};
 use crate::runtime::{block_on, persistently};
 
-/// How many requests for chunks run at a time. Their answers are in memory: at most 4 times 8 MiB, or four chunks where one is larger.
+/// Number of concurrent requests for chunks. Their answers are in memory: at most 4 times 8 MiB, or four chunks if one
+/// is larger.
 const AT_A_TIME: usize = 4;
 
 /// What was copied.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct ThinCopy {
-    /// Where the copy is: a file, or a folder where the bag is one.
+    /// Path of the copy: a file, or a folder if the bag is one.
     pub path: PathBuf,
-    /// Bytes that were read from the store.
+    /// Bytes read from the store.
     pub bytes_read: u64,
-    /// Bytes that the bag has.
+    /// Size of the bag, bytes.
     pub bytes_total: u64,
-    /// Messages that were copied one by one; none of files that were copied whole.
+    /// Messages that were copied one by one, without those in files that were copied whole.
     pub messages: u64,
     /// Files that were copied whole, with the reason.
     pub whole: Vec<String>,
@@ -39,14 +40,14 @@ pub struct ThinCopy {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Unfit(&'static str);
 
-/// Why a file is copied whole after its index was good.
+/// The index was good, but a chunk is damaged.
 const DAMAGED: Unfit = Unfit("a damaged chunk");
 
-/// Which topics are wanted.
+/// The wanted topics.
 struct Wanted<'t>(&'t [String]);
 
 impl Wanted<'_> {
-    /// Whether this one is: by its name, or by its end where the wanted name begins with `*`.
+    /// Whether a topic is wanted: by its name, or by its end if the wanted name begins with `*`.
     fn has(&self, topic: &str) -> bool {
         self.0.iter().any(|one| match one.strip_prefix('*') {
             Some(end) => topic.ends_with(end),
@@ -55,12 +56,13 @@ impl Wanted<'_> {
     }
 }
 
-/// Copies the bag at `url` into the folder `target`, under its own name, with only the messages of `topics`. A name that begins with `*` means
-/// every topic that ends with the rest. Without topics the copy is whole.
+/// Copies the bag at `url` into the folder `target`, under its own name, with only the messages of `topics`. A name
+/// that begins with `*` matches every topic that ends with the rest. Without topics the copy is whole.
 ///
-/// Of an MCAP file its index is read, and then the chunks that have wanted topics; the copy has their messages in the same order, their
-/// schemas, channels and metadata. What cannot be copied so is copied whole: other formats, files without an index or with a damaged one, and
-/// files with every topic wanted. So a reader finds the same messages of these topics, and the same damage.
+/// For an MCAP file, the index is read first, then the chunks with wanted topics. The copy has their messages in the
+/// same order, with their schemas, channels and metadata. Other files are copied whole: other formats, files without an
+/// index or with a damaged one, and files in which every topic is wanted. A reader thus finds the same messages of
+/// these topics, and the same damage.
 ///
 /// A folder is copied file by file: bags, `map.toml`, and `metadata.yaml` where there are several files.
 ///
@@ -77,7 +79,7 @@ impl Wanted<'_> {
 /// ```
 ///
 /// # Errors
-/// [`StoreError`]: of the store, or of files in `target`.
+/// [`StoreError`] of the store or of files in `target`.
 pub fn thin_copy(
     url: &str,
     topics: Option<&[String]>,
@@ -96,7 +98,7 @@ pub fn thin_copy(
                     file(&place, &meta, wanted.as_ref(), &done.path.clone(), &mut done).await?;
                     return Ok(done);
                 }
-                // The place may be a folder.
+                // The address may be a folder.
                 Err(StoreError::DoesNotExist { .. }) => {}
                 Err(other) => return Err(other),
             }
@@ -148,7 +150,7 @@ fn is_bag(name: &str) -> bool {
     [".mcap", ".db3", ".mcap.zstd", ".db3.zstd"].iter().any(|end| name.ends_with(end))
 }
 
-/// Copies one file: thinly if it can be, else whole.
+/// Copies one file: only wanted messages if possible, else the whole file.
 async fn file(
     place: &Place,
     meta: &ObjectMeta,
@@ -178,10 +180,10 @@ async fn file(
     Ok(())
 }
 
-/// Copies the wanted messages of a file; gives their number.
+/// Copies the wanted messages of a file and returns their number.
 ///
 /// # Errors
-/// [`StoreError`] of a request. Within: why the file must be copied whole.
+/// [`StoreError`] of a request. The inner error states why the file must be copied whole.
 async fn thin(
     source: &source::Source<'_>,
     wanted: &Wanted<'_>,

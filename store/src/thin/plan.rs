@@ -1,4 +1,4 @@
-//! Which parts of a file are fetched.
+//! Plans which parts of a file are fetched.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -8,34 +8,34 @@ use mcap::records::ChunkIndex;
 use super::index::Index;
 use super::{Unfit, Wanted};
 
-/// Chunks that lie closer together than this are fetched at once, bytes: between two of them are indexes of messages, and a request costs more
-/// than so many bytes.
+/// Chunks closer together than this are fetched with one request, bytes. Between two of them are message indexes, and a
+/// request costs more than fetching these bytes.
 const GAP: u64 = 64 << 10;
 
-/// What is fetched at once, bytes; a single chunk may have more.
+/// Limit for one request, bytes; a single chunk may be larger.
 const TOGETHER: u64 = 8 << 20;
 
-/// What a chunk may have, bytes, packed and unpacked: four of them are in memory at a time.
+/// Largest chunk, bytes, compressed and uncompressed: four of them are in memory at a time.
 const LARGEST_CHUNK: u64 = 512 << 20;
 
 /// What is fetched with one request.
 pub(super) struct Fetch {
     pub(super) range: Range<u64>,
-    /// The chunks with wanted messages, as ranges of what is fetched.
+    /// The chunks with wanted messages, as ranges of the fetched bytes.
     pub(super) chunks: Vec<Range<usize>>,
 }
 
-/// What is to be done.
+/// Wanted channels and the requests for them.
 pub(super) struct Plan {
     /// Numbers of the wanted channels.
     pub(super) channels: BTreeSet<u16>,
     pub(super) fetches: Vec<Fetch>,
 }
 
-/// What of a file is needed for the wanted topics.
+/// The parts of a file that the wanted topics need.
 ///
 /// # Errors
-/// [`Unfit`] where the index does not tell where all messages are.
+/// [`Unfit`] if the index does not locate all messages.
 pub(super) fn plan(index: &Index, wanted: &Wanted<'_>) -> Result<Plan, Unfit> {
     let summary = &index.summary;
     let channels: BTreeSet<u16> =
@@ -52,7 +52,7 @@ pub(super) fn plan(index: &Index, wanted: &Wanted<'_>) -> Result<Plan, Unfit> {
         if known.clone().any(|id| !summary.channels.contains_key(id)) {
             return Err(Unfit("an index that lacks a channel"));
         }
-        // A chunk without indexes of its messages may have any.
+        // A chunk without message indexes may have messages of any topic.
         if !chunk.message_index_offsets.is_empty() && !known.clone().any(|id| channels.contains(id)) {
             continue;
         }
@@ -64,7 +64,7 @@ pub(super) fn plan(index: &Index, wanted: &Wanted<'_>) -> Result<Plan, Unfit> {
     Ok(Plan { channels, fetches })
 }
 
-/// Puts a chunk into the last fetch, or into one of its own.
+/// Adds a chunk to the last fetch, or starts a new one.
 fn add(fetches: &mut Vec<Fetch>, chunk: Range<u64>) -> Result<(), Unfit> {
     let within = |range: &Range<u64>| -> Result<Range<usize>, Unfit> {
         let place = |at: u64| usize::try_from(at - range.start).map_err(|_| Unfit("a chunk at no possible place"));
@@ -84,7 +84,8 @@ fn add(fetches: &mut Vec<Fetch>, chunk: Range<u64>) -> Result<(), Unfit> {
     Ok(())
 }
 
-/// Whether chunks with their indexes, attachments and metadata fill the file: else there may be messages outside chunks.
+/// Checks that chunks with their indexes, attachments and metadata fill the file. Otherwise there may be messages
+/// outside chunks.
 fn check_coverage(index: &Index, chunks: &[&ChunkIndex]) -> Result<(), Unfit> {
     let summary = &index.summary;
     let mut known: Vec<(u64, u64)> = chunks
@@ -101,6 +102,6 @@ fn check_coverage(index: &Index, chunks: &[&ChunkIndex]) -> Result<(), Unfit> {
         }
         covered = start.checked_add(length).ok_or(Unfit("an index at no possible place"))?;
     }
-    // The record that ends the data has 13 bytes.
+    // The DataEnd record has 13 bytes.
     if covered.checked_add(13) == Some(index.end) { Ok(()) } else { Err(Unfit("records outside chunks")) }
 }

@@ -15,7 +15,7 @@ use crate::StoreError;
 use crate::opened::Place;
 use crate::runtime::persistently;
 
-/// An object of known size and content, and how much of it was read.
+/// An object of known size and content, and how many of its bytes were read.
 pub(super) struct Source<'p> {
     place: &'p Place,
     path: Path,
@@ -23,7 +23,7 @@ pub(super) struct Source<'p> {
     etag: Option<String>,
     pub(super) size: u64,
     read: AtomicU64,
-    /// The end of the object and where it begins, once it was read.
+    /// The end of the object with its offset, once it was read.
     tail: OnceLock<(u64, Bytes)>,
 }
 
@@ -40,19 +40,19 @@ impl<'p> Source<'p> {
         }
     }
 
-    /// Bytes that were read so far.
+    /// Bytes read so far.
     pub(super) fn bytes_read(&self) -> u64 {
         self.read.load(Ordering::Relaxed)
     }
 
-    /// The last bytes, which are kept: a small bag lies in them altogether.
+    /// The last bytes of the object. They are kept, since a small bag lies completely in them.
     pub(super) async fn tail(&self, start: u64) -> Result<Bytes, StoreError> {
         let bytes = self.range(start..self.size).await?;
         let (_, kept) = self.tail.get_or_init(|| (start, bytes));
         Ok(kept.clone())
     }
 
-    /// What is kept of a range, where it is all of it.
+    /// The cached bytes of a range, if the whole range is cached.
     fn kept(&self, range: &Range<u64>) -> Option<Bytes> {
         let (start, bytes) = self.tail.get()?;
         let place = |offset: u64| usize::try_from(offset.checked_sub(*start)?).ok();
@@ -60,7 +60,7 @@ impl<'p> Source<'p> {
         (from <= to && to <= bytes.len()).then(|| bytes.slice(from..to))
     }
 
-    /// The bytes of a range; of the same content each time, where the store can tell.
+    /// The bytes of a range. The content is the same on each call, if the store supports ETags.
     pub(super) async fn range(&self, range: Range<u64>) -> Result<Bytes, StoreError> {
         if let Some(kept) = self.kept(&range) {
             return Ok(kept);

@@ -1,4 +1,4 @@
-//! Chunks of one file as another file with fewer topics.
+//! Writes chunks of one file to another file with fewer topics.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -11,7 +11,7 @@ use mcap::{McapError, McapResult, WriteOptions, Writer};
 use super::index::Index;
 use super::lengths;
 
-/// A local file that takes wanted messages.
+/// A local file for the wanted messages.
 pub(super) struct ThinFile {
     writer: Writer<BufWriter<std::fs::File>>,
     channels: BTreeSet<u16>,
@@ -19,10 +19,10 @@ pub(super) struct ThinFile {
 }
 
 impl ThinFile {
-    /// Begins a file with the wanted channels of another, under the same numbers.
+    /// Creates a file with the wanted channels of another, under the same numbers.
     pub(super) fn create(target: &Path, index: &Index, channels: &BTreeSet<u16>) -> McapResult<Self> {
         let file = BufWriter::new(std::fs::File::create(target)?);
-        // Nobody keeps this file: it is not packed.
+        // Not compressed, since the file is temporary.
         let mut writer = WriteOptions::new().profile(index.profile.clone()).compression(None).create(file)?;
         for (id, channel) in index.summary.channels.iter().filter(|(id, _)| channels.contains(id)) {
             let mut schema_id = 0;
@@ -37,7 +37,7 @@ impl ThinFile {
         Ok(ThinFile { writer, channels: channels.clone(), messages: 0 })
     }
 
-    /// Adds the wanted messages of the chunk that is this record.
+    /// Adds the wanted messages of the chunk in this record.
     pub(super) fn add(&mut self, record: &[u8]) -> McapResult<()> {
         let (header, packed) = chunk(record)?;
         for one in mcap::read::ChunkReader::new(header, packed)? {
@@ -51,14 +51,14 @@ impl ThinFile {
         Ok(())
     }
 
-    /// Ends the file.
+    /// Finishes the file.
     pub(super) fn finish(mut self) -> McapResult<u64> {
         self.writer.finish()?;
         Ok(self.messages)
     }
 }
 
-/// Header and packed bytes of a chunk.
+/// Header and compressed bytes of a chunk.
 fn chunk(record: &[u8]) -> McapResult<(ChunkHeader, &[u8])> {
     let (op, body) = lengths::record(record).ok_or(McapError::UnexpectedEof)?;
     match mcap::parse_record(op, body)? {
