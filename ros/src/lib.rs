@@ -32,8 +32,8 @@
 //!
 //! | fault | remedy |
 //! |---|---|
-//! | a peer whose lease ran out is never matched again | `health.rs`: a scout looks for it, the link is built anew |
-//! | threads end when a system call is interrupted | `threads.rs`: they are counted, the link is built anew |
+//! | a peer whose lease ran out is never matched again | `health.rs`: a scout looks for it, the link is rebuilt |
+//! | threads end when a system call is interrupted | `threads.rs`: they are counted, the link is rebuilt |
 //! | a call can deadlock | `patience.rs`: what may hang runs on a thread of its own |
 //! | each fragment of a sample with inline QoS has one byte too many | `large_replies.rs`: long replies go another way |
 //! | Fast DDS does not see that a participant has left | `farewell.rs`: the message is sent once more in the form of Fast DDS |

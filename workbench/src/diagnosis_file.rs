@@ -1,4 +1,4 @@
-//! What `excavator diagnose --json` wrote, read back.
+//! Reads the output of `excavator diagnose --json`.
 
 use std::path::{Path, PathBuf};
 
@@ -10,8 +10,8 @@ use rosbag2::{ReadLimits, read_regular_text};
 
 use crate::WorkError;
 
-/// A diagnosis as far as a design needs it: rivals by name (`EFFECT@PLACE`, `none`) with the values of all parameters that
-/// were fitted with them.
+/// The parts of a diagnosis that a design needs: rivals by name (`EFFECT@PLACE`, `none`) with the values of all
+/// parameters that were fitted with them.
 #[derive(Debug)]
 pub struct DiagnosisFile {
     path: PathBuf,
@@ -32,7 +32,7 @@ impl DiagnosisFile {
         DiagnosisFile::of_text(path, &read_regular_text(path, ReadLimits::DEFAULT.document)?)
     }
 
-    /// Reads the text of a file; `path` is for messages.
+    /// Parses the text of a file. `path` is for error messages.
     ///
     /// # Errors
     /// [`WorkError::DiagnosisSyntax`].
@@ -68,20 +68,20 @@ impl DiagnosisFile {
         Err(WorkError::NoTie { path: self.path.clone(), found })
     }
 
-    /// Whether the diagnosis has fitted values for this rival.
+    /// Whether the diagnosis has fitted values for a rival.
     pub fn has(&self, rival: &str) -> bool {
         !self.values(rival).is_empty()
     }
 
-    /// Contract names and values of the parameters fitted with this rival; empty where there are none.
+    /// Contract names and values of the parameters fitted with a rival; empty if there are none.
     pub fn values(&self, rival: &str) -> &[(String, f64)] {
         self.fitted.iter().find(|(name, _)| name == rival).map_or(&[], |(_, values)| values)
     }
 
-    /// `model` with the nuisance effects that were estimated: rivals whose values come from the diagnosis have them too.
+    /// `model` with the estimated nuisance effects, since rivals with values from the diagnosis include them.
     ///
     /// # Errors
-    /// [`ModelError`] where the model has no such place.
+    /// [`ModelError`] if the model has no such place.
     pub fn with_nuisances(&self, model: &Model) -> Result<Model, ModelError> {
         let mut extended = model.clone();
         for name in &self.nuisances {
@@ -94,7 +94,7 @@ impl DiagnosisFile {
         Ok(extended)
     }
 
-    /// Replaces the usual sensors by those of the diagnosis, where it tells them.
+    /// Replaces the usual sensor noise by that of the diagnosis, if the diagnosis has it.
     pub fn noise_into(&self, sensors: &mut Sensors) {
         if !self.noise.is_empty() {
             sensors.noise.clone_from(&self.noise);

@@ -1,4 +1,4 @@
-//! Why there is no result, in one line.
+//! Errors, each with a message of one line.
 
 use std::path::PathBuf;
 
@@ -66,7 +66,7 @@ pub enum WorkError {
 }
 
 impl WorkError {
-    /// The faulty line of a file with a mark at the place; empty where there is none.
+    /// The faulty line of a file with a mark at the position; empty if there is none.
     pub fn excerpt(&self) -> &str {
         match self {
             WorkError::Document(error) => error.excerpt(),

@@ -1,10 +1,10 @@
-//! JSON as `--json` has it.
+//! JSON in the format of `--json`.
 
 use serde::Serialize;
 
 use crate::WorkError;
 
-/// A result as text, laid out for people too.
+/// A result as JSON text, indented to be readable.
 ///
 /// ```
 /// assert_eq!(excavator_workbench::json_text(&[0.5, 2.0])?, "[\n  0.5,\n  2.0\n]\n");

@@ -1,16 +1,17 @@
-//! What the program and the Python package do alike: recordings are made fit for use, and results are told as JSON, sentences and pages.
+//! Common code of the program and the Python package: it prepares recordings for use, and presents results as JSON,
+//! sentences and pages.
 //!
 //! | module | content |
 //! |---|---|
 //! | [`recording_part`] | `BAG@20..40`: a part of a recording |
-//! | [`recordings`] | checks before a recording is used, what is left out of it, the most informative stretches of a long one |
+//! | [`recordings`] | checks before a recording is used, samples that are left out, the most informative stretches of a long recording |
 //! | [`results`] | the result of each verb, with its JSON, its sentence and its page |
-//! | [`sentences`] | results in words that no page has |
-//! | [`numbers`] | numbers for people |
+//! | [`sentences`] | result sentences that no page contains |
+//! | [`numbers`] | numbers formatted for users |
 //! | [`simulated`] | simulations of commands, from rest |
 //! | [`profile_file`], [`diagnosis_file`] | files that one verb writes and another reads |
 //!
-//! Nothing is printed here: what a person should know is given back as remarks.
+//! This crate prints nothing. It returns remarks for the user.
 //!
 //! ```no_run
 //! use std::path::Path;

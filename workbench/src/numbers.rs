@@ -1,4 +1,4 @@
-//! Numbers for people.
+//! Formats numbers for users.
 
 /// A number with four significant digits, short.
 ///

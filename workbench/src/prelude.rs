@@ -1,4 +1,4 @@
-//! What most programs need: `use excavator_workbench::prelude::*;`.
+//! Imports that most programs need: `use excavator_workbench::prelude::*;`.
 
 pub use crate::WorkError;
 pub use crate::diagnosis_file::DiagnosisFile;

@@ -1,4 +1,4 @@
-//! Profile files: what each cylinder is asked to do, as TOML.
+//! Profile files: commanded motion of each cylinder, as TOML.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,7 +14,7 @@ use crate::WorkError;
 /// Memory that a simulation may take, bytes.
 const MOST_MEMORY: f64 = 1e9;
 
-/// What is larger by less is the same number with fewer digits.
+/// A value that exceeds a limit by less than this factor is the same number with fewer digits.
 const ROUNDING: f64 = 1.001;
 
 /// A profile file.
@@ -31,14 +31,14 @@ pub struct ProfileFile {
     pub profiles: Vec<Profile>,
 }
 
-/// 1 kHz, as the live simulator publishes.
+/// 1 kHz, the rate of the live simulator.
 pub fn usual_rate() -> f64 {
     1000.0
 }
 
 /// Most samples of a simulated bag: an hour at 1 kHz with one cylinder, twenty minutes with five.
 fn most_samples(cylinders: usize) -> f64 {
-    // The commands and what is simulated from them, with all signals; inputs of the integration; stamps.
+    // Commands and simulated recording with all signals, inputs of the integration, timestamps.
     let signals = 5 + 8 * cylinders;
     let numbers = 2 * signals + 4 + cylinders;
     (MOST_MEMORY / (8 * numbers) as f64).floor()
@@ -48,15 +48,15 @@ impl ProfileFile {
     /// Reads a file and checks it against a machine.
     ///
     /// # Errors
-    /// [`WorkError`] in one line that says which number or name is wrong.
+    /// [`WorkError`] in one line with the wrong number or name.
     pub fn read(path: &Path, machine: &Machine) -> Result<Self, WorkError> {
         ProfileFile::of_text(path, &read_regular_text(path, ReadLimits::DEFAULT.document)?, machine)
     }
 
-    /// Reads the text of a file and checks it against a machine; `path` is for messages.
+    /// Parses the text of a file and checks it against a machine. `path` is for error messages.
     ///
     /// # Errors
-    /// [`WorkError`] in one line that says which number or name is wrong.
+    /// [`WorkError`] in one line with the wrong number or name.
     pub fn of_text(path: &Path, text: &str, machine: &Machine) -> Result<Self, WorkError> {
         let wrong = |fault: TomlFault| WorkError::ProfileSyntax { path: path.to_path_buf(), fault };
         let syntax = |reason: String| wrong(reason.into());
@@ -79,7 +79,7 @@ impl ProfileFile {
         Ok(file)
     }
 
-    /// What no segment is wrong in by itself, for a machine with so many cylinders.
+    /// Checks across segments and profiles, for a machine with this number of cylinders.
     fn check(&self, cylinders: usize) -> Result<(), String> {
         for (number, profile) in self.profiles.iter().enumerate() {
             let cylinder = &profile.cylinder;
@@ -111,7 +111,7 @@ impl ProfileFile {
         self.profiles.iter().map(Profile::duration).fold(0.0, f64::max)
     }
 
-    /// What is asked for that `machine` cannot do, in one line for each cylinder: openings beyond its valve's largest.
+    /// Commands that `machine` cannot execute, one line per cylinder: openings beyond the full command of its valve.
     pub fn remarks(&self, machine: &Machine) -> Vec<String> {
         let opens_too_far = |profile: &Profile| {
             let cylinder = machine.cylinders.iter().find(|cylinder| cylinder.name == profile.cylinder)?;
@@ -131,10 +131,10 @@ impl ProfileFile {
         self.profiles.iter().filter_map(opens_too_far).collect()
     }
 
-    /// The file's text, under comment lines that say what it is.
+    /// The text of the file, headed by the lines of `comment`.
     ///
     /// # Errors
-    /// [`WorkError::ProfileWrite`] when a number cannot be written.
+    /// [`WorkError::ProfileWrite`] if a number cannot be written.
     pub fn text(&self, comment: &[String]) -> Result<String, WorkError> {
         let body = toml::to_string(self).map_err(|error| WorkError::ProfileWrite(error.to_string()))?;
         let head: String = comment.iter().map(|line| format!("# {line}\n")).collect();

@@ -6,7 +6,7 @@ use excavator_model::recording::Recording;
 
 use crate::WorkError;
 
-/// From when to when, s after the first sample.
+/// Start and end, s after the first sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Part {
     from: f64,
@@ -14,7 +14,8 @@ pub struct Part {
 }
 
 impl Part {
-    /// A path without the part of it that is wanted, and that part. What exists as it is has no part, even with an @ in its name.
+    /// Splits a path into the bag and the wanted part. A path that exists as written has no part, even with an @ in its
+    /// name.
     ///
     /// ```
     /// use std::path::Path;
@@ -28,7 +29,7 @@ impl Part {
     /// ```
     ///
     /// # Errors
-    /// [`WorkError::Part`] for times that are none.
+    /// [`WorkError::Part`] for invalid times.
     pub fn split(path: &Path) -> Result<(PathBuf, Option<Part>), WorkError> {
         let named = || {
             let (before, part) = path.to_str()?.rsplit_once('@')?;
@@ -46,36 +47,37 @@ impl Part {
         Ok((PathBuf::from(before), Some(Part::between(from, to, path)?)))
     }
 
-    /// The part of a recording from `from` to `to`, s, which errors call `name`.
+    /// The part of a recording from `from` to `to`, s. Error messages call it `name`.
     ///
     /// # Errors
     /// [`WorkError::Part`] for an end that is not after the start.
     pub fn between(from: f64, to: f64, name: &Path) -> Result<Part, WorkError> {
-        // Also false where one of them is no number.
+        // Also false if one of them is NaN.
         let is_part = from >= 0.0 && from < to;
         if is_part { Ok(Part { from, to }) } else { Err(wrong(name, format!("{from} s is not before {to} s"))) }
     }
 
-    /// What is wanted of a block that begins `offset` s after the first sample of its recording; `None` where that is nothing.
+    /// The wanted samples of a block that begins `offset` s after the first sample of its recording; `None` if there
+    /// are none.
     pub fn of_block(self, block: &Recording, offset: f64) -> Option<Recording> {
         let part = block.part(self.from - offset, self.to - offset);
         (!part.is_empty()).then_some(part)
     }
 
-    /// Whether nothing is wanted of what comes after `time`, s.
+    /// Whether the part ends before `time`, s.
     pub fn ends_before(self, time: f64) -> bool {
         self.to < time
     }
 
-    /// That the recording from `path` ends at `end`, s, before anything that is wanted.
+    /// The error if the recording from `path` ends at `end`, s, before the part begins.
     pub fn is_beyond(self, end: f64, path: &Path) -> WorkError {
         wrong(path, format!("the recording ends at {end:.2} s"))
     }
 
-    /// That part of what was read from `path`.
+    /// The part of a recording that was read from `path`.
     ///
     /// # Errors
-    /// [`WorkError::Part`] where the recording has ended before.
+    /// [`WorkError::Part`] if the recording ends before the part begins.
     pub fn of(self, recording: &Recording, path: &Path) -> Result<Recording, WorkError> {
         if self.from >= recording.duration() {
             return Err(self.is_beyond(recording.duration(), path));

@@ -1,4 +1,5 @@
-//! Recordings before they are used: checked against the model, without what is left out, and of long ones the part that tells most.
+//! Prepares recordings for use: checks them against a model, leaves samples out, and selects the most informative
+//! stretches of long ones.
 
 use excavator_bags::ReadReport;
 use excavator_identification::checks;
@@ -12,21 +13,22 @@ use excavator_model::simulation::input_holes;
 
 use crate::WorkError;
 
-/// Time on a machine of the reference size, s, from which on a recording is long. A fit of three minutes takes a minute.
+/// A recording longer than this is long, s of time on a machine of the reference size. A fit of three minutes takes a
+/// minute.
 pub const LONG: f64 = 180.0;
 
-/// Samples that are in memory at a time, three minutes at 1 kHz; a recording of more is long.
+/// Samples in memory at a time, three minutes at 1 kHz. A recording with more samples is long.
 pub const BLOCK: usize = 180_000;
 
-/// Samples in memory at a time where an energy ledger is kept, ten seconds at 1 kHz.
+/// Samples in memory at a time for an energy ledger, ten seconds at 1 kHz.
 pub const LEDGER_BLOCK: usize = 10_000;
 
-/// What a person decided on the use of recordings.
+/// User settings for recordings.
 #[derive(Debug, Clone, Copy)]
 pub struct Use<'u> {
-    /// Checks that may refuse a recording and are overruled, by name.
+    /// Names of the checks that are overruled if they refuse a recording.
     pub accept: &'u [String],
-    /// Conditions that must hold where a recording is compared with a model, in the language of formulas.
+    /// Conditions that must hold when a recording is compared with a model, in the formula language.
     pub conditions: &'u [String],
 }
 
@@ -35,7 +37,7 @@ pub fn is_long(samples: usize, duration: f64, model: &Model) -> bool {
     samples > BLOCK || duration > LONG * model.machine.size().time()
 }
 
-/// A recording in blocks of so many samples, each with its own start.
+/// A recording in blocks of `samples` samples, each with its own start.
 pub fn blocks(recording: &Recording, samples: usize) -> impl Iterator<Item = Recording> {
     (0..recording.len()).step_by(samples).map(move |first| {
         let wanted: Vec<usize> = (first..recording.len().min(first + samples)).collect();
@@ -47,11 +49,12 @@ pub fn blocks(recording: &Recording, samples: usize) -> impl Iterator<Item = Rec
     })
 }
 
-/// Of a long recording the stretches most informative about the parameters of `model`, and the sentence of [`choice`]. `None` for one
-/// that is used whole. A recording that no map brought together is looked at block by block, as the program reads it.
+/// The most informative stretches of a long recording for the parameters of `model`, and the sentence of [`choice`].
+/// `None` for a recording that is used whole. A recording that is not mapped is processed block by block, as the
+/// program reads it.
 ///
 /// # Errors
-/// [`RegressionError`] where it lacks inputs.
+/// [`RegressionError`] if the recording lacks inputs.
 pub fn telling(
     recording: &Recording,
     is_mapped: bool,
@@ -72,7 +75,7 @@ pub fn telling(
     Ok(Some((used, sentence)))
 }
 
-/// Which stretches were chosen, in a sentence without its end.
+/// Lists the chosen stretches, in a sentence without its full stop.
 pub fn choice(used: &Recording, chosen: &Chosen) -> String {
     let starts: Vec<String> = chosen.starts.iter().map(|start| format!("{start:.0}")).collect();
     format!(
@@ -86,11 +89,11 @@ pub fn choice(used: &Recording, chosen: &Chosen) -> String {
     )
 }
 
-/// A recording as it is used, with what is to be told of it added to `remarks`; `name` is what they call it. `report` says what its map
-/// leaves out.
+/// Prepares a recording for use and adds messages for the user to `remarks`, where it is called `name`. `report` lists
+/// what the map of the recording leaves out.
 ///
 /// # Errors
-/// [`WorkError::Check`] for a recording that a check refuses, [`WorkError::Condition`] for a condition that cannot be read.
+/// [`WorkError::Check`] if a check refuses the recording, [`WorkError::Condition`] if a condition cannot be parsed.
 pub fn checked(
     name: &str,
     mut recording: Recording,
@@ -123,8 +126,8 @@ pub fn checked(
     Ok(recording)
 }
 
-/// Takes away what is compared with a model where the condition does not hold, or, unless it `keeps`, where it does; inputs stay. Gives
-/// the share of samples of all cylinders that are left out.
+/// Removes the compared outputs where the condition does not hold or, unless it `keeps`, where it holds. Inputs stay.
+/// Returns the share of samples of all cylinders that are left out.
 fn leave_out(model: &Model, recording: &mut Recording, condition: &Condition, keeps: bool) -> f64 {
     let mut holds = condition.holds(&model.machine, recording);
     holds.iter_mut().flatten().for_each(|holds| *holds = *holds == keeps);
@@ -159,7 +162,7 @@ fn leave_out(model: &Model, recording: &mut Recording, condition: &Condition, ke
     left_out as f64 / (samples * holds.len()).max(1) as f64
 }
 
-/// Takes away the pump pressure between these moments, ns, where it is compared with a model, and no input.
+/// Removes the pump pressure between these times, ns, if it is a compared output and not an input.
 fn leave_pump_pressure_out(model: &Model, recording: &mut Recording, stretches: &[[i64; 2]]) {
     if !matches!(model.machine.supply, Supply::PumpLine(_)) {
         return;

@@ -1,4 +1,4 @@
-//! Results in words that no page has.
+//! Result sentences that no page contains.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::WorkError;
 use crate::numbers::number;
 use crate::profile_file::{ProfileFile, usual_rate};
 
-/// How many parameters were identified, how well, and what the equations leave.
+/// Number of identified parameters, their accuracy, and the remaining residual of the equations.
 pub fn identification_sentence(result: &Identified) -> String {
     let machine = &result.model.machine.name;
     let asked = result.fitted.len() + result.not_identified.len();
@@ -40,7 +40,7 @@ pub fn identification_sentence(result: &Identified) -> String {
     text
 }
 
-/// What the recordings say of a parameter that they hardly show.
+/// What the recordings determine about a parameter that is weakly identifiable.
 pub fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
     let names = model.parameter_names();
     let unit = model.parameters().nth(profile.index).map_or("", |(_, parameter)| &*parameter.card.unit);
@@ -65,7 +65,7 @@ pub fn profile_sentence(profile: &ProfileInterval, model: &Model) -> String {
     text
 }
 
-/// Whether the ledger of a recording closes; `missing` is what is missing in it.
+/// Whether the energy ledger of a recording closes. `missing` is the missing power.
 pub fn ledger_sentence(model: &Model, analysis: &EnergyAnalysis, missing: &[MissingPower]) -> String {
     let over = format!("{:.1} s of {}", analysis.duration, analysis.source);
     let machine = &model.machine.name;
@@ -75,7 +75,7 @@ pub fn ledger_sentence(model: &Model, analysis: &EnergyAnalysis, missing: &[Miss
     }
 }
 
-/// How many pairs a profile is expected to separate.
+/// Number of pairs that a profile is expected to separate.
 pub fn separation_sentence(design: &SeparationDesign) -> String {
     let separated = design.pairs.iter().filter(|pair| pair.separated).count();
     let pairs = design.pairs.len();
@@ -86,7 +86,7 @@ pub fn separation_sentence(design: &SeparationDesign) -> String {
     )
 }
 
-/// How well a profile is expected to show a parameter.
+/// Expected accuracy of a parameter with a profile.
 pub fn determination_sentence(design: &ParameterDesign) -> String {
     format!(
         "A profile of {:.1} s is expected to determine {} to within {:.1} % (one standard error).",

@@ -1,4 +1,4 @@
-//! Simulations of what nobody measured: commands, from rest.
+//! Simulates commands from rest.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,7 +12,7 @@ use excavator_model::simulation::{InputSignals, Profile, RunError, Tolerances, r
 use crate::WorkError;
 use crate::profile_file::ProfileFile;
 
-/// Simulates a profile; `source` names it in messages and in the result.
+/// Simulates a profile. `source` is its name in messages and in the result.
 ///
 /// ```
 /// use std::path::Path;
@@ -35,7 +35,7 @@ use crate::profile_file::ProfileFile;
 /// ```
 ///
 /// # Errors
-/// [`WorkError`] where the machine cannot start there, or the simulation fails.
+/// [`WorkError`] if the machine cannot start there, or the simulation fails.
 pub fn simulate_profile(model: &Model, file: &ProfileFile, source: &Path) -> Result<Recording, WorkError> {
     let names: Vec<&str> = model.machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();
     let samples = (file.duration() * file.rate).round() as usize + 1;
@@ -45,8 +45,8 @@ pub fn simulate_profile(model: &Model, file: &ProfileFile, source: &Path) -> Res
     simulate_commands(model, recording, &file.start, source)
 }
 
-/// Simulates commands from rest at `start` (displacement of each cylinder, m from mid-stroke; zero where not given). A pump line has
-/// the flow and tank pressure of the machine where the commands do not say them.
+/// Simulates commands from rest at `start` (displacement of each cylinder, m from mid-stroke; zero if not given). If
+/// the commands do not include flow and tank pressure of a pump line, those of the machine are used.
 ///
 /// # Errors
 /// As [`simulate_profile`].

@@ -33,7 +33,7 @@ pub(super) struct Index {
     pub(super) metadata: Vec<Metadata>,
 }
 
-/// Reads the index with two or three requests.
+/// Reads the index with one to three requests, and one for each metadata record before the fetched end.
 ///
 /// # Errors
 /// [`StoreError`] of a request. The inner error states why the file does not allow a thin copy.

@@ -1,4 +1,4 @@
-//! Valve and friction, read off without a simulation.
+//! Valve and friction characteristics, without a simulation.
 
 use excavator_identification::characterisation::{Characterisation, characterise};
 use excavator_identification::results;
@@ -18,7 +18,7 @@ pub struct Characterised {
 }
 
 impl Characterised {
-    /// Reads what there is to read off the recordings, taken together.
+    /// Determines all characteristics that the recordings together allow.
     pub fn of(model: &Model, recordings: &[&Recording]) -> Self {
         let sources = recordings.iter().map(|recording| recording.source.clone()).collect();
         Characterised { model: model.clone(), sources, found: characterise(model, recordings) }

@@ -1,4 +1,4 @@
-//! A model beside a recording.
+//! Comparison of a model with a recording.
 
 use excavator_identification::results;
 use excavator_identification::validation::{Baselines, Comparison, Repeat, compare, compare_runs};
@@ -13,19 +13,19 @@ use crate::{WorkError, json_text};
 pub struct Compared {
     /// The model.
     pub model: Model,
-    /// The model beside the recording.
+    /// Comparison of the model with the recording.
     pub comparison: Comparison,
-    /// What is known without the model.
+    /// Errors of predictions without the model.
     pub baselines: Baselines,
-    /// Another model beside the same recording.
+    /// Comparison of another model with the same recording.
     pub against: Option<Comparison>,
     /// Another run of the same commands.
     pub again: Option<Repeat>,
 }
 
 impl Compared {
-    /// Simulates `model` with the input of `recording` and compares every output; beside it another model, or another run of the same
-    /// commands.
+    /// Simulates `model` with the input of `recording` and compares every output. Optionally adds another model, or
+    /// another run of the same commands.
     ///
     /// # Errors
     /// [`WorkError::Run`].
@@ -42,7 +42,7 @@ impl Compared {
         Ok(Compared { model: model.clone(), comparison, baselines, against, again })
     }
 
-    /// What stands beside the comparison.
+    /// The additional comparisons.
     #[must_use]
     pub fn others(&self) -> Vec<Beside<'_>> {
         self.against.iter().map(Beside::Model).chain(self.again.iter().map(Beside::Run)).collect()

@@ -1,4 +1,4 @@
-//! Manoeuvres that separate effects, or show a parameter.
+//! Manoeuvres that separate effects or determine a parameter.
 
 use excavator_identification::design::{DesignSettings, ParameterDesign, Rival, SeparationDesign, determine, separate};
 use excavator_identification::results;
@@ -9,10 +9,10 @@ use crate::diagnosis_file::DiagnosisFile;
 use crate::sentences::{determination_profile, determination_sentence, separation_profile, separation_sentence};
 use crate::{WorkError, json_text};
 
-/// What a design is for, and what it must keep to.
+/// Purpose and limits of a design.
 #[derive(Debug, Clone)]
 pub struct DesignOrder {
-    /// Effects to separate; for a parameter, effects that the model is to have besides.
+    /// Effects to separate; for a parameter, additional effects of the model.
     pub between: Vec<String>,
     /// Longest profile, s.
     pub duration: f64,
@@ -23,7 +23,7 @@ pub struct DesignOrder {
 }
 
 impl DesignOrder {
-    /// The model with what a diagnosis estimated besides, and the settings.
+    /// The model with the nuisance effects of a diagnosis, and the settings.
     fn prepared(&self, model: &Model, diagnosis: Option<&DiagnosisFile>) -> Result<(Model, DesignSettings), WorkError> {
         let model = diagnosis.map_or_else(|| Ok(model.clone()), |file| file.with_nuisances(model))?;
         let mut settings = DesignSettings::usual(&model.machine);
@@ -44,7 +44,7 @@ pub struct Separated {
 }
 
 impl Separated {
-    /// Designs a profile between rivals: those of the order, else those that the diagnosis left tied.
+    /// Designs a profile between rivals: those of the order, or else those that are tied in the diagnosis.
     ///
     /// # Errors
     /// [`WorkError::Design`], [`WorkError::NoTie`].
@@ -60,7 +60,7 @@ impl Separated {
             (names, _) => names.to_vec(),
         };
         let mut rivals = Rival::named(&model, &names)?;
-        // Only values of all rivals from one diagnosis make them as alike as the recordings did.
+        // Rivals are as similar as in the recordings only if one diagnosis has values for all of them.
         let fitted = diagnosis.is_some_and(|file| rivals.iter().all(|rival| file.has(&rival.name)));
         if let Some(file) = diagnosis {
             rivals.iter_mut().for_each(|rival| rival.set(file.values(&rival.name)));
@@ -69,12 +69,12 @@ impl Separated {
         Ok(Separated { model, design })
     }
 
-    /// What was designed.
+    /// The design.
     pub fn design(&self) -> &SeparationDesign {
         &self.design
     }
 
-    /// The result for programs, with the name of the profile file that was written.
+    /// The result for JSON, with the name of the written profile file.
     pub fn result(&self, profile: Option<&str>) -> results::Separation {
         results::Separation::of(&self.design, profile)
     }
@@ -102,7 +102,7 @@ pub struct Determined {
 }
 
 impl Determined {
-    /// Designs a profile that shows one parameter.
+    /// Designs a profile that determines one parameter.
     ///
     /// # Errors
     /// [`WorkError::Design`].
@@ -127,12 +127,12 @@ impl Determined {
         Ok(Determined { model: rival.model, design })
     }
 
-    /// What was designed.
+    /// The design.
     pub fn design(&self) -> &ParameterDesign {
         &self.design
     }
 
-    /// The result for programs, with the name of the profile file that was written.
+    /// The result for JSON, with the name of the written profile file.
     pub fn result(&self, profile: Option<&str>) -> results::Determination {
         results::Determination::of(&self.design, profile)
     }

@@ -1,4 +1,4 @@
-//! Which physical effect a model is missing.
+//! Diagnosis of the physical effect that a model is missing.
 
 use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
 use excavator_identification::energy::{MissingPower, ledgers};
@@ -18,16 +18,16 @@ pub struct Diagnosed {
     pub model: Model,
     /// Verdict and candidates.
     pub diagnosis: Diagnosis,
-    /// A first idea of the law, where no effect explains what is missing.
+    /// A first guess at the law, if no effect explains the difference.
     pub guess: Option<Guess>,
-    /// What the energy ledger says of each validation recording in which energy is known.
+    /// Missing power in the energy ledger of each validation recording with known energy.
     pub missing: Vec<(String, Vec<MissingPower>)>,
-    /// The recordings that the evidence is from.
+    /// The recordings that provide the evidence.
     pub validation: Vec<Recording>,
 }
 
 impl Diagnosed {
-    /// Fits `model` and every effect of its catalogue to `identification`, and takes evidence from `validation`.
+    /// Fits `model` and every effect of its catalogue to `identification`, and evaluates the evidence on `validation`.
     ///
     /// # Errors
     /// [`WorkError::Diagnosis`].

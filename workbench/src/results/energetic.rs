@@ -1,4 +1,4 @@
-//! Where the energy of a recording went.
+//! Energy analysis of a recording.
 
 use excavator_identification::energy::{Analyser, EnergyAnalysis, EnergySettings, analyse, missing_power};
 use excavator_identification::results;
@@ -27,7 +27,7 @@ impl Energetic {
         Ok(Energetic { model: model.clone(), analysis })
     }
 
-    /// The same block by block, as the program reads a bag of its own topics.
+    /// The same block by block, as the program reads a bag with its own topics.
     ///
     /// # Errors
     /// [`WorkError::Energy`].

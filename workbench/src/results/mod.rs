@@ -1,4 +1,4 @@
-//! The result of each verb: computed once, then told as JSON, as a sentence, and as a page.
+//! Results of the verbs: computed once, then presented as JSON, as a sentence and as a page.
 
 mod characterised;
 mod compared;
@@ -23,12 +23,12 @@ pub use refined::Refined;
 
 use crate::WorkError;
 
-/// Told what is being done, in words, and the fraction that is done (0 to 1). It may be called from several threads.
+/// Receives the current action as text and its progress (0 to 1). It may be called from several threads.
 pub type Progress<'p> = &'p (dyn Fn(&str, f64) + Sync);
 
-/// What every result can tell.
+/// Presentations of a result.
 pub trait Outcome: Send + Sync {
-    /// The content of `--json`, where no file was written beside it.
+    /// The content of `--json` if no other file was written.
     ///
     /// # Errors
     /// [`WorkError::Json`].
@@ -40,25 +40,25 @@ pub trait Outcome: Send + Sync {
     /// The page of `--report`; `None` for verbs without one.
     ///
     /// # Errors
-    /// [`WorkError`] where the page needs a simulation that fails.
+    /// [`WorkError`] if the page needs a simulation that fails.
     fn page(&self) -> Result<Option<String>, WorkError> {
         Ok(None)
     }
 
-    /// The model that the verb found; `None` for verbs that look for none.
+    /// The model that the verb found; `None` for verbs that do not search for one.
     fn model(&self) -> Option<&Model> {
         None
     }
 
-    /// The file that the verb writes beside its report: proposed laws or a profile (TOML).
+    /// The additional file of the verb besides its report: proposed laws or a profile (TOML).
     ///
     /// # Errors
-    /// [`WorkError`] for numbers that TOML does not have.
+    /// [`WorkError`] for numbers that TOML does not support.
     fn file(&self) -> Result<Option<String>, WorkError> {
         Ok(None)
     }
 
-    /// Signals over time that belong to the result, by what they are.
+    /// Recordings that belong to the result, each with its role.
     fn recordings(&self) -> Vec<(&'static str, &Recording)> {
         Vec::new()
     }

@@ -1,4 +1,4 @@
-//! Laws for what a model is missing and no catalogue has.
+//! Proposed laws for effects that are missing from a model and from every catalogue.
 
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::proposal::{Proposals, propose};
@@ -15,7 +15,7 @@ use crate::{WorkError, json_text};
 pub struct Proposed {
     /// The model as given.
     pub model: Model,
-    /// The laws, and what they were judged by.
+    /// The laws, and the measures used to judge them.
     pub found: Proposals,
 }
 

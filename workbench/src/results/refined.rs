@@ -1,4 +1,4 @@
-//! A model with more effects, fitted and measured again.
+//! A model with additional effects, fitted and compared again.
 
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
@@ -12,7 +12,7 @@ use crate::{WorkError, json_text};
 
 /// Result of `refine`.
 pub struct Refined {
-    /// The steps, and the model that they end in.
+    /// The steps and the final model.
     pub refinement: Refinement,
 }
 
@@ -33,7 +33,7 @@ impl Refined {
         Ok(Refined { refinement })
     }
 
-    /// The result, with the file that the model was written to.
+    /// The result, with the name of the file that the model was written to.
     pub fn result(&self, written: Option<&str>) -> results::Refinement {
         results::Refinement::of(self.refinement.verdict(), self.refinement.compared_steps(), written)
     }
