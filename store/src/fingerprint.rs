@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use object_store::ObjectStoreExt;
+use object_store::{ObjectMeta, ObjectStoreExt};
 use sha2::{Digest, Sha256};
 
 use crate::StoreError;
@@ -19,7 +19,9 @@ use crate::runtime::{block_on, persistently};
 ///   Hashing the bytes again would mean reading every bag as a whole, which [`thin_copy`](crate::thin_copy) avoids.
 ///   Different bytes have different ETags. The same bytes may have another ETag after an upload in other parts; the
 ///   work is then only repeated.
-/// - Folder: `folder:` and a hash over names and identities of its content.
+/// - Object of a store without ETags: `modified:`, the time of its last change, and the size.
+/// - Folder: `folder:` and a hash over names and identities of its objects, in subfolders too; of a folder on this machine, of the files
+///   directly in it.
 ///
 /// ```
 /// use excavator_store::{Options, fingerprint};
@@ -44,7 +46,7 @@ pub fn fingerprint(url: &str, options: &Options) -> Result<String, StoreError> {
 async fn of_objects(place: &Place) -> Result<String, StoreError> {
     if !place.url.ends_with('/') {
         match persistently("read", &place.url, || place.store.head(&place.path)).await {
-            Ok(meta) => return Ok(named(meta.e_tag.as_deref(), meta.size)),
+            Ok(meta) => return Ok(named(&meta)),
             Err(StoreError::DoesNotExist { .. }) => {}
             Err(other) => return Err(other),
         }
@@ -57,13 +59,17 @@ async fn of_objects(place: &Place) -> Result<String, StoreError> {
     let mut all = Sha256::new();
     for meta in &found {
         let name = meta.location.as_ref().strip_prefix(place.path.as_ref()).unwrap_or(meta.location.as_ref());
-        all.update(format!("{}\n{}\n", name.trim_start_matches('/'), named(meta.e_tag.as_deref(), meta.size)));
+        all.update(format!("{}\n{}\n", name.trim_start_matches('/'), named(meta)));
     }
     Ok(format!("folder:{:x}", all.finalize()))
 }
 
-fn named(etag: Option<&str>, size: u64) -> String {
-    format!("etag:{}:{size}", etag.unwrap_or("none").trim_matches('"'))
+fn named(meta: &ObjectMeta) -> String {
+    match &meta.e_tag {
+        Some(tag) => format!("etag:{}:{}", tag.trim_matches('"'), meta.size),
+        // Equal sizes say nothing; the time at least never hides that an object was replaced.
+        None => format!("modified:{}:{}", meta.last_modified.timestamp_micros(), meta.size),
+    }
 }
 
 fn of_folder(folder: &Path) -> Result<String, StoreError> {
