@@ -1,4 +1,4 @@
-//! Between the message of a machine's state and the sample that the model knows.
+//! Converts between the message of a machine's state and the sample of the model.
 
 use excavator_model::Model;
 use excavator_model::recording::{CylinderSample, Sample};
@@ -9,12 +9,12 @@ use excavator_ros::{Parameter, Value};
 /// Name of [`frame_parameter`].
 pub(crate) const FRAME: &str = "frame_id";
 
-/// The frame that states are told in. Its default is the root link of the robot description that is made of a model.
+/// The frame in the headers of states. The default is the root link of the robot description that is made from a model.
 pub(crate) fn frame_parameter() -> Parameter {
     Parameter::new(FRAME, Value::String("base_link".into()), "frame of the states in their headers").read_only()
 }
 
-/// The state in the order of the model's cylinders; what the message does not have is not measured.
+/// The state in the order of the model's cylinders. A signal that is missing in the message counts as not measured.
 pub(crate) fn sample(state: &ArmState, model: &Model) -> Sample {
     let cylinders = model
         .machine
@@ -44,7 +44,7 @@ pub(crate) fn sample(state: &ArmState, model: &Model) -> Sample {
     }
 }
 
-/// The message of a sample, whose cylinders are in the order of the model's. Oil temperature is in °C.
+/// The message of a sample. Its cylinders have the order of the model's. Oil temperature is in °C.
 pub(crate) fn arm_state(sample: &Sample, model: &Model, oil_temperature: f64) -> ArmState {
     let cylinders = model.machine.cylinders.iter().zip(&sample.cylinders).map(|(cylinder, known)| CylinderState {
         name: cylinder.name.clone(),
@@ -74,7 +74,7 @@ pub(crate) fn joint_name(cylinder: &str) -> String {
     format!("{cylinder}_joint")
 }
 
-/// The joints of a state; `rates` in rad/s or m/s, or none.
+/// The message of the joints of a state. `rates` is in rad/s or m/s, or empty.
 pub(crate) fn joint_state(state: &ArmState, rates: Vec<f64>) -> JointState {
     JointState {
         header: Header { stamp: state.header.stamp, frame_id: String::new() },

@@ -1,4 +1,4 @@
-//! A bag of our own topics, read in blocks beside what works on them.
+//! Reads a bag of our own topics in blocks, in parallel to the work on them.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -9,16 +9,16 @@ use excavator_bags::table::Table;
 use excavator_bags::{BagError, ReadReport, Topics, read_recording_in_blocks};
 use excavator_model::recording::Recording;
 
-/// Whether a recording can only be read whole: a map brings every signal onto one clock, and needs all of it for that.
+/// Whether a recording can only be read whole: a map resamples every signal onto one clock, which needs the complete recording.
 pub fn needs_a_map(path: &Path, map: Option<&Path>) -> bool {
     map.is_some() || TopicMap::beside(path).is_some() || Table::is_table(path)
 }
 
-/// Reads the bag in blocks of `samples`, of which no more than `waiting` wait, while `work` takes them. `choose` says what is wanted of a
-/// block, and whether to read on. Gives what was found in the bag, and what `work` gives.
+/// Reads the bag in blocks of `samples` while `work` consumes them. At most `waiting` blocks are queued. `choose` selects the
+/// part of a block to keep, and whether to continue reading. Returns the report on the bag and the result of `work`.
 ///
 /// # Errors
-/// Those of [`read_recording_in_blocks`].
+/// The errors of [`read_recording_in_blocks`].
 pub fn read_beside<T>(
     path: &Path,
     namespace: Option<&str>,
@@ -36,7 +36,7 @@ pub fn read_beside<T>(
         let reader = scope.spawn(move || {
             read_recording_in_blocks(path, &topics, samples, |block| {
                 let (wanted, goes_on) = choose(block);
-                // The other side may have ended; it says why.
+                // The receiver may have ended; its result states the reason.
                 let has_ended = wanted.is_some_and(|wanted| sender.send(wanted).is_err());
                 if has_ended { ControlFlow::Break(()) } else { goes_on }
             })

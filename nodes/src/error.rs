@@ -114,12 +114,12 @@ pub enum VerbError {
 }
 
 impl VerbError {
-    /// For `map_err` after an attempt to write `path`.
+    /// Returns a closure for `map_err` after an attempt to write `path`.
     pub fn write(path: &Path) -> impl FnOnce(std::io::Error) -> VerbError {
         move |source| VerbError::Write { path: path.to_path_buf(), source }
     }
 
-    /// The faulty line of a file with a mark at the place; empty where there is none.
+    /// The faulty line of a file with a mark at the position; empty if there is none.
     pub fn excerpt(&self) -> &str {
         match self {
             VerbError::Document(error) => error.excerpt(),
@@ -129,7 +129,7 @@ impl VerbError {
         }
     }
 
-    /// 2 for wrong usage, 1 for everything that failed.
+    /// 2 for wrong usage, 1 for every other failure.
     pub fn exit_code(&self) -> u8 {
         match self {
             #[cfg(feature = "live")]
@@ -141,7 +141,7 @@ impl VerbError {
 }
 
 impl From<WorkError> for VerbError {
-    /// Errors that are told with an option of the program, or that verbs tell apart, are its own.
+    /// Errors whose message names an option of the program, or that verbs distinguish, get variants of their own.
     fn from(error: WorkError) -> Self {
         match error {
             WorkError::Recording(error) => error.into(),
@@ -163,7 +163,7 @@ impl From<WorkError> for VerbError {
     }
 }
 
-/// A refusal, with how to overrule it.
+/// The message of a failed check, with the option that overrides it.
 fn refusal(error: &CheckError) -> String {
     let how = error.name().map(|name| format!("; if this is right, say --accept {name}"));
     format!("{error}{}", how.unwrap_or_default())

@@ -1,4 +1,4 @@
-//! The program `excavator`: verbs over recordings, and the made-up machine of its demo.
+//! The program `excavator`: verbs on recordings, and the simulated machine of its demo.
 
 #[cfg(feature = "live")]
 mod arm_bridge;
@@ -52,7 +52,7 @@ pub fn run_command_line() -> ExitCode {
     let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let outcome = ros_words::RosWords::split(&all).and_then(|(ros, words)| {
         let parsed = manual::command().try_get_matches_from(&words);
-        // Only a help or a refusal shows a usage.
+        // Only help and error messages contain a usage.
         let parsed = parsed.or_else(|_| manual::command_within(terminal::width()).try_get_matches_from(words));
         let arguments = parsed.and_then(|found| cli::Arguments::from_arg_matches(&found));
         let arguments = arguments.unwrap_or_else(|refusal| refuse(&refusal));
@@ -70,7 +70,7 @@ pub fn run_command_line() -> ExitCode {
     }
 }
 
-/// Ends the program with what is wrong in the command line, or with its help. Names in it may be those of files of others.
+/// Prints the error in the command line, or the help, and exits. The text may contain foreign file names.
 fn refuse(refusal: &clap::Error) -> ! {
     if let Some(reason) = missing::reason(refusal) {
         terminal::complain(&format!("excavator: {reason}"), "");
@@ -78,7 +78,7 @@ fn refuse(refusal: &clap::Error) -> ! {
     }
     let is_odd = |word: std::ffi::OsString| terminal::printable(&word.to_string_lossy()) != word.to_string_lossy();
     if std::env::args_os().any(is_odd) {
-        // Without colours, in which a name could hide.
+        // Without colours: a name could hide escape sequences among them.
         eprint!("{}", terminal::text(&refusal.render().to_string()));
         std::process::exit(refusal.exit_code());
     }

@@ -1,4 +1,4 @@
-//! Long recordings: the most informative stretches, chosen while the bag goes by.
+//! Long recordings: selects the most informative stretches while the bag is read.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -16,14 +16,15 @@ use crate::block_reader::{needs_a_map, read_beside};
 use crate::error::VerbError;
 use excavator_workbench::recording_part::Part;
 
-/// Blocks that may wait to be looked at.
+/// Blocks that may be queued for the selection.
 const WAITING: usize = 1;
 
-/// A recording, or of a long one the stretches most informative about the parameters of `model`, and how they were chosen (without the
-/// recording itself).
+/// Reads a recording. Of a long one, returns the stretches most informative about the parameters of `model`, and how they were
+/// chosen (without the recording itself).
 ///
 /// # Errors
-/// [`VerbError::Recording`] where there is no recording, [`VerbError::Part`], and [`VerbError::Regression`] where a long one lacks inputs.
+/// [`VerbError::Recording`] if there is no recording, [`VerbError::Part`], and [`VerbError::Regression`] if a long one lacks
+/// inputs.
 pub fn recording_or_stretches(
     path: &Path,
     origin: Origin<'_>,
@@ -50,7 +51,7 @@ fn in_part(recording: Recording, part: Option<Part>, path: &Path) -> Result<Reco
     }
 }
 
-/// A bag of our own topics, one block after the other: the next is read while one is looked at.
+/// Reads a bag of our own topics block by block: the next block is read while the current one is processed.
 fn in_blocks(
     path: &Path,
     (whole, namespace): (&Path, Option<&str>),
@@ -88,7 +89,7 @@ enum Taken {
     Stretches(Chosen),
 }
 
-/// All blocks together where they are short, else the most informative stretches.
+/// Returns all blocks joined if they are short in total, else the most informative stretches.
 fn taken(blocks: Receiver<Recording>, path: &Path, model: &Model) -> Result<Taken, RegressionError> {
     let source = path.display().to_string();
     let mut pending: Vec<Recording> = Vec::new();

@@ -2,7 +2,7 @@
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-/// Such verbs, and the feature that they need.
+/// These verbs, and the feature that each needs.
 const MISSING: &[(&str, &str)] = &[
     #[cfg(not(feature = "live"))]
     ("node", "live"),
@@ -16,7 +16,7 @@ const MISSING: &[(&str, &str)] = &[
     ("dashboard", "dashboard"),
 ];
 
-/// Why the command line is refused, where that is for such a verb.
+/// The error message if the command line names such a verb.
 pub fn reason(refusal: &clap::Error) -> Option<String> {
     if refusal.kind() != ErrorKind::InvalidSubcommand {
         return None;

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::cli::{Extent, Mapping, Recordings};
 use crate::error::VerbError;
 
-/// Form of the file; one of another number is refused.
+/// Version of the file format. A file with another version is rejected.
 const FORM: u32 = 1;
 
 /// What `diagnose --save` writes.
@@ -50,7 +50,7 @@ struct SavedStep {
     model: String,
 }
 
-/// A model on the way, read back.
+/// An intermediate model, read back from the file.
 #[derive(Debug, Clone)]
 pub struct ModelStep {
     /// What was added last, `effect@place`; `None` for the given model, refitted.
@@ -60,10 +60,10 @@ pub struct ModelStep {
 }
 
 impl SavedDiagnosis {
-    /// Of a refinement that a diagnosis led to.
+    /// Builds the file content from a refinement that followed a diagnosis.
     ///
     /// # Errors
-    /// [`VerbError`] where a model has no text.
+    /// [`VerbError`] if a model cannot be written as text.
     pub fn of(refinement: &Refinement, recordings: &Recordings) -> Result<Self, VerbError> {
         let steps = refinement
             .steps
@@ -130,15 +130,15 @@ impl SavedDiagnosis {
     /// The model as it was given.
     ///
     /// # Errors
-    /// [`VerbError`] where its text is none.
+    /// [`VerbError`] if its text cannot be parsed.
     pub fn given(&self) -> Result<Model, VerbError> {
         model_of("given", &self.given)
     }
 
-    /// The models on the way to the refined one.
+    /// The intermediate models up to the refined one.
     ///
     /// # Errors
-    /// [`VerbError`] where a text is none.
+    /// [`VerbError`] if a text cannot be parsed.
     pub fn steps(&self) -> Result<Vec<ModelStep>, VerbError> {
         let step =
             |step: &SavedStep| Ok(ModelStep { added: step.added.clone(), model: model_of("step", &step.model)? });
@@ -148,7 +148,7 @@ impl SavedDiagnosis {
     /// The refined model, with its history.
     ///
     /// # Errors
-    /// [`VerbError`] where its text is none.
+    /// [`VerbError`] if its text cannot be parsed.
     pub fn refined(&self) -> Result<Model, VerbError> {
         model_of("refined", &self.refined)
     }

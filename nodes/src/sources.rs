@@ -1,4 +1,4 @@
-//! Models and recordings by what a person calls them.
+//! Finds models and recordings by the names that a user gives.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ use crate::error::VerbError;
 use crate::long_recording::recording_or_stretches;
 use crate::terminal::remark;
 
-/// A model by its built-in name or file, with the effects of its user.
+/// A model by its built-in name or file, with the user's own effects.
 pub fn model(choice: &cli::ModelChoice) -> Result<Model, VerbError> {
     model_with(&choice.model, &catalogue(&choice.own)?)
 }
@@ -30,14 +30,14 @@ pub fn another_model(name: &str, first: &cli::ModelChoice) -> Result<Model, Verb
     model_with(name, &catalogue(&first.own)?)
 }
 
-/// The parameter by which a node gets its model, where it does not take the one that is published.
+/// The parameter that names a node's model, if the node does not use the published one.
 #[cfg(feature = "live")]
 pub fn model_parameter() -> Parameter {
     let meaning = "built-in model or model file (.toml); empty: the model on arm/model";
     Parameter::new("model", Value::String(String::new()), meaning).read_only()
 }
 
-/// The same with the effects of the program and of its own file.
+/// Like `model`, with the effects of the program and of the model's own file.
 #[cfg(feature = "live")]
 pub fn model_named(name: &str) -> Result<Model, VerbError> {
     model_with(name, &Catalogue::built_in())
@@ -52,7 +52,7 @@ fn model_with(name: &str, catalogue: &Catalogue) -> Result<Model, VerbError> {
     Ok(parse(name, &text, catalogue)?)
 }
 
-/// The effects of the program and those of these catalogue files; of a folder, every TOML file in it, by name.
+/// The effects of the program and of these catalogue files. Of a folder, every TOML file is read, sorted by name.
 pub fn catalogue(own: &cli::OwnEffects) -> Result<Catalogue, VerbError> {
     let mut catalogue = Catalogue::built_in();
     for path in &own.catalogue {
@@ -79,8 +79,8 @@ fn catalogue_files(folder: &Path) -> Result<Vec<PathBuf>, VerbError> {
     Ok(files)
 }
 
-/// A recording, with what was wrong in its data told on standard error, checked against the model. Bags of other people
-/// and tables are read through `map`, or the map that lies beside them. `BAG@20..40` is the part from 20 s to 40 s.
+/// A recording, checked against the model. Problems in its data are reported on standard error. Foreign bags and tables are
+/// read through `map`, or through the map file beside them. `BAG@20..40` is the part from 20 s to 40 s.
 pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording, VerbError> {
     let (whole, part) = Part::split(path)?;
     let (mut recording, report) = read_recording_or_mapped(&whole, map.origin())?;
@@ -90,8 +90,8 @@ pub fn recording(path: &Path, map: &Mapping, model: &Model) -> Result<Recording,
     checked(path, recording, &report, map, model)
 }
 
-/// As [`recording`]; of a long one the stretches most informative about the parameters of `model`, unless all of it is wanted. What was
-/// chosen is told on standard error.
+/// As [`recording`]. Of a long recording only the stretches most informative about the parameters of `model` are read, unless
+/// `extent` asks for all of it. The selection is reported on standard error.
 pub fn telling_recording(path: &Path, extent: Extent, map: &Mapping, model: &Model) -> Result<Recording, VerbError> {
     if extent.whole {
         return recording(path, map, model);
@@ -103,7 +103,7 @@ pub fn telling_recording(path: &Path, extent: Extent, map: &Mapping, model: &Mod
     checked(path, recording, &report, map, model)
 }
 
-/// A recording as it is used; what is to be known of it is told on standard error.
+/// Checks a recording before use and prints the remarks on standard error.
 fn checked(
     path: &Path,
     recording: Recording,
@@ -116,7 +116,7 @@ fn checked(
     let usage = Use { accept: &map.accept, conditions: &map.conditions };
     let mut remarks = Vec::new();
     let used = fit_for_use(&name, recording, report, &usage, model, &mut remarks);
-    // Also those that came before a refusal.
+    // Also print the remarks that precede a failure.
     remarks.iter().for_each(|line| remark(line));
     Ok(used?)
 }
@@ -126,7 +126,7 @@ pub fn recordings(paths: &[impl AsRef<Path>], map: &Mapping, model: &Model) -> R
     paths.iter().map(|path| recording(path.as_ref(), map, model)).collect()
 }
 
-/// Several recordings, of long ones the most informative stretches.
+/// Several recordings. Of long ones, the most informative stretches.
 pub fn telling_recordings(
     paths: &[impl AsRef<Path>],
     extent: Extent,
@@ -136,8 +136,7 @@ pub fn telling_recordings(
     paths.iter().map(|path| telling_recording(path.as_ref(), extent, map, model)).collect()
 }
 
-/// The recordings that parameters are fitted to and those that judge the fit, with what they have in common told on standard
-/// error.
+/// The recordings for the fit and those for validation. What they have in common is reported on standard error.
 pub fn fitted_and_judging(
     paths: &cli::Recordings,
     model: &Model,

@@ -1,7 +1,7 @@
-//! Text on its way to a terminal.
+//! Makes text safe for a terminal.
 //!
-//! Names of topics, columns, cylinders and files come from others. What a terminal would act on in them is made visible where
-//! text leaves the program, and not at each of the places that put a name into a sentence.
+//! Names of topics, columns, cylinders and files come from foreign data. Control characters in them are made visible where text
+//! leaves the program, and not at each place that puts a name into a sentence.
 
 use std::borrow::Cow;
 use std::io::IsTerminal;
@@ -11,11 +11,11 @@ pub use rosbag2::printable;
 use crate::output::filled;
 use crate::verbosity::Verbosity;
 
-/// What our own text has besides printable characters: ends of lines, and headings of tables in bold. A name that has them
-/// can be bold or begin a line, and no more.
+/// What our own text contains besides printable characters: line ends, and bold headings of tables. A name that contains these
+/// can at most be bold or start a new line.
 const OURS: [&str; 3] = ["\n", "\u{1b}[1m", "\u{1b}[0m"];
 
-/// A text of several lines.
+/// Text of several lines.
 pub fn text(text: &str) -> Cow<'_, str> {
     if text.split('\n').all(|line| matches!(printable(line), Cow::Borrowed(_))) {
         return Cow::Borrowed(text);
@@ -32,28 +32,28 @@ pub fn text(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// A line on standard error: why something failed; it is broken where that is a terminal. Under it stands `excerpt`, the faulty line
-/// of a file with a mark that has to stay under its place, unless that is empty.
+/// Prints the reason of a failure on standard error. The line is wrapped if standard error is a terminal. `excerpt` follows
+/// below unless it is empty: the faulty line of a file with a mark that has to stay under its position.
 pub fn complain(line: &str, excerpt: &str) {
     eprintln!("{}", filled(&printable(line), width_of_errors()));
     excerpt.lines().for_each(|line| eprintln!("{}", printable(line)));
 }
 
-/// A line on standard error that is worth knowing, unless nothing is to be said.
+/// Prints a remark on standard error, unless `--quiet` is given.
 pub fn remark(line: &str) {
     if Verbosity::chosen() > Verbosity::Quiet {
         eprintln!("{}", filled(&printable(line), width_of_errors()));
     }
 }
 
-/// Columns for what is told on standard error; `None` where that is no terminal.
+/// Columns available on standard error; `None` if it is not a terminal.
 fn width_of_errors() -> Option<usize> {
     std::io::stderr().is_terminal().then(|| width().unwrap_or(80))
 }
 
-/// Columns of the terminal; `None` where standard output is none.
+/// Columns of the terminal; `None` if standard output is not a terminal.
 pub fn width() -> Option<usize> {
-    // The library of the tables asks the terminal, once for a table.
+    // The table library queries the terminal, once per table.
     let mut table = comfy_table::Table::new();
     table.set_content_arrangement(comfy_table::ContentArrangement::Dynamic);
     table.width().map(usize::from)

@@ -1,4 +1,4 @@
-//! What Python sees of errors: one base class, and a subclass for each kind of trouble. The text is one line.
+//! The Python exceptions: one base class, and a subclass for each kind of error. The text is one line.
 
 use excavator_bags::BagError;
 use excavator_bags::map::MapError;
@@ -34,12 +34,12 @@ pub fn of_document(error: DocumentError) -> PyErr {
     ModelError::new_err(error.to_string())
 }
 
-/// A change to a model that cannot be.
+/// A change that the model does not allow.
 pub fn of_model(error: excavator_model::ModelError) -> PyErr {
     ModelError::new_err(error.to_string())
 }
 
-/// A verb without a result.
+/// A verb that failed.
 pub fn of_work(error: WorkError) -> PyErr {
     let text = error.to_string();
     match error {

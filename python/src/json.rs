@@ -1,10 +1,10 @@
-//! JSON between Rust and Python.
+//! Converts JSON between Rust and Python.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::Value;
 
-/// A value of Python as JSON, by way of its module `json`.
+/// A Python value as JSON, converted by Python's module `json`.
 pub fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     let text: String = value.py().import("json")?.call_method1("dumps", (value,))?.extract()?;
     serde_json::from_str(&text).map_err(|error| PyValueError::new_err(error.to_string()))

@@ -1,6 +1,6 @@
 //! The Python package `excavator`: thin classes over the crates of the workspace.
 //!
-//! What people import is written in Python, in `excavator/`; this library is its part `excavator._native`. Long work runs without the
+//! The public API is written in Python, in `excavator/`. This library is its part `excavator._native`. Long work releases the
 //! lock of the interpreter and can be interrupted, see [`work`].
 
 mod bag;

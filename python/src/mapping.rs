@@ -1,4 +1,4 @@
-//! Topic maps: files, tables of Python, and guesses.
+//! Topic maps: files, Python dicts, and guesses.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use crate::errors::{ReadError, of_bag, of_map};
 use crate::json;
 
-/// A map as Python gives it.
+/// A map as given from Python.
 pub enum Map {
     /// A file.
     File(PathBuf),

@@ -18,7 +18,7 @@ use crate::errors::{ModelError, of_bag, of_document, of_model};
 use crate::recording::Recording;
 use crate::{json, work};
 
-/// Numbers and words of a parameter: value, unit, known, standard error, margin of 95 %, meaning, source, least and largest plausible value.
+/// A parameter: value, unit, known, standard error, margin of 95 %, meaning, source, least and largest plausible value.
 type ParameterRow = (f64, String, bool, Option<f64>, Option<f64>, String, String, f64, f64);
 
 /// A machine plus a list of physical effects.
@@ -28,17 +28,17 @@ pub struct Model {
 }
 
 impl Model {
-    /// A model.
+    /// Wraps a model.
     pub fn of(physics: Physics) -> Self {
         Model { physics: Arc::new(physics) }
     }
 
-    /// The model, to work with without the lock of the interpreter.
+    /// The model, for work without the lock of the interpreter.
     pub fn physics(&self) -> Arc<Physics> {
         self.physics.clone()
     }
 
-    /// Sites that a name means: `EFFECT@PLACE`, or `EFFECT` wherever it is.
+    /// The sites that a name refers to: `EFFECT@PLACE`, or `EFFECT` for every place that has it.
     fn places(&self, name: &str) -> PyResult<Vec<(String, Site)>> {
         let (effect, place) = name.split_once('@').map_or((name, None), |(effect, place)| (effect, Some(place)));
         let wanted = place.map(|place| site_named(&self.physics.machine, place));
@@ -56,7 +56,7 @@ impl Model {
     }
 }
 
-/// A model whose text can be read again: its numbers are possible.
+/// Wraps a model, if its values are valid: its text must be readable again.
 fn possible(physics: Physics) -> PyResult<Model> {
     to_text(&physics).map_err(of_document)?;
     Ok(Model::of(physics))

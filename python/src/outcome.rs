@@ -16,7 +16,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Of what a verb gave.
+    /// Wraps the result of a verb.
     pub fn of(told: Arc<dyn Told>) -> Self {
         Outcome { told }
     }

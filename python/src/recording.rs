@@ -17,13 +17,13 @@ use crate::columns;
 use crate::errors::{ReadError, of_bag, of_work};
 use crate::mapping::Map;
 
-/// What was read, and how.
+/// The data of a recording, and how it was read.
 pub struct Content {
     /// The signals.
     pub signals: Signals,
-    /// What was found on the way.
+    /// Remarks and problems of the reader.
     pub report: ReadReport,
-    /// Whether a map brought the signals onto one clock, or a person gave them.
+    /// Whether a map resampled the signals onto one clock, or the user passed them directly.
     pub is_mapped: bool,
 }
 
@@ -34,17 +34,17 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// A recording of this content.
+    /// Wraps this content.
     pub fn of(content: Content) -> Self {
         Recording { content: Arc::new(content) }
     }
 
-    /// What Rust gave, without a file.
+    /// A recording of signals that were computed, not read from a file.
     pub fn of_signals(signals: Signals) -> Self {
         Recording::of(Content { signals, report: ReadReport::default(), is_mapped: true })
     }
 
-    /// The content, to work on without the lock of the interpreter.
+    /// The content, for work without the lock of the interpreter.
     pub fn content(&self) -> Arc<Content> {
         self.content.clone()
     }
@@ -154,7 +154,7 @@ impl Recording {
     }
 }
 
-/// A part of a recording, named as the program names it.
+/// A part of a recording. Its source has the form that the program uses for parts.
 fn part(whole: &Signals, start: Option<f64>, stop: Option<f64>) -> PyResult<Signals> {
     if start.is_none() && stop.is_none() {
         return Ok(whole.clone());

@@ -17,16 +17,17 @@ create_exception!(
     "A store or a network that failed: the same may succeed later."
 );
 
-/// What failed: [`StoreError`] where another attempt may help, else `ReadError`.
+/// Converts an error: [`StoreError`] if another attempt may succeed, else `ReadError`.
 fn of_store(error: store::StoreError) -> PyErr {
     let text = error.to_string();
     if error.is_passing() { StoreError::new_err(text) } else { ReadError::new_err(text) }
 }
 
-/// An object: address, size in bytes, what the store calls its content, and when it was written in ns since the epoch.
+/// An object: address, size in bytes, the store's identifier of the content, and the time of the last write in ns since the
+/// epoch.
 type Row = (String, u64, Option<String>, i64);
 
-/// A copy: where, bytes read, bytes of the bag, messages, and files copied whole with the reason.
+/// A copy: path, bytes read, bytes of the bag, messages, and files copied whole with the reason.
 type Copied = (PathBuf, u64, u64, u64, Vec<String>);
 
 /// The content of an object.

@@ -7,7 +7,7 @@ use rosbag2::dynamic::{Definitions, FieldPath, Layout, Selector, numeric_leaves}
 use rosbag2::{RawMessage, RawMessages, Topic};
 use thiserror::Error;
 
-/// Where the stamp of a message is, if its type has one.
+/// Path of a message's stamp, if its type has one.
 const STAMP: &str = "header.stamp";
 
 /// A topic as columns, one entry for each message.
@@ -31,7 +31,7 @@ pub enum ColumnsError {
     /// The bag cannot be read.
     #[error(transparent)]
     Bag(#[from] BagError),
-    /// The definition or a field is of no use.
+    /// The definition or a field cannot be used.
     #[error("topic {topic}: {reason}")]
     Topic {
         /// The topic.
@@ -41,7 +41,7 @@ pub enum ColumnsError {
     },
 }
 
-/// What turns messages of one topic into numbers.
+/// Decodes the messages of one topic into numbers.
 struct Decoder {
     layout: Layout,
     stamp: Option<Selector>,
@@ -49,7 +49,7 @@ struct Decoder {
 }
 
 impl Decoder {
-    /// For these fields, or for every number of the first message.
+    /// A decoder of these fields, or of every number in the first message.
     fn new(first: &RawMessage, wanted: Option<&[String]>) -> Result<(Decoder, Vec<String>), ColumnsError> {
         let topic: &Topic = &first.topic;
         let wrong = |reason: String| ColumnsError::Topic { topic: topic.name.clone(), reason };
@@ -70,7 +70,7 @@ impl Decoder {
         Ok((Decoder { layout, stamp, selectors }, names))
     }
 
-    /// Adds the numbers of one message to the columns, all or none of them.
+    /// Adds all numbers of one message to the columns, or none if one fails.
     fn push(&self, message: &RawMessage, row: &mut Vec<f64>, columns: &mut TopicColumns) {
         row.clear();
         let numbers = self.selectors.iter().map(|selector| selector.read(&self.layout, &message.data));
@@ -101,7 +101,7 @@ impl Decoder {
 /// Reads one topic of the bag at `path`: the given fields, or every number of its first message.
 ///
 /// # Errors
-/// [`ColumnsError`] where the bag, the topic, its definition or a field cannot be read.
+/// [`ColumnsError`] if the bag, the topic, its definition or a field cannot be read.
 pub fn topic_columns(path: &Path, name: &str, fields: Option<&[String]>) -> Result<TopicColumns, ColumnsError> {
     let mut messages = RawMessages::open(path).map_err(BagError::from)?;
     let mut columns = TopicColumns::default();

@@ -32,7 +32,7 @@ pub struct Usage {
     whole: bool,
 }
 
-/// Recordings as they are used, and what is told of them.
+/// Prepares recordings for use, and collects the remarks on them.
 struct Desk {
     usage: Usage,
     remarks: Vec<String>,
@@ -43,12 +43,12 @@ impl Desk {
         Desk { usage, remarks: Vec::new() }
     }
 
-    /// A recording, checked.
+    /// Checks a recording.
     fn checked(&mut self, content: &Content, model: &Physics) -> Result<Signals, WorkError> {
         self.as_used(content.signals.clone(), content, model)
     }
 
-    /// Of a long recording the most informative stretches, checked.
+    /// Checks a recording. Of a long one, uses the most informative stretches.
     fn telling(&mut self, content: &Content, model: &Physics) -> Result<Signals, WorkError> {
         let whole = &content.signals;
         let part = if self.usage.whole { None } else { telling(whole, content.is_mapped, model)? };
@@ -66,7 +66,7 @@ impl Desk {
         contents.iter().map(|content| self.telling(content, model)).collect()
     }
 
-    /// Recordings that parameters are fitted to, and those that judge the fit.
+    /// The recordings for the fit, and those for validation.
     fn both(&mut self, contents: &[Vec<Arc<Content>>; 2], model: &Physics) -> Result<[Vec<Signals>; 2], WorkError> {
         let [fitted, judging] = [self.all(&contents[0], model)?, self.all(&contents[1], model)?];
         let shared = shared_readings(&fitted.iter().collect::<Vec<_>>(), &judging.iter().collect::<Vec<_>>());
@@ -75,7 +75,7 @@ impl Desk {
     }
 }
 
-/// Runs a verb; gives its result and the remarks on its recordings.
+/// Runs a verb. Returns its result and the remarks on its recordings.
 fn done<T: Told + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,

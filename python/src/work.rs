@@ -1,4 +1,4 @@
-//! Long work beside the interpreter: progress goes to Python, and Ctrl-C ends it.
+//! Runs long work outside the interpreter's lock: progress goes to Python, and Ctrl-C ends the work.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -14,26 +14,26 @@ use pyo3::prelude::*;
 
 use crate::errors::of_work;
 
-/// How often signals are looked at.
+/// Time between two checks for signals.
 const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
 
-/// Stack of the thread that works: what a main thread has.
+/// Stack of the worker thread, equal to that of a main thread.
 const STACK: usize = 8 << 20;
 
-/// What the thread that works says.
+/// A message of the worker thread.
 enum Message<T> {
     Progress(String, f64),
     Done(Result<T, WorkError>),
-    /// It ended in a panic, with what that said.
+    /// The work panicked, with the panic message.
     Failed(String),
 }
 
-/// What unwinds the thread that works when nobody waits for it any more.
+/// Payload that unwinds the worker thread after the caller has abandoned it.
 struct Abandoned;
 
-/// Does `work` in a thread of its own. The interpreter is free meanwhile; `progress` is called in the thread of the caller, with what is
-/// done and the fraction done. Where that raises, or Ctrl-C does, the work is abandoned: the caller goes on at once, and the thread
-/// ends when it tells of its progress next.
+/// Runs `work` in a thread of its own, with the interpreter free. `progress` is called in the caller's thread, with the current
+/// step and the fraction done. If it raises, or on Ctrl-C, the work is abandoned: the caller returns at once, and the thread
+/// ends when it next reports progress.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -46,13 +46,13 @@ pub fn run<T: Send + 'static>(
         let told = sender.clone();
         let tell = move |what: &str, done: f64| {
             if asked.load(Ordering::Relaxed) {
-                // No message and no trace: this is no fault.
+                // Unwinds without a panic message or a backtrace, because this is not a fault.
                 resume_unwind(Box::new(Abandoned));
             }
             drop(told.send(Message::Progress(what.to_string(), done)));
         };
         let outcome = catch_unwind(AssertUnwindSafe(|| work(&tell)));
-        // Where nobody waits, nobody is to be told.
+        // If the caller is gone, the result is dropped.
         drop(sender.send(match outcome {
             Ok(result) => Message::Done(result),
             Err(panic) => Message::Failed(words(&*panic)),
@@ -83,7 +83,7 @@ pub fn run<T: Send + 'static>(
     outcome
 }
 
-/// What a panic said.
+/// The message of a panic.
 fn words(panic: &(dyn Any + Send)) -> String {
     let text =
         panic.downcast_ref::<&str>().map(ToString::to_string).or_else(|| panic.downcast_ref::<String>().cloned());

@@ -10,10 +10,10 @@ use super::publisher::{Publisher, Refused, lock};
 use super::signals::{Signals, Treatment};
 use excavator_ros::Logger;
 
-/// Longest sleep between two looks at the stop flag.
+/// Longest sleep between two checks of the stop flag.
 const GLANCE: Duration = Duration::from_millis(20);
 
-/// A CAN bus that is read.
+/// A CAN bus as a source of signals.
 pub(super) struct CanSource {
     wanted: Wanted,
     /// Index of its first signal.
@@ -27,7 +27,8 @@ enum Input {
 }
 
 impl CanSource {
-    /// Opens what is described; `treatments` are those of its signals and get the ranges of the DBC file.
+    /// Opens the described device or log. `treatments` are those of its signals; their ranges are narrowed to those of the DBC
+    /// file.
     ///
     /// # Errors
     /// What is wrong, in one line.
@@ -52,12 +53,12 @@ impl CanSource {
         Ok(CanSource { wanted, first, input })
     }
 
-    /// Whether this source publishes the states itself, since its log is the clock.
+    /// Whether this source publishes the states itself, because its log is the clock.
     pub fn is_the_clock(&self) -> bool {
         matches!(self.input, Input::Log(_, LogPace::Fastest))
     }
 
-    /// Reads until the end of the log, or until told to stop.
+    /// Reads until the end of the log, or until `stop` is set.
     pub fn run(self, publisher: &Publisher<'_>, refused: &Refused, logger: &Logger, stop: &AtomicBool) {
         let CanSource { wanted, first, input } = self;
         let counts = &refused.frames;
@@ -86,7 +87,7 @@ impl CanSource {
     }
 }
 
-/// Takes the frames of a log when they are due.
+/// Takes each frame of a log when it is due.
 fn follow(
     log: &Log,
     wanted: &Wanted,
@@ -111,7 +112,7 @@ fn follow(
             break;
         }
         frames += 1;
-        // As on a bus, the frame came when it was due, not when this thread woke up.
+        // As on a bus, a frame has arrived when it was due, not when this thread woke up.
         wanted.read(&logged.frame, counts, |index, value| lock(signals).take(first + index, value, due));
     }
     Ok(frames)
@@ -130,7 +131,7 @@ fn convert(
     let period = Duration::try_from_secs_f64(1.0 / publisher.rate).unwrap_or(Duration::from_secs(1));
     let start = Instant::now();
     let mut round = 0_u64;
-    // Of the next state: since the first frame, and on the log's clock, ns.
+    // Time of the next state: since the first frame, and on the log's clock, ns.
     let (mut due, mut stamp) = (Duration::ZERO, None::<i64>);
     for logged in log.frames(counts)? {
         let now = i64::try_from(logged.stamp.saturating_mul(1000)).unwrap_or(i64::MAX);

@@ -1,8 +1,8 @@
-//! Numbers out of datagrams.
+//! Decodes numbers from datagrams.
 
 use super::description::{ByteOrder, NumberKind, Udp};
 
-/// The raw values of a datagram in the order of its fields; `None` for one of another length.
+/// The raw values of a datagram in the order of its fields; `None` if its length is wrong.
 pub(super) fn decode(datagram: &[u8], layout: &Udp) -> Option<Vec<f64>> {
     if datagram.len() != layout.length {
         return None;
@@ -10,7 +10,7 @@ pub(super) fn decode(datagram: &[u8], layout: &Udp) -> Option<Vec<f64>> {
     layout.fields.iter().map(|field| number(datagram.get(field.at..)?, field.kind, layout.byte_order)).collect()
 }
 
-/// The number of a datagram, in layouts that have one.
+/// The sequence number of a datagram, if the layout has one.
 pub(super) fn sequence_number(datagram: &[u8], layout: &Udp) -> Option<u64> {
     let field = layout.sequence?;
     whole(datagram.get(field.at..)?, field.kind.length(), layout.byte_order)

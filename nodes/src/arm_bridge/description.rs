@@ -1,4 +1,4 @@
-//! The description of where signals come from.
+//! The description of the sources of signals.
 
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ pub(super) struct Description {
     pub topics: Vec<TopicSource>,
 }
 
-/// 100 Hz: enough for an arm, and no load for anybody.
+/// 100 Hz: enough for an arm, and a small load.
 fn default_rate() -> f64 {
     100.0
 }
@@ -58,7 +58,7 @@ pub(super) struct Udp {
     pub fields: Vec<DatagramField>,
 }
 
-/// Where signals come from unless the description says otherwise: programs of this machine.
+/// Address used unless the description sets another: only programs of this machine can send.
 pub(super) const LOOPBACK: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
 fn loopback() -> IpAddr {
@@ -66,7 +66,7 @@ fn loopback() -> IpAddr {
 }
 
 impl Udp {
-    /// Whether the layout can be read, and who may send it.
+    /// Checks that the layout can be read, and that its senders are named.
     ///
     /// # Errors
     /// What is wrong, in one line.
@@ -260,7 +260,7 @@ impl Description {
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = read_regular_text(path, ReadLimits::DEFAULT.document).map_err(|error| error.to_string())?;
         let mut description = Self::parse(&text).map_err(|reason| format!("{}: {reason}", path.display()))?;
-        // Names of files are seen from the description, wherever the program was started.
+        // File names are relative to the description, not to the working directory.
         let folder = path.parent().unwrap_or(Path::new("."));
         for can in &mut description.can {
             can.dbc = folder.join(&can.dbc);
@@ -299,7 +299,7 @@ impl Description {
         Ok(description)
     }
 
-    /// What becomes of each signal: those of datagrams first, then CAN, then topics, in the order of the description.
+    /// The treatment of each signal: those of datagrams first, then CAN, then topics, in the order of the description.
     pub fn treatments(&self) -> Vec<Treatment> {
         let udp = self.udp.iter().flat_map(|udp| udp.fields.iter().map(|field| field.treatment.clone()));
         let can = self.can.iter().flat_map(|can| can.signals.iter().map(|signal| signal.treatment.clone()));

@@ -1,7 +1,7 @@
-//! What a signal can be at all, by its kind, where the description does not say it closer.
+//! Physical limits of a signal, by its kind, if the description does not narrow them.
 //!
-//! The limits are wide: no working instrument reaches them, on whatever machine. They are there for what broken
-//! instruments, wrong units and hostile datagrams say.
+//! The limits are wide: no working instrument on any machine reaches them. They catch broken instruments, wrong units and
+//! hostile datagrams.
 
 /// Least and largest value of a signal, SI.
 pub(super) fn limits_of(signal: &str) -> (f64, f64) {
@@ -13,7 +13,7 @@ pub(super) fn limits_of(signal: &str) -> (f64, f64) {
         "displacement" => (-20.0, 20.0),
         // Seals are made for speeds to 15 m/s.
         "velocity" => (-20.0, 20.0),
-        // A joint that a cylinder turns does not turn all the way; angles in degrees are found out.
+        // A joint that a cylinder moves does not turn a full revolution. The limit catches angles in degrees.
         "joint_angle" => (-std::f64::consts::TAU, std::f64::consts::TAU),
         // A bore of 100 mm has 8e-3 m2; spools of the largest mobile valves open less than half of that.
         "orifice_area" => (-1e-2, 1e-2),
@@ -23,7 +23,7 @@ pub(super) fn limits_of(signal: &str) -> (f64, f64) {
         "pump_flow" => (-1.0, 1.0),
         // degC. Mineral oil is solid long before -100 and burns before 400.
         "oil_temperature" => (-100.0, 400.0),
-        // A name that is no signal is refused by the description.
+        // The description rejects unknown signal names.
         _ => (f64::NEG_INFINITY, f64::INFINITY),
     }
 }

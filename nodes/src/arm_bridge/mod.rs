@@ -1,6 +1,6 @@
-//! `excavator node arm-bridge`: instruments of other makers as `/arm/state`.
+//! `excavator node arm-bridge`: publishes foreign instruments as `/arm/state`.
 //!
-//! A description in TOML says where each signal comes from:
+//! A description in TOML defines the source of each signal:
 //!
 //! ```toml
 //! rate = 200.0                       # states per second, Hz
@@ -40,8 +40,9 @@
 //! signal = "arm.joint_angle"
 //! ```
 //!
-//! Every signal may have `scale`, `offset`, `minimum`, `maximum`, `age` and `delay`. A state is that of the moment for which
-//! every signal has a value: as long ago as the longest `delay`, and its stamp says so.
+//! Every signal may have `scale`, `offset`, `minimum`, `maximum`, `age` and `delay`. A state belongs to the latest moment for
+//! which every signal has a value. That moment lies in the past by the longest `delay`, and the stamp of the state is that
+//! moment.
 //!
 //! Signals are `CYLINDER.` with `joint_angle`, `displacement`, `velocity`, `cap_pressure`, `rod_pressure`,
 //! `orifice_area` or `rod_force`, and `pump_pressure`, `tank_pressure`, `pump_flow`, `oil_temperature`.

@@ -1,4 +1,4 @@
-//! In place of a CAN bus where the program was built without the feature `can`: none can be opened.
+//! Replaces the CAN source in builds without the feature `can`: no CAN bus can be opened.
 
 use std::sync::atomic::AtomicBool;
 
@@ -8,14 +8,14 @@ use super::description::Can;
 use super::publisher::{Publisher, Refused};
 use super::signals::Treatment;
 
-/// There is none.
+/// No value of this type exists.
 pub(super) enum CanSource {}
 
 impl CanSource {
-    /// Refuses what is described.
+    /// Always fails.
     ///
     /// # Errors
-    /// Always: the feature that is needed.
+    /// Always: names the feature that is needed.
     pub fn open(can: &Can, _: usize, _: &mut [Treatment]) -> Result<Self, String> {
         Err(format!("{}: reading a CAN bus needs a build with the feature `can`", can.dbc.display()))
     }
@@ -25,7 +25,7 @@ impl CanSource {
         match *self {}
     }
 
-    /// Reads until told to stop.
+    /// Reads until `stop` is set.
     pub fn run(self, _: &Publisher<'_>, _: &Refused, _: &Logger, _: &AtomicBool) {
         match self {}
     }

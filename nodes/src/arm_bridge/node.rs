@@ -1,4 +1,4 @@
-//! The bridge on the graph.
+//! The bridge's node.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,19 +19,19 @@ use crate::arm_state::{FRAME, frame_parameter};
 use crate::error::VerbError;
 use excavator_ros::{Health, Lifecycle, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
-/// Longest time until a listening thread sees that the node ends.
+/// Longest time until a listening thread notices that the node ends.
 const GLANCE: Duration = Duration::from_millis(100);
-/// Time that readers have to find the bridge, and to take what is left at the end, where it does not run for ever.
+/// Time for readers to discover the bridge, and to receive the last messages, if the bridge ends by itself.
 const ACQUAINTANCE: Duration = Duration::from_secs(1);
 
-/// All of them, with defaults.
+/// All parameters, with defaults.
 pub(crate) fn parameters() -> Vec<Parameter> {
     let file =
         Parameter::new("description", Value::String(String::new()), "file (.toml) that says where signals come from");
     vec![file.read_only(), frame_parameter(), Lifecycle::parameter()]
 }
 
-/// Runs the bridge until it is told to stop.
+/// Runs the bridge until a stop is requested.
 ///
 /// # Errors
 /// [`VerbError`] when it cannot start.
@@ -109,7 +109,7 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     Ok(())
 }
 
-/// What is published once, as fast as it can be, needs somebody there before it starts.
+/// Waits for a reader: states that are published once, as fast as possible, must not start before one is there.
 fn wait_for_a_reader(supervisor: &Supervisor, stop: &AtomicBool) {
     supervisor.diagnostics.tell("signals", Health::Ok, "waiting for a reader of /arm/state", &[]);
     while !stop.load(Ordering::Relaxed) && !supervisor.link.has_readers("arm/state") {
@@ -125,7 +125,7 @@ fn subscribe(
     signals: &Arc<Mutex<Signals>>,
 ) -> Result<(), RosError> {
     let signals = Arc::clone(signals);
-    // Best effort hears every publisher, and an old value is of no use.
+    // A best-effort reader matches every publisher, and an old value is of no use.
     let qos = TopicQos::best_effort(10);
     match source.kind {
         TopicKind::JointState => {

@@ -1,4 +1,4 @@
-//! States out, and how they are.
+//! Publishes states, and reports their health.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -12,11 +12,11 @@ use super::signals::{Fault, Signals};
 use crate::arm_state::joint_state;
 use excavator_ros::{Diagnostics, Health, Lifecycle, Outlet, Pace, PublishError, RosClock};
 
-/// Time between two words to diagnostics.
+/// Time between two diagnostics messages.
 const REPORT: Duration = Duration::from_millis(200);
 /// Rate of `/joint_states`, Hz.
 const JOINT_STATES_RATE: f64 = 50.0;
-/// Pause when readers are behind a log that is read as fast as they can.
+/// Pause while readers cannot keep up with a log that is read as fast as possible.
 const READERS_BEHIND: Duration = Duration::from_millis(1);
 
 pub(super) fn lock(signals: &Mutex<Signals>) -> MutexGuard<'_, Signals> {
@@ -28,11 +28,11 @@ pub(super) fn lock(signals: &Mutex<Signals>) -> MutexGuard<'_, Signals> {
 pub(super) struct Refused {
     /// Datagrams of another length than described.
     pub datagrams: AtomicU64,
-    /// Datagrams of senders that are not named.
+    /// Datagrams of senders that the description does not name.
     pub strangers: AtomicU64,
-    /// Datagrams whose number had come before, or was older than the newest.
+    /// Datagrams whose sequence number was a duplicate, or older than the newest.
     pub repeated: AtomicU64,
-    /// Numbers of datagrams that did not come.
+    /// Sequence numbers that never arrived.
     pub missing: AtomicU64,
     /// CAN frames.
     pub frames: Counts,
@@ -45,7 +45,7 @@ pub(super) struct Publisher<'p> {
     pub frame: String,
     pub signals: &'p Mutex<Signals>,
     pub states: Outlet<ArmState>,
-    /// `None` where the bridge itself reads `/joint_states` and must not answer itself.
+    /// `None` if the bridge itself reads `/joint_states`, so that it does not receive its own messages.
     pub joints: Option<Outlet<JointState>>,
     pub lifecycle: &'p Lifecycle,
     pub clock: &'p RosClock,
@@ -58,7 +58,7 @@ pub(super) struct Publisher<'p> {
 }
 
 impl Publisher<'_> {
-    /// Publishes at the rate until told to stop.
+    /// Publishes at the set rate until `stop` is set.
     pub fn run(&self, stop: &AtomicBool) {
         let mut pace = Pace::new(self.rate);
         let mut reported: Option<Instant> = None;
@@ -68,7 +68,7 @@ impl Publisher<'_> {
             }
             let now = Instant::now();
             let faults = self.publish(round, self.clock.nanoseconds(), now, |states, state| {
-                // Refusals are counted by the outlet and told below.
+                // The outlet counts refusals; they are reported below.
                 let _ = states.publish(state);
             });
             if reported.is_none_or(|reported| reported.elapsed() >= REPORT) {
@@ -79,7 +79,7 @@ impl Publisher<'_> {
         }
     }
 
-    /// Publishes the state of a moment as soon as readers can take it, or not at all when told to stop.
+    /// Publishes the state of a moment as soon as readers can take it. Gives up if `stop` is set.
     pub fn publish_when_possible(&self, round: u64, nanoseconds: i64, moment: Instant, stop: &AtomicBool) {
         let faults = self.publish(round, nanoseconds, moment, |states, state| {
             while !stop.load(Ordering::Relaxed) && states.publish(state.clone()) == Err(PublishError::Full) {

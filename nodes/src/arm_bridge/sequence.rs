@@ -1,39 +1,39 @@
-//! Datagrams by their number: which is new, which is not, how many are missing.
+//! Tracks sequence numbers of datagrams: new ones, old ones, and how many are missing.
 
 use std::time::{Duration, Instant};
 
 use super::description::SequenceKind;
 
-/// Silence after which a sender may begin anew at any number: signals are stale by then, and a restarted instrument begins
-/// at zero. Within it, an old number is a late or a repeated datagram.
+/// Silence after which a sender may restart at any number: its signals are stale by then, and a restarted instrument begins at
+/// zero. Before that, an old number means a late or repeated datagram.
 const ANEW: Duration = Duration::from_secs(1);
 
-/// What becomes of a datagram.
+/// Classification of a datagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// It is new; so many between the one before and it did not come.
+    /// The datagram is new; `missing` datagrams between the previous one and this one did not arrive.
     New { missing: u64 },
-    /// It came before, or is older than the newest.
+    /// A duplicate, or older than the newest.
     Old,
 }
 
-/// The numbers of one sender.
+/// The sequence of one sender.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sequence {
-    /// Count of different numbers.
+    /// Number of distinct sequence numbers.
     modulus: u64,
     /// Number and time of the newest datagram.
     newest: Option<(u64, Instant)>,
 }
 
 impl Sequence {
-    /// Nothing has come.
+    /// A sequence before its first datagram.
     pub fn new(kind: SequenceKind) -> Self {
         Sequence { modulus: 1 << (8 * kind.length()), newest: None }
     }
 
-    /// A datagram with the number `number` came at `now`. Of two numbers the one is newer that is reached from the other by
-    /// counting less than half of all numbers upwards, past the largest if need be (RFC 1982).
+    /// Classifies the datagram `number`, which arrived at `now`. A number is newer than another if it is reached by counting up
+    /// less than half of all numbers, with wrap-around (RFC 1982).
     pub fn take(&mut self, number: u64, now: Instant) -> Verdict {
         let missing = match self.newest {
             Some((newest, at)) if now.saturating_duration_since(at) < ANEW => {

@@ -1,4 +1,4 @@
-//! The newest value of each signal, and whether it can be used.
+//! Keeps the newest values of each signal, and decides whether they can be used.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -31,7 +31,7 @@ pub(super) struct Treatment {
     pub delay: f64,
 }
 
-/// Values kept of each signal: more than a second of the fastest.
+/// Values kept of each signal: more than a second at the highest rate.
 const KEPT: usize = 4096;
 /// Longest delay of a signal, s.
 const LONGEST_DELAY: f64 = 1.0;
@@ -50,7 +50,7 @@ pub(super) const OF_CYLINDERS: [&str; 7] =
 pub(super) const OF_MACHINE: [&str; 4] = ["pump_pressure", "tank_pressure", "pump_flow", "oil_temperature"];
 
 impl Treatment {
-    /// Whether it makes sense.
+    /// Checks that the treatment is consistent.
     ///
     /// # Errors
     /// What is wrong, in one line.
@@ -85,13 +85,13 @@ impl Treatment {
 }
 
 impl Treatment {
-    /// Least and largest value that can be, in SI.
+    /// Least and largest possible value, in SI.
     pub fn range(&self) -> (f64, f64) {
         let (least, largest) = limits_of(&self.signal);
         (self.minimum.unwrap_or(least), self.maximum.unwrap_or(largest))
     }
 
-    /// The raw value in SI.
+    /// Converts a raw value to SI.
     fn value(&self, raw: f64) -> Result<f64, Fault> {
         let value = raw * self.scale + self.offset;
         let (minimum, maximum) = self.range();
@@ -109,7 +109,7 @@ impl Treatment {
         self.maximum = Some(maximum.min(one.max(other)));
     }
 
-    /// Whether the signal steps from one value to the next.
+    /// Whether the signal changes in steps.
     fn steps(&self) -> bool {
         self.signal.ends_with(".orifice_area")
     }
@@ -122,41 +122,41 @@ fn seconds(value: f64) -> Duration {
 /// Why a signal is not measured.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Fault {
-    /// No value ever came.
+    /// No value has arrived yet.
     Never,
     /// The last value is too old, s.
     Stale(f64),
-    /// The last value cannot be.
+    /// The last value is outside its range.
     OutOfRange(f64),
 }
 
-/// The last values of each signal, brought onto one clock.
+/// The last values of each signal, resampled onto one clock.
 ///
-/// The state is that of the moment for which the slowest signal has a value: as long ago as the longest delay. Of the
-/// others the value of that moment is taken, between two measurements by a straight line; an orifice area, which steps,
-/// keeps its value until the next.
+/// The state belongs to the moment for which the slowest signal has a value, which lies in the past by the longest delay. The
+/// other signals are interpolated linearly to that moment. An orifice area, which changes in steps, keeps its value until the
+/// next measurement.
 #[derive(Debug)]
 pub(super) struct Signals {
     treatments: Vec<Treatment>,
-    /// Raw values and when they were measured, oldest first.
+    /// Raw values and their measurement times, oldest first.
     values: Vec<VecDeque<(f64, Instant)>>,
     delay: Duration,
 }
 
 impl Signals {
-    /// Signals of which nothing has come.
+    /// Signals without any values yet.
     pub fn new(treatments: Vec<Treatment>) -> Self {
         let values = vec![VecDeque::new(); treatments.len()];
         let delay = treatments.iter().map(|treatment| treatment.delay).fold(0.0, f64::max);
         Signals { treatments, values, delay: seconds(delay) }
     }
 
-    /// How long ago the moment was of which the state is told.
+    /// The time by which the state lies in the past.
     pub fn delay(&self) -> Duration {
         self.delay
     }
 
-    /// Takes a raw value that came at `now`. One that was measured before the last is late and of no use.
+    /// Takes a raw value that arrived at `now`. A value that was measured before the last one is late and is dropped.
     pub fn take(&mut self, index: usize, raw: f64, now: Instant) {
         let (Some(treatment), Some(values)) = (self.treatments.get(index), self.values.get_mut(index)) else { return };
         let measured = now.checked_sub(seconds(treatment.delay)).unwrap_or(now);
@@ -172,7 +172,7 @@ impl Signals {
     /// The value in SI, at `now` less the common delay.
     ///
     /// # Errors
-    /// [`Fault`]: it is not measured.
+    /// [`Fault`] if it is not measured.
     pub fn value(&self, index: usize, now: Instant) -> Result<f64, Fault> {
         let moment = now.checked_sub(self.delay).unwrap_or(now);
         let (treatment, values) = (&self.treatments[index], &self.values[index]);
@@ -195,7 +195,7 @@ impl Signals {
         }
     }
 
-    /// Forgets what no later state can need.
+    /// Drops values that no later state can need.
     fn forget(&mut self, now: Instant) {
         let moment = now.checked_sub(self.delay).unwrap_or(now);
         for values in &mut self.values {
@@ -210,7 +210,8 @@ impl Signals {
         &self.treatments[index].signal
     }
 
-    /// The state at `now` less the common delay, which `stamp` says, and what is not measured in it and why.
+    /// The state at `now` less the common delay, with the given `stamp`, and the signals that are not measured, with the
+    /// reason.
     pub fn state(&mut self, stamp: Time, now: Instant) -> (ArmState, Vec<(usize, Fault)>) {
         let mut state = ArmState {
             header: Header { stamp, frame_id: String::new() },
@@ -235,7 +236,7 @@ impl Signals {
     }
 }
 
-/// Where a signal stands in the message; its cylinder is added when it is new.
+/// The field of a signal in the message. Adds the signal's cylinder if it is new.
 fn slot<'s>(state: &'s mut ArmState, signal: &str) -> Option<&'s mut f64> {
     let Some((name, field)) = signal.split_once('.') else {
         return match signal {
@@ -324,7 +325,7 @@ mod tests {
         let steps = Treatment { minimum: Some(-1.0), maximum: Some(1.0), ..treatment("arm.orifice_area") };
         let mut signals = Signals::new(vec![treatment("arm.displacement"), slow, steps]);
         assert_eq!(signals.delay(), Duration::from_millis(30));
-        // All move by one millimetre per millisecond; the slow one tells it 30 ms late.
+        // All move by one millimetre per millisecond; the slow signal arrives 30 ms late.
         for now in (0..=100).step_by(20) {
             signals.take(0, 300.0 + now as f64, ms(now));
             signals.take(1, 300.0 + now as f64 - 30.0, ms(now));

@@ -1,4 +1,4 @@
-//! The thread that takes datagrams.
+//! The thread that receives datagrams.
 
 use std::io::ErrorKind;
 use std::net::{IpAddr, UdpSocket};
@@ -13,16 +13,16 @@ use super::sequence::{Sequence, Verdict};
 use super::signals::Signals;
 use excavator_ros::RosError;
 
-/// Longest time until the thread sees that the node ends.
+/// Longest time until the thread notices that the node ends.
 const GLANCE: Duration = Duration::from_millis(100);
 
-/// A port that datagrams come to.
+/// A port that receives datagrams.
 pub(super) struct UdpSource<'d> {
     socket: UdpSocket,
     layout: &'d Udp,
     /// Index of its first signal.
     first: usize,
-    /// One for each named sender, or one for all of this machine.
+    /// One per named sender, or a single one for all senders on this machine.
     sequences: Vec<Sequence>,
 }
 
@@ -43,16 +43,16 @@ impl<'d> UdpSource<'d> {
         Ok(UdpSource { socket, layout, first, sequences })
     }
 
-    /// Takes datagrams until told to stop.
+    /// Receives datagrams until `stop` is set.
     pub fn listen(mut self, signals: &Mutex<Signals>, refused: &Refused, stop: &AtomicBool) {
-        // One byte more than any datagram can have shows those that are too long.
+        // Larger than any datagram, so that a wrong length is detected instead of truncated.
         let mut buffer = vec![0; 65_536];
         while !stop.load(Ordering::Relaxed) {
             let (length, sender) = match self.socket.recv_from(&mut buffer) {
                 Ok((length, sender)) => (length, sender.ip().to_canonical()),
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => continue,
                 Err(_) => {
-                    // A network that is down, which may be up again: looked at again, but not at once.
+                    // The network is down and may come back: try again after a pause.
                     std::thread::sleep(GLANCE);
                     continue;
                 }
@@ -72,7 +72,7 @@ impl<'d> UdpSource<'d> {
         }
     }
 
-    /// The values of a datagram, or the counter of those that are refused for the same reason.
+    /// The values of a datagram, or the counter for the reason of its rejection.
     fn values<'r>(
         &mut self,
         datagram: &[u8],

@@ -1,4 +1,4 @@
-//! The machine's own process: plant and valves under the node's orders, and what happens when no order comes.
+//! The machine's own process: plant and valves, driven by the node's orders, and the behaviour without orders.
 
 use std::io::ErrorKind;
 use std::os::fd::AsFd;
@@ -18,13 +18,13 @@ use crate::command_gate::{Slew, Wanted};
 use crate::error::VerbError;
 use excavator_ros::system_nanoseconds;
 
-/// Longest time that the machine goes on after its node has gone, on the wall: several times what a valve takes to close.
+/// Longest wall-clock time for which the machine continues after its node has gone: several times the closing time of a valve.
 const LONGEST_ALONE: Duration = Duration::from_secs(60);
 
-/// Runs the machine under the orders that come through standard input, which is one end of a pair of sockets.
+/// Runs the machine with the orders from standard input, which is one end of a socket pair.
 ///
 /// # Errors
-/// [`VerbError::Machine`]: it was started by a person.
+/// [`VerbError::Machine`] if it was started by hand.
 pub fn run() -> Result<(), VerbError> {
     let input = std::io::stdin().as_fd().try_clone_to_owned()?;
     let mut stream = UnixStream::from(input);
@@ -69,15 +69,15 @@ struct Machine<'m, 's> {
     failures: Vec<String>,
 }
 
-/// Follows orders until the stream ends. Returns the moment at which the node went with a valve open; `None` where all were
+/// Executes orders until the stream ends. Returns the time at which the node went with a valve open; `None` if all valves were
 /// closed.
 fn follow(stream: &mut UnixStream, machine: &mut Machine<'_, '_>, wall_period: Duration) -> Option<Instant> {
-    // Samples that the machine went on by without an order and that no order has paid for yet.
+    // Samples that the machine simulated without an order and that no later order has accounted for yet.
     let mut unpaid: u32 = 0;
     let mut is_alone = false;
     let mut lease = LONGEST_ALONE;
     loop {
-        // A machine whose node hangs goes on at its own pace.
+        // If the node hangs, the machine continues at its own pace.
         let patience = if is_alone { wall_period } else { lease.max(5 * wall_period) };
         if stream.set_read_timeout(Some(patience)).is_err() {
             return Some(Instant::now());
@@ -85,7 +85,7 @@ fn follow(stream: &mut UnixStream, machine: &mut Machine<'_, '_>, wall_period: D
         match receive::<Order>(stream) {
             Ok(order) => {
                 lease = Duration::try_from_secs_f64(order.lease).unwrap_or_default();
-                // The node may count the time that it lost only in the order after this one.
+                // The node may include the time that it lost only in the next order.
                 let paid = unpaid.min(order.samples);
                 (unpaid, is_alone) = (unpaid - paid, false);
                 machine.obey(&order, order.samples - paid);
@@ -148,5 +148,5 @@ impl Machine<'_, '_> {
     }
 }
 
-/// Reports of one answer; a machine that fails at every sample says the same each time.
+/// Most failures reported in one answer: a machine that fails at every sample reports the same failure each time.
 const MOST_FAILURES: usize = 16;

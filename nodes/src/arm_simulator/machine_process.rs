@@ -1,9 +1,9 @@
-//! The machine in a process of its own.
+//! Runs the machine in a process of its own.
 //!
-//! What talks to the network can be killed by the network: memory that runs out, an abort in the middleware. A valve must
-//! not stay open for it. So the machine with its valves lives in a second process that no packet reaches. It follows the node
-//! that started it through a pair of sockets, sample by sample, under a lease of its own: when the node has died its valves
-//! close at once, and when the node hangs they close as soon as the lease has run out.
+//! The network can kill a process that uses it: by exhausted memory, or an abort in the middleware. A valve must not stay open
+//! because of that. So the machine with its valves runs in a second process that no packet reaches. It executes the orders of
+//! the node that started it, sample by sample, through a socket pair and under a lease of its own. If the node dies, the valves
+//! close at once. If the node hangs, they close when the lease expires.
 
 use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::command_gate::Wanted;
 use crate::error::VerbError;
 
-/// Longest time that the machine may take for its answer; a model that takes longer for one sample is stuck.
+/// Longest time for an answer of the machine. A model that takes longer for one sample is stuck.
 const LONGEST_ANSWER: Duration = Duration::from_secs(10);
 /// Largest message, bytes: the text of a model with tables.
 const LARGEST: usize = 64 << 20;
@@ -86,13 +86,13 @@ pub(super) struct Ready {
     pub failure: String,
 }
 
-/// Why the two processes cannot talk.
+/// Why the two processes cannot communicate.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum TalkError {
-    /// The other one has ended, or does not answer in time.
+    /// The other process has ended, or does not answer in time.
     #[error(transparent)]
     Broken(#[from] std::io::Error),
-    /// What came is no message.
+    /// The bytes received are not a valid message.
     #[error("{0}")]
     Nonsense(String),
 }
@@ -101,7 +101,7 @@ pub(super) enum TalkError {
 pub(super) fn send<M: Serialize>(stream: &mut UnixStream, message: &M) -> Result<(), TalkError> {
     let content = cdr::encode(message).map_err(|error| TalkError::Nonsense(error.to_string()))?;
     let length = u32::try_from(content.len()).map_err(|error| TalkError::Nonsense(error.to_string()))?;
-    // In one piece: a reader that is killed or killed for never sees half of one.
+    // In one write, so that the reader never sees half a message if this process is killed.
     let mut bytes = length.to_le_bytes().to_vec();
     bytes.extend(content);
     Ok(stream.write_all(&bytes)?)
@@ -128,11 +128,11 @@ pub(super) struct MachineProcess {
 }
 
 impl MachineProcess {
-    /// Starts the process and sets the machine up. Signals that this thread blocks stay blocked there, so that a Ctrl-C in the
-    /// terminal ends the node, and the node closes the valves.
+    /// Starts the process and sets the machine up. Signals that this thread blocks stay blocked in the new process: a Ctrl-C in
+    /// the terminal ends the node, and the node closes the valves.
     ///
     /// # Errors
-    /// [`VerbError::Machine`]: what is wrong with the model or the start; [`VerbError::Io`].
+    /// [`VerbError::Machine`] if the model or the start is faulty; [`VerbError::Io`].
     pub fn start(setup: &Setup) -> Result<Self, VerbError> {
         let (stream, theirs) = UnixStream::pair()?;
         let child = Command::new(std::env::current_exe()?)
@@ -148,7 +148,7 @@ impl MachineProcess {
         if ready.failure.is_empty() { Ok(process) } else { Err(VerbError::Machine(ready.failure)) }
     }
 
-    /// Goes on by so many samples with these openings.
+    /// Simulates the given number of samples with these openings.
     ///
     /// # Errors
     /// [`VerbError::Machine`] when the process has ended or does not answer.
@@ -179,7 +179,7 @@ impl MachineProcess {
 
 impl Drop for MachineProcess {
     fn drop(&mut self) {
-        // The machine ends with its stream, a ramp later.
+        // The machine ends when its stream closes, after the closing ramp.
         let _ = self.stream.shutdown(std::net::Shutdown::Both);
         let start = Instant::now();
         while matches!(self.child.try_wait(), Ok(None)) {

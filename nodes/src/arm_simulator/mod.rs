@@ -1,7 +1,7 @@
-//! `excavator node arm-simulator`: a model as a machine on the graph.
+//! `excavator node arm-simulator`: simulates a model as a machine on the ROS graph.
 //!
-//! Two processes: the node, which talks to the network and holds the command gate, and the machine with its valves, which
-//! no packet reaches ([`machine_process`]).
+//! It consists of two processes: the node, which uses the network and contains the command gate, and the machine with its
+//! valves, which no packet reaches ([`machine_process`]).
 
 mod declared;
 mod machine;

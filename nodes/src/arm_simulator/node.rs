@@ -1,4 +1,4 @@
-//! The simulator on the graph.
+//! The simulator's node.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -26,13 +26,13 @@ use excavator_ros::{
 const JOINT_STATES_RATE: f64 = 50.0;
 /// Rate of `/clock`, Hz of simulated time.
 const CLOCK_RATE: f64 = 250.0;
-/// Time between two looks at parameters and two words to diagnostics, s.
+/// Time between two reads of the parameters, and between two diagnostics messages.
 const REPORT: Duration = Duration::from_millis(200);
 
-/// Samples that are caught up with after a stall; a machine that was suspended for hours goes on where it was.
+/// Most samples that are caught up after a stall. A machine that was suspended for hours continues from its last state.
 const MOST_MISSED: u64 = 10_000;
 
-/// Runs the simulator until it is told to stop.
+/// Runs the simulator until a stop is requested.
 ///
 /// # Errors
 /// [`VerbError`] when it cannot start.
@@ -54,10 +54,10 @@ pub fn run(arguments: &RosArguments) -> Result<(), VerbError> {
             .then(|| supervisor.link.publish("/clock", TopicQos::reliable(10)))
             .transpose()?,
     };
-    // The machine before its commands: a model that cannot be set up must not answer to anybody.
+    // The machine starts before its commands are subscribed: a model that cannot be set up must not accept any.
     let machine = MachineProcess::start(&setup(&model, &supervisor)?)?;
     let desk = Desk::open(&supervisor, valves(&model), "arm/state")?;
-    // What is published now reaches everybody who comes later.
+    // Latched: late subscribers receive these as well.
     let _ = outlets.model.publish(Text { data: to_text(&model)? });
     let _ = outlets.description.publish(Text { data: urdf(&model.machine) });
     let stop = supervisor.stop_flag();
@@ -82,7 +82,7 @@ pub fn run(arguments: &RosArguments) -> Result<(), VerbError> {
     outcome
 }
 
-/// Whether this node is the source of time. With `use_sim_time` somebody has to be, and that is the simulator.
+/// Whether this node is the source of time. With `use_sim_time` some node must be, and that is the simulator.
 fn has_own_clock(parameters: &Parameters) -> bool {
     parameters.flag("publish_clock") || parameters.flag("use_sim_time") || parameters.double("speed") != 1.0
 }
@@ -95,8 +95,8 @@ struct Outlets {
     clock: Option<Outlet<Clock>>,
 }
 
-/// The valves that can be commanded. A cylinder without a valve keeps its place, so that indices agree, under a name that
-/// nobody can say.
+/// The valves that can be commanded. A cylinder without a valve keeps its place, so that indices agree. Its name is empty, so
+/// that no command can address it.
 fn valves(model: &Model) -> Vec<Valve> {
     let limits = valve_limits(model);
     let with_limits = model.machine.cylinders.iter().zip(limits);
@@ -139,7 +139,7 @@ struct Simulation<'r> {
 }
 
 impl Simulation<'_> {
-    /// The loop; sets the stop flag however it ends.
+    /// Runs the loop. Sets the stop flag in every case when it ends.
     fn run(&self, machine: MachineProcess) -> Result<(), VerbError> {
         let outcome = self.steps(machine);
         self.stop.store(true, Ordering::Relaxed);
@@ -153,7 +153,7 @@ impl Simulation<'_> {
         let seed = u64::try_from(parameters.integer("seed")).unwrap_or_default();
         let mut sensors = Sensors::new(seed, parameters.texts("not_measured"));
         let mut clock = SampleClock::new(period, self.outlets.clock.is_some());
-        // The schedule begins with the first sample: one that takes long to come is no delay of the others.
+        // The schedule begins with the first sample, so that a slow first sample does not delay the others.
         let mut pace: Option<Pace> = None;
         let mut settings = Settings::read(parameters);
         let mut reported = Instant::now();
@@ -180,7 +180,7 @@ impl Simulation<'_> {
             counts.limited = answer.limited;
             let mut state = answer.state;
             let stamp = clock.stamp(answer.samples, answer.sampled_at);
-            // A machine that went on alone waits until this program's time has caught up with it.
+            // If the machine continued without orders, nothing is published until this loop has caught up with it.
             let publishes = is_active && answer.samples > known;
             known = answer.samples;
             state.header.stamp = stamp;
@@ -195,7 +195,7 @@ impl Simulation<'_> {
             }
             let joints = (sample % joints_every == 0).then(|| joint_state(&state, answer.joint_rates));
             if publishes && sensors.measure(&mut state, &settings.quality) {
-                // Refusals are counted by the outlet and reported below.
+                // The outlet counts refusals; they are reported below.
                 let _ = self.outlets.state.publish(state);
             }
             if let Some(joints) = joints.filter(|_| publishes) {
@@ -210,7 +210,7 @@ impl Simulation<'_> {
                 return Ok(());
             }
             pace.wait();
-            // The machine does not stand still while this program had no processor.
+            // Machine time continues while this process was not scheduled.
             samples = 1 + pace.take_missed().min(MOST_MISSED);
         }
         Ok(())
@@ -237,7 +237,7 @@ impl Simulation<'_> {
     }
 }
 
-/// What the machine has told so far.
+/// Counts that the machine has reported so far.
 #[derive(Debug, Clone, Copy, Default)]
 struct Counts {
     failures: u64,
@@ -272,7 +272,7 @@ impl Settings {
     }
 }
 
-/// Where stamps come from.
+/// Source of the stamps.
 struct SampleClock {
     /// Time between samples, ns.
     period: i64,
@@ -288,7 +288,7 @@ impl SampleClock {
         SampleClock { period, is_own: own, stamps: Stamps::new(period), jumps: 0 }
     }
 
-    /// Stamp of the sample with this number, which was taken when the system's clock showed `clock` (ns).
+    /// Stamp of this sample, which was taken when the system clock showed `clock` (ns).
     fn stamp(&mut self, sample: u64, clock: i64) -> Time {
         let nanoseconds = if self.is_own {
             self.period.saturating_mul(i64::try_from(sample).unwrap_or(i64::MAX))

@@ -1,11 +1,11 @@
-//! What instruments make of the truth: noise, resolution, missing values.
+//! Sensor models: noise, resolution, missing values.
 
 use excavator_msgs::ArmState;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// How good the instruments are.
+/// Quality of the instruments.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Quality {
     /// Displacement: standard deviation and resolution, m.
@@ -18,9 +18,9 @@ pub(super) struct Quality {
     pub pressure: Instrument,
     /// Spool, m².
     pub orifice_area: Instrument,
-    /// Chance that one signal of a sample is missing.
+    /// Probability that one signal of a sample is missing.
     pub dropout_probability: f64,
-    /// Chance that a whole sample is never published.
+    /// Probability that a whole sample is never published.
     pub loss_probability: f64,
 }
 
@@ -33,7 +33,7 @@ pub(super) struct Instrument {
     pub quantum: f64,
 }
 
-/// Signals that can be without a sensor.
+/// Signals that may have no sensor.
 pub(super) const SIGNALS: [&str; 10] = [
     "joint_angle",
     "displacement",
@@ -54,7 +54,7 @@ pub(super) struct Sensors {
 }
 
 impl Sensors {
-    /// Instruments for all signals but those `not_measured`.
+    /// Instruments for all signals except `not_measured`.
     pub fn new(seed: u64, not_measured: Vec<String>) -> Self {
         Sensors { generator: ChaCha8Rng::seed_from_u64(seed), not_measured }
     }
@@ -137,7 +137,7 @@ mod tests {
             assert_eq!(measured.cylinders[0].cap_pressure, 9e5);
         }
         let deviation = (squares / f64::from(draws)).sqrt();
-        // 4000 draws know their deviation to 1.1 %; five times that.
+        // The standard deviation of 4000 draws has a standard error of 1.1 %; the tolerance is five times that.
         assert!((deviation / 1e-3 - 1.0).abs() < 0.056, "{deviation}");
     }
 

@@ -1,25 +1,25 @@
 //! Stamps of simulated samples.
 //!
 //! A stamp is the machine's own time: samples are exactly one period apart, and so are their stamps, whatever the scheduler
-//! does. A stamp that followed the moment at which a sample was computed would let a starved computer change the physics: the
-//! slopes of the signals would no longer fit the powers. Stamps follow the system's clock slowly, as that clock itself is
-//! corrected slowly, and jump with it when it jumps.
+//! does. If a stamp followed the moment at which a sample was computed, a starved computer would change the physics: the slopes
+//! of the signals would no longer fit the powers. Stamps follow the system clock slowly, as that clock itself is corrected
+//! slowly, and jump when it jumps.
 
-/// Largest correction per sample, as part of the period: twice the 500 ppm at which clocks are disciplined.
+/// Largest correction per sample, as a share of the period: twice the 500 ppm limit of clock discipline.
 const SLEW: f64 = 1e-3;
-/// Distance at which the clock has jumped or the simulation has lost its pace, ns.
+/// Offset above which the clock has jumped or the simulation has lost its pace, ns.
 const JUMP: i64 = 100_000_000;
-/// A clock that is ahead has jumped when it stays so for this long by its own account, ns: a sample that was computed late
-/// looks the same until the next ones come.
+/// A clock that is ahead counts as jumped if it stays ahead for this long by its own time, ns. Until the next samples come, a
+/// sample that was computed late looks the same.
 const LASTING: i64 = 1_000_000_000;
 
 /// Stamps of samples `period` apart.
 pub(super) struct Stamps {
     period: i64,
     last: Option<(u64, i64)>,
-    /// What the clock showed at the last sample, ns.
+    /// System clock at the last sample, ns.
     last_clock: i64,
-    /// Since when the clock has been ahead by more than a jump, ns on the clock.
+    /// Time on the clock since which it has been ahead by more than a jump, ns.
     ahead_since: Option<i64>,
 }
 
@@ -29,7 +29,7 @@ impl Stamps {
         Stamps { period, last: None, last_clock: i64::MIN, ahead_since: None }
     }
 
-    /// Stamp of the sample with this number, taken when the system's clock shows `clock` (ns), and whether it is a new beginning.
+    /// Stamp of this sample, taken when the system clock shows `clock` (ns), and whether the stamps restart here.
     pub fn stamp(&mut self, sample: u64, clock: i64) -> (i64, bool) {
         let (stamp, jumped) = match self.last {
             None => (clock, false),
@@ -43,14 +43,14 @@ impl Stamps {
         (stamp, jumped)
     }
 
-    /// The stamp that is expected, corrected, or the clock where that has jumped.
+    /// The expected stamp, corrected; or the clock if it has jumped.
     fn next(&mut self, expected: i64, samples: i64, clock: i64) -> (i64, bool) {
         let ahead = clock.saturating_sub(expected);
         if ahead <= JUMP {
             self.ahead_since = None;
         }
         let since = (ahead > JUMP).then(|| *self.ahead_since.get_or_insert(clock));
-        // Stamps go back only when the clock itself does. Samples that were made up for too eagerly are no reason.
+        // Stamps go back only if the clock itself does, not if the simulation caught up by too many samples.
         let set_back = ahead < -JUMP && clock < self.last_clock;
         let has_jumped = set_back || since.is_some_and(|since| !(0..LASTING).contains(&(clock - since)));
         if has_jumped {
@@ -81,7 +81,7 @@ mod tests {
         }
     }
 
-    /// A core is away for 300 ms: one sample comes late, the next one has to make up for the others.
+    /// A core is unavailable for 300 ms: one sample comes late, and the next one has to make up for the others.
     #[test]
     fn a_starved_computer_does_not_change_the_time_between_samples() {
         let mut stamps = Stamps::new(PERIOD);

@@ -1,4 +1,4 @@
-//! Arguments of what is connected to the graph.
+//! Arguments of the verbs that use the ROS graph.
 
 use std::path::PathBuf;
 

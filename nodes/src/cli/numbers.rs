@@ -1,4 +1,4 @@
-//! Numbers on the command line, refused where they make no sense.
+//! Parses numbers on the command line, and rejects invalid ones.
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, |value| value > 0.0, "a positive number")

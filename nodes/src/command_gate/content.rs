@@ -1,4 +1,4 @@
-//! What a command says, checked against the valves that there are.
+//! Checks the content of a command against the existing valves.
 
 use excavator_msgs::OrificeCommand;
 
@@ -13,17 +13,17 @@ pub(crate) struct Valve {
     pub maximum_area: f64,
 }
 
-/// Room for rounding in the largest area: commands computed as 100 % must pass.
+/// Tolerance for rounding at the largest area: commands computed as 100 % must pass.
 const ROUNDING: f64 = 1e-9;
 
-/// Letters of a name that are repeated in a refusal; the network may bring any number.
+/// Most characters of a name that a refusal quotes; the network may send any number.
 const LONGEST_NAME: usize = 60;
 
 fn brief(name: &str) -> String {
     name.chars().take(LONGEST_NAME).collect()
 }
 
-/// The commanded areas by index of the valve, or why the whole command is refused: half of a command is none.
+/// Returns the commanded areas by index of the valve, or why the command is rejected. A command is never followed in part.
 ///
 /// # Errors
 /// [`Refusal`].

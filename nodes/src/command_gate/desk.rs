@@ -1,4 +1,4 @@
-//! The gate on the graph: subscriptions in, openings out, diagnostics and log.
+//! The gate's ROS interface: subscriptions in, openings out, diagnostics and log.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -22,16 +22,16 @@ use excavator_ros::{
 
 /// Topic of the stop, before remapping.
 const STOP_TOPIC: &str = "arm/stop";
-/// Writers whose names are remembered; the rest are looked up for each message.
+/// Most writers whose names are cached. Beyond that the oldest entry is dropped.
 const MOST_WRITERS: usize = 64;
-/// Time after which a writer that discovery did not know is looked up again.
+/// Time after which a writer unknown to discovery is looked up again.
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 /// Time for which a valve that was closed for safety is shown as a warning.
 const NEWS: Duration = Duration::from_secs(5);
-/// No simulated time.
+/// Stands for "no simulated time".
 const NONE: i64 = i64::MIN;
 
-/// Where commands come in.
+/// Receives the commands.
 pub(crate) struct Desk {
     gate: Mutex<Gate>,
     report: Mutex<Report>,
@@ -42,16 +42,16 @@ pub(crate) struct Desk {
     logger: Logger,
     /// Time of a simulation that is the source of time, ns.
     simulated: AtomicI64,
-    /// Full name of the topic on which this node publishes what its valves do.
+    /// Full name of the topic on which this node publishes the machine's state.
     state_topic: String,
 }
 
 impl Desk {
-    /// Opens the gate's topics. `valves` are those of the machine, `state_topic` is where this node publishes the machine's
-    /// state: another publisher there is another machine, or the same one commanded twice.
+    /// Opens the gate's topics. `valves` are those of the machine. `state_topic` is the topic on which this node publishes the
+    /// machine's state: another publisher on it is either another machine, or a second driver of the same one.
     ///
     /// # Errors
-    /// [`RosError`]: parameters that contradict each other, topics that cannot be opened.
+    /// [`RosError`] for parameters that contradict each other, and topics that cannot be opened.
     pub fn open(supervisor: &Supervisor, valves: Vec<Valve>, state_topic: &str) -> Result<Arc<Self>, RosError> {
         let parameters = &supervisor.parameters;
         let sources = Source::parse_all(&parameters.texts("command_sources")).map_err(RosError::Parameter)?;
@@ -85,12 +85,12 @@ impl Desk {
         Ok(desk)
     }
 
-    /// Tells the gate the time of a simulation, ns: commands may be stamped by it.
+    /// Sets the time of a simulation, ns. Stamps of commands may refer to it.
     pub fn set_simulated_time(&self, nanoseconds: i64) {
         self.simulated.store(nanoseconds, Ordering::Relaxed);
     }
 
-    /// What the valves are asked for now, into `wanted`.
+    /// Writes the current request for each valve into `wanted`.
     pub fn look(&self, wanted: &mut Vec<Wanted>) {
         let mut gate = self.gate();
         gate.advance(Instant::now());
@@ -98,7 +98,7 @@ impl Desk {
         wanted.extend(gate.wanted());
     }
 
-    /// Closes every valve and follows nobody, or, not `shut`, follows commands again.
+    /// With `shut`, closes every valve and follows no commands; otherwise follows commands again.
     pub fn shut(&self, shut: bool) {
         self.gate().shut(shut, Instant::now());
     }
@@ -131,7 +131,7 @@ impl Desk {
         }
     }
 
-    /// A writer by its identity, with what discovery knows of it.
+    /// A writer by its GUID, with the data of discovery.
     fn writer(&self, guid: [u8; 16], now: Instant) -> Writer {
         let mut writers = self.writers.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((looked, writer)) = writers.get(&guid)
@@ -148,8 +148,8 @@ impl Desk {
         writer
     }
 
-    /// Follows the parameters, and tells diagnostics and log how it is; to be called a few times per second. `limited` is the
-    /// number of steps in which the rate of an opening was limited.
+    /// Applies the parameters, and reports to diagnostics and log. Call it a few times per second. `limited` is the number of
+    /// steps in which the rate of an opening was limited.
     pub fn report(&self, limited: u64) {
         self.follow_parameters();
         let now = Instant::now();
@@ -175,7 +175,7 @@ impl Desk {
         }
     }
 
-    /// Who commands what.
+    /// Reports who commands which valve.
     fn tell_owners(&self, now: Instant, accepted: u64, refused: bool) {
         let (status, stopped) = {
             let gate = self.gate();
@@ -191,7 +191,7 @@ impl Desk {
             if let Some((reason, since)) = &valve.closed {
                 values.push((format!("{}{CLOSED_BECAUSE}", valve.name), reason.clone()));
                 let line = format!("{} is closed because {reason}; an area of 0 has to be commanded first", valve.name);
-                // An operator who has gone home is no reason for a warning all night.
+                // A valve that stays closed is not a warning for ever: the operator may have left for the night.
                 let health = if *since < NEWS { Health::Warning } else { Health::Ok };
                 closed = closed.filter(|(earlier, _)| *earlier >= health).or(Some((health, line)));
             }
@@ -209,7 +209,8 @@ impl Desk {
         self.diagnostics.tell("commands", health, message, &values);
     }
 
-    /// Another publisher of the machine's state drives the same machine, or another one that follows the same commands.
+    /// Warns about other publishers of the machine's state: each drives the same machine, or another one that follows the same
+    /// commands.
     fn tell_other_machines(&self, now: Instant) {
         let others = self.peers.other_writers(&self.state_topic);
         let names: Vec<String> = others.iter().map(|guid| self.writer(*guid, now).name()).collect();
@@ -255,7 +256,7 @@ fn seconds(value: f64) -> Duration {
     Duration::try_from_secs_f64(value).unwrap_or_default()
 }
 
-/// The valves with the limits that the operator has set, one per cylinder or none.
+/// The valves with the operator's limits. `limits` has one value per cylinder, or none.
 fn limited(valves: Vec<Valve>, limits: &[f64]) -> Result<Vec<Valve>, RosError> {
     if limits.is_empty() {
         return Ok(valves);

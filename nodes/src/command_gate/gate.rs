@@ -1,4 +1,4 @@
-//! Who owns which valve, for how long, and when a valve may open again.
+//! Decides who owns which valve, for how long, and when a valve may open again.
 
 use std::time::{Duration, Instant};
 
@@ -12,19 +12,19 @@ use super::stamp::{self, StampLimits};
 use super::stop::Stop;
 use super::writer::{AllowList, Writer};
 
-/// Share of the largest area below which a command is one of zero: the noise of a lever in neutral behind its dead band.
+/// Share of the largest area below which a command counts as zero: covers the noise of a lever in neutral behind its dead band.
 const NEUTRAL_SHARE: f64 = 1e-3;
 
-/// What may change while the gate is in use.
+/// Settings that may change while the gate is in use.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Settings {
-    /// Time for which a command holds.
+    /// Time for which a command is valid.
     pub timeout: Duration,
-    /// Stamps that are accepted.
+    /// Limits for the stamps of commands.
     pub stamps: StampLimits,
 }
 
-/// A command with where it came from.
+/// A command and its origin.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Order<'o> {
     /// The command.
@@ -43,7 +43,7 @@ struct Owner {
     confirmed: Instant,
 }
 
-/// One valve: who commands it, and why it stays closed where it does.
+/// One valve: who commands it, and why it is held closed, if it is.
 #[derive(Debug, Clone, Default)]
 struct Slot {
     area: f64,
@@ -57,7 +57,7 @@ struct Closed {
     at: Instant,
 }
 
-/// How a valve is, for people.
+/// Status of a valve, for display.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ValveStatus {
     /// Name of its cylinder.
@@ -70,7 +70,7 @@ pub(super) struct ValveStatus {
     pub closed: Option<(String, Duration)>,
 }
 
-/// Decides which commands are followed. Time is handed in: the steady clock for leases, and the clocks of stamps.
+/// Decides which commands are followed. The caller passes the time: the steady clock for leases, and the clocks of stamps.
 #[derive(Debug, Clone)]
 pub(super) struct Gate {
     valves: Vec<Valve>,
@@ -78,14 +78,14 @@ pub(super) struct Gate {
     sources: Vec<Source>,
     allowed: AllowList,
     settings: Settings,
-    /// Whether nobody is followed: the node waits to be activated, or ends.
+    /// Whether no commands are followed, because the node waits to be activated, or ends.
     shut: bool,
     /// The stop.
     pub stop: Stop,
 }
 
 impl Gate {
-    /// A gate for these valves and sources. With `neutral_at_start` each valve has to be commanded an area of 0 before it
+    /// A gate for these valves and sources. With `neutral_at_start`, each valve requires a command with an area of 0 before it
     /// opens for the first time.
     pub fn new(
         valves: Vec<Valve>,
@@ -100,15 +100,15 @@ impl Gate {
         Gate { valves, slots, sources, allowed, settings, shut: false, stop: Stop::default() }
     }
 
-    /// Changes what may change.
+    /// Replaces the settings.
     pub fn set(&mut self, settings: Settings) {
         self.settings = settings;
     }
 
-    /// Takes a command that arrived at `now`; `clocks` (ns since the epoch) are those that its stamp may go by.
+    /// Checks and applies a command that arrived at `now`. `clocks` (ns since the epoch) are those that its stamp may refer to.
     ///
     /// # Errors
-    /// [`Refusal`]; nothing has changed then.
+    /// [`Refusal`]; the gate is unchanged then.
     pub fn take(&mut self, order: Order<'_>, now: Instant, clocks: &[i64]) -> Result<(), Refusal> {
         self.advance(now);
         if !self.allowed.allows(order.writer) {
@@ -147,8 +147,8 @@ impl Gate {
         self.sources.get(source).map_or(i32::MIN, |source| source.priority)
     }
 
-    /// Sets what is named, and renews the lease on everything else that this writer owns: what a command does not name keeps
-    /// its last command.
+    /// Applies the areas of the named valves, and renews the lease of every valve that this writer owns. A valve that the
+    /// command does not name keeps its last area.
     fn follow(&mut self, order: Order<'_>, areas: &[(usize, f64)], now: Instant) {
         for slot in &mut self.slots {
             if let Some(owner) = slot.owner.as_mut().filter(|owner| owner.writer == order.writer.guid) {
@@ -162,7 +162,7 @@ impl Gate {
         }
     }
 
-    /// Closes the valves whose lease has run out at `now`, and all of them while the machine is stopped.
+    /// Closes the valves whose lease has expired at `now`, or all of them while the machine is stopped.
     pub fn advance(&mut self, now: Instant) {
         let stopped_by = self.stop.by(now);
         for slot in &mut self.slots {
@@ -177,7 +177,7 @@ impl Gate {
         }
     }
 
-    /// What the valves are asked for, after [`Gate::advance`].
+    /// The current request for each valve, after [`Gate::advance`].
     pub fn wanted(&self) -> impl Iterator<Item = Wanted> {
         self.slots.iter().map(|slot| match slot.owner {
             Some(_) => Wanted { area: slot.area, closing: false },
@@ -185,7 +185,7 @@ impl Gate {
         })
     }
 
-    /// Closes every valve and follows nobody, or, not `shut`, follows commands again.
+    /// With `shut`, closes every valve and follows no commands; otherwise follows commands again.
     pub fn shut(&mut self, shut: bool, now: Instant) {
         if shut {
             self.slots.iter_mut().for_each(|slot| slot.close(now, || "this node was not active".to_string()));
@@ -193,7 +193,7 @@ impl Gate {
         self.shut = shut;
     }
 
-    /// Who commands what.
+    /// Status of every valve: who commands it, and why it is closed.
     pub fn status(&self, now: Instant) -> Vec<ValveStatus> {
         let told = |owner: &Owner| {
             let source = self.sources.get(owner.source).map_or("", |source| source.name.as_str());
@@ -221,7 +221,7 @@ impl Owner {
 }
 
 impl Slot {
-    /// Closes the valve. Whoever closed it first is named until it is open again.
+    /// Closes the valve. The first reason is kept until the valve opens again.
     fn close(&mut self, now: Instant, because: impl FnOnce() -> String) {
         let was_open = self.owner.take().is_some();
         self.area = 0.0;

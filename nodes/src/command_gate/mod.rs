@@ -1,19 +1,19 @@
-//! The command gate: the one place that every command to a valve passes.
+//! The command gate: every command to a valve passes through it.
 //!
-//! A command is followed when all of this holds, in this order:
+//! A command is followed if it passes all of these checks, in this order:
 //!
-//! 1. its writer is allowed to command ([`writer`]),
+//! 1. its writer may command ([`writer`]),
 //! 2. its stamp is neither too old nor in the future ([`stamp`]),
-//! 3. names and areas are sound and within the limits of the valves ([`content`]),
-//! 4. nobody has stopped the machine ([`stop`]),
-//! 5. nobody else owns one of the valves that it names, except with a lower priority ([`gate`]),
-//! 6. a valve that was closed for safety is asked to stay closed first ([`gate`]).
+//! 3. names and areas are valid and within the limits of the valves ([`content`]),
+//! 4. the machine is not stopped ([`stop`]),
+//! 5. none of the valves that it names has another owner of the same or a higher priority ([`gate`]),
+//! 6. for a valve that was closed for safety, it commands an area of 0 first ([`gate`]).
 //!
-//! A refused command changes nothing: half of a command is none. An accepted one renews its writer's lease on every valve
-//! that the writer owns. A lease that runs out closes its valve by a ramp, and so does a stop. On the way to the valve each
-//! opening is limited in its rate ([`slew`]).
+//! A refused command changes nothing; no command is followed in part. An accepted one renews its writer's lease on every valve
+//! that the writer owns. When a lease expires, its valve closes by a ramp, and so do all valves on a stop. The rate of each
+//! opening is limited on the way to the valve ([`slew`]).
 //!
-//! Everything in here is a function of the arguments, with time handed in; [`desk`] alone knows ROS.
+//! Everything here depends only on its arguments, including the time. Only [`desk`] uses ROS.
 
 mod content;
 mod desk;

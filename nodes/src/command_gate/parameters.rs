@@ -2,7 +2,7 @@
 
 use excavator_ros::{Parameter, Value};
 
-/// All of them, with units, ranges and defaults.
+/// All parameters, with units, ranges and defaults.
 pub(crate) fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     let flag = |name, value, description| Parameter::new(name, Value::Boolean(value), description);

@@ -1,9 +1,9 @@
-//! Why a command changes nothing.
+//! Why a command is refused.
 
-/// Why a command changes nothing. Each says what to do where that is not obvious.
+/// Why a command is refused. The message states what to do if that is not obvious.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum Refusal {
-    /// The writer is not on the list of those who may command.
+    /// The writer is not on the list of allowed writers.
     #[error("{writer} is not among the command_writers of this node")]
     NotAllowed {
         /// Node name or identity.
@@ -14,7 +14,7 @@ pub(crate) enum Refusal {
         "no stamp: set header.stamp to the time of sending (ros2 topic pub: \"header: auto\"), or set accept_unstamped"
     )]
     Unstamped,
-    /// The command was made too long ago, by the clock of this side.
+    /// The command is too old by the clock of this node.
     #[error("stamped {age:.3} s ago, more than command_max_age = {most} s: are the clocks synchronised?")]
     TooOld {
         /// Age of the stamp, s.
@@ -46,13 +46,13 @@ pub(crate) enum Refusal {
         /// Names that exist.
         known: String,
     },
-    /// The same valve twice.
+    /// The command names a valve twice.
     #[error("cylinder \"{name}\" is named twice")]
     Twice {
         /// The name.
         name: String,
     },
-    /// `NaN` or infinite.
+    /// An area is `NaN` or infinite.
     #[error("the area {area} m2 for \"{name}\" is not a number")]
     NotANumber {
         /// The cylinder.
@@ -60,14 +60,14 @@ pub(crate) enum Refusal {
         /// The area.
         area: f64,
     },
-    /// Wider than the valve, or than its limit.
+    /// An area exceeds the valve's area, or its limit.
     #[error("the area {area:.3e} m2 for \"{name}\" is beyond {maximum:.3e} m2")]
     OutOfRange {
         /// The cylinder.
         name: String,
         /// The area, m².
         area: f64,
-        /// What may be commanded, m².
+        /// Largest area that may be commanded, m².
         maximum: f64,
     },
     /// The node waits to be activated, or ends.
@@ -87,7 +87,7 @@ pub(crate) enum Refusal {
         /// Who owns it.
         owner: String,
     },
-    /// The valve was closed for safety, and does not open by itself.
+    /// The valve was closed for safety, and requires an area of 0 first.
     #[error("\"{name}\" is closed because {reason}: command an area of 0 first")]
     NeutralFirst {
         /// The cylinder.
@@ -98,7 +98,7 @@ pub(crate) enum Refusal {
 }
 
 impl Refusal {
-    /// A short name of the kind of refusal, the same for every command that is refused alike.
+    /// A short name of the kind of refusal. Commands refused for the same cause share it.
     pub fn kind(&self) -> &'static str {
         match self {
             Refusal::NotAllowed { .. } => "writer not allowed",

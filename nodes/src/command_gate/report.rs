@@ -1,4 +1,4 @@
-//! What the gate has refused and noticed, counted, and said once.
+//! Counts refusals and other events of the gate, and limits the log to one line per cause.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -8,12 +8,12 @@ use super::writer::Writer;
 
 /// Time after the last refusal for which it is shown as a warning.
 const SHOWN: Duration = Duration::from_secs(5);
-/// A cause that was silent for so long is said again when it comes back.
+/// Time without a cause after which it is logged again when it comes back.
 const FORGOTTEN: Duration = Duration::from_secs(10);
-/// Causes that are kept apart; the network may bring any number.
+/// Most distinct causes; the network may cause any number.
 const MOST_CAUSES: usize = 64;
 
-/// Counts, and lines that wait to be logged.
+/// Counters, and lines to be logged.
 #[derive(Debug, Default)]
 pub(super) struct Report {
     accepted: u64,
@@ -24,12 +24,12 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// A command was followed.
+    /// Counts a command that was followed.
     pub fn accept(&mut self) {
         self.accepted += 1;
     }
 
-    /// A command was refused.
+    /// Counts a command that was refused.
     pub fn refuse(&mut self, refusal: &Refusal, writer: &Writer, now: Instant) {
         *self.refused.entry(refusal.kind()).or_default() += 1;
         self.last_refusal = Some((now, format!("command refused: {refusal}")));
@@ -37,7 +37,7 @@ impl Report {
         self.say_once(cause, || format!("command of {} refused: {refusal}", writer.name()), now);
     }
 
-    /// Puts a line up for the log unless its cause has been there all the time.
+    /// Queues a line for the log, unless its cause has persisted since the last one.
     pub fn say_once(&mut self, cause: String, line: impl FnOnce() -> String, now: Instant) {
         self.causes.retain(|_, last| now.saturating_duration_since(*last) < FORGOTTEN);
         if self.causes.len() >= MOST_CAUSES && !self.causes.contains_key(&cause) {
@@ -48,23 +48,23 @@ impl Report {
         }
     }
 
-    /// The lines that are to be logged, once.
+    /// Removes and returns the queued lines.
     pub fn take_lines(&mut self) -> Vec<String> {
         std::mem::take(&mut self.lines)
     }
 
-    /// Commands that were followed.
+    /// Number of commands that were followed.
     pub fn accepted(&self) -> u64 {
         self.accepted
     }
 
-    /// The last refusal while it is news.
+    /// The last refusal, while it is recent.
     pub fn recent_refusal(&self, now: Instant) -> Option<&str> {
         let (at, text) = self.last_refusal.as_ref()?;
         (now.saturating_duration_since(*at) < SHOWN).then_some(text)
     }
 
-    /// Number of refusals, and for each kind that there was.
+    /// Number of refusals, in total and per kind.
     pub fn refused(&self) -> (u64, impl Iterator<Item = (&'static str, u64)>) {
         (self.refused.values().sum(), self.refused.iter().map(|(kind, count)| (*kind, *count)))
     }

@@ -1,15 +1,15 @@
-//! The last step before the valve: openings limited in their rate.
+//! Limits the rate of openings, as the last step before the valve.
 
-/// What a valve is asked for now.
+/// The current request for a valve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Wanted {
     /// Orifice area, m².
     pub area: f64,
-    /// Whether the valve closes for safety: its lease ran out, or the machine is stopped.
+    /// Whether the valve closes for safety, because its lease expired or the machine is stopped.
     pub closing: bool,
 }
 
-/// Openings that follow what is wanted by ramps. Oil that is stopped at once hits like a hammer, and a full reversal from one
+/// Openings that follow the requests by ramps. Oil that stops at once causes a pressure surge, and a full reversal from one
 /// sample to the next is a fault of the sender.
 #[derive(Debug, Clone)]
 pub(crate) struct Slew {
@@ -32,7 +32,7 @@ impl Slew {
         }
     }
 
-    /// Goes on by `step` seconds.
+    /// Advances by `step` seconds.
     pub fn follow(&mut self, wanted: impl IntoIterator<Item = Wanted>, step: f64) {
         let rates = self.opening_rates.iter().zip(&self.closing_rates);
         for ((area, wanted), (opening, closing)) in self.areas.iter_mut().zip(wanted).zip(rates) {
@@ -46,7 +46,7 @@ impl Slew {
         }
     }
 
-    /// Areas now, m².
+    /// Current areas, m².
     pub fn areas(&self) -> &[f64] {
         &self.areas
     }
@@ -62,7 +62,7 @@ impl Slew {
     }
 }
 
-/// A command that asks for just the largest rate is not limited.
+/// Tolerance, so that a command at exactly the largest rate is not limited.
 const ROUNDING: f64 = 1e-6;
 
 #[cfg(test)]
@@ -106,7 +106,7 @@ mod tests {
         let mut slew = Slew::new(&[1e-4], 1e-3, 0.05);
         slew.follow(open(1e-4), STEP);
         assert_eq!(slew.areas(), [1e-4]);
-        // Fifty steps to close, and one for what rounding leaves.
+        // Fifty steps to close, and one more for rounding errors.
         for _ in 0..51 {
             let before = slew.areas()[0];
             slew.follow([Wanted { area: 0.0, closing: true }], STEP);

@@ -1,11 +1,11 @@
-//! Where commands come from: named topics with priorities.
+//! Sources of commands: named topics with priorities.
 
-/// A topic on which commands come.
+/// A topic that carries commands.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Source {
-    /// Name for people: "remote_control", "autonomy".
+    /// Name for display: "remote_control", "autonomy".
     pub name: String,
-    /// Of two writers the one with the higher number gets the valve.
+    /// The writer whose source has the higher number takes the valve.
     pub priority: i32,
     /// Topic, before remapping.
     pub topic: String,
@@ -15,7 +15,7 @@ impl Source {
     /// Reads `NAME:PRIORITY:TOPIC`.
     ///
     /// # Errors
-    /// A line for people.
+    /// A message for the user.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut parts = text.splitn(3, ':');
         let (Some(name), Some(priority), Some(topic)) = (parts.next(), parts.next(), parts.next()) else {
@@ -30,10 +30,10 @@ impl Source {
         Ok(Source { name: name.to_string(), priority, topic: topic.to_string() })
     }
 
-    /// Reads all sources; names and topics must differ.
+    /// Reads all sources. Names and topics must be unique.
     ///
     /// # Errors
-    /// A line for people.
+    /// A message for the user.
     pub fn parse_all(texts: &[String]) -> Result<Vec<Self>, String> {
         let sources = texts.iter().map(|text| Source::parse(text)).collect::<Result<Vec<_>, _>>()?;
         for (index, source) in sources.iter().enumerate() {

@@ -1,27 +1,27 @@
-//! How old a command may be.
+//! Checks the age of a command.
 
 use excavator_msgs::Time;
 
 use super::refusal::Refusal;
 
-/// What stamps are accepted.
+/// Limits for stamps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StampLimits {
     /// Largest age, s.
     pub max_age: f64,
-    /// Whether an empty stamp passes.
+    /// Whether an empty stamp is accepted.
     pub accept_unstamped: bool,
 }
 
-/// How far a stamp may be ahead of this side's clock, s. Clocks that PTP or NTP keeps together on one network differ by less
-/// than 10 ms; the rest is for the moment in which a clock is being set.
+/// Longest time for which a stamp may be ahead of this node's clock, s. Clocks that PTP or NTP synchronises on one network
+/// differ by less than 10 ms. The rest allows for a clock that is being set.
 const MAX_AHEAD: f64 = 0.1;
 
-/// Checks a stamp against the clocks (ns) that a sender may go by: the system's, and that of a simulation which is the
-/// source of time. One of them has to agree.
+/// Checks a stamp against the clocks (ns) that a sender may use: the system clock, and that of a simulation which is the source
+/// of time. The stamp has to agree with one of them.
 ///
 /// # Errors
-/// [`Refusal::Unstamped`], [`Refusal::TooOld`], [`Refusal::FromTheFuture`], by the clock that is nearest to the stamp.
+/// [`Refusal::Unstamped`], [`Refusal::TooOld`], [`Refusal::FromTheFuture`], by the clock nearest to the stamp.
 pub(super) fn check(stamp: Time, clocks: &[i64], limits: StampLimits) -> Result<(), Refusal> {
     if stamp == Time::default() {
         return if limits.accept_unstamped { Ok(()) } else { Err(Refusal::Unstamped) };

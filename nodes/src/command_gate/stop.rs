@@ -1,12 +1,12 @@
 //! The stop: `/arm/stop`, a heartbeat on it, and the parameter `stop`.
 //!
-//! This is a stop of software, no emergency stop in the sense of ISO 13850: it needs this program and a network that work.
+//! This is a software stop, not an emergency stop in the sense of ISO 13850: it depends on this program and on the network.
 
 use std::time::{Duration, Instant};
 
 use super::writer::Writer;
 
-/// Writers whose stop is remembered; more than any machine has panels.
+/// Most writers whose stop is stored; more than the panels of any machine.
 const MOST_ENGAGED: usize = 32;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,12 +15,12 @@ struct Engaged {
     name: String,
 }
 
-/// Who has stopped the machine. Everybody may stop it. A stop is released by the one who gave it; by anybody, once that one
-/// has left the graph; or at the node, by setting its parameter `stop` to true and back to false.
+/// Who has stopped the machine. Any writer may stop it. A stop is released by its own writer; by any writer, once its own
+/// writer has left the graph; or at the node, by setting its parameter `stop` to true and back to false.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Stop {
     engaged: Vec<Engaged>,
-    /// More have stopped the machine than are remembered: only the node's own parameter releases that.
+    /// More writers have stopped the machine than are stored. Only the node's own parameter releases that.
     overflowed: bool,
     at_the_node: bool,
     heartbeat: Option<Duration>,
@@ -28,12 +28,12 @@ pub(super) struct Stop {
 }
 
 impl Stop {
-    /// Requires a message on the stop topic at least that often; `None`: no heartbeat.
+    /// Requires a message on the stop topic at least once per `interval`; `None`: no heartbeat.
     pub fn require_heartbeat(&mut self, interval: Option<Duration>) {
         self.heartbeat = interval;
     }
 
-    /// Takes a message of the stop topic. `has_left` says whether a writer has left the graph.
+    /// Processes a message of the stop topic. `has_left` returns whether a writer has left the graph.
     pub fn take(&mut self, stop: bool, writer: &Writer, has_left: impl Fn(&[u8; 16]) -> bool, now: Instant) {
         self.last_message = Some(now);
         if !stop {
@@ -50,7 +50,7 @@ impl Stop {
         }
     }
 
-    /// Takes the node's own parameter. Going back to false releases every stop.
+    /// Applies the node's own parameter. A change back to false releases every stop.
     pub fn set_at_the_node(&mut self, stop: bool) {
         if self.at_the_node && !stop {
             self.engaged.clear();
@@ -59,7 +59,7 @@ impl Stop {
         self.at_the_node = stop;
     }
 
-    /// Who stops the machine at `now`; `None`: nobody.
+    /// Who stops the machine at `now`; `None` if it is not stopped.
     pub fn by(&self, now: Instant) -> Option<String> {
         if self.at_the_node {
             return Some("the parameter stop".to_string());

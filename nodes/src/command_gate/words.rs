@@ -1,10 +1,10 @@
-//! Words of the diagnostics part `commands`. The gate writes them and the dashboard reads them.
+//! Texts in the diagnostics part `commands`. The gate writes them and the dashboard parses them.
 
-/// Behind the name of a valve: who commands it, or `-`.
+/// After the name of a valve: who commands it, or `-`.
 pub(crate) const COMMANDED_BY: &str = ": commanded by";
-/// Behind the name of a valve: age of its owner's last command, s, or `-`.
+/// After the name of a valve: age of its owner's last command, s, or `-`.
 pub(crate) const COMMAND_AGE: &str = ": age of the last command [s]";
-/// Behind the name of a valve: why it stays closed.
+/// After the name of a valve: why it stays closed.
 pub(crate) const CLOSED_BECAUSE: &str = ": closed because";
-/// Before the name of the one who has stopped the machine.
+/// Before the name of the writer that has stopped the machine.
 pub(crate) const STOPPED_BY: &str = "stopped by ";

@@ -1,23 +1,23 @@
-//! Who may command.
+//! Decides which writers may command.
 //!
-//! DDS without security lets everybody write in anybody's name: the list keeps mistakes apart, not attackers. With DDS
-//! Security a participant proves who it is, and its node name can be relied on.
+//! Without DDS Security anyone can write under any name: the list prevents mistakes, not attacks. With DDS Security a
+//! participant proves its identity, and its node name can be relied on.
 
 use std::net::IpAddr;
 
-/// The one who writes commands, as discovery describes it.
+/// A writer of commands, as described by discovery.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Writer {
-    /// Identity of the DDS writer: twelve bytes of the participant and four of the entity.
+    /// GUID of the DDS writer: twelve bytes of the participant and four of the entity.
     pub guid: [u8; 16],
-    /// Full name of its node, where discovery knows it.
+    /// Full name of its node, if discovery knows it.
     pub node: Option<String>,
-    /// Addresses at which its participant takes packets.
+    /// Addresses at which its participant receives packets.
     pub addresses: Vec<IpAddr>,
 }
 
 impl Writer {
-    /// Name for people: that of the node, else the identity of the participant.
+    /// Name for display: the node's, or else the identity of the participant.
     pub fn name(&self) -> String {
         self.node.clone().unwrap_or_else(|| format!("writer {}", hexadecimal(&self.guid[..12])))
     }
@@ -27,7 +27,7 @@ fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// One entry of the list of those who may command.
+/// One entry of the list of allowed writers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Entry {
     Node(String),
@@ -62,20 +62,20 @@ impl Entry {
     }
 }
 
-/// Those who may command.
+/// The list of allowed writers.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct AllowList(Vec<Entry>);
 
 impl AllowList {
-    /// Reads the entries: full node names, IP addresses, GUID prefixes.
+    /// Parses the entries: full node names, IP addresses, GUID prefixes.
     ///
     /// # Errors
-    /// A line for people.
+    /// A message for the user.
     pub fn parse(texts: &[String]) -> Result<Self, String> {
         texts.iter().map(|text| Entry::parse(text)).collect::<Result<_, _>>().map(AllowList)
     }
 
-    /// Whether this writer may command; everybody may where the list is empty.
+    /// Whether this writer may command. An empty list allows every writer.
     pub fn allows(&self, writer: &Writer) -> bool {
         self.0.is_empty() || self.0.iter().any(|entry| entry.means(writer))
     }

@@ -1,4 +1,4 @@
-//! What the page shows, from the messages that came.
+//! Collects the received messages for the page.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -13,24 +13,24 @@ use super::bounded::{self, MOST_SHOWN};
 use super::gates;
 use super::machine::{self, Machine};
 
-/// Frames that are kept for a page that opens: half a minute at 25 Hz.
+/// Frames kept for a page that opens later: half a minute at 25 Hz.
 const HISTORY: usize = 750;
-/// Bytes of them: a machine with three cylinders makes 3 MB of half a minute.
+/// Most bytes of these frames: half a minute of a machine with three cylinders has 3 MB.
 const HISTORY_BYTES: usize = 8 << 20;
-/// Parts of nodes of which the state of health is kept.
+/// Most parts of nodes whose health is kept.
 const MOST_PARTS: usize = 200;
-/// Alarms that are sent; the page shows the first eight.
+/// Most alarms in a frame; the page shows the first eight.
 const MOST_ALARMS: usize = 16;
-/// A part that has not been heard of for so long is not there any more.
+/// Time without a message after which a part no longer counts as present.
 const FORGOTTEN: Duration = Duration::from_secs(10);
-/// A command gate that has not been heard of for so long says nothing about now: it speaks every second.
+/// Time without a message after which a command gate is no longer shown. A gate reports every second.
 const GATE_SILENT: Duration = Duration::from_secs(3);
-/// Command gates that are sent.
+/// Most command gates in a frame.
 const MOST_GATES: usize = 4;
-/// Time without a state after which that is an alarm.
+/// Time without a state after which an alarm is raised.
 const SILENT: Duration = Duration::from_secs(2);
 
-/// What has come, shared between the subscriptions and the server.
+/// The received content, shared between the subscriptions and the server.
 pub struct Board {
     content: Mutex<Content>,
     newest: watch::Sender<Arc<str>>,
@@ -38,7 +38,7 @@ pub struct Board {
 
 #[derive(Default)]
 struct Content {
-    /// Of the nodes that are shown: `left/`, or empty.
+    /// Namespace of the nodes that are shown: `left/`, or empty.
     namespace: String,
     machine: Machine,
     number: u64,
@@ -47,7 +47,7 @@ struct Content {
     state: Option<(ArmState, Instant)>,
     command: Option<(OrificeCommand, Instant)>,
     energy: Option<EnergyState>,
-    /// Sums of the powers that came since the last frame.
+    /// Sums of the powers received since the last frame.
     powers: Powers,
     health: BTreeMap<String, Part>,
     history: VecDeque<Arc<str>>,
@@ -83,7 +83,7 @@ impl Default for Board {
 }
 
 impl Board {
-    /// A board of the nodes in a namespace: another namespace is another machine.
+    /// A board of the nodes in a namespace. Another namespace is another machine.
     pub fn in_namespace(namespace: &str) -> Self {
         let board = Board::default();
         let name = namespace.trim_matches('/');
@@ -97,7 +97,7 @@ impl Board {
         self.content.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A state of the arm.
+    /// Stores a state of the arm.
     pub fn take_state(&self, state: ArmState) {
         let state = bounded::state(state);
         let mut content = self.lock();
@@ -105,12 +105,12 @@ impl Board {
         content.state = Some((state, Instant::now()));
     }
 
-    /// A command.
+    /// Stores a command.
     pub fn take_command(&self, command: OrificeCommand) {
         self.lock().command = Some((bounded::command(command), Instant::now()));
     }
 
-    /// A balance of the energy monitor.
+    /// Adds a balance of the energy monitor.
     pub fn take_energy(&self, energy: EnergyState) {
         let energy = bounded::energy(energy);
         let mut content = self.lock();
@@ -119,7 +119,7 @@ impl Board {
         content.energy = Some(energy);
     }
 
-    /// How parts of nodes are.
+    /// Stores the health of parts of nodes.
     pub fn take_health(&self, array: DiagnosticArray) {
         let mut content = self.lock();
         for status in array.status.into_iter().take(MOST_PARTS).map(bounded::status) {
@@ -132,14 +132,14 @@ impl Board {
         }
     }
 
-    /// A robot description; a browser reads it, nobody here.
+    /// Stores a robot description. Only browsers parse it.
     pub fn take_description(&self, description: String) {
         self.lock().machine.describe(description);
     }
 
-    /// A model as text; one that cannot be read is ignored.
+    /// Stores the scales of a model, given as text. An unreadable text is ignored.
     pub fn take_model(&self, text: &str) {
-        // A large model is read without holding up the frames.
+        // Parsed before the lock is taken, so that a large model does not delay the frames.
         if let Some(scales) = machine::scales(text) {
             self.lock().machine.scale(scales);
         }
@@ -150,7 +150,7 @@ impl Board {
         self.lock().machine.to_json().to_string()
     }
 
-    /// Makes a frame of what there is; pages are sent the newest.
+    /// Makes a frame of the current content and publishes it to the pages.
     pub fn frame(&self) -> Arc<str> {
         let mut content = self.lock();
         content.number += 1;
@@ -172,7 +172,7 @@ impl Board {
         self.lock().history.iter().cloned().collect()
     }
 
-    /// Whoever wants the newest frame.
+    /// Returns a receiver of the newest frame.
     pub fn subscribe(&self) -> watch::Receiver<Arc<str>> {
         self.newest.subscribe()
     }
@@ -188,7 +188,7 @@ impl Powers {
                 continue;
             }
             let CylinderPowers { count, sums, terms } = self.cylinders.entry(cylinder.name.clone()).or_default();
-            // A balance without a rate, as at the ends of gaps, would take all others with it.
+            // A balance without a rate, as at the ends of gaps, would make all sums NaN.
             if !powers_of(cylinder).iter().all(|power| power.is_finite()) {
                 continue;
             }
@@ -208,24 +208,24 @@ fn powers_of(cylinder: &CylinderEnergy) -> [f64; 4] {
     [cylinder.hamiltonian_rate, cylinder.supply, cylinder.dissipation, cylinder.balance_residual]
 }
 
-/// JSON has no NaN; seven digits are more than a plot shows.
+/// JSON has no NaN. Seven digits are more than a plot shows.
 fn finite(value: f64) -> Value {
     if value.is_finite() { json!(format!("{value:.6e}").parse::<f64>().unwrap_or(value)) } else { Value::Null }
 }
 
-/// Seconds since then, to a hundredth.
+/// Seconds since `then`, rounded to a hundredth.
 fn age(then: Option<Instant>) -> Value {
     finite(then.map_or(f64::NAN, |then| (then.elapsed().as_secs_f64() * 100.0).round() / 100.0))
 }
 
-/// The clock of this machine: pages show its times in their own zone.
+/// The clock of this machine. Pages show its times in their own time zone.
 fn milliseconds_since_epoch() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     u64::try_from(since.as_millis()).unwrap_or_default()
 }
 
 impl Content {
-    /// Makes room for a part that was heard of: nodes say how they are every second, so what is there comes back.
+    /// Drops the part with the oldest message to make room. Nodes report every second, so a part that still exists comes back.
     fn forget_oldest(&mut self) {
         let oldest = self.health.iter().min_by_key(|(_, part)| part.heard).map(|(name, _)| name.clone());
         if let Some(name) = oldest {
@@ -258,7 +258,7 @@ impl Content {
         })
     }
 
-    /// What the command gates say: who commands each valve, which are closed and why, and who has stopped the machine.
+    /// The content of the command gates: who commands each valve, which are closed and why, and who has stopped the machine.
     fn gates(&self) -> Vec<Value> {
         let heard = self.health.iter().filter(|(_, part)| part.heard.elapsed() < GATE_SILENT);
         heard
@@ -319,7 +319,7 @@ impl Content {
         json!({"pump_power": pump, "bypass_loss": bypass, "metering_loss": metering, "cylinders": cylinders})
     }
 
-    /// Everything that is not well, worst first.
+    /// All parts with warnings or errors, worst first.
     fn alarms(&self, silent: bool) -> Vec<Value> {
         let mut alarms = Vec::new();
         if silent {

@@ -1,16 +1,16 @@
-//! Messages of whoever is on the network, cut to what a page shows.
+//! Truncates foreign messages to what a page shows.
 
 use excavator_msgs::common::{DiagnosticStatus, KeyValue};
 use excavator_msgs::{ArmState, EnergyState, OrificeCommand};
 
-/// Cylinders, effects of each, and values of a part that are shown.
+/// Most cylinders, effects of each, and values of a part that are shown.
 pub(super) const MOST_SHOWN: usize = 32;
 /// Longest name, bytes.
 const LONGEST_NAME: usize = 128;
 /// Longest message of a part, bytes.
 const LONGEST_MESSAGE: usize = 512;
 
-/// The first cylinders, with names that are not too long.
+/// Keeps the first cylinders, with names that are not too long.
 pub(super) fn state(mut state: ArmState) -> ArmState {
     state.header.frame_id = String::new();
     cut_list(&mut state.cylinders);
@@ -18,7 +18,7 @@ pub(super) fn state(mut state: ArmState) -> ArmState {
     state
 }
 
-/// The first valves.
+/// Keeps the first valves.
 pub(super) fn command(mut command: OrificeCommand) -> OrificeCommand {
     command.header.frame_id = String::new();
     cut_list(&mut command.names);
@@ -27,7 +27,7 @@ pub(super) fn command(mut command: OrificeCommand) -> OrificeCommand {
     command
 }
 
-/// The first cylinders and effects.
+/// Keeps the first cylinders and effects.
 pub(super) fn energy(mut energy: EnergyState) -> EnergyState {
     energy.header.frame_id = String::new();
     cut_list(&mut energy.cylinders);
@@ -39,7 +39,7 @@ pub(super) fn energy(mut energy: EnergyState) -> EnergyState {
     energy
 }
 
-/// How a part is, with its first values.
+/// Keeps the status of a part and its first values.
 pub(super) fn status(mut status: DiagnosticStatus) -> DiagnosticStatus {
     cut(&mut status.name, LONGEST_NAME);
     cut(&mut status.message, LONGEST_MESSAGE);
@@ -51,7 +51,7 @@ pub(super) fn status(mut status: DiagnosticStatus) -> DiagnosticStatus {
     status
 }
 
-/// The memory of what is cut off is given back.
+/// Truncates a list and frees the memory of the rest.
 fn cut_list<T>(list: &mut Vec<T>) {
     list.truncate(MOST_SHOWN);
     list.shrink_to_fit();

@@ -1,4 +1,4 @@
-//! What the command gate of a node says in its diagnostics, as the page shows it.
+//! Extracts the state of a node's command gate from its diagnostics.
 
 use std::collections::BTreeMap;
 

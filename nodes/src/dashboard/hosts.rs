@@ -1,25 +1,25 @@
-//! Which names the page answers to.
+//! Restricts the host names that the page answers to.
 
 use std::net::IpAddr;
 
 use axum::http::{HeaderMap, Uri, header};
 
-/// Names under which browsers may ask.
+/// Host names that requests may use.
 ///
-/// A page of somebody else can have its own name point at this machine after it was loaded (DNS rebinding); then its script
-/// may read what the server answers. Such a request has that name as its host, and a name that is not ours is not answered.
+/// A foreign page can point its own host name at this machine after it was loaded (DNS rebinding). Its script could then read
+/// the server's responses. Such a request carries the foreign name as its host, and unknown names are rejected.
 #[derive(Debug, Clone, Default)]
 pub struct Hosts {
     allowed: Vec<String>,
 }
 
 impl Hosts {
-    /// The names in `allowed`, beside localhost, the loopback addresses and the address that a connection came to.
+    /// The names in `allowed`, besides localhost, the loopback addresses and the address of the connection.
     pub fn new(allowed: impl IntoIterator<Item = String>) -> Self {
         Hosts { allowed: allowed.into_iter().map(|name| name.trim_end_matches('.').to_ascii_lowercase()).collect() }
     }
 
-    /// Whether a request that came to the address `own` asks for one of the names.
+    /// Whether a request that arrived at the address `own` uses one of the names.
     pub(super) fn accept(&self, uri: &Uri, headers: &HeaderMap, own: IpAddr) -> bool {
         let mut given = headers.get_all(header::HOST).iter();
         let (Some(host), None) = (given.next(), given.next()) else { return false };

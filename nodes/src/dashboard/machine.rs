@@ -1,4 +1,4 @@
-//! What the page knows of the machine itself: its robot description and the scales of its cylinders.
+//! The page's data on the machine itself: its robot description and the scales of its cylinders.
 
 use excavator_model::document::parse;
 use excavator_model::effects::Catalogue;
@@ -7,10 +7,10 @@ use serde_json::{Map, Value, json};
 
 use super::bounded::MOST_SHOWN;
 
-/// Longest robot description and longest model that are read, bytes.
+/// Longest robot description and longest model accepted, bytes.
 const LONGEST_TEXT: usize = 256 << 10;
 
-/// Description and scales, with a number that changes with them.
+/// Description and scales, with a version number that changes with them.
 #[derive(Default)]
 pub(super) struct Machine {
     version: u64,
@@ -19,7 +19,7 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    /// A robot description; one that is too long is ignored. Only browsers read it.
+    /// Stores a robot description, unless it is too long. Only browsers parse it.
     pub fn describe(&mut self, mut description: String) {
         if description.len() > LONGEST_TEXT || description == self.description {
             return;
@@ -29,7 +29,7 @@ impl Machine {
         self.version += 1;
     }
 
-    /// The scales of all cylinders.
+    /// Stores the scales of all cylinders.
     pub fn scale(&mut self, cylinders: Map<String, Value>) {
         if cylinders != self.cylinders {
             self.cylinders = cylinders;
@@ -37,18 +37,18 @@ impl Machine {
         }
     }
 
-    /// A page that has seen another version asks again.
+    /// The version. A page that has another version requests the data again.
     pub fn version(&self) -> u64 {
         self.version
     }
 
-    /// Everything, for a page.
+    /// All data, for a page.
     pub fn to_json(&self) -> Value {
         json!({"version": self.version, "description": self.description, "cylinders": self.cylinders})
     }
 }
 
-/// Ends of stroke, kind of actuator and unit of the command of each cylinder of a model; none where it cannot be read.
+/// Ends of stroke, kind of actuator and unit of the command of each cylinder of a model; `None` if the model cannot be read.
 pub(super) fn scales(text: &str) -> Option<Map<String, Value>> {
     if text.len() > LONGEST_TEXT {
         return None;

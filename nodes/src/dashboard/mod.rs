@@ -1,7 +1,7 @@
-//! `excavator dashboard`: the live topics on a page.
+//! `excavator dashboard`: shows the live topics on a page.
 //!
-//! Topics come in at their own pace and go into a [`Board`]; 25 times per second the board makes one frame of it, and
-//! each page is sent the newest frame when it has taken the one before. So a slow page misses frames, and nothing grows.
+//! Topics arrive at their own pace and go into a [`Board`]. The board makes a frame 25 times per second. Each page receives the
+//! newest frame when it has taken the previous one. So a slow page misses frames, and no queue grows.
 
 mod board;
 mod bounded;

@@ -1,4 +1,4 @@
-//! The dashboard on the graph.
+//! The dashboard's node.
 
 use std::net::TcpListener;
 use std::sync::Arc;
@@ -22,10 +22,10 @@ fn newest(depth: u32) -> TopicQos {
     TopicQos::reliable(depth).with_room(2_000)
 }
 
-/// Serves the page until it is told to stop.
+/// Serves the page until a stop is requested.
 ///
 /// # Errors
-/// `VerbError` when the graph cannot be joined or the address cannot be used.
+/// `VerbError` if the graph cannot be joined or the address cannot be used.
 pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), VerbError> {
     let address = (arguments.host.as_str(), arguments.port);
     let listener = TcpListener::bind(address)
@@ -42,7 +42,7 @@ pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), Ver
     })?;
     supervisor.link.subscribe("arm/energy", newest(50), move |energy: EnergyState, _| energies.take_energy(energy))?;
     supervisor.link.subscribe("/diagnostics", newest(10), move |array: DiagnosticArray, _| parts.take_health(array))?;
-    // Both are published once: whoever comes later is sent the last.
+    // Both are published once and latched: late subscribers receive the last message.
     supervisor.link.subscribe("robot_description", TopicQos::latched(), move |text: Text, _| {
         descriptions.take_description(text.data);
     })?;
@@ -60,7 +60,7 @@ pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), Ver
     }
 }
 
-/// A thread of its own: neither a slow page nor a busy graph waits for the other.
+/// The server has a thread of its own, so that slow pages and a busy graph do not delay each other.
 fn serve_frames(listener: TcpListener, board: Arc<Board>, hosts: Hosts, stop: &AtomicBool) -> std::io::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let (end, ended) = tokio::sync::oneshot::channel::<()>();

@@ -1,10 +1,10 @@
-//! The page, with everything in it.
+//! The page, with all scripts and styles inlined.
 
 use excavator_report::{KINEMATICS, plotting};
 
 const FRAME: &str = include_str!("assets/dashboard.html");
 const STYLE: &str = include_str!("assets/dashboard.css");
-/// In the order in which they need each other.
+/// The scripts in the order of their dependencies.
 const SCRIPTS: [&str; 9] = [
     include_str!("assets/basics.js"),
     KINEMATICS,
@@ -17,7 +17,7 @@ const SCRIPTS: [&str; 9] = [
     include_str!("assets/dashboard.js"),
 ];
 
-/// The whole page; it asks for nothing but its own stream.
+/// The whole page. It requests nothing except its own data.
 pub(super) fn page() -> String {
     let (script, style, licence) = plotting();
     FRAME

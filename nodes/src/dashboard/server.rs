@@ -1,4 +1,4 @@
-//! The page and its stream over HTTP.
+//! Serves the page and its stream over HTTP.
 
 use std::convert::Infallible;
 use std::net::{IpAddr, TcpListener};
@@ -23,21 +23,21 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 use super::page::page;
 use super::{Board, Hosts};
 
-/// Connections at a time: a browser needs three, and a handful of people look.
+/// Most connections at a time: a browser needs three, and a handful of people watch.
 const MOST_CONNECTIONS: usize = 64;
-/// Time that a client has for the header of its request. A browser sends it at once.
+/// Time for a client to send the header of its request. A browser sends it at once.
 const HEADER_TIME: Duration = Duration::from_secs(5);
-/// Time after which a client that takes nothing of what it asked for is let go.
+/// Time after which a client that reads nothing is disconnected.
 const TAKING_TIME: Duration = Duration::from_secs(30);
-/// Pause after a connection that could not be accepted: the process has no more files, or the like.
+/// Pause after a connection that could not be accepted, for example because the process has no free file descriptors.
 const PAUSE: Duration = Duration::from_millis(100);
-/// Bytes of a response that wait in this process for a client.
+/// Most bytes of a response that are buffered for a client.
 const BUFFER: usize = 64 * 1024;
 
 const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-length: 27\r\n\r\n\
     too many pages are open now";
 
-/// Neither framed nor embedded by other pages, nor guessed at, nor kept.
+/// Forbids framing and embedding by other pages, content sniffing and caching.
 const HEADERS: [(HeaderName, &str); 5] = [
     (header::CONTENT_SECURITY_POLICY, "frame-ancestors 'none'"),
     (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
@@ -46,12 +46,12 @@ const HEADERS: [(HeaderName, &str); 5] = [
     (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
 ];
 
-/// Serves a board until `stop` says so: `/` is the page, `/stream` its frames as server-sent events, `/history` those of
-/// the last half minute, `/machine` the robot description and the scales of the cylinders. Only requests for one of `hosts`
-/// are answered.
+/// Serves a board until `stop` completes: `/` is the page, `/stream` its frames as server-sent events, `/history` the frames of
+/// the last half minute, `/machine` the robot description and the scales of the cylinders. Only requests for one of `hosts` are
+/// answered.
 ///
 /// # Errors
-/// When the listener cannot be used.
+/// If the listener cannot be used.
 pub async fn serve(
     listener: TcpListener,
     board: Arc<Board>,
@@ -76,22 +76,22 @@ pub async fn serve(
             };
             match Arc::clone(&connections).try_acquire_owned() {
                 Ok(permit) => connect(stream, router.clone(), hosts.clone(), permit),
-                // Whether it hears the reason or not: it is let go.
+                // The connection is closed, whether or not the client receives the reason.
                 Err(_) => drop(stream.try_write(FULL)),
             }
         }
     };
-    // Streams never end by themselves, so the server is dropped with them instead of waiting.
+    // Streams never end by themselves, so the server is dropped without waiting for them.
     tokio::select! {
         () = accepting => Ok(()),
         () = stop => Ok(()),
     }
 }
 
-/// Serves one request of a connection; the permit is given back with its end.
+/// Serves one request of a connection. The permit is released when the connection ends.
 fn connect(stream: TcpStream, router: Router, hosts: Hosts, permit: OwnedSemaphorePermit) {
     let Ok(own) = stream.local_addr().map(|address| address.ip()) else { return };
-    // A peer that has gone, or takes nothing, does not keep its place for ever; without the option it keeps it for longer.
+    // Frees the place of a peer that has gone or reads nothing. Without the option, that only takes longer.
     let _ = setsockopt(&stream, TcpUserTimeout, &(TAKING_TIME.as_millis() as u32));
     let checked = axum::middleware::from_fn(move |request: Request<Body>, next: axum::middleware::Next| {
         let allowed = hosts.accept(request.uri(), request.headers(), own);
@@ -105,7 +105,7 @@ fn connect(stream: TcpStream, router: Router, hosts: Hosts, permit: OwnedSemapho
             .keep_alive(false)
             .max_buf_size(BUFFER)
             .serve_connection(TokioIo::new(stream), service);
-        // What a client does wrong ends its connection and concerns nobody else.
+        // An error of the client ends its connection and affects no others.
         let _ = serving.await;
         drop(permit);
     });
@@ -126,7 +126,7 @@ fn misdirected(own: IpAddr) -> Response {
     (StatusCode::MISDIRECTED_REQUEST, reason).into_response()
 }
 
-/// The frames of the last half minute as a JSON array. They are shared with the board, not copied for each client.
+/// The frames of the last half minute as a JSON array. They are shared with the board, not copied per client.
 async fn history(State(board): State<Arc<Board>>) -> impl IntoResponse {
     let frames = board.history();
     let separated = frames.into_iter().enumerate().flat_map(|(index, frame)| {
@@ -154,7 +154,7 @@ async fn stream(State(board): State<Arc<Board>>) -> Sse<impl Stream<Item = Resul
     Sse::new(frames(board.subscribe())).keep_alive(KeepAlive::default())
 }
 
-/// The newest frame each time that the connection has room for one: what came in between is not sent.
+/// The newest frame each time that the connection has room for one. Frames in between are skipped.
 fn frames(newest: watch::Receiver<Arc<str>>) -> impl Stream<Item = Result<Event, Infallible>> {
     futures::stream::unfold(newest, |mut newest| async move {
         newest.changed().await.ok()?;

@@ -1,8 +1,8 @@
-//! What the made-up operator does.
+//! The manoeuvres of the simulated operator.
 
 use excavator_model::simulation::{Profile, Segment};
 
-/// Manoeuvre that parameters are fitted to: sines of two amplitudes, trapezoids of both signs, a sweep, pauses.
+/// Manoeuvre for the fit: sines of two amplitudes, trapezoids of both signs, a sweep, pauses.
 pub fn identification() -> Profile {
     let pause = |duration| Segment::Hold { duration, area: 0.0 };
     let trapezoid = |amplitude| Segment::Trapezoid { duration: 1.2, amplitude, ramp: 0.15 };
@@ -17,7 +17,7 @@ pub fn identification() -> Profile {
     Profile { cylinder: "arm".into(), segments }
 }
 
-/// Manoeuvre that evidence is taken from.
+/// Manoeuvre for the validation.
 pub fn validation() -> Profile {
     let pause = |duration| Segment::Hold { duration, area: 0.0 };
     let segments = vec![

@@ -1,4 +1,4 @@
-//! `excavator demo`: the whole story on a machine with a hidden effect.
+//! `excavator demo`: the whole workflow on a machine with a hidden effect.
 
 pub mod manoeuvre;
 pub mod plant;

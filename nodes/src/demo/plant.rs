@@ -1,4 +1,4 @@
-//! The made-up machine at work, and the instruments on it.
+//! Runs the simulated machine, and measures it with simulated instruments.
 
 use excavator_model::equations::System;
 use excavator_model::recording::Recording;
@@ -17,7 +17,7 @@ const RATE: f64 = 500.0;
 const SPOOL_LAG: f64 = 0.012;
 /// Tank pressure, Pa.
 const TANK_PRESSURE: f64 = 3e5;
-/// How the operator steers the arm back to mid-stroke, m² per m.
+/// Gain with which the operator steers the arm back to mid-stroke, m² per m.
 const CENTRING: f64 = 8e-5;
 /// Noise of the displacement sensor, m.
 const DISPLACEMENT_NOISE: f64 = 5e-5;
@@ -27,7 +27,7 @@ const PRESSURE_NOISE: f64 = 2e3;
 const SPOOL_NOISE: f64 = 2e-7;
 /// Jitter of the stamps, s.
 const JITTER: f64 = 2e-5;
-/// Share of messages lost on the way.
+/// Share of messages lost in transport.
 const LOSS: f64 = 1e-3;
 
 /// Runs a manoeuvre on the machine and records it.
@@ -51,7 +51,7 @@ fn run(sealed: &Sealed, profile: &Profile) -> Result<Recording, RunError> {
     let mut signals = InputSignals::from_recording(model, &recording)?;
     let system = System::new(model);
     let mut state = rest_state(&system, &[0.0], &signals.at_start());
-    // Finer than what the identifier uses, so that it does not test itself against its own rounding.
+    // Finer than the tolerances of the identifier, so that it is not tested against its own rounding.
     let tolerances = Tolerances::default().scaled(0.05);
     let mut integrator = Integrator::new(&system, &model.parameter_values(), &[], tolerances);
     let follow = 1.0 - (-1.0 / (RATE * SPOOL_LAG)).exp();
@@ -60,7 +60,7 @@ fn run(sealed: &Sealed, profile: &Profile) -> Result<Recording, RunError> {
         observed(&system, &state, index, &mut recording);
         let displacement = recording.cylinders[0].displacement[index];
         let wanted = profile.area(recording.time[index]);
-        // The operator corrects the drift while the arm moves anyway, and leaves the valve alone in pauses.
+        // The operator corrects the drift only while the arm moves, and leaves the valve alone in pauses.
         let correction = if wanted == 0.0 { 0.0 } else { -CENTRING * displacement };
         let command = wanted + correction;
         recording.cylinders[0].orifice_command[index] = command;
@@ -78,7 +78,7 @@ fn run(sealed: &Sealed, profile: &Profile) -> Result<Recording, RunError> {
     Ok(recording)
 }
 
-/// Adds what instruments add: noise, jitter, lost messages; takes away what they do not see.
+/// Adds the errors of instruments: noise, jitter, lost messages. Removes the signals without a sensor.
 fn measure(recording: &mut Recording, spool_sensor: bool, generator: &mut ChaCha8Rng) {
     let mut noisy = |values: &mut [f64], deviation: f64| {
         if let Ok(noise) = Normal::new(0.0, deviation) {

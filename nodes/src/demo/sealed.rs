@@ -1,4 +1,4 @@
-//! The hidden effect and the machine around it, drawn from a seed.
+//! Draws the hidden effect and the machine around it from a seed.
 
 use excavator_model::Model;
 use excavator_model::document::{DocumentError, built_in};
@@ -8,18 +8,18 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::error::VerbError;
 
-/// A machine whose parameters and hidden effect nobody outside has seen.
+/// A machine whose parameters and hidden effect are unknown to the identification.
 pub struct Sealed {
-    /// The machine as it really is.
+    /// The true machine.
     pub truth: Model,
     /// Name of the hidden effect.
     pub effect: &'static str,
-    /// Where it sits.
+    /// The place of the hidden effect.
     pub site: Site,
 }
 
-/// Hidden effects and the ranges (uniform, in the parameters' units) from which their strengths are drawn: from well
-/// visible to strong on this machine.
+/// Hidden effects and the ranges (uniform, in the parameters' units) from which their strengths are drawn: from clearly visible
+/// to strong on this machine.
 const HIDDEN: &[(&str, &[(f64, f64)])] = &[
     ("valve_dead_zone", &[(7e-6, 1.4e-5), (7e-6, 1.4e-5)]),
     ("valve_leakage", &[(1e-11, 3e-11), (1e-11, 3e-11), (1e-11, 3e-11), (1e-11, 4e-11)]),
@@ -30,14 +30,14 @@ const HIDDEN: &[(&str, &[(f64, f64)])] = &[
     ("relief_valve", &[(1.1e6, 1.5e6), (5e-10, 2e-9)]),
 ];
 
-/// How far the machine's own parameters are from the model's, at most: what a type sheet is worth.
+/// Largest relative deviation of the machine's own parameters from the model's: the accuracy of a type sheet.
 const PARAMETER_SPREAD: f64 = 0.2;
 
 impl Sealed {
-    /// Draws a machine that hides nothing.
+    /// Draws a machine without a hidden effect.
     ///
     /// # Errors
-    /// [`DocumentError`] when the built-in model cannot be read.
+    /// [`DocumentError`] if the built-in model cannot be read.
     pub fn draw_without_effect(generator: &mut ChaCha8Rng) -> Result<Sealed, DocumentError> {
         let mut truth = built_in("zx30u-arm")?;
         for parameter in truth.parameters_mut().filter(|parameter| !parameter.known) {
@@ -49,7 +49,7 @@ impl Sealed {
     /// Draws a machine with a hidden effect.
     ///
     /// # Errors
-    /// When the built-in model cannot be read or has no place for the effect.
+    /// If the built-in model cannot be read or has no place for the effect.
     pub fn draw(generator: &mut ChaCha8Rng) -> Result<Sealed, VerbError> {
         let mut truth = Self::draw_without_effect(generator)?.truth;
         let (effect, ranges) = HIDDEN[generator.random_range(0..HIDDEN.len())];
@@ -67,12 +67,12 @@ impl Sealed {
         Ok(Sealed { truth, effect, site })
     }
 
-    /// Whether the spool has a sensor: a lag of the valve only shows against the command.
+    /// Whether the spool has a sensor: a lag of the valve is visible only against the command.
     pub fn has_spool_sensor(&self) -> bool {
         self.effect != "valve_lag"
     }
 
-    /// Value, name and unit of the hidden effect's parameters, with what was found for them.
+    /// Value, name and unit of the hidden effect's parameters, with the identified values.
     pub fn opened(&self, found: &Model) -> Vec<(String, f64, Option<f64>, Text)> {
         let Some(hidden) = self.truth.effects.last() else { return Vec::new() };
         let place = excavator_model::site_name(&self.truth.machine, self.site);

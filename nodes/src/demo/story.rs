@@ -1,4 +1,4 @@
-//! The story, told on the terminal.
+//! Prints the story on the terminal.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ use crate::output::{NextStep, Progress, Stage, candidate_table, number, stage_ta
 use crate::outputs::write;
 use crate::verbs::{print, print_next};
 
-/// Every story has files of its own.
+/// Every story has its own files.
 const NEVER: Overwriting = Overwriting { force: false };
 const IDENTIFICATION: &str = "identification";
 const VALIDATION: &str = "validation";
@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &DemoArguments) -> Result<(), VerbError> {
     Ok(())
 }
 
-/// The folder asked for, or the first of folder-2, folder-3, ... that holds no file of a story yet: nothing is overwritten.
+/// The given folder, or the first of folder-2, folder-3, ... that holds no file of a story yet, so that nothing is overwritten.
 fn free_folder(wanted: &Path) -> PathBuf {
     let names = [IDENTIFICATION, VALIDATION, MODEL, TRUTH, REPORT];
     let taken = |path: &Path| names.iter().any(|name| path.join(name).symlink_metadata().is_ok());

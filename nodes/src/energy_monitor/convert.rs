@@ -1,11 +1,11 @@
-//! Between messages and the monitor.
+//! Converts between messages and the monitor.
 
 use excavator_model::Model;
 use excavator_model::energy::monitor::Balance;
 use excavator_msgs::{ArmState, CylinderEnergy, EnergyState, EnergyTerm, Header, Time};
 
-/// The state without cylinders that the model does not have, and without second entries of those that it has: whoever is on
-/// the network can send thousands.
+/// The state without cylinders that the model does not have, and without duplicates: any node on the network can send
+/// thousands.
 pub(super) fn trimmed(mut state: ArmState, model: &Model) -> ArmState {
     let mut open: Vec<&str> = model.machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();
     state.cylinders.retain(|measured| {

@@ -1,4 +1,4 @@
-//! What comes from the network and waits for the monitor, bounded in number and size.
+//! The monitor's queue of incoming messages, bounded in number and size.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -7,18 +7,18 @@ use std::time::Duration;
 
 use excavator_msgs::{ArmState, CylinderState};
 
-/// States that may wait: a minute at 1 kHz.
+/// Most queued states: a minute at 1 kHz.
 const WAITING: usize = 60_000;
-/// Bytes that may wait: a minute at 1 kHz of a machine with four cylinders has 30 MB.
+/// Most queued bytes: a minute at 1 kHz of a machine with four cylinders has 30 MB.
 const WAITING_BYTES: usize = 48 << 20;
-/// Cylinders of a state. No machine has so many; what has more is no state of one.
+/// Most cylinders of a state. No machine has so many; a message with more is rejected.
 const MOST_CYLINDERS: usize = 32;
 /// Longest name of a cylinder, bytes.
 const LONGEST_NAME: usize = 128;
-/// Longest text of a model, bytes. The largest model that comes with the program has 11 kB.
+/// Longest text of a model, bytes. The largest built-in model has 11 kB.
 const LONGEST_MODEL: usize = 1 << 20;
 
-/// Something that came.
+/// A received message.
 #[derive(Debug)]
 pub(super) enum Incoming {
     State(ArmState),
@@ -37,23 +37,23 @@ impl Incoming {
     }
 }
 
-/// What did not come in.
+/// Counts of rejected messages.
 #[derive(Debug, Default)]
 pub(super) struct Counts {
-    /// There was no room.
+    /// Rejected because the queue was full.
     dropped: AtomicU64,
-    /// It was too large.
+    /// Rejected because of its size.
     odd: AtomicU64,
 }
 
 impl Counts {
-    /// States for which there was no room, and states and models that were too large.
+    /// The number of states for which there was no room, and of states and models that were too large.
     pub fn get(&self) -> (u64, u64) {
         (self.dropped.load(Ordering::Relaxed), self.odd.load(Ordering::Relaxed))
     }
 }
 
-/// Where the subscriptions put what comes.
+/// The sending end of the queue, for the subscriptions.
 #[derive(Debug, Clone)]
 pub(super) struct Door {
     sender: SyncSender<Incoming>,
@@ -61,14 +61,14 @@ pub(super) struct Door {
     counts: Arc<Counts>,
 }
 
-/// Where the monitor takes it from.
+/// The receiving end of the queue, for the monitor.
 #[derive(Debug)]
 pub(super) struct Inbox {
     receiver: Receiver<Incoming>,
     bytes: Arc<AtomicUsize>,
 }
 
-/// An empty inbox and its door.
+/// Both ends of an empty queue.
 pub(super) fn inbox() -> (Door, Inbox) {
     let (sender, receiver) = sync_channel(WAITING);
     let bytes = Arc::new(AtomicUsize::new(0));
@@ -76,19 +76,19 @@ pub(super) fn inbox() -> (Door, Inbox) {
 }
 
 impl Door {
-    /// A state came.
+    /// Queues a state.
     pub fn state(&self, mut state: ArmState) {
         let names_fit = state.cylinders.iter().all(|cylinder| cylinder.name.len() <= LONGEST_NAME);
         if state.cylinders.len() > MOST_CYLINDERS || !names_fit {
             self.counts.odd.fetch_add(1, Ordering::Relaxed);
             return;
         }
-        // Nothing is done with it, and it may be of any length.
+        // The field is not used, and can have any length.
         state.header.frame_id = String::new();
         self.put(Incoming::State(state));
     }
 
-    /// A model came.
+    /// Queues a model.
     pub fn model(&self, text: String) {
         if text.len() > LONGEST_MODEL {
             self.counts.odd.fetch_add(1, Ordering::Relaxed);
@@ -97,14 +97,14 @@ impl Door {
         self.put(Incoming::Model(text));
     }
 
-    /// What did not come in so far.
+    /// The counts of rejected messages.
     pub fn counts(&self) -> Arc<Counts> {
         Arc::clone(&self.counts)
     }
 
     fn put(&self, incoming: Incoming) {
         let size = incoming.size();
-        // Counted before it is sent, so that the other end never takes away what was not added.
+        // Counted before it is sent, so that the receiver never subtracts bytes that were not added yet.
         let before = self.bytes.fetch_add(size, Ordering::Relaxed);
         if before + size > WAITING_BYTES || self.sender.try_send(incoming).is_err() {
             self.bytes.fetch_sub(size, Ordering::Relaxed);
@@ -114,10 +114,10 @@ impl Door {
 }
 
 impl Inbox {
-    /// What came first, after `patience` at the latest.
+    /// The oldest message. Waits at most `patience`.
     ///
     /// # Errors
-    /// Nothing came, or nothing can come any more.
+    /// No message came in time, or the senders are gone.
     pub fn recv_timeout(&self, patience: Duration) -> Result<Incoming, RecvTimeoutError> {
         let incoming = self.receiver.recv_timeout(patience)?;
         self.bytes.fetch_sub(incoming.size(), Ordering::Relaxed);

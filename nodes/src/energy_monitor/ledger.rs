@@ -1,4 +1,4 @@
-//! The ledger of the last seconds, equation by equation, by the same functions that judge a recording.
+//! Computes the ledger of the last seconds, equation by equation, with the same functions that analyse a recording.
 
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError};
@@ -10,10 +10,10 @@ use excavator_msgs::ArmState;
 
 use excavator_ros::{Diagnostics, Health};
 
-/// States per second that no machine sends, Hz. A clock that goes to and fro would fill memory without end.
+/// Highest plausible rate of states, Hz. Without this limit, a clock that jumps back and forth would fill the memory.
 const FASTEST: f64 = 4000.0;
 
-/// Collects states until they fill a window, and hands the window to a [`judge_windows`] in a thread of its own.
+/// Collects states until they fill a window, and sends the window to [`judge_windows`] in a thread of its own.
 pub(super) struct Ledger<'l> {
     length: f64,
     states: StateTable,
@@ -23,7 +23,7 @@ pub(super) struct Ledger<'l> {
     tally: &'l Mutex<Tally>,
 }
 
-/// What became of the windows.
+/// Counts of the windows.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Tally {
     judged: u64,
@@ -31,12 +31,12 @@ pub(super) struct Tally {
 }
 
 impl<'l> Ledger<'l> {
-    /// Windows of `length` seconds.
+    /// A ledger with windows of `length` seconds.
     pub fn new(length: f64, windows: SyncSender<StateTable>, tally: &'l Mutex<Tally>) -> Self {
         Ledger { length, states: StateTable::default(), ends: None, windows, tally }
     }
 
-    /// Takes a state. A clock that jumps back begins a new window, one that does not move adds nothing to it.
+    /// Adds a state. If the clock jumps back, a new window begins. A repeated stamp adds nothing.
     pub fn push(&mut self, state: &ArmState) {
         let stamp = state.header.stamp.nanoseconds();
         if self.ends.is_some_and(|(_, last)| stamp == last) {
@@ -51,7 +51,7 @@ impl<'l> Ledger<'l> {
         self.ends = Some((first, last.max(stamp)));
         if stamp.saturating_sub(first) as f64 * 1e-9 >= self.length {
             let window = self.begin_anew();
-            // A machine too slow for every window judges fewer of them, and says so.
+            // If the analysis is too slow, it skips windows, and reports that.
             if let Err(TrySendError::Full(_)) = self.windows.try_send(window)
                 && let Ok(mut tally) = self.tally.lock()
             {
@@ -70,7 +70,7 @@ impl<'l> Ledger<'l> {
     }
 }
 
-/// Judges windows as they come, until there are no more.
+/// Analyses windows as they arrive, until the sender is gone.
 pub(super) fn judge_windows(
     model: &Model,
     windows: &Receiver<StateTable>,
@@ -108,7 +108,7 @@ pub(super) fn judge_windows(
     }
 }
 
-/// The place where power is missing most clearly, and the names of the others.
+/// The place with the most significant missing power, and the names of the others.
 fn details(missing: &[MissingPower]) -> Vec<(&'static str, String)> {
     let Some((worst, others)) = missing.split_first() else { return Vec::new() };
     let mut values = vec![

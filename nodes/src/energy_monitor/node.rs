@@ -1,4 +1,4 @@
-//! The energy monitor on the graph.
+//! The energy monitor's node.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,14 +23,14 @@ use excavator_ros::{
     Diagnostics, Health, Logger, Outlet, Parameter, Parameters, RosArguments, Supervisor, TopicQos, Value,
 };
 
-/// Time without a state after which what is waiting is given with the windows that there are.
+/// Time without a state after which the queued states are evaluated with the windows available.
 const IDLE: Duration = Duration::from_millis(500);
-/// Time between two words to diagnostics.
+/// Time between two diagnostics messages.
 const REPORT: Duration = Duration::from_millis(500);
-/// Time without a state after which that is worth a warning.
+/// Time without a state after which a warning is given.
 const SILENT: Duration = Duration::from_secs(2);
 
-/// All of them, with units, ranges and defaults.
+/// All parameters, with units, ranges and defaults.
 pub(crate) fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     vec![
@@ -51,7 +51,7 @@ pub(crate) fn parameters() -> Vec<Parameter> {
     ]
 }
 
-/// Runs the monitor until it is told to stop.
+/// Runs the monitor until a stop is requested.
 ///
 /// # Errors
 /// [`VerbError`] when it cannot start.
@@ -112,7 +112,7 @@ impl Desk<'_> {
         }
     }
 
-    /// States that come before there is a model are not waited with: their energy is unknown.
+    /// Waits for a model. States that arrive before it are dropped, because their energy is unknown.
     fn wait_for_model(&self) -> Option<Model> {
         match self.incoming.recv_timeout(IDLE) {
             Ok(Incoming::Model(text)) => self.read(&text),
@@ -139,10 +139,10 @@ impl Desk<'_> {
         }
     }
 
-    /// Balances with one model until there is another, or the end.
+    /// Computes balances with one model until another arrives, or the end.
     fn follow(&self, model: &Model) -> Option<Model> {
         let tally = Mutex::new(Tally::default());
-        // One window may wait while another is judged.
+        // One window may be queued while another is analysed.
         let (sender, windows) = sync_channel(1);
         let ledger = Ledger::new(self.parameters.double("ledger_window"), sender, &tally);
         std::thread::scope(|scope| {
@@ -165,7 +165,7 @@ impl Desk<'_> {
         let mut window = None;
         let (mut heard, mut reported) = (Instant::now(), Instant::now());
         let mut has_velocity = false;
-        // A silence after which nothing was left waiting: the monitor begins anew and sees no gap.
+        // Silences after which no state was queued: the monitor restarts and cannot count them as gaps.
         let (mut newest, mut silent, mut silences) = (None::<i64>, false, 0);
         while !self.stop.load(Ordering::Relaxed) {
             match self.incoming.recv_timeout(IDLE) {
@@ -193,7 +193,7 @@ impl Desk<'_> {
             }
             for balance in balances.drain(..) {
                 window = watch.push(&balance).or(window);
-                // Refusals are counted by the outlet and told below.
+                // The outlet counts refusals; they are reported below.
                 let _ = self.outlet.publish(message(&balance, model));
             }
             if reported.elapsed() >= REPORT {

@@ -1,4 +1,4 @@
-//! What becomes of goals, cancel requests and questions, without the wire.
+//! Handles goals, cancel requests and result requests, without the transport.
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
@@ -17,12 +17,12 @@ use super::refusals::Refusals;
 use super::types::{Feedback, Goal, GoalId, GoalInfo, Outcome};
 use excavator_ros::{Diagnostics, Health, Latched, Logger, Supervisor};
 
-/// Questions for results that may wait: a few for each goal. Who asks once more than that asks again later.
+/// Most pending result requests: a few for each goal. When more arrive, the oldest is dropped.
 const MOST_QUESTIONS: usize = 256;
-/// Time beyond the limit after which a goal is ended although the worker has not come to a place where it looks.
+/// Time beyond the limit after which a goal is ended even if the worker has not reached a point where it checks the time.
 const GRACE: Duration = Duration::from_secs(10);
 
-/// News from the work.
+/// Messages from the worker.
 #[derive(Debug)]
 pub(super) enum News {
     Began {
@@ -36,13 +36,13 @@ pub(super) enum News {
         id: GoalId,
         outcome: Outcome,
     },
-    /// The worker has left a goal that was cancelled.
+    /// The worker has abandoned a cancelled goal.
     Left {
         id: GoalId,
     },
 }
 
-/// What was heard from the worker.
+/// What the worker has reported.
 #[derive(Debug, Default)]
 pub(super) struct Heard {
     pub progress: Vec<(GoalId, Feedback)>,
@@ -50,17 +50,17 @@ pub(super) struct Heard {
     pub ended: bool,
 }
 
-/// All goals, and who waits for their results.
+/// All goals, and the pending requests for their results.
 pub(super) struct Desk {
     goals: Goals,
     cancels: HashMap<GoalId, Arc<AtomicBool>>,
     questions: VecDeque<(RmwRequestId, GoalId)>,
     queue: Arc<Queue>,
     news: Receiver<News>,
-    /// Where results become the model in use; `None`: they do not.
+    /// Publishes results as the model in use; `None` if results are not published.
     model: Option<Latched<Text>>,
     time_limit: Duration,
-    /// The goal that is being worked on, since when, and whether it is overdue.
+    /// The goal in progress, its start, and whether it is overdue.
     working: Option<(GoalId, Instant, bool)>,
     refusals: Refusals,
     failures: Refusals,
@@ -69,7 +69,7 @@ pub(super) struct Desk {
 }
 
 impl Desk {
-    /// A desk that puts jobs into `queue` and hears of them from `news`.
+    /// A desk that puts jobs into `queue` and receives reports on them from `news`.
     pub fn new(
         queue: Arc<Queue>,
         news: Receiver<News>,
@@ -93,7 +93,7 @@ impl Desk {
         }
     }
 
-    /// Takes a new goal, or refuses it and says why in the log.
+    /// Accepts a new goal, or rejects it and logs the reason.
     pub fn take(&mut self, id: GoalId, goal: Goal, now: Time) -> bool {
         let refused = if let Err(reason) = goal.check_size() {
             Some(reason)
@@ -116,7 +116,7 @@ impl Desk {
         true
     }
 
-    /// Ends the goals that a cancel request means.
+    /// Cancels the goals that a request matches.
     pub fn cancel(&mut self, request: GoalInfo) -> (CancelAnswer, Vec<GoalInfo>) {
         let (answer, meant) = self.goals.to_cancel(request);
         for goal in &meant {
@@ -130,7 +130,7 @@ impl Desk {
         (answer, meant)
     }
 
-    /// Takes a question for a result; the oldest is forgotten when there are too many.
+    /// Stores a result request. The oldest is dropped if there are too many.
     pub fn ask(&mut self, request: RmwRequestId, id: GoalId) {
         if self.questions.len() >= MOST_QUESTIONS {
             self.questions.pop_front();
@@ -138,7 +138,7 @@ impl Desk {
         self.questions.push_back((request, id));
     }
 
-    /// Takes the news.
+    /// Processes the worker's messages.
     pub fn listen(&mut self) -> Heard {
         let mut heard = Heard::default();
         while let Ok(news) = self.news.try_recv() {
@@ -158,7 +158,7 @@ impl Desk {
         heard
     }
 
-    /// The questions that have an answer by now.
+    /// The result requests that can be answered now.
     pub fn answers(&mut self) -> Vec<(RmwRequestId, i8, Outcome)> {
         let goals = &self.goals;
         let mut answers = Vec::new();
@@ -195,13 +195,13 @@ impl Desk {
         }
         self.logger.info(message);
         if let Some(model) = &self.model {
-            // A latched topic keeps the newest; the next result follows.
+            // A latched topic keeps the newest message; the next result replaces it.
             let _ = model.publish(Text { data: text });
         }
         true
     }
 
-    /// The worker looks at the time between the rounds of its work, which a large recording makes long.
+    /// Ends a goal that is overdue. The worker checks the time only between rounds, and a large recording makes a round long.
     fn end_overdue(&mut self) -> bool {
         let Some((id, since, false)) = self.working else { return false };
         if since.elapsed() < self.time_limit + GRACE {

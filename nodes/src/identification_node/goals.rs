@@ -1,4 +1,4 @@
-//! Which goals there are, and what may happen to them.
+//! The state machine of goals.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use excavator_msgs::Time;
 
 use super::types::{GoalId, GoalInfo, Outcome};
 
-/// Finished goals whose result is kept for those who ask late.
+/// Finished goals whose result is kept for late requests.
 const KEPT: usize = 20;
 
 /// State of a goal, with the numbers of `action_msgs/msg/GoalStatus`.
@@ -35,7 +35,7 @@ struct Known {
     number: u64,
 }
 
-/// All goals that are known.
+/// All known goals.
 #[derive(Debug, Default)]
 pub(super) struct Goals {
     known: BTreeMap<GoalId, Known>,
@@ -43,7 +43,7 @@ pub(super) struct Goals {
 }
 
 impl Goals {
-    /// Takes a new goal; `false` when its identity is taken already.
+    /// Accepts a new goal; `false` if its identity is taken.
     pub fn accept(&mut self, id: GoalId, now: Time) -> bool {
         if self.known.contains_key(&id) {
             return false;
@@ -56,12 +56,12 @@ impl Goals {
         true
     }
 
-    /// Whether work on the goal is wanted.
+    /// Whether the goal is still to be worked on.
     pub fn is_executing(&self, id: &GoalId) -> bool {
         self.known.get(id).is_some_and(|known| known.status == Status::Executing)
     }
 
-    /// Ends a goal; `false` when it has ended before or is unknown.
+    /// Ends a goal; `false` if it has already ended or is unknown.
     pub fn finish(&mut self, id: &GoalId, status: Status, outcome: Outcome) -> bool {
         match self.known.get_mut(id) {
             Some(known) if known.status == Status::Executing => {
@@ -73,8 +73,7 @@ impl Goals {
         }
     }
 
-    /// The goals that a cancel request means: by identity, by time of acceptance, or all. They are to be ended by the
-    /// caller.
+    /// The goals that a cancel request matches: by identity, by time of acceptance, or all. The caller ends them.
     pub fn to_cancel(&self, request: GoalInfo) -> (CancelAnswer, Vec<GoalInfo>) {
         let (any_id, any_time) = (request.goal_id == GoalId::default(), request.stamp == Time::default());
         let meant = |(id, known): &(&GoalId, &Known)| {
@@ -99,7 +98,7 @@ impl Goals {
         (answer, executing)
     }
 
-    /// The result of a goal: `None` while it is being worked on, status 0 for a goal that nobody knows.
+    /// The result of a goal: `None` while it is in progress, status 0 if the goal is unknown.
     pub fn result(&self, id: &GoalId) -> Option<(i8, Outcome)> {
         match self.known.get(id) {
             Some(known) if known.status == Status::Executing => None,

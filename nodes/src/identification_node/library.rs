@@ -1,4 +1,4 @@
-//! The models and bags that a goal may name: files below folders that the operator gave.
+//! The models and bags that a goal may name: files below folders that the operator has set.
 
 use std::fs::Metadata;
 use std::io::Read;
@@ -13,17 +13,17 @@ use nix::libc::O_NONBLOCK;
 use super::printable::printable;
 use super::refusals::tell_operator;
 
-/// Largest model file, bytes. The largest model that comes with the program has 11 kB.
+/// Largest model file, bytes. The largest built-in model has 11 kB.
 const LARGEST_MODEL: u64 = 1 << 20;
 /// Longest name of a file in a goal, bytes.
 const LONGEST_NAME: usize = 1024;
 /// Most entries of a bag's folder. rosbag2 writes one per split file and one of metadata.
 const MOST_ENTRIES: usize = 10_000;
-/// Characters of a name or of a parser's excerpt that a message repeats.
+/// Most characters of a name or of a parser's excerpt that a message quotes.
 pub(super) const QUOTED: usize = 300;
 
-/// Why a goal's model or bag cannot be used, in one line. Nothing in it was read from a file, and it is the same for what
-/// is not there, not below the folder and not readable.
+/// Why a goal's model or bag cannot be used, in one line. The text contains nothing read from a file. It is the same for a file
+/// that does not exist, lies outside the folder or is not readable.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub(super) enum Unusable {
     #[error("model \"{0}\" is neither built in nor a readable file below the node's model_folder")]
@@ -42,7 +42,7 @@ pub(super) enum Unusable {
     Text(String),
 }
 
-/// The folders, in canonical form; `None`: no files.
+/// The folders, in canonical form; `None`: no files are offered.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Library {
     models: Option<PathBuf>,
@@ -50,10 +50,10 @@ pub(super) struct Library {
 }
 
 impl Library {
-    /// The folders of the parameters `model_folder` and `bag_folder`; empty: no files.
+    /// Opens the folders of the parameters `model_folder` and `bag_folder`; empty: no files are offered.
     ///
     /// # Errors
-    /// In one line, which of them is not a folder.
+    /// The parameter that is not a folder, in one line.
     pub fn new(model_folder: &str, bag_folder: &str) -> Result<Self, String> {
         let folder = |parameter: &str, path: &str| {
             if path.is_empty() {
@@ -66,7 +66,7 @@ impl Library {
         Ok(Library { models: folder("model_folder", model_folder)?, bags: folder("bag_folder", bag_folder)? })
     }
 
-    /// The model that a goal means: its text, a built-in name, or the name of a file below `model_folder`.
+    /// The model that a goal names: its text, a built-in name, or the name of a file below `model_folder`.
     ///
     /// # Errors
     /// [`Unusable`].
@@ -87,13 +87,13 @@ impl Library {
         })
     }
 
-    /// A text for the network, without the path of the folder of the bags.
+    /// Text for the network, without the path of the bag folder.
     pub fn without_folder(&self, text: &str) -> String {
         let folder = self.bags.as_ref().map(|root| format!("{}/", root.display()));
         folder.map_or_else(|| text.to_string(), |folder| text.replace(&folder, ""))
     }
 
-    /// The path of the bag that a goal names; `BAG@20..40` is a part of it.
+    /// The path of the bag that a goal names. `BAG@20..40` is a part of it.
     ///
     /// # Errors
     /// [`Unusable`].
@@ -113,8 +113,8 @@ impl Library {
     }
 }
 
-/// The canonical path of `name`, where it is a relative name that stays below `root`. Names that could lead out are refused
-/// before the file system is asked, so that not even the time of an answer says what exists there.
+/// The canonical path of `name`, if it is a relative name that stays below `root`. Names that could lead outside are rejected
+/// before the file system is accessed, so that not even the response time reveals what exists there.
 fn below(root: &Path, name: &str) -> Option<PathBuf> {
     let path = Path::new(name);
     let stays = path.components().all(|component| matches!(component, Component::Normal(_)));
@@ -125,8 +125,8 @@ fn below(root: &Path, name: &str) -> Option<PathBuf> {
     (canonical != root && canonical.starts_with(root)).then_some(canonical)
 }
 
-/// A bag below `root`: a regular file, or a folder of nothing but regular files that lie below `root` themselves. Readers
-/// open what they find in a folder, and a pipe or a device among it would never end.
+/// A bag below `root`: a regular file, or a folder that contains only regular files below `root`. Readers open every file in a
+/// folder, and a read of a pipe or a device might never end.
 fn bag_below(root: &Path, name: &str) -> Option<PathBuf> {
     let path = below(root, name)?;
     let inside = |file: &Path| {
@@ -135,7 +135,7 @@ fn bag_below(root: &Path, name: &str) -> Option<PathBuf> {
     };
     if !path.is_dir() {
         inside(&path)?;
-        // A map beside a bag is read with it.
+        // A map beside a bag is read together with it.
         let mut map = path.clone().into_os_string();
         map.push(".map.toml");
         let map = PathBuf::from(map);
@@ -161,7 +161,8 @@ fn is_plain(data: &Metadata) -> bool {
     data.is_file()
 }
 
-/// The text of a regular file of bounded size. Opening does not wait, not even for a pipe that took the file's place since.
+/// The text of a regular file of bounded size. Opening does not block, not even if a pipe has replaced the file since the
+/// check.
 fn text_of(path: &Path) -> Option<String> {
     let file = std::fs::OpenOptions::new().read(true).custom_flags(O_NONBLOCK).open(path).ok()?;
     let data = file.metadata().ok()?;
@@ -173,7 +174,7 @@ fn text_of(path: &Path) -> Option<String> {
     Some(text)
 }
 
-/// Line and column of a syntax error, without the message that follows.
+/// Line and column of a syntax error, without the message.
 fn place(error: &DocumentError) -> String {
     let DocumentError::Syntax { reason, .. } = error else { return String::new() };
     let numbers = reason.strip_prefix("line ").and_then(|rest| {
@@ -194,7 +195,7 @@ mod tests {
 
     use super::*;
 
-    /// A folder that is offered, and a secret beside it.
+    /// An offered folder, and a secret file outside it.
     fn library() -> (tempfile::TempDir, Library) {
         let folder = tempfile::tempdir().unwrap();
         let root = folder.path().join("offered");

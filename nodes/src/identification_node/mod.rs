@@ -1,8 +1,7 @@
 //! `excavator node identification`: the action `/identification/run`.
 //!
-//! Whoever is on the network may send a goal. So a goal names models and bags below folders that the operator gave, and
-//! nothing else on the machine; goals are bounded in number, size and time; and a result becomes the model in use only where
-//! the operator said so.
+//! Anyone on the network may send a goal. So a goal can name only models and bags below folders that the operator has set.
+//! Goals are bounded in number, size and time. A result becomes the model in use only if the operator has enabled that.
 
 mod desk;
 mod goals;

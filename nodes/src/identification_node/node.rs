@@ -1,4 +1,4 @@
-//! The node: the action in front, one thread that works behind.
+//! The node: the action server, and one worker thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,18 +15,18 @@ use super::work::{Bounds, Ended, identify};
 use crate::error::VerbError;
 use excavator_ros::{Health, Logger, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
-/// Longest time until the worker sees that the node ends.
+/// Longest time until the worker notices that the node ends.
 const GLANCE: Duration = Duration::from_millis(200);
 /// Characters of a model's name in the log.
 const NAMED: usize = 80;
 
-/// All of them, with units, ranges and defaults.
+/// All parameters, with units, ranges and defaults.
 pub(crate) fn parameters() -> Vec<Parameter> {
     let text = |name, description| Parameter::new(name, Value::String(String::new()), description).read_only();
     vec![
         text("model_folder", "folder below which goals may name model files; empty: goals read no model files"),
         text("bag_folder", "folder below which goals may name bags; empty: goals read no bags"),
-        // Ten minutes of recordings at 1 kHz with an added effect take some minutes: ten times that is no work any more.
+        // Ten minutes of recordings at 1 kHz with an added effect take some minutes. Ten times that means a stuck goal.
         Parameter::new("time_limit", Value::Double(1800.0), "longest work on a goal [s]")
             .within(0.1, 86_400.0)
             .read_only(),
@@ -39,7 +39,7 @@ pub(crate) fn parameters() -> Vec<Parameter> {
     ]
 }
 
-/// Runs the node until it is told to stop.
+/// Runs the node until a stop is requested.
 ///
 /// # Errors
 /// [`VerbError`] when it cannot start.
@@ -61,7 +61,7 @@ pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
     let stop = supervisor.stop_flag();
     let worker = Worker { queue, told, logger: supervisor.logger.clone(), library, time_limit, stop };
     supervisor.diagnostics.tell("work", Health::Ok, "waiting for a goal", &[]);
-    // Not joined: work that is under way when the node is told to stop ends with the process.
+    // The thread is not joined: work in progress at the stop ends with the process.
     std::thread::spawn(move || worker.run());
     supervisor.run(|| {});
     supervisor.leave();
@@ -87,12 +87,13 @@ impl Worker {
         }
     }
 
-    // Nobody hears the news when the node is about to end.
+    // A send fails only when the node is about to end.
     fn work_on(&self, job: &Job) {
         let _ = self.told.send(News::Began { id: job.id });
         let said = AtomicBool::new(false);
         let tell = |stage: &str, progress: f64| {
-            // What fails before a bag was opened, anybody can send a thousand times per second: the desk has one line for it.
+            // Logged only once a bag is being used: goals that fail earlier can arrive a thousand times per second, and the
+            // desk limits the log lines about them.
             if stage != "reading the model" && stage != "reading" && !said.swap(true, Ordering::Relaxed) {
                 let model = printable(job.goal.model.lines().next().unwrap_or_default(), NAMED);
                 self.logger.info(format!("identifying {model} from {} bags", job.goal.bags.len()));
@@ -117,7 +118,7 @@ impl Worker {
     }
 }
 
-/// What a goal is told that took too long.
+/// The message for a goal that exceeded its time limit.
 pub(super) fn out_of_time(limit: Duration) -> String {
     format!(
         "not done within {:.0} s; give fewer or shorter recordings, or start the node with a longer time_limit",

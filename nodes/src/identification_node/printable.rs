@@ -1,7 +1,7 @@
-//! Text of strangers in messages and logs.
+//! Makes foreign text safe for messages and logs.
 
-/// At most `longest` characters of `text`, in one line, with control characters and other invisible ones written out: a
-/// terminal would obey them.
+/// Returns at most `longest` characters of `text`, in one line. Control characters and other invisible ones are escaped,
+/// because a terminal would act on them.
 pub(super) fn printable(text: &str, longest: usize) -> String {
     let mut shown = String::new();
     for (count, character) in text.chars().enumerate() {
@@ -20,7 +20,7 @@ pub(super) fn printable(text: &str, longest: usize) -> String {
     shown
 }
 
-/// Marks that change the direction or the place of what follows.
+/// Characters that change the direction or the position of the following text.
 fn is_invisible(character: char) -> bool {
     matches!(character, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
 }

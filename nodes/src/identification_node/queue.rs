@@ -1,4 +1,4 @@
-//! Goals that wait for the worker.
+//! The queue of goals for the worker.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::types::{Goal, GoalId};
 
-/// Goals that may wait: an operator queues a handful, and more say that nobody looks at the answers.
+/// Most goals in the queue. An operator queues a handful; more suggest a faulty client.
 pub(super) const MOST_WAITING: usize = 8;
 
 /// Work to be done.
@@ -30,12 +30,12 @@ impl Queue {
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether another job finds no room.
+    /// Whether the queue has no room for another job.
     pub fn is_full(&self) -> bool {
         self.lock().len() >= MOST_WAITING
     }
 
-    /// Puts a job at the end; `false` when there is no room.
+    /// Appends a job; `false` if there is no room.
     pub fn push(&self, job: Job) -> bool {
         let mut jobs = self.lock();
         let room = jobs.len() < MOST_WAITING;
@@ -46,18 +46,18 @@ impl Queue {
         room
     }
 
-    /// Takes out the jobs that were cancelled while they waited, so that they keep no room.
+    /// Removes the jobs that were cancelled while they waited, so that they do not take up room.
     pub fn drop_cancelled(&self) {
         self.lock().retain(|job| !job.cancelled.load(Ordering::Relaxed));
     }
 
-    /// The next job, after `patience` at the latest.
+    /// The next job. Waits at most `patience`.
     pub fn pop(&self, patience: Duration) -> Option<Job> {
         let waited = self.filled.wait_timeout_while(self.lock(), patience, |jobs| jobs.is_empty());
         waited.unwrap_or_else(PoisonError::into_inner).0.pop_front()
     }
 
-    /// Number of jobs that wait.
+    /// Number of queued jobs.
     pub fn len(&self) -> usize {
         self.lock().len()
     }

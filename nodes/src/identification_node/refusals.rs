@@ -1,4 +1,4 @@
-//! Lines about refusals, so many that people can read them.
+//! Limits the rate of log lines about refusals.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use super::printable::printable;
 use excavator_ros::Logger;
 
-/// Least time between two lines.
+/// Shortest time between two lines.
 const LEAST: Duration = Duration::from_secs(2);
 
-/// Counts refusals and logs some of them.
+/// Counts refusals, and logs some of them.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Refusals {
     total: u64,
@@ -18,12 +18,12 @@ pub(super) struct Refusals {
 }
 
 impl Refusals {
-    /// None yet.
+    /// No refusals yet.
     pub const fn new() -> Self {
         Refusals { total: 0, unsaid: 0, said: None }
     }
 
-    /// A refusal: the line to log now, if it is time for one.
+    /// Counts a refusal. Returns the line to log if one is due.
     pub fn take(&mut self, reason: &str, now: Instant) -> Option<String> {
         self.total += 1;
         if self.said.is_some_and(|said| now.saturating_duration_since(said) < LEAST) {
@@ -39,21 +39,21 @@ impl Refusals {
         })
     }
 
-    /// [`Refusals::take`], into the log.
+    /// As [`Refusals::take`], and logs the line.
     pub fn log(&mut self, logger: &Logger, reason: &str) {
         if let Some(line) = self.take(reason, Instant::now()) {
             logger.warn(line);
         }
     }
 
-    /// Refusals so far.
+    /// Number of refusals so far.
     pub fn total(&self) -> u64 {
         self.total
     }
 }
 
-/// Says on the console, which belongs to the operator, what is wrong in a file: it may repeat what is in it, so it goes
-/// neither to the asker nor to `/rosout`.
+/// Reports a fault in a file on the console, which belongs to the operator. The text may quote the file, so it goes neither to
+/// the client nor to `/rosout`.
 pub(super) fn tell_operator(text: &str) {
     static SAID: Mutex<Refusals> = Mutex::new(Refusals::new());
     let line = SAID.lock().unwrap_or_else(PoisonError::into_inner).take(text, Instant::now());

@@ -1,4 +1,4 @@
-//! The action on the graph: three services and two topics.
+//! The action on the ROS graph: three services and two topics.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -18,9 +18,9 @@ use super::types::{Feedback, Goal, GoalId, GoalInfo, Outcome};
 use excavator_ros::connection::{Closed, Connection, Endpoint, Install, Task};
 use excavator_ros::{LargeReplies, Mapping, RosError, service_mapping, service_qos, system_nanoseconds};
 
-/// Pace of looking for requests. Nobody waits for identification in milliseconds.
+/// Polling period for requests. No client waits for identification in milliseconds.
 const LOOK: Duration = Duration::from_millis(10);
-/// Requests of a kind that are taken in one look: a flood of one kind does not keep the others waiting.
+/// Most requests of one kind taken per poll, so that a flood of one kind does not delay the others.
 const AT_ONCE: usize = 64;
 
 type Server = ActionServer<Goal, Outcome, Feedback>;
@@ -34,7 +34,7 @@ pub(super) struct IdentifyAction {
 }
 
 impl IdentifyAction {
-    /// The action `name` (full name), with what the desk decides.
+    /// The action `name` (full name), answered by the desk.
     pub fn new(name: String, mapping: Mapping, desk: Desk) -> Self {
         IdentifyAction { name, mapping, desk: Arc::new(Mutex::new(desk)), task: Mutex::new(None) }
     }
@@ -82,13 +82,13 @@ impl Endpoint for IdentifyAction {
     }
 }
 
-// Whoever asks hears nothing when an answer cannot be sent, and asks again: that is how services are.
+// A response that cannot be sent is lost. The client has to repeat its request, as with any ROS service.
 fn look(desk: &mut Desk, server: &Server, large: &LargeReplies) {
     let mut changed = false;
-    // Cancelled goals make room for new ones.
+    // Cancel requests come first: cancelled goals make room for new ones.
     let cancels = std::iter::from_fn(|| server.receive_cancel_request().ok().flatten());
     for (request, wanted) in cancels.take(AT_ONCE) {
-        // The library keeps the field of this type to itself; its bytes are the same as ours.
+        // The field of this type is private in the library. The serialized bytes equal those of our type.
         let info = cdr::encode(&wanted).and_then(|bytes| cdr::decode::<GoalInfo>(&bytes));
         let Ok(info) = info else { continue };
         let (answer, meant) = desk.cancel(info);

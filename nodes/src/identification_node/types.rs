@@ -1,4 +1,4 @@
-//! `excavator_msgs/action/Identify` in Rust, and what every action has in common.
+//! `excavator_msgs/action/Identify` in Rust, and the types that all actions share.
 
 use excavator_msgs::Time;
 use serde::{Deserialize, Serialize};
@@ -14,17 +14,16 @@ pub(super) struct Goal {
     pub effects: Vec<String>,
 }
 
-/// Longest model, name of a bag and name of an effect in a goal, bytes. The largest model that comes with the program has
-/// 11 kB.
+/// Largest model, bag name and effect name in a goal, bytes. The largest built-in model has 11 kB.
 const LONGEST: [usize; 3] = [64 * 1024, 1024, 256];
-/// Most bags, and most effects, of a goal.
+/// Most bags, and most effects, in a goal.
 const MOST: usize = 64;
 
 impl Goal {
-    /// Whether the goal has a size that is worked on.
+    /// Checks that the goal is not too large to be worked on.
     ///
     /// # Errors
-    /// What of it is too large, in one line.
+    /// The part that is too large, in one line.
     pub fn check_size(&self) -> Result<(), String> {
         let [model, bag, effect] = LONGEST;
         if self.model.len() > model {

@@ -1,4 +1,4 @@
-//! The work itself, without ROS.
+//! The identification of one goal, without ROS.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,13 +25,13 @@ use crate::sources;
 /// Why there is no outcome.
 #[derive(Debug)]
 pub(super) enum Ended {
-    /// Nobody wants it any more.
+    /// The goal was cancelled.
     Cancelled,
-    /// It took longer than a goal may.
+    /// The goal exceeded its time limit.
     TimedOut,
     /// A model or bag of the goal cannot be used.
     Unusable(Unusable),
-    /// It failed.
+    /// The identification failed.
     Failed(VerbError),
 }
 
@@ -41,13 +41,13 @@ impl From<Unusable> for Ended {
     }
 }
 
-/// What bounds the work on a goal.
+/// Limits of the work on a goal.
 pub(super) struct Bounds<'b> {
-    /// The models and bags that there are for goals.
+    /// The models and bags that goals may use.
     pub library: &'b Library,
-    /// Set when nobody wants the outcome any more.
+    /// Set when the goal is cancelled.
     pub cancelled: &'b AtomicBool,
-    /// When the work ends at the latest.
+    /// Latest end of the work.
     pub deadline: Instant,
 }
 
@@ -71,11 +71,11 @@ impl From<VerbError> for Ended {
     }
 }
 
-/// Does what the goal asks for; `tell` hears of stage and progress. The bounds are looked at between the stages and
-/// between the rounds of the long ones.
+/// Executes a goal. `tell` receives the stage and the progress. The limits are checked between the stages, and between the
+/// rounds of the long ones.
 pub(super) fn identify(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -> Result<Outcome, Ended> {
     identify_within(goal, bounds, tell).map_err(|ended| match ended {
-        // A stopped computation does not say why it was stopped.
+        // A stopped computation does not report why it was stopped.
         Ended::Cancelled => bounds.check().err().unwrap_or(Ended::Cancelled),
         ended => ended,
     })
@@ -116,7 +116,7 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
         .map_err(VerbError::from)?;
     let mut identified = regression.simplified(&wanted).model;
     if !goal.effects.is_empty() {
-        // Effects that were added start far from their values, and some enter nonlinearly: outputs are fitted too.
+        // Added effects start far from their values, and some enter nonlinearly. So the outputs are fitted as well.
         let fitting = part("fitting outputs", 0.5, 0.7);
         let start = with_nuisances(&identified, &recordings);
         let fitted = fit_watched(&start, &recordings, &FitSettings::default(), &fitting).map_err(VerbError::from)?;
@@ -160,7 +160,7 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
     Ok(Outcome { model, signals, nmse_before: before, nmse_after: after, success: true, message })
 }
 
-/// A bag of the library as a recording. What a reader says may repeat what is in a file: that is for the console only.
+/// A bag of the library as a recording. A reader's message may quote a file, so it goes to the console only.
 fn recording(name: &str, library: &Library, wanted: &Model) -> Result<Recording, Ended> {
     let path = library.bag(name)?;
     sources::telling_recording(&path, Extent::default(), &Mapping::default(), wanted).map_err(|error| match error {

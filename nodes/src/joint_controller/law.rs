@@ -1,27 +1,27 @@
-//! From a wanted joint position and rate to the opening of its valve.
+//! Computes the opening of a valve from the wanted joint position and rate.
 //!
-//! Position error and wanted rate give a piston speed; the share of full speed that it is gives the opening, and an integral of the speed's
-//! error takes out what an open-centre valve, a load or a dead zone adds. It is a controller to move a simulated machine by, with gains for
-//! machines of this class; it is none that a real machine was approved with.
+//! Position error and wanted rate give a piston speed. Its share of the full speed gives the opening. An integral of the speed
+//! error corrects for the effect of an open-centre valve, a load or a dead zone. The controller is meant to move a simulated
+//! machine, with gains for machines of this class. It is not approved for any real machine.
 
 use excavator_model::Model;
 use excavator_model::machine::{Cylinder, Drive, Supply};
 
-/// What a joint is asked for. `NaN` = not asked.
+/// Target of a joint. `NaN` = no target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Wanted {
-    /// rad, or m where the joint slides.
+    /// Position, rad, or m for a sliding joint.
     pub position: f64,
-    /// rad/s or m/s.
+    /// Rate, rad/s or m/s.
     pub rate: f64,
 }
 
 /// Gains of every joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gains {
-    /// Joint rate per position error, 1/s.
+    /// Joint rate per unit of position error, 1/s.
     pub position: f64,
-    /// Opening, as a share of the largest, per piston travel that is missing, as a share of full speed times a second; 1/s.
+    /// Opening, as a share of the largest, per missing piston travel, as a share of full speed times one second; 1/s.
     pub integral: f64,
 }
 
@@ -31,19 +31,19 @@ pub(super) struct JointLaw {
     cylinder: Cylinder,
     /// Largest opening, m².
     opening: f64,
-    /// Piston speed with all the oil there is, out and in, m/s.
+    /// Piston speed with the full flow of the supply, extending and retracting, m/s.
     full_speed: [f64; 2],
-    /// Share of the largest opening.
+    /// Integral part, as a share of the largest opening.
     integral: f64,
-    /// Joint position and time of the sample before, for its rate.
+    /// Joint position and time of the previous sample, for the rate.
     before: Option<(f64, f64)>,
 }
 
 impl JointLaw {
-    /// The law of each cylinder of a model that has a valve; `None` for the others.
+    /// The law of each cylinder that has a valve; `None` for the others.
     ///
     /// # Errors
-    /// In words, where nobody can say how fast a valve moves its cylinder.
+    /// A message, if the model does not determine how fast a valve moves its cylinder.
     pub fn of(model: &Model) -> Result<Vec<Option<JointLaw>>, String> {
         model.machine.cylinders.iter().map(|cylinder| Self::of_cylinder(model, cylinder)).collect()
     }
@@ -57,7 +57,7 @@ impl JointLaw {
             Supply::PressureSource(source) => {
                 let gain = model.value_of(&format!("{}.flow_gain_cap", cylinder.name));
                 let gain = gain.ok_or_else(|| format!("the model has no flow gain of {}", cylinder.name))?;
-                // Half of the supply's pressure falls over the edge that meters in.
+                // Assumes that half of the supply pressure drops across the meter-in edge.
                 gain * opening * (source.pressure / 2.0).sqrt()
             }
             Supply::None => return Err(format!("{} has no oil supply in the model", cylinder.name)),
@@ -66,7 +66,8 @@ impl JointLaw {
         Ok(Some(JointLaw { cylinder: cylinder.clone(), opening, full_speed, integral: 0.0, before: None }))
     }
 
-    /// The opening (m²) for a joint at `position` at `time` (s), and its rate. Positions come at any rate, in order.
+    /// Returns the opening (m²) for a joint at `position` at `time` (s), and the joint's rate. Positions may come at any rate,
+    /// in order.
     pub fn step(&mut self, wanted: Wanted, gains: Gains, position: f64, time: f64) -> (f64, f64) {
         let (interval, rate) = match self.before {
             Some((before, then)) if time > then => (time - then, (position - before) / (time - then)),
@@ -84,13 +85,13 @@ impl JointLaw {
         let full = self.full_speed[usize::from(wanted_speed < 0.0)];
         let share = (wanted_speed / full).clamp(-1.0, 1.0);
         let missing = share - lever * rate / full;
-        // What is open already cannot be opened further: the integral would only have to be emptied again.
+        // Anti-windup: the valve cannot open beyond its largest area, so the integral must not grow further.
         let integral = self.integral + gains.integral * missing * interval;
         self.integral = integral.clamp(-1.0 - share, 1.0 - share).clamp(-1.0, 1.0);
         ((share + self.integral).clamp(-1.0, 1.0) * self.opening, rate)
     }
 
-    /// Forgets what it has summed up, where nobody commands any more.
+    /// Resets the integral when no commands come.
     pub fn rest(&mut self) {
         self.integral = 0.0;
     }
@@ -111,7 +112,7 @@ mod tests {
         let far = Wanted { position: here - 1.0, rate: f64::NAN };
         for step in 0..1000 {
             let (opening, _) = law.step(far, GAINS, here, 0.01 * f64::from(step));
-            // The arm's angle falls as its cylinder extends.
+            // The arm's angle decreases as its cylinder extends.
             assert!(opening > 0.0 && opening <= law.opening);
         }
         let (opening, _) = law.step(Wanted { position: f64::NAN, rate: f64::NAN }, GAINS, here, 11.0);

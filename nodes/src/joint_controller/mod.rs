@@ -1,8 +1,9 @@
-//! Joint commands as openings of valves: the other side of `topic_based_ros2_control`, so that MoveIt and controllers of ROS 2 drive the
-//! simulator.
+//! Converts joint commands to valve openings. It is the counterpart of `topic_based_ros2_control`, so that MoveIt and ROS 2
+//! controllers can drive the simulator.
 //!
-//! ros2_control's hardware interfaces are C++. Its `topic_based_ros2_control` has one that writes `sensor_msgs/JointState` with what
-//! controllers want on one topic and reads how the joints are on another. This node takes the first and publishes the second.
+//! The hardware interfaces of ros2_control are C++. The interface in `topic_based_ros2_control` writes the commands of
+//! controllers as `sensor_msgs/JointState` to one topic, and reads the joint states from another. This node subscribes to the
+//! first and publishes the second.
 
 mod law;
 mod node;

@@ -1,4 +1,4 @@
-//! The controller on the graph.
+//! The controller's node.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,10 +20,10 @@ use excavator_ros::{
     Value,
 };
 
-/// Time between two words to diagnostics.
+/// Time between two diagnostics messages.
 const REPORT: Duration = Duration::from_millis(500);
 
-/// All of them, with units, ranges and defaults.
+/// All parameters, with units, ranges and defaults.
 pub(crate) fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     vec![
@@ -39,7 +39,7 @@ pub(crate) fn parameters() -> Vec<Parameter> {
     ]
 }
 
-/// Runs the controller until it is told to stop.
+/// Runs the controller until a stop is requested.
 ///
 /// # Errors
 /// [`VerbError`] when it cannot start.
@@ -91,10 +91,10 @@ fn lock(heard: &Mutex<Heard>) -> MutexGuard<'_, Heard> {
     heard.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What has come last.
+/// The latest messages.
 #[derive(Default)]
 struct Heard {
-    /// A model that nobody has looked at yet.
+    /// A model that has not been processed yet.
     model: Option<Result<Model, String>>,
     state: Option<ArmState>,
     wanted: BTreeMap<String, Wanted>,
@@ -175,7 +175,7 @@ impl Controller<'_> {
         }
     }
 
-    /// One turn of the loop: joint states out, and openings as long as commands come.
+    /// One cycle of the loop: publishes joint states, and openings while commands come.
     fn turn(&self, machine: &mut Machine) -> (Health, &'static str) {
         let (state, wanted, at) = {
             let mut heard = lock(self.heard);
@@ -215,11 +215,11 @@ impl Controller<'_> {
                 command.areas.push(area);
             }
         }
-        // The next turn brings the next of each.
+        // A refusal is ignored: the next cycle publishes both topics again.
         let _ = self.joints.publish(joints);
         if !command.names.is_empty() {
             if !std::mem::replace(&mut machine.is_commanding, true) {
-                // A valve that was closed for safety wants an area of zero first.
+                // A valve that was closed for safety requires an area of zero first.
                 let areas = vec![0.0; command.names.len()];
                 let _ = self.commands.publish(OrificeCommand { areas, ..command.clone() });
             }
@@ -230,7 +230,7 @@ impl Controller<'_> {
         (Health::Ok, "waiting for joint commands")
     }
 
-    /// Closes what was opened, once.
+    /// Closes the opened valves, once.
     fn close(&self, machine: &mut Machine) {
         if !std::mem::take(&mut machine.is_commanding) {
             return;
@@ -240,7 +240,7 @@ impl Controller<'_> {
         let names: Vec<String> = with_valve.map(|(name, _)| name.clone()).collect();
         let header = Header { stamp: self.clock.now(), frame_id: String::new() };
         let areas = vec![0.0; names.len()];
-        // The simulator closes them by itself a moment later.
+        // A refusal is ignored: the simulator closes the valves itself when the command times out.
         let _ = self.commands.publish(OrificeCommand { header, names, areas });
     }
 }

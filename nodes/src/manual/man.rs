@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::command;
 
-/// Writes all pages into a folder, which is made where it is absent. Returns their paths.
+/// Writes all pages into a folder, which is created if it does not exist. Returns their paths.
 ///
 /// # Errors
-/// A folder or file that cannot be written.
+/// If a folder or file cannot be written.
 pub fn write_man_pages(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder)?;
     clap_mangen::generate_to(command(), folder)?;

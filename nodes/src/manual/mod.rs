@@ -1,4 +1,4 @@
-//! The program described by itself: its command line with the parameters of the nodes, and the pages made of it.
+//! Generates the program's description: its command line with the parameters of the nodes, and the pages made from it.
 
 mod man;
 #[cfg(feature = "live")]
@@ -33,7 +33,7 @@ pub fn command() -> Command {
     all
 }
 
-/// The command line for a terminal of this many columns: no usage is wider.
+/// The command line for a terminal of this many columns. No usage is wider.
 pub fn command_within(width: Option<usize>) -> Command {
     let mut all = command();
     if let Some(width) = width {
@@ -43,14 +43,14 @@ pub fn command_within(width: Option<usize>) -> Command {
     all
 }
 
-/// Breaks usages before options and choices; clap breaks all other text by itself.
+/// Wraps usages before options and choices. clap wraps all other text itself.
 fn break_usages(command: &mut Command, width: usize) {
     command.get_subcommands_mut().for_each(|verb| break_usages(verb, width));
     let usage = command.render_usage().to_string();
     if usage.chars().count() <= width || usage.contains('\n') {
         return;
     }
-    // An option stays with its value.
+    // An option stays on one line with its value.
     let usage = usage.trim_start_matches(USAGE).replace("|--", " | --").replace(" <", &format!("{TIE}<"));
     let usage = usage.replace(&format!("{TIE}<-"), " <-");
     let lines = filled(&usage, Some(width.saturating_sub(USAGE.len())));
@@ -58,10 +58,10 @@ fn break_usages(command: &mut Command, width: usize) {
     *command = std::mem::take(command).override_usage(indented);
 }
 
-/// What clap writes before a usage.
+/// The text that clap writes before a usage.
 const USAGE: &str = "Usage: ";
 
-/// Stands for a blank at which no line is broken.
+/// Marks a space at which a line must not break.
 const TIE: char = '\u{1}';
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! Parameters of the nodes, for people.
+//! Documents the parameters of the nodes.
 
 use excavator_ros::{Parameter, Value};
 
 use crate::output::filled;
 use crate::terminal;
 
-/// Width of a help text on a wide terminal: the one that clap keeps to.
+/// Width of a help text on a wide terminal, equal to clap's limit.
 const MOST_COLUMNS: usize = 100;
 
 /// Parameters of a node by its name on the command line, in the order of their declaration.
@@ -20,7 +20,7 @@ pub(super) fn of(kind: &str) -> Vec<Parameter> {
     }
 }
 
-/// What the help of a node says of its parameters.
+/// The section on parameters in the help of a node.
 pub(super) fn help(kind: &str) -> String {
     let parameters = of(kind);
     let longest = parameters.iter().map(|parameter| parameter.name.len()).max().unwrap_or(0);
@@ -35,7 +35,7 @@ pub(super) fn help(kind: &str) -> String {
     format!("Parameters (--ros-args -p NAME:=VALUE):\n{}", lines.collect::<Vec<_>>().join("\n"))
 }
 
-/// A default as one writes it after `-p name:=`; nothing for an empty text or list.
+/// A default as written after `-p name:=`; nothing for an empty text or list.
 pub(super) fn default(value: &Value) -> String {
     fn list<T: std::fmt::Debug>(values: &[T]) -> String {
         if values.is_empty() { String::new() } else { format!("{values:?}") }

@@ -1,4 +1,4 @@
-//! The page of the docs with the parameters of all nodes.
+//! The page of the docs on the parameters of all nodes.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! The page of the docs with what `--json` writes, made of the schemas of the results.
+//! The page of the docs on the output of `--json`, made from the schemas of the results.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -40,10 +40,10 @@ pub fn results_page() -> String {
     page
 }
 
-/// Writes the schema of each result into a folder, which is made where it is absent. Returns the paths.
+/// Writes the schema of each result into a folder, which is created if it does not exist. Returns the paths.
 ///
 /// # Errors
-/// A folder or file that cannot be written.
+/// If a folder or file cannot be written.
 pub fn write_schemas(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder)?;
     let mut written = Vec::new();
@@ -81,7 +81,7 @@ fn section(page: &mut String, heading: &str, schema: &Value) {
     }
 }
 
-/// Of an object that is told from others by a constant: that constant, then its own keys.
+/// The rows of an object that a constant tag identifies: the tag, then the object's own keys.
 fn rows_of_form(page: &mut String, form: &Value) {
     let tags = properties(form).filter(|(_, value)| value["const"].is_string());
     let tags: Vec<String> = tags.map(|(key, value)| format!("`{key}`: {}", constant(value))).collect();
@@ -100,20 +100,20 @@ fn constant(schema: &Value) -> String {
     format!("`{}`", schema["const"].as_str().unwrap_or_default())
 }
 
-/// Description in one line, as a cell takes it.
+/// Description in one line, escaped for a table cell.
 fn description(schema: &Value) -> Option<String> {
     let text = schema["description"].as_str()?;
     Some(text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|"))
 }
 
-/// What a key holds, in words, and whether it may be absent.
+/// The type of a key in words, and whether the key may be absent.
 fn kind_of(object: &Value, key: &str, schema: &Value) -> String {
     let required = object["required"].as_array().into_iter().flatten();
     let is_required = required.filter_map(Value::as_str).any(|name| name == key);
     if is_required { kind(schema, false) } else { format!("{}; may be absent", kind(schema, false)) }
 }
 
-/// What a schema accepts, in words: of one thing, or of several.
+/// The type that a schema accepts, in words: in the singular, or in the plural.
 fn kind(schema: &Value, several: bool) -> String {
     if let Some(reference) = schema["$ref"].as_str() {
         let name = reference.rsplit('/').next().unwrap_or_default();

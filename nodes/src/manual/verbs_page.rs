@@ -1,4 +1,4 @@
-//! The page of the docs with all verbs and their options.
+//! The page of the docs on all verbs and their options.
 
 use std::fmt::Write;
 
@@ -48,7 +48,7 @@ fn table(arguments: &[&Arg]) -> String {
     format!("| argument | meaning |\n|---|---|\n{}", rows.collect::<String>())
 }
 
-/// As one types it: `-o`, `--output BAG`.
+/// The name as typed: `-o`, `--output BAG`.
 fn name(argument: &Arg) -> String {
     let values: Vec<String> = argument.get_value_names().unwrap_or_default().iter().map(ToString::to_string).collect();
     let takes_value = matches!(argument.get_action(), ArgAction::Set | ArgAction::Append);
@@ -61,7 +61,7 @@ fn name(argument: &Arg) -> String {
         (false, true) => names.join(", "),
         (false, false) => format!("{} {value}", names.join(", ")),
     };
-    // A bar ends a cell even in code.
+    // A bar ends a table cell even inside code.
     format!("`{}`", text.replace('|', "\\|"))
 }
 
@@ -84,7 +84,7 @@ fn meaning(argument: &Arg) -> String {
     text
 }
 
-/// Text of a help message as Markdown takes it.
+/// The text of a help message, escaped for Markdown.
 fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for character in text.chars() {

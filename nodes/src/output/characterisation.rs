@@ -1,4 +1,4 @@
-//! What people see of a characterisation.
+//! Prints a characterisation.
 
 use comfy_table::{Cell, Table};
 use excavator_identification::characterisation::{Characterisation, Estimate, Refusal};
@@ -7,7 +7,7 @@ use excavator_report::leakage_unit;
 use super::number;
 use super::tables::{right, table};
 
-/// Everything that was found of a cylinder, with 95 % intervals.
+/// All values found for a cylinder, with 95 % intervals.
 pub fn characterisation_table(found: &Characterisation) -> Table {
     let mut rows = table(&["what", "value", "± 95 %", "unit"]);
     let mut row = |what: String, estimate: Estimate, unit: &str| {
@@ -56,7 +56,7 @@ pub fn characterisation_table(found: &Characterisation) -> Table {
     rows
 }
 
-/// One line for everything that was not found, with the reason; the same reason is told once.
+/// One line per reason, with the names of the values that were not found because of it.
 pub fn refusals(found: &Characterisation) -> Vec<String> {
     let mut told: Vec<(Vec<String>, &Refusal)> = Vec::new();
     let mut tell = |what: String, refusal| match told.iter_mut().find(|(_, other)| *other == refusal) {

@@ -1,11 +1,12 @@
-//! A curve drawn with characters.
+//! Draws a curve with characters.
 
 use super::number;
 
 /// Rows of a chart.
 const ROWS: usize = 7;
 
-/// A curve as lines of text: values on the left, the variable below. `unit` and `of` are those of value and variable.
+/// Draws a curve as lines of text: values on the left, the variable below. `unit` belongs to the value and `of` to the
+/// variable.
 pub fn chart(points: &[[f64; 2]], unit: &str, of: &str) -> Vec<String> {
     let values = points.iter().map(|point| point[1]).filter(|value| value.is_finite());
     let (low, high) =

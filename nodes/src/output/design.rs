@@ -1,4 +1,4 @@
-//! What people see of a design.
+//! Prints a design.
 
 use comfy_table::{Cell, Table};
 use excavator_identification::design::SeparationDesign;
@@ -6,7 +6,7 @@ use excavator_identification::design::SeparationDesign;
 use super::number;
 use super::tables::{right, table};
 
-/// What is expected of every pair.
+/// The expected result for every pair.
 pub fn pair_table(design: &SeparationDesign) -> Table {
     let header = ["effect", "other", "under sines", "distance, σ", "improvement", "significance", "expected"];
     let mut table = table(&header);

@@ -1,4 +1,4 @@
-//! The energy of a recording, for people.
+//! Prints the energy of a recording.
 
 use comfy_table::{Cell, Table};
 use excavator_identification::energy::{EnergyAnalysis, Totals};
@@ -9,7 +9,7 @@ use excavator_model::site_name;
 use super::number;
 use super::tables::{fixed, right, table};
 
-/// Where the energy went: over the recording, and per cycle where the work repeats.
+/// The flow of energy: over the recording, and per cycle if the work repeats.
 pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
     let mut rows = table(&["energy", "J", "%", "J per cycle"]);
     let all = lines(model, &analysis.totals);
@@ -22,7 +22,7 @@ pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
             right(fixed(*energy, 1)),
             right(fixed(100.0 * energy / whole, 1)),
             right(per_cycle.map_or("-".into(), |(mean, deviation)| match deviation {
-                // A sum or difference of others: its deviation is not the sum or difference of theirs.
+                // The deviation of a sum or difference is not the sum or difference of the deviations, so it is not shown.
                 (_, _, true) => format!("{mean:.2}"),
                 (_, deviation, false) => format!("{mean:.2} ± {:.2}", deviation.abs()),
             })),
@@ -31,13 +31,13 @@ pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
     rows
 }
 
-/// What 100 % is: the energy of the pump, or what was supplied where there is no pump.
+/// The energy that counts as 100 %: that of the pump, or the supplied energy if there is no pump.
 fn input(model: &Model, totals: &Totals) -> f64 {
     let supplied = totals.cylinders.iter().map(|cylinder| cylinder.supplied.abs()).sum::<f64>();
     if matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) { totals.pump } else { supplied }
 }
 
-/// What, how much in J, and whether it is a sum or difference of others.
+/// Label, energy in J, and whether the line is a sum or difference of others.
 fn lines(model: &Model, totals: &Totals) -> Vec<(String, f64, bool)> {
     let mut lines = Vec::new();
     if matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) {
@@ -67,7 +67,7 @@ fn lines(model: &Model, totals: &Totals) -> Vec<(String, f64, bool)> {
     lines
 }
 
-/// The ledger, equation by equation.
+/// The ledger, one row per equation.
 pub fn ledger_table(model: &Model, analysis: &EnergyAnalysis) -> Table {
     let mut rows = table(&["equation", "missing W (rms)", "explained W", "worst", "ledger"]);
     for place in &analysis.places {

@@ -1,4 +1,4 @@
-//! Results for programs.
+//! Writes results as JSON.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ pub fn write_json(path: &Path, result: &impl Serialize, overwriting: Overwriting
     crate::outputs::write(path, &json_text(result)?, overwriting)
 }
 
-/// JSON has no NaN: what is not a number is null.
+/// JSON has no NaN: a value that is not finite becomes null.
 pub fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { Value::Null }
 }

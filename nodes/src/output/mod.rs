@@ -1,4 +1,4 @@
-//! What people and programs see of results.
+//! Formats results for users and for programs.
 
 mod characterisation;
 mod chart;

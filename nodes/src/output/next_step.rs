@@ -1,4 +1,4 @@
-//! The command that comes next in the story, ready to paste.
+//! Suggests the next command of the workflow, ready to paste.
 
 use std::path::{Path, PathBuf};
 
@@ -6,8 +6,8 @@ use excavator_workbench::recording_part::Part;
 
 use crate::cli::{Mapping, ModelChoice, Recordings};
 
-/// Both halves of a recording of `duration` s, for a command that wants one to fit and another to judge; where `bag` is a part of a
-/// recording already, the second is left to whoever pastes it.
+/// Both halves of a recording of `duration` s, for a command that needs one to fit and another for validation. If `bag` is
+/// already a part of a recording, the user has to fill in the second.
 fn halves(bag: &Path, duration: f64) -> [String; 2] {
     let is_part = matches!(Part::split(bag), Ok((_, Some(_))) | Err(_));
     if is_part {
@@ -17,7 +17,7 @@ fn halves(bag: &Path, duration: f64) -> [String; 2] {
     [format!("{}@..{middle}", bag.display()), format!("{}@{middle}..", bag.display())]
 }
 
-/// A command in the making.
+/// A command under construction.
 #[derive(Debug, Clone)]
 pub struct NextStep {
     why: String,
@@ -25,34 +25,34 @@ pub struct NextStep {
 }
 
 impl NextStep {
-    /// `excavator VERB`, and what it is for: the end of a sentence that begins with "Next".
+    /// `excavator VERB` and its purpose: the end of a sentence that begins with "Next".
     pub fn new(why: &str, verb: &str) -> Self {
         NextStep { why: why.to_string(), words: vec!["excavator".to_string(), verb.to_string()] }
     }
 
-    /// One more word.
+    /// Adds one word.
     pub fn word(mut self, word: impl Into<String>) -> Self {
         self.words.push(word.into());
         self
     }
 
-    /// An option with a path.
+    /// Adds an option with a path.
     pub fn path(self, option: &str, path: &Path) -> Self {
         self.word(option).word(path.display().to_string())
     }
 
-    /// The model in `file`, with the catalogues that `choice` needs.
+    /// Adds the model in `file`, with the catalogues that `choice` needs.
     pub fn model(self, file: &Path, choice: &ModelChoice) -> Self {
         let step = self.path("--model", file);
         choice.own.catalogue.iter().fold(step, |step, catalogue| step.path("--catalogue", catalogue))
     }
 
-    /// The same model as in `choice`.
+    /// Adds the model of `choice`.
     pub fn same_model(self, choice: &ModelChoice) -> Self {
         self.model(Path::new(&choice.model), choice)
     }
 
-    /// Where signals are found, and what of a recording counts.
+    /// Adds the options for the sources of signals and for the samples that count.
     pub fn mapping(mut self, mapping: &Mapping) -> Self {
         if let Some(map) = &mapping.map {
             self = self.path("--map", map);
@@ -67,7 +67,7 @@ impl NextStep {
         repeated(step, "--where", &mapping.conditions)
     }
 
-    /// The same recordings to fit and to judge.
+    /// Adds the same recordings for the fit and for validation.
     pub fn recordings(self, recordings: &Recordings) -> Self {
         let paths = |step: NextStep, option: &str, bags: &[PathBuf]| {
             bags.iter().fold(step.word(option), |step, bag| step.word(bag.display().to_string()))
@@ -77,7 +77,8 @@ impl NextStep {
         if recordings.extent.whole { step.word("--whole") } else { step }
     }
 
-    /// A diagnosis wants one recording to fit and another to judge: here both halves of `bag`, whose recording takes `duration` s.
+    /// A diagnosis needs one recording for the fit and another for validation: here both halves of `bag`, which is `duration` s
+    /// long.
     pub fn diagnosis_of_halves(why: &str, model: &ModelChoice, bag: &Path, duration: f64, mapping: &Mapping) -> Self {
         let [fitted, judged] = halves(bag, duration);
         NextStep::new(why, "diagnose")

@@ -1,10 +1,10 @@
-//! Sentences and commands as wide as the terminal.
+//! Wraps sentences and commands to the width of the terminal.
 
 /// Widest line of text on a terminal, columns: longer lines are hard to read.
 const WIDEST: usize = 100;
 
-/// Lines of `text` broken between words so that none is longer than `width` columns; a line that begins with blanks goes on
-/// below its first word. Words that are longer stay whole, and so do lines of tables.
+/// Wraps the lines of `text` between words so that none is longer than `width` columns. The continuation of an indented line
+/// aligns with its first word. Longer words are not broken, and neither are lines of tables.
 pub fn filled(text: &str, width: Option<usize>) -> String {
     let Some(width) = width.map(|width| width.clamp(20, WIDEST)) else { return text.to_string() };
     text.lines().map(|line| filled_line(line, width)).collect::<Vec<_>>().join("\n")
@@ -33,13 +33,13 @@ fn filled_line(line: &str, width: usize) -> String {
     lines.join("\n")
 }
 
-/// A command that can be pasted into a shell, broken before options where it is longer than `width` columns.
+/// A command that can be pasted into a shell, wrapped before options if it is longer than `width` columns.
 pub fn command(words: &[String], width: Option<usize>) -> String {
     let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
     let Some(width) = width.filter(|width| words.iter().map(|word| word.len() + 1).sum::<usize>() + 2 > *width) else {
         return format!("  {}", words.join(" "));
     };
-    // An option stays with its values.
+    // An option stays on one line with its values.
     let mut groups: Vec<String> = Vec::new();
     for word in words {
         match groups.last_mut() {
@@ -50,7 +50,7 @@ pub fn command(words: &[String], width: Option<usize>) -> String {
     let mut lines: Vec<String> = Vec::new();
     for group in groups {
         match lines.last_mut() {
-            // A blank before, and two columns for the backslash.
+            // One space before the group, and two columns for the backslash.
             Some(line) if line.chars().count() + group.chars().count() + 3 <= width => *line += &format!(" {group}"),
             Some(_) => lines.push(format!("      {group}")),
             None => lines.push(format!("  {group}")),
@@ -59,7 +59,7 @@ pub fn command(words: &[String], width: Option<usize>) -> String {
     lines.join(" \\\n")
 }
 
-/// A word as a shell takes it.
+/// A word, quoted for a shell where necessary.
 fn quoted(word: &str) -> String {
     let is_plain = |character: char| character.is_alphanumeric() || "-_./@:=+,%".contains(character);
     if !word.is_empty() && word.chars().all(is_plain) {

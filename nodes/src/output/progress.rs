@@ -1,4 +1,4 @@
-//! Progress on standard error, only on a terminal.
+//! Shows progress on standard error, only on a terminal.
 
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -7,16 +7,16 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::terminal::printable;
 
-/// A bar with a word about what is being done.
+/// A progress bar with a short description of the current step.
 pub struct Progress {
     bar: ProgressBar,
 }
 
 impl Progress {
-    /// A bar, hidden where standard error is not a terminal.
+    /// A bar, hidden if standard error is not a terminal.
     pub fn new() -> Self {
         let bar = if std::io::stderr().is_terminal() { ProgressBar::new(1000) } else { ProgressBar::hidden() };
-        // The template is constant; should it ever be wrong, the default style still shows progress.
+        // The template is constant. If it were ever wrong, the default style would still show progress.
         if let Ok(style) = ProgressStyle::with_template("{spinner} {bar:30} {percent:>3} %  about {eta} left  {msg}") {
             bar.set_style(style);
         }
@@ -24,7 +24,7 @@ impl Progress {
         Progress { bar }
     }
 
-    /// Tells what is being done and the fraction done.
+    /// Shows the current step and the fraction done.
     pub fn tell(&self, what: &str, fraction: f64) {
         self.bar.set_position((fraction.clamp(0.0, 1.0) * 1000.0) as u64);
         self.bar.set_message(printable(what).into_owned());

@@ -1,4 +1,4 @@
-//! Proposed laws for people.
+//! Prints proposed laws.
 
 use comfy_table::{Cell, ContentArrangement, Table};
 use excavator_identification::proposal::Proposals;

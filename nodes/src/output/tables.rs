@@ -1,4 +1,4 @@
-//! Tables for people.
+//! Prints tables.
 
 use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
 use comfy_table::{Attribute, Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
@@ -10,7 +10,7 @@ use excavator_model::Model;
 use excavator_report::Beside;
 use excavator_workbench::numbers::number;
 
-/// A number with so many decimals, and no minus before zero.
+/// A number with so many decimals, and no minus sign before zero.
 pub(super) fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let is_zero = text.chars().all(|character| matches!(character, '-' | '0' | '.'));
@@ -31,8 +31,8 @@ pub fn right(text: impl ToString) -> Cell {
     Cell::new(text.to_string()).set_alignment(CellAlignment::Right)
 }
 
-/// Effects of one family, without lines: name, place and summary, which is wrapped where a terminal is too narrow. The columns
-/// of several such tables stand below each other, `name_width` and `place_width` characters wide.
+/// Effects of one family, without lines: name, place and summary, which is wrapped if the terminal is too narrow. With
+/// `name_width` and `place_width` in characters, the columns of several such tables align.
 pub fn effect_table(effects: &[[&str; 3]], name_width: u16, place_width: u16) -> Table {
     let mut table = Table::new();
     table.load_style(NOTHING);
@@ -45,7 +45,7 @@ pub fn effect_table(effects: &[[&str; 3]], name_width: u16, place_width: u16) ->
     table
 }
 
-/// Identified parameters with 95 % intervals, and a remark where a value is not to be taken as it is.
+/// Identified parameters with 95 % intervals, and a remark if a value must not be taken as it is.
 pub fn parameter_table(model: &Model, fitted: &[usize]) -> Table {
     let marks: Vec<Option<String>> =
         fitted.iter().map(|&index| value_mark(model, index).map(|mark| mark.to_string())).collect();
@@ -70,13 +70,13 @@ pub fn parameter_table(model: &Model, fitted: &[usize]) -> Table {
     table
 }
 
-/// What would determine the values with a remark, a line for each effect.
+/// What would determine the values that have a remark, one line per effect.
 pub fn remedy_lines(model: &Model, fitted: &[usize]) -> Vec<String> {
     let lines = remedies(model, fitted).into_iter();
     lines.map(|(names, experiment)| format!("To determine {}: {experiment}", names.join(", "))).collect()
 }
 
-/// Errors of every signal beside those of noise, of a model without physics, and of a value that is held.
+/// Errors of every signal beside those of noise, of a model without physics, and of a constant value.
 pub fn comparison_table(comparison: &Comparison, baselines: &Baselines, others: &[Beside<'_>]) -> Table {
     let held = format!("{:.1} s before", baselines.held);
     let mut heads = vec!["signal", "NMSE"];
@@ -99,7 +99,7 @@ pub fn comparison_table(comparison: &Comparison, baselines: &Baselines, others: 
     table
 }
 
-/// Whether the error of every signal still follows its own past, or the input.
+/// Whether the error of every signal still correlates with its own past, or with the input.
 pub fn correlation_table(comparison: &Comparison) -> Table {
     let mut table = table(&["signal", "error autocorrelation", "correlation with input"]);
     for signal in &comparison.signals {
@@ -112,8 +112,8 @@ pub fn correlation_table(comparison: &Comparison) -> Table {
     table
 }
 
-/// Where the squared error of each signal lies: while the piston moves, stands, or is at an end of its stroke. None where it does one
-/// of these all the time.
+/// The share of each signal's squared error while the piston moves, stands, or is at an end of its stroke. None if it stays in
+/// one of these phases all the time.
 pub fn phase_table(comparison: &Comparison) -> Option<Table> {
     let share_of = |signal: &SignalComparison, phase| signal.phases.iter().find(|share| share.phase == phase).copied();
     let seen: Vec<MotionPhase> = MotionPhase::ALL
@@ -137,7 +137,7 @@ pub fn phase_table(comparison: &Comparison) -> Option<Table> {
     Some(table)
 }
 
-/// A correlation with its lag, "no" where chance explains it, "-" where nothing can be said.
+/// A correlation with its lag, "no" if chance explains it, "-" if it cannot be determined.
 fn correlation(found: Option<Correlation>) -> String {
     match found {
         None => "-".to_string(),
@@ -146,8 +146,8 @@ fn correlation(found: Option<Correlation>) -> String {
     }
 }
 
-/// Effects with what they improve on the validation recordings: those of the verdict, others with evidence, the rest; with
-/// `detail` also how sure that is.
+/// Effects with their improvement on the validation recordings: those of the verdict, others with evidence, the rest. With
+/// `detail` also their certainty.
 pub fn candidate_table(diagnosis: &Diagnosis, detail: bool) -> Table {
     let mut heads = vec!["effect", "at", "NMSE before", "NMSE after", "verdict"];
     if detail {
@@ -174,17 +174,17 @@ pub fn candidate_table(diagnosis: &Diagnosis, detail: bool) -> Table {
     table
 }
 
-/// A model of a story and its comparison with each validation recording.
+/// A model of the story, with its comparison with each validation recording.
 #[derive(Debug)]
 pub struct Stage<'c> {
-    /// What it is: "as given", "identified", "+ effect@place".
+    /// Its label: "as given", "identified", "+ effect@place".
     pub name: String,
     /// Its comparisons.
     pub comparisons: &'c [Comparison],
 }
 
 impl<'c> Stage<'c> {
-    /// The model with its own numbers, where it can be simulated, and what it became with each addition.
+    /// The model with its own values, if it can be simulated, and the model after each addition.
     pub fn all(given: &'c [Comparison], steps: impl Iterator<Item = (Option<&'c str>, &'c [Comparison])>) -> Vec<Self> {
         let given = Stage { name: "as given".into(), comparisons: given };
         let steps = steps.map(|(added, comparisons)| Stage {

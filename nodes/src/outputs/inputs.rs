@@ -1,4 +1,4 @@
-//! Files that a command reads.
+//! The input files of a command.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -8,21 +8,21 @@ use excavator_workbench::recording_part::Part;
 
 use super::place::FileId;
 
-/// Files that a command reads, by their identity on the disk.
+/// The input files of a command, by their identity on the disk.
 #[derive(Debug, Default)]
 pub struct Inputs {
     files: BTreeSet<FileId>,
 }
 
 impl Inputs {
-    /// A recording: a file, or a folder with everything directly in it that may be read as a part of a bag.
+    /// A recording: a file, or a folder with all files directly in it that may be part of a bag.
     pub fn recording(path: &Path) -> Self {
         let mut inputs = Inputs::default();
         inputs.add_recording(path);
         inputs
     }
 
-    /// Recordings with their map: the one given, or those beside them.
+    /// Recordings with their map: the given one, or those beside them.
     pub fn recordings<'p>(paths: impl IntoIterator<Item = &'p PathBuf>, map: Option<&Path>) -> Self {
         let mut inputs = Inputs::default();
         for path in paths {
@@ -37,25 +37,25 @@ impl Inputs {
         inputs
     }
 
-    /// These, and a file or the name of a built-in model.
+    /// Adds a file. The name of a built-in model adds nothing.
     #[must_use]
     pub fn and(mut self, file: impl AsRef<Path>) -> Self {
         self.add(file.as_ref());
         self
     }
 
-    /// These and others.
+    /// The union with other inputs.
     #[must_use]
     pub fn and_all(self, files: impl IntoIterator<Item = PathBuf>) -> Self {
         files.into_iter().fold(self, Inputs::and)
     }
 
-    /// Whether this file is read.
+    /// Whether this file is an input.
     pub fn has(&self, id: FileId) -> bool {
         self.files.contains(&id)
     }
 
-    /// Whether a file is in both.
+    /// Whether the two share a file.
     pub fn meets(&self, other: &Inputs) -> bool {
         !self.files.is_disjoint(&other.files)
     }
@@ -73,7 +73,7 @@ impl Inputs {
     }
 
     fn add(&mut self, path: &Path) {
-        // What does not exist is missed by its reader.
+        // The reader reports a file that does not exist.
         if let Ok(found) = path.metadata() {
             self.files.insert(FileId::of(&found));
         }

@@ -1,12 +1,12 @@
-//! Files that a verb writes.
+//! Writes the output files of a verb.
 //!
-//! [`check`] and [`check_bag`] look at them before the verb computes: a minute of work must not end in a folder that does not
-//! exist. [`write`] looks again and writes: into a temporary file beside the target, which takes the target's name when it is
-//! complete.
+//! [`check`] and [`check_bag`] check them before the verb computes, so that a minute of work does not end at a folder that does
+//! not exist. [`write`] checks again and writes to a temporary file beside the target. The complete file is then renamed to the
+//! target.
 //!
-//! Nothing replaces a file that exists without `--force`, and nothing ever replaces a file that the same command reads or
-//! writes under another option. The last component of a path is never followed where it is a symbolic link. Pipes, character
-//! devices and `-` (standard output) are written directly.
+//! An existing file is replaced only with `--force`. A file that the same command reads, or writes under another option, is
+//! never replaced. If the last component of a path is a symbolic link, it is never followed. Pipes, character devices and `-`
+//! (standard output) are written directly.
 
 mod inputs;
 mod place;
@@ -24,11 +24,11 @@ use crate::cli::Overwriting;
 use crate::error::VerbError;
 use place::{FileId, Place, folder_of};
 
-/// What a verb writes, each with the option that names it.
+/// The outputs of a verb, each with the option that names it.
 pub type Outputs<'a> = [(&'static str, Option<&'a Path>)];
 
-/// Checks that every output can be written, and replaces neither an input nor another output; nor, without `--force`, a file
-/// that exists.
+/// Checks that every output can be written, and that none replaces an input, another output or, without `--force`, an existing
+/// file.
 ///
 /// # Errors
 /// [`VerbError::Write`], [`VerbError::Link`], [`VerbError::SameFile`], [`VerbError::Exists`].
@@ -58,10 +58,11 @@ pub fn check(outputs: &Outputs, inputs: &Inputs, overwriting: Overwriting) -> Re
     Ok(())
 }
 
-/// Checks that a bag can be written at `path`: nothing is there, or with `--force` a bag that this command does not read.
+/// Checks that a bag can be written at `path`: the path is free or, with `--force`, holds a bag that this command does not
+/// read.
 ///
 /// # Errors
-/// As [`check`], and [`excavator_bags::BagError`] for what is no bag.
+/// As [`check`], and [`excavator_bags::BagError`] if an existing folder is not a bag.
 pub fn check_bag(path: &Path, inputs: &Inputs, overwriting: Overwriting) -> Result<(), VerbError> {
     let found = match path.symlink_metadata() {
         Ok(found) => found,
@@ -88,13 +89,13 @@ pub fn check_bag(path: &Path, inputs: &Inputs, overwriting: Overwriting) -> Resu
     try_folder(folder_of(path)).map_err(VerbError::write(path))
 }
 
-/// Folder without links, and name in it: the same for two ways to write one path.
+/// The folder with links resolved, and the name in it. Two spellings of one path give the same result.
 fn full_name(path: &Path) -> Result<(PathBuf, OsString), VerbError> {
     let folder = folder_of(path).canonicalize().map_err(VerbError::write(path))?;
     Ok((folder, path.file_name().unwrap_or_default().to_os_string()))
 }
 
-/// Creates a file without a name in the folder, and so nothing that stays.
+/// Checks that the folder is writable, with an unnamed file that disappears when it is closed.
 fn try_folder(folder: &Path) -> std::io::Result<()> {
     tempfile::tempfile_in(folder).map(drop)
 }

@@ -1,4 +1,4 @@
-//! What is at a path that is to be written.
+//! Classifies the target path of an output.
 
 use std::io::{Error, ErrorKind};
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::VerbError;
 
-/// Device and number of a file: the same for all its names.
+/// Device and inode of a file: the same for all its names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct FileId(u64, u64);
 
@@ -16,7 +16,7 @@ impl FileId {
     }
 }
 
-/// What is at a path.
+/// The kind of a path's target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// Standard output, a pipe or a character device.
@@ -27,14 +27,14 @@ pub enum Place {
     Free,
 }
 
-/// Folders whose links lead to what the process has open: `/dev/stdout`, `/dev/fd/63` of `>(command)`.
+/// Folders whose links lead to files that the process has open: `/dev/stdout`, `/dev/fd/63` of `>(command)`.
 const OPEN_FILES: [&str; 4] = ["/dev", "/dev/fd", "/proc/self/fd", "/proc/thread-self/fd"];
 
 impl Place {
-    /// Looks, without following a link.
+    /// Inspects a path without following a link.
     ///
     /// # Errors
-    /// [`VerbError::Link`], [`VerbError::Write`] for what is no file and no stream.
+    /// [`VerbError::Link`]; [`VerbError::Write`] if the target is neither a file nor a stream.
     pub fn of(path: &Path) -> Result<Place, VerbError> {
         if path == Path::new("-") {
             return Ok(Place::Stream);
@@ -64,12 +64,12 @@ impl Place {
     }
 }
 
-/// Whether the path is a link to something that this process has open.
+/// Whether the path is a link to a file that this process has open.
 pub fn is_open_file(path: &Path) -> bool {
     path.parent().is_some_and(|folder| OPEN_FILES.iter().any(|open| folder == Path::new(open)))
 }
 
-/// The folder that a path is in.
+/// The folder of a path.
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

@@ -1,4 +1,4 @@
-//! Page and JSON of a result.
+//! Writes the report page and the JSON of a result.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use super::write;
 use crate::cli::Overwriting;
 use crate::error::VerbError;
 
-/// Writes a result to the files of `--report` and `--json`, where they are wanted.
+/// Writes a result to the files of `--report` and `--json`, if given.
 ///
 /// # Errors
-/// Those of [`write`]; [`VerbError::Work`] and the like where the page needs a simulation that fails.
+/// The errors of [`write`]; [`VerbError::Work`] and similar if the page needs a simulation that fails.
 pub fn write_told(
     told: &impl Outcome,
     report: Option<&Path>,

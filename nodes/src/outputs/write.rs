@@ -1,4 +1,4 @@
-//! Writing an output: all of it or nothing.
+//! Writes an output completely or not at all.
 
 use std::fs::{File, OpenOptions, Permissions};
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -10,11 +10,11 @@ use crate::cli::Overwriting;
 use crate::error::VerbError;
 use crate::terminal;
 
-/// Mode of a new file before the user's mask.
+/// Mode of a new file before the umask.
 const NEW_FILE: u32 = 0o666;
 
-/// Writes a text. It has the file's name only when it is complete and on the disk. A file that exists is replaced with
-/// `--force` alone; the result goes into another file where one has appeared since the check.
+/// Writes a text. The file gets its name only when it is complete and on the disk. An existing file is replaced only with
+/// `--force`. If a file has appeared since the check, the result is kept in another file.
 ///
 /// # Errors
 /// [`VerbError::Write`], [`VerbError::Link`], [`VerbError::Exists`], [`VerbError::Appeared`].
@@ -41,11 +41,11 @@ pub fn write(path: &Path, text: &str, overwriting: Overwriting) -> Result<(), Ve
         Ok(file)
     };
     let file: tempfile::NamedTempFile = complete().map_err(VerbError::write(path))?;
-    // A rename replaces a link and does not follow it; the check above is for those who meant the link's target.
+    // A rename replaces a link instead of following it. The check above protects users who meant the link's target.
     let placed = if overwriting.force { file.persist(path) } else { file.persist_noclobber(path) };
     match placed {
         Ok(_) => {
-            // The name is on the disk with its folder. Not every file system can do this, and the file is there already.
+            // Syncing the folder makes the rename durable. Not every file system supports it, and the file is already complete.
             let _ = File::open(folder).and_then(|folder| folder.sync_all());
             Ok(())
         }
@@ -57,11 +57,11 @@ pub fn write(path: &Path, text: &str, overwriting: Overwriting) -> Result<(), Ve
     }
 }
 
-/// Writes to a pipe or a character device. Behind a link of `/dev` there may be a file, which the shell has opened for us.
+/// Writes to a pipe or a character device. A link in `/dev` may lead to a file that the shell has opened for us.
 fn write_stream(path: &Path, text: &str) -> std::io::Result<()> {
     let mut stream = OpenOptions::new().append(true).open(path)?;
     let kind = stream.metadata()?.file_type();
-    // Nothing is written yet where the path has become something else.
+    // Nothing has been written yet if the path has changed in the meantime.
     if !(kind.is_fifo() || kind.is_char_device() || is_open_file(path)) {
         return Err(std::io::Error::other("it has changed meanwhile"));
     }
@@ -71,10 +71,10 @@ fn write_stream(path: &Path, text: &str) -> std::io::Result<()> {
     }
 }
 
-/// Writes a document to standard output, made safe only where that is a terminal.
+/// Writes a document to standard output. Its text is escaped only if that is a terminal.
 ///
 /// # Errors
-/// [`VerbError::NotPrinted`]; a reader that has gone is none.
+/// [`VerbError::NotPrinted`]. A closed pipe is not an error.
 pub fn standard_output(text: &str) -> Result<(), VerbError> {
     let mut output = std::io::stdout();
     let shown = if output.is_terminal() { terminal::text(text) } else { text.into() };

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use excavator_msgs::Time;
 use rustdds::bytes::Bytes;
 
-/// Whether messages of the topic are commands to a machine: openings of valves, and the emergency stop. A live machine on
-/// the same graph would obey a recording of them.
+/// Whether messages of the topic command a machine: valve openings and the emergency stop. A live machine on the same graph
+/// would obey recorded commands.
 pub(super) fn is_command(name: &str, type_name: &str) -> bool {
     let last = |text: &'static str| move |whole: &str| whole.rsplit('/').next() == Some(text);
     last("OrificeCommand")(type_name)
@@ -14,8 +14,8 @@ pub(super) fn is_command(name: &str, type_name: &str) -> bool {
         || (last("stop")(name) && last("Bool")(type_name))
 }
 
-/// An `OrificeCommand` (CDR, little endian, with encapsulation) stamped with the time of now: whoever names the topic wants its
-/// commands followed, and a machine refuses those that are as old as the recording. What is no such message stays as it is.
+/// Sets the stamp of an `OrificeCommand` (CDR, little endian, with encapsulation) to the current time. A user who names the
+/// topic wants its commands followed, and a machine rejects commands as old as the recording. Other messages stay unchanged.
 pub(super) fn stamped_now(data: Bytes, type_name: &str, now: Time) -> Bytes {
     let is_command = type_name.rsplit('/').next() == Some("OrificeCommand");
     if !is_command || data.len() < STAMP.end || !data.starts_with(&[0, 1]) {
@@ -27,10 +27,10 @@ pub(super) fn stamped_now(data: Bytes, type_name: &str, now: Time) -> Bytes {
     bytes.into()
 }
 
-/// Where the stamp is: the header comes first, after four bytes of encapsulation.
+/// Bytes of the stamp: the header comes first, after four bytes of encapsulation.
 const STAMP: std::ops::Range<usize> = 4..12;
 
-/// The line about topics that are not played.
+/// The log line about topics that are not played.
 pub(super) fn left_out_line(topics: &BTreeSet<String>) -> String {
     let names: Vec<&str> = topics.iter().map(String::as_str).collect();
     let names = names.join(" ");

@@ -1,4 +1,4 @@
-//! The space bar.
+//! Pauses and resumes with the space bar.
 
 use std::io::{IsTerminal, Read};
 use std::sync::Arc;
@@ -6,16 +6,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use nix::sys::termios::{LocalFlags, SetArg, Termios, tcgetattr, tcsetattr};
 
-/// Single keys from the terminal, until this is dropped; nothing where standard input is no terminal.
+/// Reads single keys from the terminal until it is dropped. Inactive if standard input is not a terminal.
 pub(super) struct Keys {
     before: Option<Termios>,
 }
 
 impl Keys {
-    /// Turns `pause` over with each press of the space bar. Where standard input is a pipe, each space in it counts.
+    /// Toggles `pause` with each press of the space bar. If standard input is a pipe, each space in it counts.
     pub fn listen(pause: Arc<AtomicBool>) -> Self {
         let before = std::io::stdin().is_terminal().then(single_keys).flatten();
-        // The thread ends with the process: there is no way to wake it from its read.
+        // The thread ends with the process: its blocking read cannot be interrupted.
         std::thread::spawn(move || {
             for byte in std::io::stdin().lock().bytes() {
                 match byte {
@@ -42,7 +42,7 @@ fn single_keys() -> Option<Termios> {
 impl Drop for Keys {
     fn drop(&mut self) {
         if let Some(before) = &self.before {
-            // The terminal is left as it is if even this fails.
+            // If this fails too, the terminal stays as it is.
             let _ = tcsetattr(std::io::stdin(), SetArg::TCSANOW, before);
         }
     }

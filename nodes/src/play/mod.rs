@@ -1,4 +1,4 @@
-//! `excavator play`: a bag onto the graph, in its own rhythm.
+//! `excavator play`: publishes a bag on the graph with its original timing.
 
 mod commands;
 mod keys;

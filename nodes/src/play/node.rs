@@ -1,4 +1,4 @@
-//! The player on the graph.
+//! The player's node.
 
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -19,19 +19,19 @@ use crate::error::VerbError;
 use excavator_ros::raw::RawOutlet;
 use excavator_ros::{Health, Outlet, PublishError, RosArguments, Supervisor, TopicQos};
 
-/// Longest sleep between two looks at pause and stop.
+/// Longest sleep between two checks for pause and stop.
 const GLANCE: Duration = Duration::from_millis(20);
-/// Time that readers have for the last messages.
+/// Time for readers to receive the last messages.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// Plays until the bag has ended or it is told to stop.
+/// Plays until the bag ends or a stop is requested.
 ///
 /// # Errors
-/// [`VerbError`] when the bag cannot be read or the graph not be joined.
+/// [`VerbError`] if the bag cannot be read or the graph cannot be joined.
 pub fn run(arguments: &PlayArguments, ros: &RosArguments) -> Result<(), VerbError> {
     let mut ros = ros.clone();
     ros.remaps.extend(arguments.remaps()?);
-    // Read what can be wrong with the bag before anybody is bothered.
+    // Problems with the bag are reported before the node joins the graph.
     let bag = RawMessages::open(&arguments.bag)?;
     drop(bag);
     let supervisor = Supervisor::start_large("bag_player", &ros, Vec::new())?;
@@ -92,7 +92,7 @@ struct Player<'p> {
     stop: &'p AtomicBool,
     clock: Option<Outlet<Clock>>,
     outlets: HashMap<String, Arc<RawOutlet>>,
-    /// Topics of commands that were not asked for by name.
+    /// Command topics that were not requested by name.
     left_out: BTreeSet<String>,
     counts: Counts,
     /// Bag time of the next `/clock`, ns.
@@ -107,7 +107,7 @@ impl Player<'_> {
         if !self.left_out.is_empty() {
             self.supervisor.logger.warn(left_out_line(&self.left_out));
         }
-        // Readers find new writers within a tenth of a second; without this they would miss the beginning.
+        // Discovery takes up to a tenth of a second. Without this pause readers would miss the beginning.
         self.rest(Duration::from_secs_f64(self.arguments.delay));
         loop {
             self.once()?;
@@ -148,7 +148,7 @@ impl Player<'_> {
         Ok(())
     }
 
-    /// Waits until the message is due; `false` when told to stop.
+    /// Waits until the message is due; `false` if a stop is requested.
     fn wait(&mut self, schedule: &mut Schedule, due: u64) -> bool {
         loop {
             if self.stopped() {
@@ -178,7 +178,7 @@ impl Player<'_> {
         }
     }
 
-    /// Publishes bag time, at the rate asked for.
+    /// Publishes bag time at the requested rate.
     fn tick(&mut self, bag_time: u64) {
         let (Some(clock), Some(rate)) = (&self.clock, self.arguments.clock) else { return };
         if bag_time < self.next_tick {
@@ -196,12 +196,12 @@ impl Player<'_> {
             return Ok(());
         }
         if !self.outlets.contains_key(&message.topic.name) {
-            // Only in a bag without a summary: its topics show one by one.
+            // Needed only for a bag without a summary, whose topics appear one by one.
             self.open(&message.topic)?;
         }
         let Some(outlet) = self.outlets.get(&message.topic.name) else { return Ok(()) };
         let data = match self.clock {
-            // Who goes by the clock of the bag takes its stamps, too.
+            // Receivers that use the clock of the bag also accept its stamps.
             Some(_) => message.data,
             None => stamped_now(message.data, &message.topic.type_name, self.supervisor.clock.now()),
         };
@@ -221,7 +221,7 @@ impl Player<'_> {
     fn wanted(&self, topic: &Topic) -> bool {
         let asked_for = self.arguments.topics.contains(&topic.name);
         let named = asked_for || (self.arguments.topics.is_empty() && !is_command(&topic.name, &topic.type_name));
-        // Two clocks would fight.
+        // Two sources of `/clock` would contradict each other.
         named && !(topic.name == "/clock" && self.clock.is_some())
     }
 
@@ -252,7 +252,7 @@ impl Player<'_> {
     }
 }
 
-/// What was offered to the recorder is offered again.
+/// Offers the QoS that the recorder was offered.
 fn offered(recorded: Option<Qos>) -> QosPolicies {
     let qos = recorded.unwrap_or(Qos::reliable(10));
     if qos.reliability == Reliability::Reliable && qos.durability == Durability::Volatile {

@@ -1,19 +1,19 @@
-//! When each message of a bag is due.
+//! Computes when each message of a bag is due.
 
 use std::time::{Duration, Instant};
 
-/// Bag time against the steady clock: with a rate, and with pauses.
+/// Maps bag time to the steady clock, with a rate and with pauses.
 #[derive(Debug, Clone)]
 pub(super) struct Schedule {
     rate: f64,
-    /// Bag time (ns) that belonged to `anchor`.
+    /// Bag time (ns) at `anchor`.
     bag_time: u64,
     anchor: Instant,
     paused: bool,
 }
 
 impl Schedule {
-    /// Bag time `start` (ns) is now; it runs `rate` times as fast as the clock.
+    /// Bag time is `start` (ns) at `now`, and runs `rate` times as fast as the clock.
     pub fn new(start: u64, rate: f64, now: Instant) -> Self {
         Schedule { rate, bag_time: start, anchor: now, paused: false }
     }
@@ -36,12 +36,12 @@ impl Schedule {
         Some(Duration::try_from_secs_f64(left).unwrap_or(Duration::MAX))
     }
 
-    /// Whether bag time stands.
+    /// Whether bag time is paused.
     pub fn is_paused(&self) -> bool {
         self.paused
     }
 
-    /// Stops bag time, or lets it go on from where it stood.
+    /// Pauses bag time, or resumes it where it stopped.
     pub fn set_paused(&mut self, paused: bool, now: Instant) {
         if paused != self.paused {
             self.bag_time = self.bag_time(now);

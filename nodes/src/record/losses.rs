@@ -1,4 +1,4 @@
-//! Counting what never came, from the publishers' own numbering.
+//! Counts lost messages by the sequence numbers of the publishers.
 
 use std::collections::HashMap;
 
@@ -8,15 +8,15 @@ pub(super) struct Losses {
     last: HashMap<[u8; 16], i64>,
     lost: u64,
     late: u64,
-    /// When the last message came, ns.
+    /// Time at which the last message was received, ns.
     received: Option<u64>,
     /// Longest time between two messages, ns.
     silence: u64,
 }
 
 impl Losses {
-    /// Takes note of message `sequence` of `writer`, `received` at that time, ns. What a publisher sent before we listened
-    /// is not lost.
+    /// Records message `sequence` of `writer`, received at `received` (ns). Messages that a publisher sent before we subscribed
+    /// do not count as lost.
     pub fn take(&mut self, writer: [u8; 16], sequence: i64, received: u64) {
         let since = self.received.map_or(0, |last| received.saturating_sub(last));
         self.silence = self.silence.max(since);
@@ -27,7 +27,7 @@ impl Losses {
                 self.lost += u64::try_from(step - 1).unwrap_or_default();
                 *last = sequence;
             }
-            // It was taken for lost when a later one came first.
+            // It was counted as lost when a later message arrived before it.
             _ => {
                 self.late += 1;
                 self.lost = self.lost.saturating_sub(1);
@@ -35,18 +35,18 @@ impl Losses {
         }
     }
 
-    /// Messages that were published while we listened and did not come.
+    /// Messages that were published while we were subscribed, and did not arrive.
     pub fn lost(&self) -> u64 {
         self.lost
     }
 
-    /// Longest time between two messages, s. A publisher that was out of reach for long comes back as another one, whose
-    /// numbers say nothing of what was missed.
+    /// Longest time between two messages, s. A publisher that was unreachable for long comes back as a new one, whose sequence
+    /// numbers do not show what was missed.
     pub fn longest_silence(&self) -> f64 {
         self.silence as f64 * 1e-9
     }
 
-    /// Publishers heard.
+    /// Number of publishers that sent messages.
     pub fn publishers(&self) -> usize {
         self.last.len()
     }

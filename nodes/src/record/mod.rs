@@ -1,4 +1,4 @@
-//! `excavator record`: topics of any type into a bag.
+//! `excavator record`: records topics of any type into a bag.
 
 mod losses;
 mod node;

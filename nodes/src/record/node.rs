@@ -1,4 +1,4 @@
-//! The recorder on the graph.
+//! The recorder's node.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,15 +16,15 @@ use crate::error::VerbError;
 use excavator_ros::raw::RawInlet;
 use excavator_ros::{Health, RosArguments, Supervisor};
 
-/// Time between two looks for new topics.
+/// Time between two searches for new topics.
 const LOOK: Duration = Duration::from_millis(200);
-/// Messages that may wait for the disk: a minute at 1 kHz.
+/// Messages that may wait to be written: a minute at 1 kHz.
 const WAITING: usize = 60_000;
 
-/// Records until it is told to stop, or for the duration asked for.
+/// Records until a stop is requested, or for the given duration.
 ///
 /// # Errors
-/// [`VerbError`] when it cannot start, or the bag cannot be written.
+/// [`VerbError`] if it cannot start, or the bag cannot be written.
 pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbError> {
     let supervisor = Supervisor::start_large("bag_recorder", ros, Vec::new())?;
     let names: Vec<String> = if arguments.all {
@@ -82,7 +82,7 @@ pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbEr
         supervisor.run(|| {});
         let missing = looking.join().unwrap_or_default();
         supervisor.link.forget_endpoints();
-        // A writing thread that has failed is not there to be told.
+        // Sending fails if the writing thread has failed.
         let _ = last.send(Order::End);
         (writing.join(), missing)
     });
@@ -116,7 +116,7 @@ fn tell(supervisor: &Supervisor, folder: &Path, outcome: &Outcome) -> Result<(),
     Err(VerbError::RecordingGone { bag: folder.to_path_buf(), files: files.join(", ") })
 }
 
-/// `rosbag2_2026_11_21-06_00_00`, as `ros2 bag record` names it.
+/// A name such as `rosbag2_2026_11_21-06_00_00`, as `ros2 bag record` uses it.
 fn default_folder() -> PathBuf {
     PathBuf::from(jiff::Zoned::now().strftime("rosbag2_%Y_%m_%d-%H_%M_%S").to_string())
 }
@@ -126,7 +126,7 @@ struct Recorder<'r> {
     selection: Selection,
     sender: SyncSender<Order>,
     dropped: Arc<AtomicU64>,
-    /// The file that went last.
+    /// The file that disappeared last.
     gone: &'r Mutex<Option<String>>,
     known: Vec<OfferedTopic>,
 }
@@ -134,7 +134,7 @@ struct Recorder<'r> {
 impl Recorder<'_> {
     fn look(&mut self) {
         let Some(participant) = self.supervisor.link.participant() else { return };
-        // What this process publishes itself (log, diagnostics) is no part of the world to be recorded.
+        // This process's own topics (log, diagnostics) are not recorded.
         let own = participant_prefix(&participant);
         let mut writers = participant.discovered_writers();
         writers.retain(|writer| writer.publication_topic_data.key.prefix.as_ref() != own.as_slice());

@@ -1,4 +1,4 @@
-//! What publishers offer, and what a recorder asks for so that it hears all of them.
+//! The QoS that publishers offer, and the QoS that the recorder requests to receive from all of them.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use rustdds::{QosPolicies, QosPolicyBuilder};
 
 use excavator_ros::dds_names::{ros_topic, ros_type};
 
-/// Messages that wait in the middleware for the recorder: seconds at 1 kHz.
+/// Most messages that the middleware queues for the recorder: seconds at 1 kHz.
 const DEPTH: i32 = 5000;
 
 /// A topic with its publishers.
@@ -19,7 +19,7 @@ pub(super) struct OfferedTopic {
     pub name: String,
     /// ROS type.
     pub type_name: String,
-    /// Other types that are published under the same name, and cannot be recorded with it.
+    /// Other types that are published under the same name. They cannot be recorded under it.
     pub other_types: Vec<String>,
     /// One entry per publisher.
     pub qos: Vec<Qos>,
@@ -48,9 +48,9 @@ pub(super) fn topics(writers: &[DiscoveredWriterData]) -> Vec<OfferedTopic> {
 
 fn offered(reliability: Option<policy::Reliability>, durability: Option<policy::Durability>) -> Qos {
     Qos {
-        // Discovery does not tell it.
+        // Discovery does not transmit the history.
         history: History::Unknown,
-        // The default of a writer in DDS is reliable.
+        // The DDS default of a writer is reliable.
         reliability: match reliability {
             Some(policy::Reliability::BestEffort) => Reliability::BestEffort,
             _ => Reliability::Reliable,
@@ -62,7 +62,7 @@ fn offered(reliability: Option<policy::Reliability>, durability: Option<policy::
     }
 }
 
-/// The best that every publisher of the topic can give: a reader that asks for more hears nothing.
+/// The strongest QoS that every publisher of the topic offers: a reader that requests more receives nothing from some of them.
 pub(super) fn asked(publishers: &[Qos]) -> QosPolicies {
     let all = |test: fn(&Qos) -> bool| !publishers.is_empty() && publishers.iter().all(test);
     let reliability = if all(|qos| qos.reliability == Reliability::Reliable) {

@@ -1,10 +1,10 @@
-//! Which topics are recorded.
+//! Selects the topics to record.
 
 use regex::Regex;
 
 use excavator_ros::RosError;
 
-/// Which topics are recorded.
+/// The topics to record.
 #[derive(Debug)]
 pub(super) struct Selection {
     names: Vec<String>,
@@ -14,10 +14,10 @@ pub(super) struct Selection {
 }
 
 impl Selection {
-    /// Topics with these full names or that match the pattern; all, where neither is given.
+    /// Topics with these full names, or that match the pattern; all topics if neither is given.
     ///
     /// # Errors
-    /// [`RosError::Arguments`] for a pattern that is none.
+    /// [`RosError::Arguments`] for an invalid pattern.
     pub fn new(
         names: Vec<String>,
         pattern: Option<&str>,
@@ -26,7 +26,7 @@ impl Selection {
     ) -> Result<Self, RosError> {
         let compiled = |text: Option<&str>| {
             text.map(|text| {
-                // The whole name has to fit, as with `ros2 bag record`.
+                // The pattern has to match the whole name, as with `ros2 bag record`.
                 Regex::new(&format!("^(?:{text})$"))
                     .map_err(|error| RosError::Arguments(format!("\"{text}\" is not a pattern: {error}")))
             })
@@ -49,13 +49,13 @@ impl Selection {
         }
     }
 
-    /// Names asked for, for a word about those that never came.
+    /// The names requested, to report those that never appeared.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 }
 
-/// Topics with a part that begins with an underscore, those of actions for one, are plumbing.
+/// Names with a part that begins with an underscore, such as those of actions, are internal topics.
 fn is_hidden(topic: &str) -> bool {
     topic.split('/').any(|part| part.starts_with('_'))
 }

@@ -1,4 +1,4 @@
-//! The thread that writes: it alone touches the disk, so that a slow disk delays nobody.
+//! The writing thread. It alone accesses the disk, so that a slow disk delays no other thread.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
@@ -9,29 +9,29 @@ use rosbag2::{BagWriter, GoneFile, Qos, TopicId, TopicToWrite};
 use super::losses::Losses;
 use excavator_ros::raw::RawSample;
 
-/// Time between two flushes: what a killed recorder loses at most, with room for the flush itself.
+/// Time between two flushes: the most that a killed recorder loses, apart from the duration of the flush.
 const FLUSH: Duration = Duration::from_millis(500);
 
-/// What the writing thread is told.
+/// An order to the writing thread.
 pub(super) enum Order {
-    /// A topic; its number is the count of topics before it. What its publishers offer is that of now: the file has it at
-    /// its beginning, and readers do not find the messages of a bag whose metadata say something else than its file.
+    /// A topic; its number is the count of topics before it. The QoS is the one offered now: the file stores it at its
+    /// beginning, and readers do not find the messages of a bag whose metadata contradict its file.
     Topic { name: String, type_name: String, qos: Vec<Qos> },
     /// A message of a topic.
     Message { topic: usize, sample: RawSample },
-    /// Nothing comes any more. Said, because a connection that hangs holds its readers, and so their senders, for ever.
+    /// The end. It is sent explicitly, because a connection that hangs keeps its readers, and so their senders, for ever.
     End,
 }
 
-/// What a recording became.
+/// The result of a recording.
 #[derive(Debug)]
 pub(super) struct Outcome {
     pub topics: Vec<TopicOutcome>,
-    /// Files that are not at their places any more.
+    /// Files that are no longer in their places.
     pub gone: Vec<GoneFile>,
 }
 
-/// What the recording of a topic became.
+/// The result of the recording of a topic.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TopicOutcome {
     /// Full name.
@@ -40,9 +40,9 @@ pub(super) struct TopicOutcome {
     pub messages: u64,
     /// Messages in files that were deleted or moved.
     pub gone: u64,
-    /// Messages that publishers sent and that never came.
+    /// Messages that were published and did not arrive.
     pub lost: u64,
-    /// Publishers heard.
+    /// Number of publishers that sent messages.
     pub publishers: usize,
 }
 
@@ -52,8 +52,8 @@ struct Recorded {
     losses: Losses,
 }
 
-/// Writes until the end is said, then closes the bag, also after a failure to write. `dropped` gives how many messages the
-/// recorder itself had no room for; `on_gone` hears of a file that is not at its place any more.
+/// Writes until the end is sent, then closes the bag, also after a write error. `dropped` returns the number of messages for
+/// which the recorder had no room. `on_gone` is called for a file that is no longer in its place.
 pub(super) fn write(
     mut bag: BagWriter,
     orders: &Receiver<Order>,
@@ -74,7 +74,7 @@ pub(super) fn write(
         bag.set_custom_data("ended_by", &error.to_string());
     }
     let closed = bag.finish();
-    // The first failure is the cause of the second.
+    // An error of the write comes first: it is the cause of one at the close.
     written?;
     let gone = closed?;
     for (index, topic) in topics.iter_mut().enumerate() {

@@ -1,7 +1,7 @@
-//! `excavator up`: simulator, energy monitor and recorder in one command, each in a process of its own; with a dashboard and a
-//! motion where they are asked for.
+//! `excavator up`: simulator, energy monitor and recorder in one command, each in a process of its own. A dashboard and a
+//! motion are optional.
 //!
-//! Processes, not threads: a process has one participant and one node, and one of them can fail without the others.
+//! Processes instead of threads: a process has one participant and one node, and each can fail without the others.
 
 mod motion;
 
@@ -19,22 +19,22 @@ use motion::Motion;
 
 use excavator_ros::{Environment, RosArguments, Signals, end_with_this_process};
 
-/// Time that a part has to end in good order.
+/// Time for a part to end by itself after the signal.
 const FAREWELL: Duration = Duration::from_secs(10);
-/// Of the dashboard, where none was asked for by its number: two machines on one computer do not collide.
+/// Port of the dashboard if none was given: two machines on one computer then do not collide.
 #[cfg(feature = "dashboard")]
 const ANY_PORT: u16 = 0;
-/// Model of a simulator that is told none.
+/// The simulator's model if none is given.
 const DEFAULT_MODEL: &str = "zx30u-arm";
-/// Pace of looking whether a part has ended.
+/// Polling period for parts that have ended.
 const GLANCE: Duration = Duration::from_millis(100);
 
-/// Runs all parts until one ends, a signal comes, or the time is over; `ros_words` go to each of them.
+/// Runs all parts until one ends, a signal comes, or the time is over. Each part receives `ros_words`.
 ///
 /// # Errors
-/// [`VerbError`] when a part cannot be started, or ends by itself with a failure.
+/// [`VerbError`] if a part cannot be started, or ends with a failure.
 pub fn run(arguments: &UpArguments, ros_words: &[String]) -> Result<(), VerbError> {
-    // What the parts would refuse one after the other is refused here once.
+    // Parsed here so that a faulty argument is reported once, and not by each part.
     let (ros, _) = RosArguments::parse(ros_words)?;
     Environment::read(ros.enclave.as_deref())?;
     let signals = Signals::block()?;
@@ -43,13 +43,13 @@ pub fn run(arguments: &UpArguments, ros_words: &[String]) -> Result<(), VerbErro
     let mut parts = Vec::new();
     let outcome = start(&program, arguments, motion.as_ref(), ros_words, &mut parts)
         .and_then(|()| watch(&signals, arguments.duration, &mut parts));
-    // The recorder last, so that it hears the end of the others.
+    // The recorder ends last, so that it records the end of the others.
     let ends: Vec<Result<(), VerbError>> = parts.iter_mut().rev().map(Part::end).collect();
     outcome?;
     ends.into_iter().collect()
 }
 
-/// The model that the simulator is told to be.
+/// The model that the simulator is started with.
 fn model_of(ros: &RosArguments) -> String {
     let given = ros.parameters.iter().rev().find(|given| given.name == "model");
     let named = given.and_then(|given| given.value.as_text()).filter(|name| !name.is_empty());
@@ -70,7 +70,7 @@ fn start(
 ) -> Result<(), VerbError> {
     let mut spawn = |name: &'static str, words: Vec<std::ffi::OsString>| {
         let mut command = Command::new(program);
-        // A terminal's Ctrl-C is for this process, which ends its parts one after the other.
+        // A Ctrl-C in the terminal must reach only this process, which ends its parts one after the other.
         command.args(words).args(ros_words).process_group(0);
         let child = end_with_this_process(&mut command).spawn()?;
         parts.push(Part { name, child });
@@ -83,7 +83,7 @@ fn start(
         }
         spawn("recorder", words)?;
     }
-    // With a motion there is something to see.
+    // With a motion, the dashboard starts by default.
     #[cfg(feature = "dashboard")]
     if let Some(port) = arguments.dashboard.or(motion.map(|_| ANY_PORT)) {
         spawn("dashboard", vec!["dashboard".into(), "--port".into(), port.to_string().into()])?;
@@ -99,7 +99,7 @@ fn start(
     }
 }
 
-/// Waits for the end; says which part ended first and how.
+/// Waits for the end. If a part ends first, the error names the part and its exit status.
 fn watch(signals: &Signals, duration: Option<f64>, parts: &mut [Part]) -> Result<(), VerbError> {
     let end = duration.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()).map(|time| Instant::now() + time);
     loop {
@@ -117,7 +117,7 @@ fn watch(signals: &Signals, duration: Option<f64>, parts: &mut [Part]) -> Result
 }
 
 impl Part {
-    /// Ends it in good order, or kills it where it takes too long.
+    /// Ends the part with a signal, or kills it if it takes too long.
     fn end(&mut self) -> Result<(), VerbError> {
         let start = Instant::now();
         let mut signalled = false;
@@ -127,7 +127,8 @@ impl Part {
                 return if status.success() { Ok(()) } else { Err(failed()) };
             }
             if let (false, Ok(pid)) = (signalled, i32::try_from(self.child.id())) {
-                // A shell starts what runs in its background deaf to SIGINT. It may end by itself at this very moment.
+                // SIGTERM, because a shell starts background processes with SIGINT ignored. The part may end by itself at this
+                // moment.
                 let _ = kill(Pid::from_raw(pid), Signal::SIGTERM);
                 signalled = true;
             }

@@ -1,4 +1,4 @@
-//! The motion of `up --demo`: every cylinder follows a sine, again and again.
+//! The motion of `up --demo`: every cylinder follows a sine, repeatedly.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -12,14 +12,14 @@ use excavator_workbench::profile_file::{ProfileFile, usual_rate};
 use crate::error::VerbError;
 use crate::sources;
 
-/// Length of the motion before it begins again, on a machine of the reference size, s.
+/// Duration of the motion before it repeats, on a machine of the reference size, s.
 const DURATION: f64 = 20.0;
-/// Share of the largest opening: fast enough to see, far from the ends of the stroke.
+/// Share of the largest opening: fast enough to be visible, far from the ends of the stroke.
 const SHARE: f64 = 0.5;
 /// Frequency on a machine of the reference size, Hz.
 const FREQUENCY: f64 = 0.4;
 
-/// A bag with commands, which is there as long as this is.
+/// A bag with commands. It is deleted when this value is dropped.
 pub(super) struct Motion {
     folder: tempfile::TempDir,
 }
@@ -28,7 +28,7 @@ impl Motion {
     /// Commands for a model, simulated by this program.
     ///
     /// # Errors
-    /// [`VerbError`]: an unknown model, or one without a valve; a temporary folder that cannot be written.
+    /// [`VerbError`] for an unknown model, or one without a valve, and for a temporary folder that cannot be written.
     pub fn of(program: &Path, model: &str) -> Result<Self, VerbError> {
         let folder = tempfile::tempdir()?;
         let profile = folder.path().join("profile.toml");
@@ -42,7 +42,7 @@ impl Motion {
         Ok(Motion { folder })
     }
 
-    /// What the player is started with. The commands go to the namespace of the node.
+    /// The arguments of the player. The commands go to the namespace of the node.
     pub fn words(&self) -> Vec<OsString> {
         let mut words: Vec<OsString> = vec!["play".into(), self.folder.path().join("motion").into_os_string()];
         let rest =

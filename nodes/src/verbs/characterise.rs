@@ -44,7 +44,7 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
     Ok(())
 }
 
-/// A fit takes the whole recordings, and not only what the procedures can use.
+/// A fit needs the whole recordings, not only the parts that the procedures use.
 fn next(arguments: &CharacteriseArguments) -> NextStep {
     let step = NextStep::new("fit all parameters to the same recordings", "identify");
     let step = step.same_model(&arguments.model).word("--bag");

@@ -11,10 +11,10 @@ use crate::error::VerbError;
 use crate::output::{chart, number};
 use crate::sources;
 
-/// Checks every law of these files on the machine of a model and draws it.
+/// Checks every law in these files on the machine of a model, and draws it.
 ///
 /// # Errors
-/// [`VerbError::Laws`] when a law has a problem.
+/// [`VerbError::Laws`] if a law has a problem.
 pub fn run(files: &[PathBuf], model: &str) -> Result<(), VerbError> {
     let model = sources::model(&crate::cli::ModelChoice {
         model: model.to_string(),
@@ -92,7 +92,7 @@ fn show(model: &Model, effect: &ModelEffect, checked: &Checked) {
     print("");
 }
 
-/// Prints what formulas may use.
+/// Prints what formulas may contain.
 pub fn language() {
     print("A formula may use what stands here.");
     print("acts_on");

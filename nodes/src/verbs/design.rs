@@ -54,19 +54,19 @@ fn between_rivals(arguments: &DesignArguments, found: &Separated) -> Result<(), 
     if written.is_some() { Ok(()) } else { Err(VerbError::NothingSeparates(sentence(design))) }
 }
 
-/// Writes the profile, where one was found; gives its file.
+/// Writes the profile, if one was found. Returns its file.
 fn write_profile<'a>(arguments: &'a DesignArguments, found: &impl Outcome) -> Result<Option<&'a Path>, VerbError> {
     let Some(profile) = found.file()? else { return Ok(None) };
     write(&arguments.output, &profile, arguments.overwriting)?;
     Ok(Some(&arguments.output))
 }
 
-/// The profile file as a result names it.
+/// The profile file as named in the result.
 fn name_of(written: Option<&Path>) -> Option<String> {
     written.map(|path| path.display().to_string())
 }
 
-/// The pairs that are not separated, in words.
+/// A sentence on the pairs that are not separated.
 fn sentence(design: &SeparationDesign) -> String {
     let tied = design.pairs.iter().filter(|pair| !pair.separated);
     let each = tied.map(|pair| {

@@ -42,7 +42,8 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         let validation: Vec<&Recording> = diagnosed.validation.iter().collect();
         let refinement = refinement_of(&model, &diagnosed.diagnosis, &identification, &validation, &settings, &when)?;
         outputs::write(path, &SavedDiagnosis::of(&refinement, &arguments.recordings)?.text()?, arguments.overwriting)?;
-        // A refinement leaves out what is superfluous in the fits: its numbers are those that will be seen again.
+        // A refinement leaves superfluous effects out of the fits. Its errors are used here, because `refine` will show the
+        // same ones.
         if let Some(found) = refinement.diagnosis() {
             diagnosed.diagnosis.errors.clone_from(&found.errors);
         }
@@ -62,7 +63,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     outputs::write_told(&diagnosed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
 }
 
-/// What a verdict asks for.
+/// The next command, which depends on the verdict.
 fn next(arguments: &DiagnoseArguments, diagnosis: &Diagnosis) -> NextStep {
     let same =
         |why: &str, verb: &str| NextStep::new(why, verb).same_model(&arguments.model).recordings(&arguments.recordings);
@@ -84,10 +85,10 @@ fn next(arguments: &DiagnoseArguments, diagnosis: &Diagnosis) -> NextStep {
     }
 }
 
-/// Shares of the residual that are worth a line.
+/// Smallest share of the residual that gets a line.
 const LEAST_SHARE: f64 = 0.05;
 
-/// Prints a diagnosis for people.
+/// Prints a diagnosis.
 pub fn show(model: &Model, diagnosis: &Diagnosis) {
     print(&verdict_sentence(model, diagnosis));
     if diagnosis.tried() == 0 {
@@ -99,7 +100,7 @@ pub fn show(model: &Model, diagnosis: &Diagnosis) {
     if !diagnosis.unpromising.is_empty() {
         let same =
             |effect: &Unpromising| diagnosis.unpromising.iter().filter(|other| other.effect == effect.effect).count();
-        // The place only where it tells two apart.
+        // The place is shown only if the effect appears at several.
         let names: Vec<String> = diagnosis
             .unpromising
             .iter()

@@ -70,7 +70,7 @@ fn list(all: &[AnyEffect]) {
     }
 }
 
-/// The parameters of an effect on the machine where it looks most usual.
+/// The parameters of an effect on the machine where they look most typical.
 fn parameters(effect: &dyn Effect) -> Result<&[ParameterCard], VerbError> {
     let machine = built_in("zx30u-arm")?.machine;
     let site = if effect.card().acts_on == ActsOn::PumpLine { Site::PumpLine } else { Site::Cylinder(0) };

@@ -22,7 +22,7 @@ use crate::output::{NextStep, energy_table, ledger_table, write_json};
 use crate::outputs::{self, Inputs};
 use crate::{sources, terminal};
 
-/// Blocks that may wait for the analysis.
+/// Most blocks queued for the analysis.
 const WAITING: usize = 4;
 
 pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
@@ -46,7 +46,7 @@ pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
     Ok(())
 }
 
-/// Where power is missing, a diagnosis says what takes it; else the signals may still differ.
+/// If power is missing, a diagnosis finds the cause; else the signals may still differ.
 fn next(arguments: &EnergyArguments, closes: bool, duration: f64) -> NextStep {
     if closes {
         return NextStep::new("compare every signal", "compare")
@@ -63,7 +63,7 @@ fn next(arguments: &EnergyArguments, closes: bool, duration: f64) -> NextStep {
     )
 }
 
-/// A bag of our own topics goes through in blocks, whatever its length; what needs a map is read whole.
+/// A bag of our own topics is read in blocks, whatever its length. A recording that needs a map is read whole.
 fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAnalysis, VerbError> {
     let settings = EnergySettings::default();
     if needs_a_map(bag, mapping.map.as_deref()) {

@@ -20,7 +20,7 @@ use crate::sources;
 pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     let outputs = [("-o", arguments.output.as_deref()), ("--json", arguments.json.json.as_deref())];
     let inputs = Inputs::recordings(&arguments.bag, arguments.mapping.map.as_deref());
-    // With --force the model may become its own successor: it has a history.
+    // With --force the output may replace the input model, which keeps its history.
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     outputs::check(&outputs[1..], &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
@@ -37,7 +37,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     outputs::write_told(&identified, None, arguments.json.json.as_deref(), arguments.overwriting)
 }
 
-/// The identified model beside the recording; first of all it has to be kept.
+/// Compare the identified model with the recording, or save the model first.
 fn next(arguments: &IdentifyArguments) -> NextStep {
     let bag = arguments.bag.first().map(PathBuf::as_path).unwrap_or(Path::new("BAG"));
     match &arguments.output {

@@ -23,13 +23,13 @@ pub fn run(arguments: &ImportArguments) -> Result<(), VerbError> {
         (_, [data]) if arguments.guess => guess_map(arguments, data),
         (_, several) if arguments.guess => Err(VerbError::GuessOfSeveral(several.len())),
         (Some(bag), _) => import(arguments, bag),
-        // The command line does not let this happen.
+        // The command line excludes this case.
         (None, _) => Ok(()),
     }
 }
 
 fn guess_map(arguments: &ImportArguments, data: &Path) -> Result<(), VerbError> {
-    // The map beside the data is not read here, and may be made anew.
+    // The map beside the data is not an input here, and may be replaced.
     let inputs = Inputs::recording(data);
     outputs::check(&[("-o", arguments.output.as_deref())], &inputs, arguments.overwriting)?;
     let model = arguments

@@ -17,7 +17,7 @@ use crate::error::VerbError;
 use crate::output::{NextStep, number, right, table, write_json};
 use crate::outputs::{self, Inputs};
 
-/// A clock that is off by more than this is worth a line, s: networks and recorders take less.
+/// Smallest clock offset that is reported, s: networks and recorders add less.
 const NOTABLE_DELAY: f64 = 0.1;
 
 pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
@@ -28,7 +28,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
         return table_without_map(arguments);
     }
     let origin = Origin { map: arguments.map.as_deref(), namespace: arguments.namespace.as_deref() };
-    // Two ways through the bag, one for each processor.
+    // Two passes over the bag, one per thread.
     let (bag, signals) = std::thread::scope(|scope| {
         let signals = scope.spawn(|| read_signals(path, origin));
         let bag = (!DataTable::is_table(path)).then(|| info_with(path, own_definitions())).transpose();
@@ -48,7 +48,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
         match &signals {
             Ok((signals, report)) => {
                 show_signals(signals);
-                // Damage is the bag's; it has been told.
+                // Damage belongs to the bag, and has been reported already.
                 for note in report.notes.iter().chain(bag.is_none().then(|| report.problems()).iter().flatten()) {
                     print(&format!("note: {note}"));
                 }
@@ -65,14 +65,14 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
         let signals = signals.as_ref().map(|(signals, _)| signals);
         write_json(file, &to_json(bag.as_ref(), &signals)?, arguments.overwriting)?;
     }
-    // A bag without our topics is still a bag; a table or map that cannot be read is a failure.
+    // A bag without our topics is not a failure; an unreadable table or map is.
     match signals {
         Err(error) if bag.is_none() || arguments.map.is_some() => Err(error.into()),
         _ => Ok(()),
     }
 }
 
-/// The columns of a table: which signals they are, nobody has said.
+/// Shows the columns of a table. Without a map it is unknown which signals they are.
 fn table_without_map(arguments: &InfoArguments) -> Result<(), VerbError> {
     let info = TableInfo::read(&arguments.bag)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
@@ -114,12 +114,12 @@ fn share(missing: f64) -> String {
     if missing == 0.0 { String::new() } else { format!("{:.1} %", 100.0 * missing) }
 }
 
-/// Whether a bag has other people's topics.
+/// Whether a bag has foreign topics.
 fn is_foreign(error: &BagError) -> bool {
     matches!(error, BagError::NoTopic { .. } | BagError::WrongType { .. })
 }
 
-/// Which signals are in other people's data, nobody has said.
+/// The next command for foreign data, whose signals are unknown.
 fn guess(data: &Path) -> NextStep {
     let step = NextStep::new("let the program propose a map", "import").word("--guess");
     step.word(data.display().to_string()).path("-o", Path::new("map.toml"))
@@ -177,7 +177,7 @@ fn show_bag(bag: &BagInfo) {
     }
 }
 
-/// What is wrong with the times of a topic, one line each.
+/// Problems with the times of a topic, one line each.
 fn clock_problems(timing: &Timing) -> Vec<String> {
     let mut lines = Vec::new();
     if timing.log_times_backwards > 0 {
@@ -209,7 +209,7 @@ fn clock_problems(timing: &Timing) -> Vec<String> {
     lines
 }
 
-/// A model beside the recording: one that is built in where it has these cylinders, else one to be written.
+/// Suggests a model for the recording: a built-in one if it has these cylinders, else a new one.
 fn next(arguments: &InfoArguments, signals: &SignalsInfo) -> NextStep {
     let mut cylinders: Vec<&str> =
         signals.measured.iter().filter_map(|signal| Some(signal.name.split_once('.')?.0)).collect();
@@ -256,7 +256,7 @@ fn show_signals(signals: &SignalsInfo) {
     }
 }
 
-/// Factor from SI, and the unit in which people read such a signal.
+/// Factor from SI, and the unit in which such a signal is displayed.
 fn display_unit(name: &str) -> (f64, &'static str) {
     match name.rsplit('.').next().unwrap_or_default() {
         "displacement" => (1e3, "mm"),

@@ -31,7 +31,7 @@ use crate::ros_words::RosWords;
 use crate::terminal;
 use crate::verbosity::Verbosity;
 
-/// Runs a verb; `ros` is what stood after --ros-args.
+/// Runs a verb. `ros` has the arguments after --ros-args.
 #[cfg_attr(not(feature = "live"), expect(unused_variables, reason = "only nodes take it"))]
 pub fn run(verb: Verb, ros: &RosWords) -> Result<(), VerbError> {
     match verb {
@@ -70,19 +70,19 @@ pub fn run(verb: Verb, ros: &RosWords) -> Result<(), VerbError> {
     }
 }
 
-/// Why something could not be printed.
+/// The first error while printing.
 static NOT_PRINTED: OnceLock<Error> = OnceLock::new();
 
-/// Prints to standard output what is safe for a terminal, as wide as that is; nothing with `--quiet`.
+/// Prints text to standard output, made safe for a terminal and wrapped to its width. Prints nothing with `--quiet`.
 ///
-/// A closed pipe is not an error of ours. [`all_was_printed`] tells of any other.
+/// A closed pipe is not an error. [`all_was_printed`] reports any other.
 pub fn print(text: &str) {
     if Verbosity::chosen() > Verbosity::Quiet {
         write(&filled(text, terminal::width()));
     }
 }
 
-/// Prints text that was asked for as such, a schema or a model: as it is.
+/// Prints requested text, such as a schema or a model, without wrapping.
 pub fn print_text(text: &str) {
     write(text);
 }
@@ -94,7 +94,7 @@ pub fn print_detail(text: &str) {
     }
 }
 
-/// Prints the command that comes next.
+/// Prints the suggested next command.
 pub fn print_next(step: &NextStep) {
     if Verbosity::chosen() > Verbosity::Quiet {
         write(&step.text(terminal::width()));
@@ -108,7 +108,7 @@ fn write(text: &str) {
     }
 }
 
-/// Whether all that was printed has reached standard output: a full disk behind it must not end as a success.
+/// Fails if any output has not reached standard output: a full disk must not end as a success.
 pub fn all_was_printed() -> Result<(), VerbError> {
     let flushed = std::io::stdout().flush().err().filter(|error| error.kind() != ErrorKind::BrokenPipe);
     match flushed.map(|error| error.to_string()).or_else(|| NOT_PRINTED.get().map(ToString::to_string)) {

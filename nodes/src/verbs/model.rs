@@ -105,7 +105,7 @@ fn describe(model: &Model) {
     }
 }
 
-/// Formulas that the model brings along and does not use.
+/// Formulas that the model contains but does not use.
 fn unused_formulas(model: &Model) -> Vec<String> {
     let is_used = |name: &str| model.effects.iter().any(|effect| effect.name() == name);
     let own = model.catalogue.iter().filter(|effect| effect.formula().is_some());

@@ -43,7 +43,7 @@ pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
     outputs::write_told(&proposed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
 }
 
-/// Prints proposals for people, with the command that goes on.
+/// Prints proposals, with the suggested next command.
 fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
     print(&proposal_sentence(model, found));
     if !found.proposals.is_empty() {
@@ -89,8 +89,8 @@ fn show(arguments: &ProposeArguments, model: &Model, found: &Proposals) {
     }
 }
 
-/// Most rows and variables that are told.
+/// Most rows and variables that are printed.
 const MOST_FINDINGS: usize = 5;
 
-/// Most laws that a manoeuvre is designed for.
+/// Most laws in one design of a manoeuvre.
 const MOST_TIED: usize = 3;

@@ -31,7 +31,7 @@ fn searched(arguments: &RefineArguments) -> Result<(), VerbError> {
     let others = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
     let outputs = [("-o", Some(arguments.output.as_path())), others[0], others[1]];
     let inputs = Inputs::recordings(recordings.bags(), recordings.mapping.map.as_deref());
-    // With --force the model may become its own successor: it has a history.
+    // With --force the output may replace the input model, which keeps its history.
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     outputs::check(&others, &inputs.and_all(choice.files()), arguments.overwriting)?;
     let model = sources::model(&choice)?;
@@ -60,7 +60,7 @@ fn searched(arguments: &RefineArguments) -> Result<(), VerbError> {
     Ok(())
 }
 
-/// Adds what a saved diagnosis found: its fits are used, and simulated once more.
+/// Adds the effects of a saved diagnosis. Its fits are used, and simulated once more.
 fn as_diagnosed(path: &Path, arguments: &RefineArguments) -> Result<(), VerbError> {
     let saved = SavedDiagnosis::read(path)?;
     let mut recordings = saved.recordings();
@@ -79,7 +79,7 @@ fn as_diagnosed(path: &Path, arguments: &RefineArguments) -> Result<(), VerbErro
             .map(|recording| Ok(compare(model, recording)?))
             .collect::<Result<Vec<Comparison>, VerbError>>()
     };
-    // A model with the numbers of a data sheet may not be simulated at all.
+    // A model with the values of a data sheet may fail to simulate.
     let as_given = compared(&given).unwrap_or_default();
     let steps = saved.steps()?.into_iter().map(|step| Ok((step.added, compared(&step.model)?)));
     let steps = steps.collect::<Result<Vec<_>, VerbError>>()?;
@@ -98,7 +98,7 @@ fn as_diagnosed(path: &Path, arguments: &RefineArguments) -> Result<(), VerbErro
     Ok(())
 }
 
-/// Where the model is, and what to do with it.
+/// Prints where the model is, and the next command.
 fn end(arguments: &RefineArguments, choice: &ModelChoice, recordings: &Recordings) {
     print(&format!("written: {}", arguments.output.display()));
     if let Some(bag) = recordings.validation.first() {
@@ -108,7 +108,7 @@ fn end(arguments: &RefineArguments, choice: &ModelChoice, recordings: &Recording
     }
 }
 
-/// Prints a refinement for people.
+/// Prints a refinement.
 fn show(refinement: &Refinement) {
     print(&refinement_sentence(refinement));
     print(&stage_table(&Stage::of_refinement(refinement)).to_string());

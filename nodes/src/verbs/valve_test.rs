@@ -16,7 +16,7 @@ use crate::output::{NextStep, number as in_digits};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
-/// Standard errors from zero beyond which a dead zone or a play is one.
+/// Standard errors from zero above which a dead zone or a play counts as real.
 const CLEAR: f64 = 3.0;
 
 /// Share of the full input below which neither matters.
@@ -124,7 +124,7 @@ fn readings(arguments: &ValveTestArguments, unit: CommandUnit) -> Result<Vec<Flo
         .collect())
 }
 
-/// Puts what was found into the model: gains, and a dead zone and a play where they are clear.
+/// Puts the results into the model: gains, and a dead zone and a play if they are significant.
 fn put(
     model: &mut Model,
     place: usize,
@@ -148,7 +148,7 @@ fn put(
     Ok(())
 }
 
-/// Sets the first parameters of an effect, which is added where the model does not have it.
+/// Sets the first parameters of an effect, which is added if the model does not have it.
 fn set(model: &mut Model, effect: &str, site: Site, values: &[f64], source: &str) -> Result<(), ModelError> {
     if !model.effects.iter().any(|one| one.is(effect, site))
         && let Ok(physics) = model.catalogue.find(effect)

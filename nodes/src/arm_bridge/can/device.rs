@@ -9,12 +9,12 @@ use socketcan::{CanFdSocket, CanFilter, ShouldRetry, Socket, SocketOptions};
 
 use super::{Counts, Frame, Wanted};
 
-/// Longest time until the end of the node is seen, and pause after a failure.
+/// Longest time until the end of the node is noticed, and pause after a failure.
 const GLANCE: Duration = Duration::from_millis(100);
-/// A frame cannot have waited longer in the kernel; a stamp that says so comes of a clock that was set.
+/// Longest time that a frame can have waited in the kernel. A stamp that implies more means that the clock was set.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
-/// A device that frames come from; opened again when it was unplugged.
+/// A device that delivers frames. It is reopened after it was unplugged.
 #[derive(Debug)]
 pub(in crate::arm_bridge) struct Device {
     name: String,
@@ -33,7 +33,7 @@ impl Device {
         Ok(Device { name: name.to_string(), filters, socket })
     }
 
-    /// Gives every data frame with the time at which the kernel had it, until told to stop.
+    /// Passes every data frame to `take`, with the time at which the kernel received it, until `stop` is set.
     pub fn listen(mut self, stop: &AtomicBool, counts: &Counts, mut take: impl FnMut(Frame, Instant)) {
         while !stop.load(Ordering::Relaxed) {
             match self.socket.read_frame_with_timestamp() {
@@ -44,7 +44,7 @@ impl Device {
                     }
                 },
                 Err(error) if error.should_retry() => {}
-                // The bus is down or the device is gone: its signals grow old, which is told, until it is back.
+                // The bus is down or the device is gone. Until it is back its signals become stale, which is reported.
                 Err(_) => {
                     std::thread::sleep(GLANCE);
                     if let Ok(socket) = open(&self.name, &self.filters) {
@@ -64,7 +64,7 @@ fn open(name: &str, filters: &[CanFilter]) -> std::io::Result<CanFdSocket> {
     Ok(socket)
 }
 
-/// Lets exactly one identifier through.
+/// Accepts exactly one identifier.
 fn filter(identifier: Identifier) -> CanFilter {
     match identifier {
         Identifier { number, extended: true } => CanFilter::new(number | CAN_EFF_FLAG, CAN_EFF_MASK | CAN_EFF_FLAG),

@@ -1,4 +1,4 @@
-//! Frames, and what is read from them.
+//! CAN frames, and the signals in them.
 
 use std::sync::atomic::Ordering;
 
@@ -27,7 +27,7 @@ impl Frame {
     }
 }
 
-/// What is read from frames.
+/// The signals to read from frames.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::arm_bridge) struct Wanted {
     /// Signals in the order of the description.
@@ -35,7 +35,7 @@ pub(in crate::arm_bridge) struct Wanted {
 }
 
 impl Wanted {
-    /// Gives index and physical value (in the unit of the DBC file) of each wanted signal that the frame carries.
+    /// Passes index and physical value (in the unit of the DBC file) of each wanted signal in the frame to `take`.
     pub fn read(&self, frame: &Frame, counts: &Counts, mut take: impl FnMut(usize, f64)) {
         let mut short = false;
         for (index, place) in self.places.iter().enumerate() {

@@ -1,16 +1,18 @@
-//! What fuzz targets call: all that the bridge does with the bytes of other people's files.
+//! Entry points of fuzz targets: everything that the bridge does with the bytes of foreign files.
 
 use super::log::frames;
 use super::{Counts, Database, Wanted};
 
-/// Bytes as a DBC file, whose signals are read from `log`: how many signals have a place in their message; `None` for what is no DBC file.
+/// Parses bytes as a DBC file and reads its signals from `log`. Returns how many signals have a place in their message; `None`
+/// if the bytes are not a DBC file.
 pub fn can_database(bytes: &[u8], log: &[u8]) -> Option<usize> {
     let wanted = wanted(&Database::parse(bytes).ok()?);
     read(log, &wanted);
     Some(wanted.places.len())
 }
 
-/// Bytes as a log, from which the signals of a DBC file are read: how many frames it has, and how many lines are none.
+/// Parses bytes as a log and reads the signals of a DBC file from it. Returns the number of frames, and of lines that are not
+/// frames.
 pub fn can_log(bytes: &[u8], database: &[u8]) -> (u64, u64) {
     read(bytes, &Database::parse(database).map(|database| wanted(&database)).unwrap_or(Wanted { places: Vec::new() }))
 }

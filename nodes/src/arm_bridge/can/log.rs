@@ -1,4 +1,4 @@
-//! A log of `candump -L` in place of a device.
+//! Reads a log of `candump -L` in place of a device.
 
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -9,36 +9,36 @@ use socketcan::dump::{ParseError, Reader};
 
 use super::{Counts, Frame};
 
-/// A longer pause is taken for a jump of the clock that wrote the log, and shortened to [`PAUSE`].
+/// Longest pause, µs. A longer one counts as a jump of the logging clock, and is shortened to [`PAUSE`].
 const LONGEST_PAUSE: u64 = 60_000_000;
-/// What is left of a jump, µs: longer than values are good for.
+/// Pause that replaces a jump, µs: longer than values stay valid.
 const PAUSE: u64 = 1_000_000;
-/// Frames are written down in the order in which drivers hand them over, which may differ by this, µs.
+/// Drivers may deliver frames out of order by up to this time, µs, and the log keeps that order.
 const DISORDER: u64 = 1_000_000;
 
-/// A log that can be read.
+/// A readable log.
 #[derive(Debug)]
 pub(in crate::arm_bridge) struct Log {
     path: PathBuf,
-    /// Only frames of this device, where the log is of several.
+    /// If set, only frames of this device are read.
     channel: Option<String>,
 }
 
 /// A frame of a log.
 #[derive(Debug, PartialEq)]
 pub(in crate::arm_bridge) struct Logged {
-    /// Since the first frame, without jumps of the clock.
+    /// Time since the first frame, without jumps of the clock.
     pub elapsed: Duration,
     /// The log's own clock, µs.
     pub stamp: u64,
-    /// Whether the clock jumped since the frame before.
+    /// Whether the clock jumped since the previous frame.
     pub jumped: bool,
     /// The frame.
     pub frame: Frame,
 }
 
 impl Log {
-    /// Checks that the file is there.
+    /// Checks that the file can be opened.
     ///
     /// # Errors
     /// What is wrong, in one line.
@@ -47,7 +47,7 @@ impl Log {
         Ok(Log { path: path.to_path_buf(), channel })
     }
 
-    /// Its data frames; what is none is counted.
+    /// Its data frames. Other records are counted.
     ///
     /// # Errors
     /// What is wrong, in one line.
@@ -69,7 +69,8 @@ pub(super) fn frames<'c>(
         loop {
             let record = match reader.next_record() {
                 Ok(None) => return None,
-                // A disk that cannot be read would be asked for ever; a line that is no text is a line like others.
+                // A read error would repeat for ever, so it ends the log. A line that is not text counts as unreadable, like
+                // any other faulty line.
                 Err(ParseError::Io(error)) if error.kind() != ErrorKind::InvalidData => return None,
                 Err(_) => {
                     counts.unreadable.fetch_add(1, Ordering::Relaxed);
@@ -98,7 +99,7 @@ struct Clock {
 }
 
 impl Clock {
-    /// Goes on to `stamp`, µs; whether it is a jump.
+    /// Advances to `stamp`, µs. Returns whether this is a jump.
     fn advance(&mut self, stamp: u64) -> bool {
         let last = self.last.unwrap_or(stamp);
         let jumped = stamp.saturating_sub(last) > LONGEST_PAUSE || last.saturating_sub(stamp) > DISORDER;

@@ -1,4 +1,4 @@
-//! Questions about a guessed map: which source a signal has.
+//! Asks about a guessed map: which source a signal has.
 
 use std::collections::HashSet;
 use std::io::{BufRead, Write};
@@ -8,10 +8,10 @@ use excavator_bags::map::{Confidence, Guess, GuessedSignal};
 use crate::error::VerbError;
 use crate::terminal;
 
-/// Asks about every signal that is not sure. What is not answered stays as it is.
+/// Asks about every uncertain signal. Without an answer the guess stays.
 pub(super) fn ask(guess: &mut Guess, input: &mut impl BufRead, output: &mut impl Write) -> Result<(), VerbError> {
     let mut asked = HashSet::new();
-    // An answer may leave another signal without its source, and so without a question.
+    // An answer may remove the source of another signal, which then needs no question.
     while let Some(number) = guess
         .signals
         .iter()
@@ -68,7 +68,7 @@ mod tests {
 
     use super::*;
 
-    /// Three pressures of which nothing says where they are.
+    /// Three pressures without a hint to their places.
     fn guessed() -> Guess {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("drive.csv");
@@ -111,7 +111,7 @@ mod tests {
         let (taken, shown) = asked("many\n7\n0\n0\n");
         assert_eq!(taken, std::slice::from_ref(&stroke));
         assert_eq!(shown.matches("a number from 0 to 2").count(), 2, "{shown}");
-        // The end of the input answers nothing.
+        // The end of the input is not an answer.
         assert_eq!(asked("").0, [stroke]);
     }
 }

@@ -1,10 +1,10 @@
-//! Numbers with units, as on a data sheet.
+//! Parses numbers with units, as on a data sheet.
 
 use excavator_bags::map::{Dimension, Unit};
 
 use crate::error::VerbError;
 
-/// Units of a data sheet that no signal of a recording has: name and SI value of one.
+/// Units of a data sheet that no signal of a recording has: name, SI unit and SI value of one.
 const OTHERS: [(&str, &str, f64); 12] = [
     ("kg", "kg", 1.0),
     ("t", "kg", 1e3),
@@ -24,17 +24,17 @@ fn wrong(option: &str, text: &str, example: &str) -> VerbError {
     VerbError::NewModel(format!("{option} \"{text}\" is no number with a unit, as in {option} \"{example}\""))
 }
 
-/// The number in front and the unit behind; a decimal comma is one.
+/// The number in front and the unit behind it. A decimal comma is accepted.
 fn split(text: &str) -> Option<(f64, String)> {
     let text = text.trim();
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.,eE".contains(c))).unwrap_or(text.len());
-    // The e of an exponent, not of a unit.
+    // A trailing e belongs to an exponent, not to a unit.
     let number = text[..end].trim_end_matches(['e', 'E']).replace(',', ".").parse().ok()?;
     let unit: String = text[end..].chars().filter(|c| !c.is_whitespace() && !"^·".contains(*c)).collect();
     Some((number, unit.replace('²', "2").replace('³', "3"))).filter(|(number, _): &(f64, _)| number.is_finite())
 }
 
-/// The SI value of a number of this dimension.
+/// The SI value of a number with this dimension.
 pub fn of(option: &str, text: &str, dimension: Dimension, example: &str) -> Result<f64, VerbError> {
     split(text)
         .and_then(|(number, unit)| Some((number, Unit::named(&unit)?)))
@@ -43,14 +43,14 @@ pub fn of(option: &str, text: &str, dimension: Dimension, example: &str) -> Resu
         .ok_or_else(|| wrong(option, text, example))
 }
 
-/// The same for what recordings do not carry; `unit` is its SI unit.
+/// As `of`, for quantities that recordings do not contain. `unit` is the SI unit.
 pub fn other(option: &str, text: &str, unit: &str, example: &str) -> Result<f64, VerbError> {
     let (number, found) = split(text).ok_or_else(|| wrong(option, text, example))?;
     let factor = OTHERS.iter().find(|(name, si, _)| *name == found && *si == unit).map(|(.., factor)| factor);
     factor.map(|factor| number * factor).ok_or_else(|| wrong(option, text, example))
 }
 
-/// Numbers without units, separated by whatever is none: "16/10 x 100".
+/// Numbers without units, separated by any other characters: "16/10 x 100".
 pub fn plain<const N: usize>(option: &str, text: &str, example: &str) -> Result<[f64; N], VerbError> {
     let numbers: Vec<f64> = text
         .split(|c: char| !(c.is_ascii_digit() || c == '.'))
@@ -62,7 +62,7 @@ pub fn plain<const N: usize>(option: &str, text: &str, example: &str) -> Result<
     })
 }
 
-/// The input of a valve: its number in the model's unit, and the dimension.
+/// The input of a valve: its value in the model's unit, and the dimension.
 pub fn command(text: &str) -> Result<(f64, Dimension), VerbError> {
     split(text)
         .and_then(|(number, unit)| Some((number, unit.clone(), Unit::named(&unit)?)))

@@ -1,4 +1,4 @@
-//! Five questions, for who does not know the options.
+//! Five questions, for users who do not know the options.
 
 use std::io::{BufRead, Write};
 
@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use crate::cli::{DriveChoice, NewModelArguments};
 use crate::error::VerbError;
 
-/// Fills what the five answers say into the arguments. An empty answer takes the example.
+/// Fills the five answers into the arguments. An empty answer takes the example.
 pub fn ask(
     mut arguments: NewModelArguments,
     from: &mut impl BufRead,

@@ -1,4 +1,4 @@
-//! From the command line to a data sheet in SI units.
+//! Converts the command line to a data sheet in SI units.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use super::number;
 use crate::cli::{DriveChoice, NewModelArguments};
 use crate::error::VerbError;
 
-/// The data sheet that the arguments are.
+/// The data sheet of the arguments.
 pub fn data_sheet(arguments: &NewModelArguments) -> Result<DataSheet, VerbError> {
     let pressure = |option, text: &String| number::of(option, text, Dimension::Pressure, "70 bar");
     let flow = |option, text: &String| number::of(option, text, Dimension::Flow, "23 l/min");
@@ -53,7 +53,7 @@ fn volumes(text: &str) -> Result<[f64; 2], VerbError> {
     }
 }
 
-/// A name that can stand in a model file and in the names of signals.
+/// A name that is valid in a model file and in the names of signals.
 fn word(option: &str, text: &str) -> Result<String, VerbError> {
     let fits = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if !text.is_empty() && text.chars().all(fits) {
@@ -147,7 +147,7 @@ fn load(arguments: &NewModelArguments) -> Result<Load, VerbError> {
     }
 }
 
-/// Sine of a slope in degrees; exact on the level and upright.
+/// Sine of a slope in degrees; exact for horizontal and vertical.
 fn slope_sine(degrees: f64) -> f64 {
     if degrees.rem_euclid(180.0) == 0.0 { 0.0 } else { degrees.to_radians().sin() }
 }
