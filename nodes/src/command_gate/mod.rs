@@ -5,7 +5,7 @@
 //! 1. its writer may command ([`writer`]),
 //! 2. its stamp is neither too old nor in the future ([`stamp`]),
 //! 3. names and areas are valid and within the limits of the valves ([`content`]),
-//! 4. the machine is not stopped ([`stop`]),
+//! 4. the gate is active and the machine is not stopped ([`stop`]),
 //! 5. none of the valves that it names has another owner of the same or a higher priority ([`gate`]),
 //! 6. for a valve that was closed for safety, it commands an area of 0 first ([`gate`]).
 //!
