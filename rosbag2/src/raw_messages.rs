@@ -54,7 +54,8 @@ pub struct RawMessage {
 
 /// Iterator over all messages of a bag in the order in which they were written, file after file.
 ///
-/// Damage does not end the iteration; it is collected in [`RawMessages::damage`]. Memory holds one chunk of an MCAP file, or about 1 MB of a SQLite3 file, at a time.
+/// Damage does not end the iteration; it is collected in [`RawMessages::damage`]. One chunk of an MCAP file, or about 1
+/// MB of a SQLite3 file, is in memory at a time.
 #[derive(Debug)]
 #[must_use = "nothing is read before it is iterated over"]
 pub struct RawMessages {
