@@ -122,7 +122,7 @@ impl Guess {
     }
 
     /// Sets the user's choice of source for a signal: 0 is the guessed one, 1 the first alternative. It is removed from
-    /// all other signals.
+    /// all other unsure signals.
     pub fn choose(&mut self, signal: usize, choice: usize) {
         let Some(guessed) = self.signals.get_mut(signal) else { return };
         let before = guessed.label.clone();
