@@ -3,8 +3,7 @@
 //! - [`read_recording`] and [`write_recording`]: `/arm/state` and `/arm/orifice_command` as a
 //!   [`Recording`](excavator_model::recording::Recording), with a [`ReadReport`] of all imperfections.
 //! - [`map`]: topics and columns of other formats as the signals of a recording; [`table`]: columns of numbers from
-//!   files;
-//!   [`can`]: signals in CAN frames.
+//!   files; [`can`]: signals in CAN frames.
 //! - [`SignalsInfo`]: the available signals, and what they can identify.
 //!
 //! The crate [`rosbag2`] handles the bags themselves, their raw messages, damage and repair.

@@ -19,7 +19,7 @@ pub enum Error {
         /// The requested path.
         path: PathBuf,
     },
-    /// The operating system refused to read or write.
+    /// A read or write error of the operating system.
     #[error("cannot {action} {}: {source}", shown(path))]
     Io {
         /// The attempted action: "read", "create", ...

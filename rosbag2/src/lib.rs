@@ -1,6 +1,6 @@
 //! Reads, writes and repairs bags of rosbag2, and decodes their messages, without ROS.
 //!
-//! A bag is a rosbag2 folder (`metadata.yaml` beside MCAP or SQLite3 files, also compressed with zstd) or a bare `.mcap`
+//! A bag is a rosbag2 folder (`metadata.yaml` next to MCAP or SQLite3 files, also compressed with zstd) or a bare `.mcap`
 //! or `.db3` file.
 //!
 //! - [`RawMessages`] iterates over the bytes of all messages, [`BagWriter`] writes them.
