@@ -87,7 +87,7 @@ fn aligned(clock: TableClock, join: &Join, span: Span) -> Result<Vec<Option<i64>
     Ok(clock.stamps.into_iter().map(|stamp| stamp.map(|stamp| stamp.saturating_add(shift))).collect())
 }
 
-/// The headings that formulas may use: all of the data, and those that exactly one joined file has.
+/// The headings that formulas may use: those of the data and of all joined files, each once.
 pub(super) fn headings(own: Option<&Table>, joined: &[Table]) -> Vec<String> {
     let mut headings: Vec<String> = Vec::new();
     for table in own.into_iter().chain(joined) {
