@@ -1,4 +1,4 @@
-//! Why a recording or a table cannot be read or written.
+//! Errors when reading or writing a recording or a table.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::map::MapError;
 
-/// A recording or a table that cannot be read or written at all. Damage that can be read around is no error but a
+/// A recording or a table that cannot be read or written at all. Damage that can be skipped is not an error but a
 /// [`Damage`](rosbag2::Damage) in the report.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -21,12 +21,12 @@ pub enum BagError {
     NoTopic {
         /// The bag.
         path: PathBuf,
-        /// The topic asked for.
+        /// The requested topic.
         topic: String,
         /// The topics that exist.
         existing: Vec<String>,
     },
-    /// The bag has several machines, each in a namespace.
+    /// The bag contains several machines, each in a namespace.
     #[error(
         "{}: there is a machine in each of the namespaces {}; say which with --namespace",
         shown(path),
@@ -43,9 +43,9 @@ pub enum BagError {
     NoMessages {
         /// The bag.
         path: PathBuf,
-        /// The topic asked for.
+        /// The requested topic.
         topic: String,
-        /// The damage that may be the reason, one line each; empty for a bag in good order.
+        /// The damage that may be the reason, one line each; empty for an intact bag.
         damage: Vec<String>,
     },
     /// The topic carries another type of message.
@@ -57,7 +57,7 @@ pub enum BagError {
         topic: String,
         /// Type in the bag.
         found: String,
-        /// Type that can be read.
+        /// The type that can be read.
         expected: &'static str,
     },
     /// The bag was written with another version of the message definition.
@@ -77,7 +77,7 @@ pub enum BagError {
         /// The first field that differs.
         difference: String,
     },
-    /// No message of the topic can be decoded; this is about the first.
+    /// No message of the topic can be decoded; the fields describe the first.
     #[error(
         "{}: message {index} on topic {} ({bytes} bytes) cannot be decoded: {}",
         shown(path),
@@ -96,7 +96,7 @@ pub enum BagError {
         /// What is wrong with the bytes.
         reason: String,
     },
-    /// A topic map, or what it asks for, is wrong.
+    /// An error in a topic map, or a mismatch between the map and the data.
     #[error("{}", printable(&_0.to_string()))]
     Map(#[from] MapError),
     /// A table that cannot be read.
@@ -104,10 +104,10 @@ pub enum BagError {
     BadTable {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it, and what to do.
+        /// The fault, and how to fix it.
         reason: String,
     },
-    /// The recording breaks its own promises.
+    /// The recording violates its invariants.
     #[error("the recording cannot be written: {0}")]
     InvalidRecording(#[from] RecordingError),
     /// The stamp of a sample cannot be a ROS time.
@@ -126,12 +126,12 @@ pub enum BagError {
         /// The stamp, ns since the epoch.
         nanoseconds: i64,
     },
-    /// A message was refused by its encoder.
+    /// A message that cannot be encoded.
     #[error("a message for topic {} cannot be encoded: {}", printable(topic), printable(reason))]
     Unencodable {
         /// The topic.
         topic: String,
-        /// What the encoder says.
+        /// The error of the encoder.
         reason: String,
     },
 }

@@ -1,12 +1,12 @@
-//! Bags and tables to recordings and back.
+//! Converts bags and tables to recordings and back.
 //!
 //! - [`read_recording`] and [`write_recording`]: `/arm/state` and `/arm/orifice_command` as a
-//!   [`Recording`](excavator_model::recording::Recording), with a [`ReadReport`] of everything that was not perfect.
-//! - [`map`]: other people's topics and columns as the signals of a recording; [`table`]: columns of numbers from files;
-//!   [`can`]: signals in CAN frames.
-//! - [`SignalsInfo`]: which signals there are, and what they are good for.
+//!   [`Recording`](excavator_model::recording::Recording), with a [`ReadReport`] of all imperfections.
+//! - [`map`]: topics and columns of other formats as the signals of a recording; [`table`]: columns of numbers from
+//!   files; [`can`]: signals in CAN frames.
+//! - [`SignalsInfo`]: the available signals, and what they can identify.
 //!
-//! The bags themselves, their raw messages, damage and repair are those of the crate [`rosbag2`].
+//! The crate [`rosbag2`] handles the bags themselves, their raw messages, damage and repair.
 //!
 //! ```no_run
 //! use excavator_bags::{Topics, read_recording};

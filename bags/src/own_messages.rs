@@ -1,4 +1,4 @@
-//! Our own messages for bags: their definitions, and topics that carry them.
+//! The definitions of our own messages, and topics that carry them.
 
 use std::sync::LazyLock;
 
@@ -9,7 +9,7 @@ use rosbag2::{Qos, TopicToWrite};
 /// Types of `excavator_msgs`.
 const OWN: [&str; 6] = ["ArmState", "CylinderState", "OrificeCommand", "EnergyState", "CylinderEnergy", "EnergyTerm"];
 
-/// The definitions of our own messages, for bags that have none: SQLite3 bags of ROS 2 Humble and before.
+/// The definitions of our own messages, for bags without definitions: SQLite3 bags of ROS 2 Humble and before.
 #[must_use]
 pub fn own_definitions() -> &'static Definitions {
     static DEFINITIONS: LazyLock<Definitions> = LazyLock::new(|| {
@@ -17,7 +17,7 @@ pub fn own_definitions() -> &'static Definitions {
         for name in OWN {
             let name = format!("excavator_msgs/{name}");
             if let Some(text) = definitions::message_text(&name) {
-                // The texts are ours: a test reads every one.
+                // The texts are built in: a test parses every one.
                 let _ = known.add(&name, text);
             }
         }

@@ -1,4 +1,4 @@
-//! What most programs need: `use excavator_bags::prelude::*;`.
+//! The items that most programs need: `use excavator_bags::prelude::*;`.
 
 pub use crate::map::{Guess, Origin, TopicMap, Unit, guess, read_mapped, read_recording_or_mapped};
 pub use crate::table::{Table, TableFormat};

@@ -1,4 +1,4 @@
-//! The names of the topics that make a recording.
+//! The names of the topics that form a recording.
 
 use std::path::Path;
 
@@ -7,11 +7,11 @@ use rosbag2::RawMessages;
 
 use crate::BagError;
 
-/// The topics' names in the namespace of their machine.
+/// The topic names relative to the namespace of the machine.
 const STATE: &str = "arm/state";
 const COMMAND: &str = "arm/orifice_command";
 
-/// Where the signals of a recording are found in a bag, and where they are written to.
+/// The topics from which a recording is read, and to which it is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Topics {
     /// Topic of `excavator_msgs/msg/ArmState`.
@@ -28,18 +28,18 @@ impl Default for Topics {
 }
 
 impl Topics {
-    /// Those of a machine whose nodes are in this namespace, with or without its first slash.
+    /// The topics of a machine whose nodes are in this namespace, with or without a leading slash.
     pub fn in_namespace(namespace: &str) -> Self {
         let parts = namespace.trim_matches('/');
         let full = |name: &str| if parts.is_empty() { format!("/{name}") } else { format!("/{parts}/{name}") };
         Topics { state: full(STATE), command: full(COMMAND) }
     }
 
-    /// Those of a machine in a bag: of the one in this namespace; without one, of the machine outside every namespace, else of the only
-    /// machine that there is.
+    /// The topics of a machine in a bag: of the one in the given namespace; otherwise of the machine without a
+    /// namespace, otherwise of the only machine.
     ///
     /// # Errors
-    /// All of [`RawMessages::open`]; [`BagError::SeveralMachines`] where a namespace must be given.
+    /// All of [`RawMessages::open`]; [`BagError::SeveralMachines`] if a namespace must be given.
     pub fn in_bag(bag: &Path, namespace: Option<&str>) -> Result<Self, BagError> {
         if let Some(namespace) = namespace {
             return Ok(Topics::in_namespace(namespace));

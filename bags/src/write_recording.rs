@@ -1,4 +1,4 @@
-//! A recording as a bag.
+//! Writes a recording as a bag.
 
 use std::path::Path;
 
@@ -8,14 +8,14 @@ use rosbag2::{BagWriter, Qos, Staging, TopicId, WriteOptions, cdr};
 
 use crate::{BagError, Topics, topic_to_write};
 
-/// Depth of the history that `/arm/state` is offered with.
+/// Depth of the offered history of `/arm/state`.
 const STATE_DEPTH: u32 = 50;
-/// Depth of the history that `/arm/orifice_command` is offered with.
+/// Depth of the offered history of `/arm/orifice_command`.
 const COMMAND_DEPTH: u32 = 10;
 
-/// Writes a recording as a new rosbag2 folder: a state message for each sample, and a command for the first sample and
-/// each at which a command changes, with the cylinders for which it does. All stamps are those of the samples, to the
-/// nearest nanosecond. The folder has its name only when the bag is complete.
+/// Writes a recording as a new rosbag2 folder: a state message for each sample, and a command message for the first
+/// sample and at each change of a command, with the changed cylinders only. All stamps are those of the samples, to the
+/// nearest nanosecond. The folder gets its name only when the bag is complete.
 ///
 /// ```
 /// use excavator_bags::{Topics, read_recording, write_recording};
@@ -87,7 +87,7 @@ fn write<M: Message>(
     Ok(bag.write(topic, nanoseconds, nanoseconds, &bytes)?)
 }
 
-/// The stamp of a sample in the two forms that a bag needs.
+/// The stamp of a sample in the two formats that a bag needs.
 struct Stamp {
     time: Time,
     nanoseconds: u64,
@@ -137,8 +137,8 @@ fn state_at(recording: &Recording, sample: usize, stamp: Time) -> ArmState {
     }
 }
 
-/// The cylinders whose command is another than at the sample before; at the first sample, those that have one. A
-/// command that ends (`NaN` after a number) is written too, or it would be held.
+/// The cylinders whose command differs from the previous sample; at the first sample, those that have a command. The
+/// end of a command (`NaN` after a number) is also written, otherwise the command would be held.
 fn command_at(recording: &Recording, sample: usize, stamp: Time) -> Option<OrificeCommand> {
     let mut command = OrificeCommand { header: header(stamp), names: Vec::new(), areas: Vec::new() };
     for cylinder in &recording.cylinders {

@@ -1,6 +1,6 @@
-//! ROS 2 messages as bytes: four bytes of encapsulation, then plain CDR.
+//! ROS 2 messages in serialized form: a 4-byte encapsulation header, then plain CDR.
 //!
-//! Alignment counts from the first byte after the encapsulation, as DDS-XTypes 7.6.2 has it.
+//! Alignment counts from the first byte after the encapsulation (DDS-XTypes 7.6.2).
 
 use byteorder::{BigEndian, LittleEndian};
 use serde::Serialize;
@@ -12,30 +12,30 @@ const LITTLE_ENDIAN: [u8; 4] = [0x00, 0x01, 0x00, 0x00];
 /// Writers pad a message at most to the next multiple of eight bytes.
 const PADDING_LIMIT: usize = 7;
 
-/// Why bytes are no message, or a message makes no bytes.
+/// Why bytes cannot be decoded as a message, or a message cannot be encoded.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum CdrError {
-    /// Not even room for the encapsulation.
+    /// Fewer bytes than the encapsulation needs.
     #[error("{0} bytes are less than the 4 of the encapsulation")]
     NoEncapsulation(usize),
     /// An encapsulation other than plain CDR.
     #[error("encapsulation {0:#06x} is not plain CDR (0x0000 or 0x0001)")]
     OtherEncapsulation(u16),
-    /// The bytes do not make the type.
+    /// The bytes do not fit the type.
     #[error("{reason} in {bytes} bytes of content")]
     Malformed {
         /// Bytes after the encapsulation.
         bytes: usize,
-        /// What the decoder says.
+        /// The decoder's message.
         reason: String,
     },
-    /// The type ends, the bytes go on.
+    /// Bytes are left over after the type.
     #[error("{left} of {bytes} bytes of content are left over")]
     LeftOver {
         /// Bytes after the encapsulation.
         bytes: usize,
-        /// Those that the type does not need.
+        /// Bytes that the type does not use.
         left: usize,
     },
     /// The message cannot be encoded.
@@ -43,10 +43,10 @@ pub enum CdrError {
     Unencodable(String),
 }
 
-/// The message that the bytes (with encapsulation, of either byte order) stand for.
+/// Decodes a message from its bytes, with encapsulation, in either byte order.
 ///
 /// # Errors
-/// [`CdrError`], with the number of bytes; also when more is left over than padding, since then the bytes were written
+/// [`CdrError`], with the number of bytes; also when more than padding is left over, since the bytes were then written
 /// for another type.
 pub fn decode<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, CdrError> {
     let Some((&[high, low, _, _], content)) = bytes.split_first_chunk::<4>() else {
@@ -66,10 +66,10 @@ pub fn decode<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, CdrError> {
     Ok(message)
 }
 
-/// The bytes of a message, little endian, with encapsulation.
+/// Encodes a message, little endian, with encapsulation.
 ///
 /// # Errors
-/// [`CdrError::Unencodable`] for types that CDR has no form for; every ROS 2 message has one.
+/// [`CdrError::Unencodable`] for types that CDR cannot represent; it can represent every ROS 2 message.
 pub fn encode<M: Serialize>(message: &M) -> Result<Vec<u8>, CdrError> {
     let content =
         cdr_encoding::to_vec::<M, LittleEndian>(message).map_err(|error| CdrError::Unencodable(error.to_string()))?;

@@ -1,4 +1,4 @@
-//! Why a bag cannot be read or written.
+//! Errors when reading or writing a bag.
 
 use std::path::{Path, PathBuf};
 
@@ -8,52 +8,52 @@ use crate::dynamic::LayoutError;
 use crate::limits::LimitError;
 use crate::{printable, printable_path as shown};
 
-/// A bag that cannot be read or written at all. Damage that can be read around is no error but a
+/// A bag that cannot be read or written at all. Damage that can be skipped is not an error but a
 /// [`Damage`](crate::Damage) in the report.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// Nothing at that path.
+    /// The path does not exist.
     #[error("{} does not exist", shown(path))]
     DoesNotExist {
-        /// The path asked for.
+        /// The requested path.
         path: PathBuf,
     },
-    /// The operating system refused to read or write.
+    /// A read or write error of the operating system.
     #[error("cannot {action} {}: {source}", shown(path))]
     Io {
-        /// What was tried: "read", "create", ...
+        /// The attempted action: "read", "create", ...
         action: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// A FIFO, a device, a socket, or a folder in the place of a file.
+    /// A FIFO, a device, a socket, or a folder in place of a file.
     #[error("{} is not a regular file but {}; give a file", shown(path), printable(found))]
     NotARegularFile {
-        /// The path asked for.
+        /// The requested path.
         path: PathBuf,
-        /// What is there: "a FIFO", "a device", ...
+        /// The kind of file found: "a FIFO", "a device", ...
         found: &'static str,
     },
-    /// A file that costs more than [`ReadLimits`](crate::ReadLimits) allow.
+    /// A file that exceeds [`ReadLimits`](crate::ReadLimits).
     #[error("{}: {source}", shown(path))]
     Limit {
         /// The file.
         path: PathBuf,
-        /// The bound, with the numbers found and allowed.
+        /// The limit, with the values found and allowed.
         source: LimitError,
     },
-    /// A folder without any file of a bag, or a file that is none.
+    /// A folder without any file of a bag, or a file that is not a bag.
     #[error("{} is not a bag: {}; give a rosbag2 folder, an .mcap or a .db3 file", shown(path), printable(reason))]
     NotABag {
-        /// The path asked for.
+        /// The requested path.
         path: PathBuf,
         /// What was found instead.
         reason: String,
     },
-    /// `metadata.yaml` is not what rosbag2 writes.
+    /// `metadata.yaml` is not in the format of rosbag2.
     #[error("{}: {}; move the file away to read the bag without it", shown(path), printable(reason))]
     BadMetadata {
         /// Path of `metadata.yaml`.
@@ -61,7 +61,7 @@ pub enum Error {
         /// What is wrong with it.
         reason: String,
     },
-    /// `metadata.yaml` lists a file that is not there.
+    /// `metadata.yaml` lists a file that does not exist.
     #[error(
         "{} lists {}, which is not there; put it back, or move metadata.yaml away to read the other files",
         shown(metadata),
@@ -82,7 +82,7 @@ pub enum Error {
     UnsupportedStorage {
         /// The bag.
         path: PathBuf,
-        /// Name of the storage as the metadata has it.
+        /// Name of the storage in the metadata.
         storage: String,
     },
     /// A kind of file that this build cannot read.
@@ -95,7 +95,7 @@ pub enum Error {
         /// Name of the feature.
         feature: &'static str,
     },
-    /// Files or messages compressed by rosbag2 itself with something else than zstd.
+    /// Files or messages that rosbag2 compressed with something other than zstd.
     #[error(
         "{}: rosbag2 compression mode \"{}\" ({}) is not supported; convert the bag with `ros2 bag convert`",
         shown(path),
@@ -122,10 +122,10 @@ pub enum Error {
         path: PathBuf,
         /// The topic.
         topic: String,
-        /// What the bag says its messages are.
+        /// The serialization format that the bag declares.
         format: String,
     },
-    /// A definition of a message type is not understood.
+    /// A definition of a message type that cannot be parsed.
     #[error("{}: {}", printable(place), printable(&source.to_string()))]
     BadDefinition {
         /// The file, or the bag and topic.
@@ -133,33 +133,33 @@ pub enum Error {
         /// What is wrong with it.
         source: LayoutError,
     },
-    /// The place to write to is taken.
+    /// The target path already exists.
     #[error("{} exists already and is not overwritten; choose another name or remove it first", shown(path))]
     AlreadyExists {
-        /// The path asked for.
+        /// The requested path.
         path: PathBuf,
     },
-    /// A file that grows while it is made readable.
+    /// A file that grows during reindexing.
     #[error("{} is still being written; end its recorder first", shown(path))]
     StillWritten {
         /// The file.
         path: PathBuf,
     },
-    /// What was written anew is not what was read; the original is as it was.
+    /// The rewritten file does not match what was read; the original is unchanged.
     #[error("the new {} does not have the messages of the original, which is left as it was", shown(path))]
     NotVerified {
         /// The file.
         path: PathBuf,
     },
-    /// A bag that is to be replaced is none, or has files of others in it.
+    /// A bag to be replaced is not a bag, or contains other files.
     #[error("{} is not replaced: {reason}; choose another name or remove it first", shown(path))]
     NotReplaceable {
-        /// The path asked for.
+        /// The requested path.
         path: PathBuf,
-        /// What is there.
+        /// What was found there.
         reason: String,
     },
-    /// The disk is full, or the user's share of it.
+    /// The disk is full, or the user's quota is used up.
     #[error(
         "no space left on the disk of {}: {bytes} bytes of the recording are written, what came after is lost; make room and \
          record again",
@@ -168,18 +168,18 @@ pub enum Error {
     NoSpace {
         /// The file.
         path: PathBuf,
-        /// Bytes of it that are written and can be read.
+        /// Bytes that are written and readable.
         bytes: u64,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A bag needs a name.
     #[error("{} does not end with a name for the bag", shown(path))]
     NoName {
-        /// The path asked for.
+        /// The requested path.
         path: PathBuf,
     },
-    /// The topic was added before with another type or definition.
+    /// The topic was already added with another type or definition.
     #[error(
         "topic {} is already in the bag as {}, it cannot be added as {}",
         printable(topic),
@@ -189,29 +189,29 @@ pub enum Error {
     TopicConflict {
         /// The topic.
         topic: String,
-        /// Type that it has.
+        /// Its existing type.
         existing: String,
-        /// Type that it should get.
+        /// The requested type.
         wanted: String,
     },
-    /// The MCAP library refused to write.
+    /// The MCAP library failed to write.
     #[error("cannot write {}: {source}", shown(path))]
     Write {
         /// The file.
         path: PathBuf,
-        /// What the library says.
+        /// The error of the library.
         source: mcap::McapError,
     },
 }
 
 impl Error {
-    /// For `map_err` after an operation of the operating system on `path`: gives [`Error::Io`].
+    /// For `map_err` after a file operation on `path`: returns [`Error::Io`].
     pub fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Error {
         move |source| Error::Io { action, path: path.to_path_buf(), source }
     }
 }
 
-/// Lines of damage as one: the first two and the last, which says where reading ended, with the number of those between.
+/// Joins damage lines into one: the first two and the last, where reading ended, with the number of lines left out.
 #[must_use]
 pub fn in_short(damage: &[String]) -> String {
     match damage {

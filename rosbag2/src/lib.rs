@@ -1,16 +1,17 @@
-//! Bags of rosbag2: read, written, repaired, and their messages decoded, without ROS.
+//! Reads, writes and repairs bags of rosbag2, and decodes their messages, without ROS.
 //!
-//! A bag is a rosbag2 folder (`metadata.yaml` beside MCAP or SQLite3 files, also compressed with zstd) or a bare `.mcap`
+//! A bag is a rosbag2 folder (`metadata.yaml` next to MCAP or SQLite3 files, also compressed with zstd) or a bare `.mcap`
 //! or `.db3` file.
 //!
-//! - [`RawMessages`] gives the bytes of all messages, [`BagWriter`] writes them.
-//! - [`dynamic`] reads fields of messages of any type, by the definition in the bag; [`cdr`] whole messages into types of your own.
-//! - [`info`](fn@info) says what is in a bag, per topic, and how regular it is.
+//! - [`RawMessages`] iterates over the bytes of all messages, [`BagWriter`] writes them.
+//! - [`dynamic`] reads fields of messages of any type, by the definition in the bag; [`cdr`] decodes whole messages
+//!   into your own types.
+//! - [`info`](fn@info) reports the contents of a bag per topic, and the regularity of each topic.
 //! - [`reindex`](fn@reindex) makes a damaged bag readable for other readers.
 //!
-//! Damage is read around, never hidden: a file that was cut is read to the cut, a chunk with a wrong checksum is left
-//! out, and each [`Damage`] says where, how many bytes, and up to which time the data is there. Files are not trusted: what
-//! reading one may cost is bounded by [`ReadLimits`].
+//! Damage is skipped and always reported: a truncated file is read up to the cut, a chunk with a wrong checksum is left
+//! out, and each [`Damage`] contains the offset, the number of bytes lost, and the time up to which data is available.
+//! Files are not trusted: [`ReadLimits`] bounds the cost of reading one.
 //!
 //! # Example
 //!
@@ -45,7 +46,7 @@
 //!
 //! # Features
 //!
-//! - `sqlite` (on by default): SQLite3 bags, with a SQLite that is built in. Without it, such a bag is refused.
+//! - `sqlite` (on by default): SQLite3 bags, with a bundled SQLite. Without it, such a bag is rejected.
 
 pub mod cdr;
 mod container;

@@ -1,45 +1,48 @@
-//! What a file may cost before it is refused: one set of limits for every reader.
+//! Limits on the cost of reading a file: one set for every reader.
 
 use thiserror::Error;
 
-/// What reading one file may cost. Every reader takes its bounds from here; [`ReadLimits::default`] fits a machine's
-/// recordings, [`ReadLimits::untrusted`] files whose sender is not known.
+/// The maximum cost of reading one file. Every reader takes its bounds from here. [`ReadLimits::default`] fits
+/// recordings of machines, [`ReadLimits::untrusted`] fits files from an unknown sender.
 ///
-/// A file chooses its own content, so a bound is never taken from what the file announces, only from the size it has.
+/// A file chooses its own content, so a bound depends only on the actual size of the file, never on announced sizes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReadLimits {
     /// Memory that the values of one table or recording take, bytes. 1 GiB: 16 channels at 1 kHz for two hours are 0.9 GB.
     pub memory: u64,
-    /// Memory that a file may need whatever its size, bytes; beyond that [`ReadLimits::expansion`] counts. 32 MiB: four
-    /// million values, so that a small file of constant columns is read.
+    /// Memory that a file may use regardless of its size, bytes; beyond that [`ReadLimits::expansion`] applies. 32 MiB:
+    /// four million values, so that a small file of constant columns can be read.
     pub least_memory: u64,
-    /// Bytes in memory for each byte of the file, beyond [`ReadLimits::least_memory`]. 64: measured signals pack to a
-    /// half or a tenth, a machine at rest to a thirtieth; only made-up data packs to a thousandth, the most that deflate can.
+    /// Bytes in memory for each byte of the file, beyond [`ReadLimits::least_memory`]. 64: measured signals compress to
+    /// a half or a tenth, a machine at rest to a thirtieth; only artificial data compresses to a thousandth, the limit
+    /// of deflate.
     pub expansion: u64,
-    /// Bytes that pass through for each byte of a file that is read piece by piece, beyond [`ReadLimits::memory`]. 1000:
-    /// hours of a camera with its cover on; a zstd bomb unpacks to 30 000.
+    /// Bytes processed for each byte of a file that is read piece by piece, beyond [`ReadLimits::memory`]. 1000: hours
+    /// of a covered camera; a zstd bomb expands by a factor of 30 000.
     pub stream_expansion: u64,
-    /// One message, record or chunk, bytes unpacked. 64 MiB: a picture of 8 megapixels has 25 MB, a recorder closes a
-    /// chunk at 1 to 4 MB plus one message.
+    /// Size of one message, record or chunk, bytes after decompression. 64 MiB: an image of 8 megapixels has 25 MB, a
+    /// recorder closes a chunk at 1 to 4 MB plus one message.
     pub message: u64,
-    /// All definitions and names of topics of a bag, bytes. 64 MiB: two hundred topics with 50 kB of definitions are 10 MB.
+    /// Size of all definitions and topic names of a bag, bytes. 64 MiB: two hundred topics with 50 kB of definitions
+    /// are 10 MB.
     pub definitions: u64,
-    /// The definition of one topic, bytes. 1 MiB: the largest of the common packages have 200 kB.
+    /// Size of the definition of one topic, bytes. 1 MiB: the largest of the common packages have 200 kB.
     pub definition: u64,
-    /// Types within types, or groups within groups. 32: messages of ROS 2 nest up to 8 deep.
+    /// Nesting of types, or of groups. 32: messages of ROS 2 nest up to 8 deep.
     pub nesting: usize,
     /// Fields of a message with all contained types, variables of a file, or topics of a bag. 20 000: the largest message
     /// of the common packages has a few hundred.
     pub fields: usize,
-    /// A document for people: model, topic map, profile, `metadata.yaml`, bytes. 4 MiB: the metadata of a bag of
-    /// ten thousand files has 2 MB.
+    /// Size of a document: model, topic map, profile, `metadata.yaml`, bytes. 4 MiB: the metadata of a bag of ten
+    /// thousand files has 2 MB.
     pub document: u64,
-    /// One line of a text table, bytes. 1 MiB: ten thousand columns of a hundred signs. A quote that is never closed makes
-    /// one line of all that follows, and ends here.
+    /// Length of one line of a text table, bytes. 1 MiB: ten thousand columns of a hundred characters. A quote that is
+    /// never closed turns the rest of the file into one line, which this limit stops.
     pub line: u64,
-    /// Files of one bag. 1000: all are opened at the start, and a process has 1024 files by default.
+    /// Files of one bag. 1000: all are opened at the start, and a process may open 1024 files by default.
     pub files: usize,
-    /// Steps of SQLite's machine for one question. 20 million: about a second. A batch of a thousand rows takes 10 000.
+    /// Steps of the SQLite virtual machine for one query. 20 million: about a second. A batch of a thousand rows takes
+    /// 10 000.
     pub steps: u64,
 }
 
@@ -50,7 +53,7 @@ impl Default for ReadLimits {
 }
 
 impl ReadLimits {
-    /// The limits for files that the user of this machine chose.
+    /// The limits for files that a local user chose.
     pub const DEFAULT: ReadLimits = ReadLimits {
         memory: 1 << 30,
         least_memory: 32 << 20,
@@ -67,29 +70,30 @@ impl ReadLimits {
         steps: 20_000_000,
     };
 
-    /// The limits for files that somebody else chose, such as in the goal of a remote client: the reader stays below 200 MB.
+    /// The limits for files chosen by somebody else, such as in the goal of a remote client: the reader stays below 200
+    /// MB.
     #[must_use]
     pub const fn untrusted() -> ReadLimits {
         ReadLimits { memory: 96 << 20, message: 16 << 20, definitions: 16 << 20, ..ReadLimits::DEFAULT }
     }
 
-    /// Memory that a file of so many bytes may need, bytes.
+    /// Memory that a file of this size may use, bytes.
     #[must_use]
     pub fn memory_of(&self, file_bytes: u64) -> u64 {
         self.memory.min(self.least_memory.saturating_add(self.expansion.saturating_mul(file_bytes)))
     }
 
-    /// Checks the memory that a file of so many bytes needs.
+    /// Checks the memory that a file of this size needs.
     ///
     /// # Errors
-    /// [`LimitError`] with [`Limit::Memory`], or [`Limit::Expansion`] where a larger file could need as much.
+    /// [`LimitError`] with [`Limit::Memory`], or with [`Limit::Expansion`] if a larger file would be allowed as much.
     pub fn check_memory(&self, needed: u64, file_bytes: u64) -> Result<(), LimitError> {
         let allowed = self.memory_of(file_bytes);
         let limit = if allowed < self.memory { Limit::Expansion { file_bytes } } else { Limit::Memory };
         limit.check(needed, allowed)
     }
 
-    /// Checks how much a file of so many bytes has given so far when it is unpacked piece by piece.
+    /// Checks how many bytes a file of this size has produced so far when it is decompressed piece by piece.
     ///
     /// # Errors
     /// [`LimitError`] with [`Limit::Unpacked`].
@@ -110,7 +114,7 @@ pub enum Limit {
         /// Bytes of the file.
         file_bytes: u64,
     },
-    /// What a file of this size unpacks to, piece by piece.
+    /// Bytes that a file of this size decompresses to, piece by piece.
     Unpacked {
         /// Bytes of the file.
         file_bytes: u64,
@@ -136,7 +140,7 @@ pub enum Limit {
 }
 
 impl Limit {
-    /// Checks a number against what is allowed.
+    /// Checks a number against the allowed maximum.
     ///
     /// # Errors
     /// [`LimitError`] when it is larger.
@@ -145,15 +149,15 @@ impl Limit {
     }
 }
 
-/// A file that costs more than is allowed.
+/// A file that exceeds a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("{}", self.text())]
 pub struct LimitError {
-    /// Which bound.
+    /// The limit.
     pub limit: Limit,
-    /// What the file has or asks for; where reading stopped at the bound, as much as was read.
+    /// The value in the file; if reading stopped at the limit, the amount read.
     pub found: u64,
-    /// What is allowed.
+    /// The allowed maximum.
     pub allowed: u64,
 }
 

@@ -1,4 +1,4 @@
-//! From a path to the files of a bag, in reading order.
+//! Finds the files of a bag from a path, in reading order.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use crate::regular_file::{check_regular, open_regular};
 
 /// The first bytes of every SQLite database.
 pub(crate) const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
-/// How the files of bags end, also when compressed as a whole.
+/// File extensions of bags, also when compressed as a whole.
 const EXTENSIONS: [&str; 4] = [".mcap", ".db3", ".mcap.zstd", ".db3.zstd"];
 
 /// The files of one bag.
@@ -17,12 +17,12 @@ const EXTENSIONS: [&str; 4] = [".mcap", ".db3", ".mcap.zstd", ".db3.zstd"];
 pub(crate) struct BagFiles {
     /// MCAP or SQLite3 files: in the order of the metadata, or by name without metadata.
     pub files: Vec<PathBuf>,
-    /// How many messages `metadata.yaml` promises.
+    /// Number of messages that `metadata.yaml` declares.
     pub promised_messages: Option<u64>,
 }
 
 impl BagFiles {
-    /// Finds the files of the bag at `path` and refuses what cannot be read, before anything is read.
+    /// Finds the files of the bag at `path` and rejects unsupported formats before reading any data.
     pub fn locate(path: &Path, limits: &ReadLimits) -> Result<BagFiles, Error> {
         if !path.exists() {
             return Err(Error::DoesNotExist { path: path.to_path_buf() });
@@ -47,7 +47,7 @@ fn from_metadata(folder: &Path, metadata_path: &Path, limits: &ReadLimits) -> Re
         let storage = format!("\"{}\"", metadata.storage_identifier);
         return Err(Error::UnsupportedStorage { path: folder.to_path_buf(), storage });
     }
-    // What is compressed says so itself; the metadata only names a format that may be another than zstd.
+    // Compressed data is recognised by its magic bytes; the metadata is only used to reject formats other than zstd.
     if let Some(mode) = metadata.compression_mode.filter(|mode| !mode.is_empty() && !mode.eq_ignore_ascii_case("none"))
     {
         let format = metadata.compression_format.unwrap_or_default();
@@ -75,8 +75,8 @@ fn from_metadata(folder: &Path, metadata_path: &Path, limits: &ReadLimits) -> Re
     Ok(BagFiles { files, promised_messages: metadata.message_count })
 }
 
-/// The listed file. Early versions of rosbag2 wrote the path with the folder's name in front, and folders get renamed:
-/// so the bare file name counts too. Compressed files may be listed, or lie there, without or with their last extension.
+/// The listed file. Early versions of rosbag2 wrote the path with the folder name in front, and folders get renamed: so
+/// the bare file name is accepted too. Compressed files may be listed or stored with or without their last extension.
 fn beside(folder: &Path, listed: &str) -> Option<PathBuf> {
     let as_written = folder.join(listed);
     let by_name = folder.join(Path::new(listed).file_name()?);
@@ -88,7 +88,7 @@ fn beside(folder: &Path, listed: &str) -> Option<PathBuf> {
     [as_written, by_name, others].into_iter().find(|path| path.is_file())
 }
 
-/// The files of a bag in a folder, whatever its metadata says.
+/// The files of a bag in a folder, regardless of its metadata.
 pub(crate) fn from_folder(folder: &Path) -> Result<BagFiles, Error> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(Error::io("read", folder))? {
@@ -105,7 +105,7 @@ pub(crate) fn from_folder(folder: &Path) -> Result<BagFiles, Error> {
         });
     }
     files.sort_by_key(|path| natural_order(path));
-    // A compressed file beside the file that it was made from is the same data once more.
+    // A compressed file next to its uncompressed original contains the same data.
     let plain: Vec<PathBuf> = files.clone();
     files.retain(|path| path.extension().is_none_or(|end| end != "zstd") || !plain.contains(&path.with_extension("")));
     Ok(BagFiles { files, promised_messages: None })
@@ -133,7 +133,7 @@ fn natural_order(path: &Path) -> Vec<(String, u64)> {
     parts
 }
 
-/// The first bytes of a file, as many as it takes to know its format.
+/// The first bytes of a file, as many as needed to detect its format.
 pub(crate) fn first_bytes(path: &Path) -> Result<Vec<u8>, Error> {
     use std::io::Read;
     let mut start = Vec::new();

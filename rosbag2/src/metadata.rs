@@ -1,4 +1,4 @@
-//! `metadata.yaml` of a rosbag2 folder.
+//! Reads and writes the `metadata.yaml` of a rosbag2 folder.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -58,7 +58,7 @@ impl Metadata {
         Ok(document.rosbag2_bagfile_information)
     }
 
-    /// The pairs of text in `custom_data` of the file at `path`; none when there is no such file, or it cannot be read.
+    /// The key-value pairs in `custom_data` of the file at `path`; empty if the file does not exist or cannot be read.
     pub fn custom_data(path: &Path, limits: &ReadLimits) -> BTreeMap<String, String> {
         let document: Option<Yaml> =
             read_regular_text(path, limits.document).ok().and_then(|text| crate::yaml::from_str(&text, limits).ok());

@@ -1,6 +1,6 @@
-//! What most programs need: `use rosbag2::prelude::*;`.
+//! The items that most programs need: `use rosbag2::prelude::*;`.
 //!
-//! [`Error`](crate::Error) is not among it, since every crate has one.
+//! [`Error`](crate::Error) is not included, since every crate has one.
 
 pub use crate::dynamic::{Definitions, Layout, Selector, numeric_leaves};
 pub use crate::{BagWriter, RawMessage, RawMessages, Topic, TopicToWrite, WriteOptions, info};

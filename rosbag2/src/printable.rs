@@ -1,13 +1,13 @@
-//! Text of others, made safe for a terminal or a log.
+//! Makes untrusted text safe for a terminal or a log.
 
 use std::borrow::Cow;
 use std::path::Path;
 
-/// The text with everything that a terminal would act on replaced by a visible escape such as `\u{1b}`.
+/// Replaces every character that a terminal would interpret with a visible escape such as `\u{1b}`.
 ///
-/// Names of topics, types and columns come from files. Control characters in them (C0, DEL, C1) can move the cursor, change
-/// the title or hide a line, and marks of direction and line separators can show a name in another order than it has.
-/// Everything else, also what is not ASCII, stays as it is.
+/// Names of topics, types and columns come from files. Control characters in them (C0, DEL, C1) can move the cursor,
+/// change the title or hide a line. Direction marks and line separators can display a name in a different order.
+/// Everything else, including non-ASCII text, is unchanged.
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
     if !text.chars().any(acts_on_terminals) {
@@ -24,13 +24,13 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(escaped)
 }
 
-/// A path as [`printable`] text; what of it is not UTF-8 is replaced.
+/// A path as [`printable`] text; parts that are not UTF-8 are replaced.
 #[must_use]
 pub fn printable_path(path: &Path) -> String {
     printable(&path.to_string_lossy()).into_owned()
 }
 
-/// Controls, and the marks that change the direction of the text around them (Unicode Standard Annex 9) or end a line.
+/// Control characters, and marks that change the text direction (Unicode Standard Annex 9) or end a line.
 fn acts_on_terminals(character: char) -> bool {
     character.is_control()
         || matches!(character, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

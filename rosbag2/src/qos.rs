@@ -1,31 +1,31 @@
-//! The quality of service that a topic was offered with, as rosbag2 writes it down.
+//! The QoS that a topic was offered with, in the format of rosbag2.
 
 use serde::Serialize;
 
 use crate::ReadLimits;
 use crate::yaml::{self, Yaml};
 
-/// Which samples a writer keeps for readers that lag behind.
+/// Which samples a writer keeps for slow or late readers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum History {
-    /// The last so many.
+    /// The last `n` samples.
     KeepLast(u32),
-    /// All, within resource limits.
+    /// All samples, within resource limits.
     KeepAll,
-    /// DDS discovery does not tell; the usual content of recorded bags.
+    /// DDS discovery does not transmit it; the usual value in recorded bags.
     Unknown,
 }
 
-/// Whether lost samples are sent again.
+/// Whether lost samples are retransmitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reliability {
-    /// Sent again until acknowledged.
+    /// Retransmitted until acknowledged.
     Reliable,
     /// Sent once.
     BestEffort,
 }
 
-/// Whether late joiners get earlier samples.
+/// Whether late-joining readers receive earlier samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Durability {
     /// No.
@@ -34,26 +34,26 @@ pub enum Durability {
     TransientLocal,
 }
 
-/// What one publisher of a topic offers. Deadline, lifespan and liveliness are always the defaults of ROS 2.
+/// The QoS that one publisher of a topic offers. Deadline, lifespan and liveliness are always the ROS 2 defaults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Qos {
-    /// Samples kept.
+    /// History of samples.
     pub history: History,
-    /// Repetition of lost samples.
+    /// Retransmission of lost samples.
     pub reliability: Reliability,
-    /// Service for late joiners.
+    /// Delivery to late-joining readers.
     pub durability: Durability,
 }
 
 impl Qos {
-    /// Reliable, volatile, keep the last `depth` samples: the contract of `/arm/state` and `/arm/orifice_command`.
+    /// Reliable, volatile, keep last `depth`: the contract of `/arm/state` and `/arm/orifice_command`.
     #[must_use]
     pub fn reliable(depth: u32) -> Self {
         Qos { history: History::KeepLast(depth), reliability: Reliability::Reliable, durability: Durability::Volatile }
     }
 
-    /// The profiles in the YAML text of a bag's `offered_qos_profiles`, which names policies since version 9 and
-    /// numbers them before. What cannot be understood is left out: a bag without QoS is still a bag.
+    /// The profiles in the YAML text of a bag's `offered_qos_profiles`. Version 9 and later name the policies, earlier
+    /// versions number them. Unknown entries are left out: a bag without QoS is still readable.
     #[must_use]
     pub fn list_from_yaml(text: &str) -> Vec<Qos> {
         match yaml::from_str::<Yaml>(text, &ReadLimits::DEFAULT) {
@@ -62,7 +62,7 @@ impl Qos {
         }
     }
 
-    /// The YAML text of `offered_qos_profiles` in the notation of version 9.
+    /// The YAML text of `offered_qos_profiles` in the format of version 9.
     #[must_use]
     pub fn list_to_yaml(profiles: &[Qos]) -> String {
         if profiles.is_empty() {
@@ -138,7 +138,7 @@ fn from_value(profile: &Yaml) -> Option<Qos> {
         Some(Yaml::Integer(depth)) => u32::try_from(*depth).ok(),
         _ => None,
     };
-    // The numbers are those of rmw/types.h.
+    // The numbers are defined in rmw/types.h.
     Some(Qos {
         history: match policy("history")?.as_str() {
             "keep_last" | "1" => History::KeepLast(depth.unwrap_or(1)),

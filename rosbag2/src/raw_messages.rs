@@ -1,4 +1,4 @@
-//! The messages of a bag as bytes, whatever their type.
+//! The messages of a bag as bytes, of any type.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -16,20 +16,20 @@ use crate::{Damage, Error, Qos, ReadLimits};
 pub struct Topic {
     /// Name: `/joint_states`.
     pub name: String,
-    /// Type of the messages: `sensor_msgs/msg/JointState`; empty when the bag does not say.
+    /// Type of the messages: `sensor_msgs/msg/JointState`; empty if the bag does not contain it.
     pub type_name: String,
     /// Language of the definition: `ros2msg` or `ros2idl`; empty when the bag has no definition.
     pub schema_encoding: String,
-    /// Definition of the type with those of all types that it contains.
+    /// Definition of the type and of all types that it contains.
     pub schema: String,
     /// Serialization of the messages: `cdr`.
     pub message_encoding: String,
-    /// Quality of service that the publishers offered, YAML as the bag has it; see [`Topic::qos`].
+    /// QoS that the publishers offered, in the YAML of the bag; see [`Topic::qos`].
     pub offered_qos_profiles: String,
 }
 
 impl Topic {
-    /// Quality of service that the publishers offered; empty when the bag does not say.
+    /// QoS that the publishers offered; empty if the bag does not contain it.
     #[must_use]
     pub fn qos(&self) -> Vec<Qos> {
         Qos::list_from_yaml(&self.offered_qos_profiles)
@@ -41,20 +41,21 @@ impl Topic {
 pub struct RawMessage {
     /// The topic; all messages of a topic within one file share it.
     pub topic: Arc<Topic>,
-    /// Number given by the recorder or the publisher; often 0.
+    /// Number assigned by the recorder or the publisher; often 0.
     pub sequence: u32,
     /// When the recorder received the message, ns since the epoch.
     pub log_time: u64,
-    /// When the message was published, ns since the epoch; equal to `log_time` where the recorder does not know.
+    /// When the message was published, ns since the epoch; equal to `log_time` if the recorder does not know it.
     pub publish_time: u64,
-    /// The message with its four bytes of encapsulation. A window into the decompressed chunk of an MCAP file: cheap to clone, but it
-    /// keeps the whole chunk in memory for as long as it lives.
+    /// The message with its four bytes of encapsulation. A slice of the decompressed chunk of an MCAP file: cheap to
+    /// clone, but it keeps the whole chunk in memory.
     pub data: Bytes,
 }
 
 /// Iterator over all messages of a bag in the order in which they were written, file after file.
 ///
-/// Damage does not end the iteration; it is collected in [`RawMessages::damage`]. Memory holds one chunk of an MCAP file, or about 1 MB of a SQLite3 file, at a time.
+/// Damage does not end the iteration; it is collected in [`RawMessages::damage`]. One chunk of an MCAP file, or about 1
+/// MB of a SQLite3 file, is in memory at a time.
 #[derive(Debug)]
 #[must_use = "nothing is read before it is iterated over"]
 pub struct RawMessages {
@@ -71,7 +72,7 @@ impl RawMessages {
     /// Opens the bag at `path`: a rosbag2 folder, or a bare `.mcap` or `.db3` file; MCAP or SQLite3, also compressed
     /// with zstd by rosbag2.
     ///
-    /// # Errors
+    /// If there is no bag, or a bag of an unsupported kind: [`Error::DoesNotExist`], [`Error::NotABag`],
     /// When there is no bag, or one of a kind that cannot be read: [`Error::DoesNotExist`], [`Error::NotABag`],
     /// [`Error::BadMetadata`], [`Error::MissingFile`], [`Error::UnsupportedStorage`],
     /// [`Error::UnsupportedCompression`], [`Error::UnsupportedSerialization`], [`Error::NotARegularFile`],
@@ -111,8 +112,8 @@ impl RawMessages {
         &self.path
     }
 
-    /// The topics known so far, each name once, sorted. At the start that is all of them where the files have a
-    /// summary; after the last message it is certainly all.
+    /// The topics known so far, each name once, sorted. At the start these are all topics if the files have a summary;
+    /// after the last message they are always complete.
     #[must_use]
     pub fn topics(&self) -> Vec<Arc<Topic>> {
         let mut topics: Vec<Arc<Topic>> =
@@ -122,14 +123,15 @@ impl RawMessages {
         topics
     }
 
-    /// The damage met so far; complete after the last message.
+    /// The damage found so far; complete after the last message.
     #[must_use]
     pub fn damage(&self) -> Vec<Damage> {
         let read = self.done.iter().chain(&self.waiting).flat_map(StorageFile::damage);
         read.cloned().chain(self.decompressor.damage(&self.path)).collect()
     }
 
-    /// Checks the memory that what a caller made of the messages so far takes, bytes, against the limits and the size of the bag's files.
+    /// Checks the memory that the caller needs for data derived from the messages so far, bytes, against the limits and
+    /// the size of the bag's files.
     ///
     /// # Errors
     /// [`Error::Limit`].
@@ -139,7 +141,7 @@ impl RawMessages {
             .map_err(|source| Error::Limit { path: self.path.clone(), source })
     }
 
-    /// How many messages `metadata.yaml` promises; `None` without one.
+    /// Number of messages that `metadata.yaml` declares; `None` without metadata.
     pub fn promised_messages(&self) -> Option<u64> {
         self.promised_messages
     }
@@ -160,7 +162,7 @@ impl Iterator for RawMessages {
                 }
                 Ok(None) => self.done.extend(self.waiting.pop_front()),
                 Err(error) => {
-                    // The operating system will say the same again: this file is over.
+                    // Reading again would fail with the same error: this file is finished.
                     self.done.extend(self.waiting.pop_front());
                     return Some(Err(error));
                 }

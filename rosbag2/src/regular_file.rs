@@ -1,4 +1,4 @@
-//! Files are opened only when they are regular: a FIFO waits for ever, a device never ends.
+//! Opens files only if they are regular: a FIFO blocks forever, a device never ends.
 
 use std::fs::{File, FileType, OpenOptions};
 use std::io::Read;
@@ -7,10 +7,10 @@ use std::path::Path;
 use crate::Error;
 use crate::limits::{Limit, LimitError};
 
-/// Opens a regular file for reading, following symbolic links. Also gives its length in bytes.
+/// Opens a regular file for reading, following symbolic links. Also returns its length in bytes.
 ///
-/// FIFOs, devices, sockets and folders are refused before they are opened, since opening alone can wait or have effects;
-/// what was put in the file's place in between is refused afterwards.
+/// FIFOs, devices, sockets and folders are rejected before they are opened, since opening alone can block or have side
+/// effects. If the file is replaced in between, the replacement is rejected after opening.
 ///
 /// # Errors
 /// [`Error::NotARegularFile`], [`Error::Io`].
@@ -27,7 +27,7 @@ pub fn open_regular(path: &Path) -> Result<(File, u64), Error> {
     Ok((file, opened.len()))
 }
 
-/// Refuses what is not a regular file.
+/// Rejects anything that is not a regular file.
 pub(crate) fn check_regular(path: &Path) -> Result<(), Error> {
     check_kind(path, std::fs::metadata(path).map_err(Error::io("open", path))?.file_type())
 }
@@ -41,7 +41,7 @@ pub fn read_regular(path: &Path, most: u64) -> Result<Vec<u8>, Error> {
     let refused = |source: LimitError| Error::Limit { path: path.to_path_buf(), source };
     Limit::Document.check(length, most).map_err(refused)?;
     let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or_default());
-    // Files of /proc have length 0 and content; others can grow.
+    // Files in /proc have length 0 but have content; others can grow.
     file.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(Error::io("read", path))?;
     Limit::Document.check(bytes.len() as u64, most).map_err(refused)?;
     Ok(bytes)

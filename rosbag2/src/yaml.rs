@@ -1,4 +1,4 @@
-//! YAML within limits: nesting, number of nodes, and aliases that would multiply them.
+//! Reads and writes YAML with limits: nesting, number of nodes, and aliases that multiply them.
 
 use serde::de::{Deserialize, DeserializeOwned, Deserializer, MapAccess, SeqAccess, Visitor};
 
@@ -6,13 +6,13 @@ use crate::ReadLimits;
 
 /// Nodes of a document. 400 000: the metadata of a bag with a thousand files and a thousand topics has 30 000.
 const NODES: usize = 400_000;
-/// Nodes that aliases may repeat. Nothing in ROS 2 writes aliases; by hand a few blocks are shared.
+/// Nodes that aliases may repeat. ROS 2 never writes aliases; documents written by hand share a few blocks.
 const REPEATED_NODES: usize = 10_000;
 
-/// Reads a document.
+/// Parses a document.
 ///
 /// # Errors
-/// What is wrong, in one line without an excerpt of the text.
+/// The fault, in one line without an excerpt of the text.
 pub fn from_str<T: DeserializeOwned>(text: &str, limits: &ReadLimits) -> Result<T, String> {
     let options = serde_saphyr::options! {
         budget: serde_saphyr::budget! {
@@ -38,25 +38,25 @@ pub fn from_str<T: DeserializeOwned>(text: &str, limits: &ReadLimits) -> Result<
     })
 }
 
-/// Writes a document as rosbag2 does: in blocks, short texts on their line.
+/// Writes a document in the style of rosbag2: block style, short texts on one line.
 ///
 /// # Errors
-/// What cannot be written.
+/// The value that cannot be written.
 pub fn to_string<T: serde::Serialize>(value: &T) -> Result<String, String> {
     let options = serde_saphyr::ser_options! { prefer_block_scalars: false };
     serde_saphyr::to_string_with_options(value, options).map_err(|error| error.to_string())
 }
 
-/// Any YAML, with the types that YAML 1.2 gives to what is not quoted.
+/// Any YAML value, with the types that YAML 1.2 assigns to unquoted scalars.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Yaml {
     /// Nothing, `null` or `~`.
     Null,
     /// `true` or `false`.
     Bool(bool),
-    /// A whole number.
+    /// An integer.
     Integer(i64),
-    /// A number, also a whole one beyond 64 bits with sign.
+    /// A number, or an integer outside the range of `i64`.
     Double(f64),
     /// Text.
     String(String),
@@ -67,7 +67,7 @@ pub enum Yaml {
 }
 
 impl Yaml {
-    /// The value of a key of a map.
+    /// The value of a key in a mapping.
     pub fn get(&self, wanted: &str) -> Option<&Yaml> {
         let Yaml::Mapping(entries) = self else { return None };
         entries.iter().find(|(key, _)| matches!(key, Yaml::String(text) if text == wanted)).map(|(_, value)| value)

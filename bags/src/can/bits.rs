@@ -1,20 +1,20 @@
-//! A number out of the bits of a frame.
+//! Extracts a number from the bits of a frame.
 
-/// Where the bits of a number stand and what they mean.
+/// The position and coding of the bits of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bits {
-    /// First bit as the DBC file counts: the least significant of a little endian number, the most significant of a big
-    /// endian one; bit 0 is the least significant of byte 0.
+    /// First bit in DBC numbering: the least significant bit of a little endian number, the most significant bit of a
+    /// big endian one; bit 0 is the least significant of byte 0.
     pub start: usize,
     /// Number of bits, 1 to 64.
     pub length: usize,
     /// Whether the most significant bits come first.
     pub big_endian: bool,
-    /// What the bits mean.
+    /// Coding of the bits.
     pub coding: Coding,
 }
 
-/// What bits mean.
+/// Coding of bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub(super) enum Coding {
@@ -28,7 +28,7 @@ pub(super) enum Coding {
 }
 
 impl Bits {
-    /// Bytes that a frame must have at least to hold the number.
+    /// Minimum length of a frame that contains the number, bytes.
     pub fn bytes(&self) -> usize {
         if !self.big_endian {
             return (self.start + self.length).div_ceil(8);
@@ -38,7 +38,7 @@ impl Bits {
         self.start / 8 + 1 + self.length.saturating_sub(in_first).div_ceil(8)
     }
 
-    /// The bits as an unsigned number; `None` when the frame is too short.
+    /// The bits as an unsigned number; `None` if the frame is too short.
     pub fn raw(&self, data: &[u8]) -> Option<u64> {
         if data.len() < self.bytes() {
             return None;
@@ -59,7 +59,7 @@ impl Bits {
         Some(raw)
     }
 
-    /// The number before factor and offset; `None` when the frame is too short.
+    /// The number before factor and offset; `None` if the frame is too short.
     pub fn number(&self, data: &[u8]) -> Option<f64> {
         let raw = self.raw(data)?;
         Some(match self.coding {

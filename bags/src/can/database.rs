@@ -1,4 +1,4 @@
-//! Where signals stand in frames, from a DBC file.
+//! Locates signals in frames, from a DBC file.
 
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -10,11 +10,11 @@ use rosbag2::{ReadLimits, read_regular};
 
 use super::bits::{Bits, Coding};
 
-/// Longest DBC file that is read, bytes: those of whole vehicles have one or two megabytes.
+/// Maximum size of a DBC file, bytes: those of whole vehicles have one or two megabytes.
 const LONGEST: u64 = 16 << 20;
-/// Longest chain of multiplexers, in which each selects the next.
+/// Maximum length of a chain of multiplexers, in which each selects the next.
 const DEEPEST: usize = 8;
-/// Longest frame there is (CAN FD), bytes.
+/// Maximum length of a frame (CAN FD), bytes.
 const LONGEST_FRAME: usize = 64;
 
 /// Identifier of a frame.
@@ -22,52 +22,52 @@ const LONGEST_FRAME: usize = 64;
 pub struct Identifier {
     /// 11 bits, or 29 of an extended one.
     pub number: u32,
-    /// Whether it is extended.
+    /// Whether it is an extended identifier.
     pub extended: bool,
 }
 
-/// A multiplexer, and its values with which the frame carries a signal.
+/// A multiplexer, and its values for which the frame carries a signal.
 type Selector = (Bits, Vec<RangeInclusive<u64>>);
 
-/// Where a signal stands.
+/// The position of a signal in its frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Place {
     identifier: Identifier,
     bits: Bits,
     factor: f64,
     offset: f64,
-    /// Values that the file allows, in its unit.
+    /// Range given by the file, in its unit.
     range: Option<(f64, f64)>,
-    /// As the file writes it; empty for none.
+    /// As written in the file; empty if none.
     unit: String,
-    /// From the signal upwards.
+    /// Ordered from the signal up to the root.
     selectors: Vec<Selector>,
 }
 
 impl Place {
-    /// Which frames may carry the signal.
+    /// Identifier of the frames that may carry the signal.
     pub fn identifier(&self) -> Identifier {
         self.identifier
     }
 
-    /// Unit that the file gives; empty for none.
+    /// Unit in the file; empty if none.
     pub fn unit(&self) -> &str {
         &self.unit
     }
 
-    /// Whether the frame carries the signal. A frame too short for a multiplexer carries nothing of it.
+    /// Whether the frame carries the signal. A frame too short for a multiplexer carries none of its signals.
     pub fn is_selected(&self, data: &[u8]) -> bool {
         self.selectors.iter().all(|(bits, values)| {
             bits.raw(data).is_some_and(|value| values.iter().any(|allowed| allowed.contains(&value)))
         })
     }
 
-    /// The value in the unit of the file; `None` when the frame is too short.
+    /// The value in the unit of the file; `None` if the frame is too short.
     pub fn value(&self, data: &[u8]) -> Option<f64> {
         self.bits.number(data).map(|number| number * self.factor + self.offset)
     }
 
-    /// Values that the file allows, in its unit, widened by half a step for rounding.
+    /// Range given by the file, in its unit, widened by half a step for rounding.
     pub fn range(&self) -> Option<(f64, f64)> {
         let slack = match self.bits.coding {
             Coding::Unsigned | Coding::Signed => 0.5 * self.factor.abs(),
@@ -87,7 +87,7 @@ impl Database {
     /// Reads a file.
     ///
     /// # Errors
-    /// What is wrong, in one line.
+    /// The fault, in one line.
     pub fn read(path: &Path) -> Result<Self, String> {
         let failed = |reason: String| format!("{}: {reason}", path.display());
         let length = std::fs::metadata(path).map_err(|error| failed(error.to_string()))?.len();
@@ -98,16 +98,16 @@ impl Database {
         Self::parse(&bytes).map_err(failed)
     }
 
-    /// The database in the bytes of a file: UTF-8, or Windows' code page 1252, in which most of them are.
+    /// Parses the bytes of a DBC file: UTF-8, or Windows code page 1252, which most of them use.
     ///
     /// # Errors
-    /// What is wrong, in one line.
+    /// The fault, in one line.
     pub fn parse(bytes: &[u8]) -> Result<Self, String> {
         let text = match std::str::from_utf8(bytes) {
             Ok(text) => text.into(),
             Err(_) => can_dbc::decode_cp1252(bytes).ok_or("neither UTF-8 nor code page 1252")?,
         };
-        // The parser's messages have several lines with a drawing of the place.
+        // The parser's messages have several lines with a sketch of the location.
         let dbc = Dbc::try_from(text.as_ref()).map_err(|error| {
             let text = error.to_string();
             format!("not understood as DBC: {}", text.split_whitespace().collect::<Vec<_>>().join(" "))
@@ -115,10 +115,10 @@ impl Database {
         Ok(Database { dbc })
     }
 
-    /// Where a signal stands.
+    /// The position of a signal in its frame.
     ///
     /// # Errors
-    /// What is wrong, in one line: no such message or signal, or one that does not fit into its message.
+    /// The fault, in one line: no such message or signal, or a signal that does not fit into its message.
     pub fn place(&self, message: &str, signal: &str) -> Result<Place, String> {
         let found: Vec<&Message> = self.dbc.messages.iter().filter(|known| known.name == message).collect();
         let message = match found.as_slice() {
@@ -147,7 +147,7 @@ impl Database {
             bits,
             factor: signal.factor,
             offset: signal.offset,
-            // [0|0] stands for no range.
+            // [0|0] means no range.
             range: (least < largest).then_some((least, largest)),
             unit: signal.unit.clone(),
             selectors: self.selectors(message, signal)?,
@@ -189,7 +189,7 @@ impl Database {
         Ok(bits)
     }
 
-    /// Multiplexers from the signal upwards.
+    /// The multiplexers, from the signal up to the root.
     fn selectors(&self, message: &Message, signal: &Signal) -> Result<Vec<Selector>, String> {
         let mut selectors = Vec::new();
         let mut current = signal;
@@ -258,7 +258,8 @@ mod tests {
     use super::*;
 
     const EXAMPLE: &[u8] = include_bytes!("../../tests/can/excavator.dbc");
-    /// Random signals and frames with what PyPI's cantools reads from them; made by the script beside the file.
+    /// Random signals and frames with the values that cantools (PyPI) reads from them; generated by the script next to
+    /// the file.
     const VECTORS: &str = include_str!("../../tests/can/vectors.json");
 
     fn bytes(hexadecimal: &str) -> Vec<u8> {
@@ -279,7 +280,7 @@ mod tests {
                 let expected = f64::from_bits(u64::from_str_radix(bits.as_str().unwrap(), 16).unwrap());
                 assert!(place.is_selected(&data), "{message}.{name}");
                 let value = place.value(&data).unwrap();
-                // The other reader may round once more or once less.
+                // The reference may round once more or once less.
                 let tolerance = 4.0 * f64::EPSILON * value.abs().max(place.offset.abs());
                 assert!((value - expected).abs() <= tolerance, "{message}.{name}: {value}, not {expected}");
                 read += 1;

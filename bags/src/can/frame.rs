@@ -1,11 +1,11 @@
-//! CAN frames in the messages of a topic: `can_msgs/msg/Frame`, and others with the same fields.
+//! Reads CAN frames from the messages of a topic: `can_msgs/msg/Frame`, and others with the same fields.
 
 use rosbag2::cdr::CdrError;
 use rosbag2::dynamic::{Layout, PathError, Selector};
 
 use super::Identifier;
 
-/// Bits of an identifier of 11 and of 29 bits: some drivers leave their flags above these.
+/// Masks for identifiers of 11 and of 29 bits: some drivers store flags in the bits above.
 const STANDARD: u32 = 0x7ff;
 const EXTENDED: u32 = 0x1fff_ffff;
 
@@ -16,22 +16,22 @@ pub(crate) struct DataFrame<'b> {
     pub data: &'b [u8],
 }
 
-/// Where the parts of a frame stand in a message.
+/// The fields of a frame in a message.
 #[derive(Debug, Clone)]
 pub(crate) struct FrameReader {
     id: Selector,
     is_extended: Selector,
     length: Selector,
     data: Selector,
-    /// Flags of frames that carry no data.
+    /// Flags of frames without data.
     without_data: Vec<Selector>,
 }
 
 impl FrameReader {
-    /// Looks the fields up: `id`, `is_extended`, `dlc` or `len`, `data`; `is_rtr` and `is_error` where there are such.
+    /// Resolves the fields `id`, `is_extended`, `dlc` or `len`, `data`; `is_rtr` and `is_error` if they exist.
     ///
     /// # Errors
-    /// [`PathError`] for a type without them: it carries no frames.
+    /// [`PathError`] for a type without them: it does not carry frames.
     pub fn of(layout: &Layout) -> Result<FrameReader, PathError> {
         let number = |name: &str| Selector::number(layout, &name.parse()?);
         Ok(FrameReader {
@@ -43,7 +43,7 @@ impl FrameReader {
         })
     }
 
-    /// The frame in a message; `None` for one without data.
+    /// The frame in a message; `None` if it has no data.
     ///
     /// # Errors
     /// [`CdrError`] for a message that does not fit its layout.

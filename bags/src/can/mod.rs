@@ -1,4 +1,4 @@
-//! Signals out of CAN frames: which bits they are says a DBC file. Where frames come from does not matter here.
+//! Reads signals from CAN frames. A DBC file defines their bits. The source of the frames does not matter here.
 
 mod bits;
 mod database;

@@ -1,4 +1,4 @@
-//! Which signals a recording or a table has, and what they are good for.
+//! The signals of a recording or a table, and what they can identify.
 
 mod signals;
 mod table;

@@ -1,4 +1,4 @@
-//! Which signals a recording has, and what they are good for.
+//! The signals of a recording, and what they can identify.
 
 use std::collections::BTreeSet;
 
@@ -47,17 +47,17 @@ pub struct SignalsInfo {
     pub equations: Vec<EquationInfo>,
 }
 
-/// What is known of the signals of a recording that goes by in blocks.
+/// The known properties of the signals of a recording that is read in blocks.
 #[derive(Debug, Clone, Default)]
 pub struct SignalsTally {
     samples: usize,
-    /// First and last moment, ns.
+    /// First and last stamp, ns.
     span: Option<[i64; 2]>,
     cylinders: Vec<String>,
     signals: Vec<Range>,
 }
 
-/// Values of one signal so far.
+/// Statistics of one signal so far.
 #[derive(Debug, Clone)]
 struct Range {
     name: String,
@@ -86,7 +86,7 @@ impl Range {
 }
 
 impl SignalsTally {
-    /// Takes the next block.
+    /// Adds the next block.
     pub fn add(&mut self, block: &Recording) {
         self.samples += block.len();
         let last = block.start_nanoseconds.saturating_add((block.duration() * 1e9).round() as i64);
@@ -109,14 +109,14 @@ impl SignalsTally {
         }
     }
 
-    /// All that was seen.
+    /// The summary of all blocks.
     pub fn info(self) -> SignalsInfo {
         let measured = self.signals.iter().filter(|signal| signal.finite > 0).map(|signal| signal.name.clone());
         let known = Measured(measured.collect());
         let mut equations: Vec<EquationInfo> = Vec::new();
         for cylinder in &self.cylinders {
             equations.push(known.motion(cylinder));
-            // A drive of which nothing hydraulic is measured has no chambers as far as anybody can tell.
+            // A drive without any hydraulic measurement cannot be shown to have chambers.
             if known.has_oil(cylinder) {
                 equations.push(known.chambers(cylinder));
             }
@@ -136,7 +136,7 @@ impl SignalsTally {
 }
 
 impl SignalsInfo {
-    /// Looks at every signal of a recording.
+    /// Summarizes every signal of a recording.
     ///
     /// ```
     /// use excavator_bags::SignalsInfo;
@@ -159,7 +159,7 @@ impl SignalsInfo {
 }
 
 impl SignalInfo {
-    /// Looks at all values of a signal.
+    /// Summarizes all values of a signal.
     pub(super) fn of(name: String, values: &[f64]) -> SignalInfo {
         let mut range = Range::new(name);
         range.add(values);
@@ -167,7 +167,7 @@ impl SignalInfo {
     }
 }
 
-/// Names of the signals that are measured.
+/// Names of the measured signals.
 struct Measured(BTreeSet<String>);
 
 impl Measured {
@@ -196,7 +196,7 @@ impl Measured {
         }
     }
 
-    /// Torque or force on what the cylinder moves: from both pressures, or from a load cell alone.
+    /// Torque or force on the load of the cylinder: from both pressures, or from a load cell alone.
     fn motion(&self, cylinder: &str) -> EquationInfo {
         let mut missing = Vec::new();
         self.position(cylinder, &mut missing);

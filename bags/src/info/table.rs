@@ -1,4 +1,4 @@
-//! What is in a table, before a map says what its columns are.
+//! The contents of a table, before a map assigns its columns.
 
 use std::path::Path;
 
@@ -37,10 +37,10 @@ pub struct TableInfo {
 }
 
 impl TableInfo {
-    /// Looks at every column of the table at `path`.
+    /// Summarizes every column of the table at `path`.
     ///
     /// # Errors
-    /// Those of [`Table::read`].
+    /// Errors of [`Table::read`].
     pub fn read(path: &Path) -> Result<TableInfo, BagError> {
         let table = Table::read(path, &TableFormat::default())?;
         let (clock, reason) = clock_of_table(&table);

@@ -1,4 +1,4 @@
-//! From a clock and tracks to a recording.
+//! Assembles a recording from a clock and tracks.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use super::track::Track;
 use super::wanted::{Computed, Wanted};
 use crate::reading::{ReadReport, count_late, gaps, steps_back};
 
-/// What was read for one signal or name.
+/// The samples read for one signal or name.
 pub(super) enum Samples {
     /// Values with their stamps, ns.
     Timed(Vec<(i64, f64)>),
@@ -19,22 +19,22 @@ pub(super) enum Samples {
     Constant(f64),
 }
 
-/// A signal or name with what was read for it.
+/// A signal or name with its samples.
 pub(super) struct Input<'m> {
     label: String,
     signal: Option<&'m SignalSource>,
-    /// How it is brought onto the clock; `None` for a constant.
+    /// How it is resampled to the clock; `None` for a constant.
     wanted: Option<Wanted<'m>>,
     samples: Samples,
 }
 
 impl<'m> Input<'m> {
-    /// What was read for one that the map asks for.
+    /// The samples of an entry of the map.
     pub fn read(wanted: Wanted<'m>, samples: Samples) -> Input<'m> {
         Input { label: wanted.label.clone(), signal: wanted.signal, wanted: Some(wanted), samples }
     }
 
-    /// Its values on the clock (ns, ascending).
+    /// Its values at the clock times (ns, ascending).
     fn on(self, clock: &[i64], report: &mut ReadReport) -> Vec<f64> {
         match (self.samples, self.wanted) {
             (Samples::Constant(value), _) => vec![value; clock.len()],
@@ -50,7 +50,7 @@ impl<'m> Input<'m> {
     }
 }
 
-/// Signals of which the map itself gives the value.
+/// Signals whose value is a constant in the map.
 ///
 /// # Errors
 /// [`MapError::BadQuantity`], [`MapError::BadNumber`].
@@ -66,7 +66,7 @@ pub(super) fn constants(map: &TopicMap) -> Result<Vec<Input<'_>>, MapError> {
     Ok(constants)
 }
 
-/// Brings everything onto the clock (stamps in ns, in the order of the data), and computes what the map computes.
+/// Resamples all inputs to the clock (stamps in ns, in the order of the data), and evaluates the formulas of the map.
 ///
 /// # Errors
 /// [`MapError::EmptyClock`].
@@ -91,7 +91,7 @@ pub(super) fn assemble(
     let time: Vec<f64> = stamps.iter().map(|&stamp| stamp.saturating_sub(start) as f64 / 1e9).collect();
     let mut recording = Recording::unmeasured(&path.display().to_string(), time, &[]);
     recording.start_nanoseconds = start;
-    // Cylinders come in the order of the map.
+    // Cylinders are in the order of the map.
     for source in &map.signals {
         source.signal.column(&mut recording);
     }
@@ -112,7 +112,7 @@ pub(super) fn assemble(
         }
     }
     for Computed { source, formula, inputs, conversion } in computed {
-        // Names of the map come after signals, and are meant where both have the same.
+        // Names of the map are added after signals, and take precedence over signals of the same name.
         let column =
             |label: &String| used.iter().rfind(|(known, _)| known == label).map_or(&[][..], |(_, values)| values);
         let columns: Vec<&[f64]> = inputs.iter().map(column).collect();

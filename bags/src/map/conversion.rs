@@ -1,4 +1,4 @@
-//! From the number in a message or cell to the value of a signal.
+//! Converts the number in a message or cell to the value of a signal.
 
 use super::document::SignalSource;
 use super::error::MapError;
@@ -13,7 +13,7 @@ pub struct Conversion {
 }
 
 impl Conversion {
-    /// The conversion that a map asks for; `unit` is that of a column's heading, used where the map names none.
+    /// The conversion in a map; `unit` is that of the column heading, used if the map has none.
     ///
     /// # Errors
     /// [`MapError::UnknownUnit`], [`MapError::WrongDimension`], [`MapError::BadQuantity`], [`MapError::BadNumber`].
@@ -54,7 +54,7 @@ impl Conversion {
         Ok(Conversion { unit, factor: sign * scale, offset })
     }
 
-    /// The conversion of a name in formulas: to SI where it has a unit, else none. `place` is for messages.
+    /// The conversion of a name in formulas: to SI if it has a unit, otherwise none. `place` is for error messages.
     ///
     /// # Errors
     /// [`MapError::UnknownUnit`].
@@ -66,7 +66,7 @@ impl Conversion {
         Ok(Conversion { unit, factor: 1.0, offset: 0.0 })
     }
 
-    /// The value of the signal; what is not finite is not measured.
+    /// The value of the signal; a value that is not finite counts as not measured.
     pub fn apply(&self, number: f64) -> f64 {
         let value = self.unit.to_si(number) * self.factor;
         let value = if self.offset == 0.0 { value } else { value + self.offset };

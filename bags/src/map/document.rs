@@ -1,4 +1,4 @@
-//! A topic map as text.
+//! A topic map in text form.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -231,7 +231,7 @@ impl SignalSource {
         }
         check_place(&signal, self.message.is_some() && !is_field, self.file.is_some() && self.column.is_none())?;
         check_times(&signal, self.maximum_gap, self.time_shift)?;
-        // The heading of a column or the DBC file may still name the unit, so a missing one is no fault here.
+        // The column heading or the DBC file may still provide the unit, so a missing unit is not an error here.
         if self.column.is_none() && self.message.is_none() || self.unit.is_some() {
             Conversion::of(self, None)?;
         }
@@ -239,7 +239,7 @@ impl SignalSource {
     }
 }
 
-/// Refuses keys that say more about a place than its kind has.
+/// Rejects keys that specify details of a source that is not given.
 pub(super) fn check_place(place: &str, message_of_nothing: bool, file_of_nothing: bool) -> Result<(), MapError> {
     for (wrong, key, wanted) in
         [(message_of_nothing, "message", "`topic` and `field`"), (file_of_nothing, "file", "`column`")]
@@ -251,7 +251,7 @@ pub(super) fn check_place(place: &str, message_of_nothing: bool, file_of_nothing
     Ok(())
 }
 
-/// Refuses times (s) that make no sense.
+/// Rejects invalid times (s).
 pub(super) fn check_times(place: &str, maximum_gap: Option<f64>, time_shift: Option<f64>) -> Result<(), MapError> {
     let bad = |key, found, wanted| MapError::BadNumber { place: place.to_string(), key, found, wanted };
     if let Some(gap) = maximum_gap.filter(|gap| !(gap.is_finite() && *gap > 0.0)) {
@@ -264,7 +264,7 @@ pub(super) fn check_times(place: &str, maximum_gap: Option<f64>, time_shift: Opt
 }
 
 impl TopicMap {
-    /// The map in the file at `path`; the files of its definitions are looked for beside it.
+    /// Reads the map at `path`; paths of its definition files are relative to it.
     ///
     /// # Errors
     /// [`rosbag2::Error::Io`], [`BagError::Map`].
@@ -279,8 +279,8 @@ impl TopicMap {
         Ok(map)
     }
 
-    /// The file of the map that belongs to a bag or table, if there is one: `map.toml` in the folder of a bag, or
-    /// `FILE.map.toml` beside a file.
+    /// The map file of a bag or table, if it exists: `map.toml` in the folder of a bag, or `FILE.map.toml` next to a
+    /// file.
     pub fn beside(data: &Path) -> Option<PathBuf> {
         let path = if data.is_dir() {
             data.join("map.toml")
@@ -292,10 +292,10 @@ impl TopicMap {
         path.is_file().then_some(path)
     }
 
-    /// The map as text that reads back as the same map.
+    /// The map as text that parses back to the same map.
     ///
     /// # Errors
-    /// [`MapError::Syntax`] when a number is none that TOML can hold.
+    /// [`MapError::Syntax`] if TOML cannot represent a number.
     pub fn to_text(&self) -> Result<String, MapError> {
         toml::to_string(self).map_err(|error| MapError::Syntax(error.to_string().into()))
     }

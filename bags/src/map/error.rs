@@ -1,4 +1,4 @@
-//! What can be wrong with a topic map.
+//! Errors in a topic map.
 
 use std::path::PathBuf;
 
@@ -9,11 +9,11 @@ use thiserror::Error;
 
 use super::unit::Dimension;
 
-/// A topic map that cannot be used, or does not fit the data.
+/// A topic map that is invalid, or does not fit the data.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MapError {
-    /// No map in the text.
+    /// Text that is not a map.
     #[error("the map is not understood: {}", _0.message)]
     Syntax(TomlFault),
     /// The map in a file is wrong.
@@ -21,7 +21,7 @@ pub enum MapError {
     InFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         source: Box<MapError>,
     },
     /// A map without signals.
@@ -37,7 +37,7 @@ pub enum MapError {
         /// Signals of the machine.
         shared: Vec<&'static str>,
     },
-    /// A signal to be left out that is not there.
+    /// A signal to be left out that does not exist.
     #[error("[[leave_out]] names {signal}, which the map does not have")]
     LeavesNothingOut {
         /// The signal.
@@ -55,26 +55,26 @@ pub enum MapError {
         /// The signal.
         signal: String,
     },
-    /// A name that stands for nothing, or for two things.
+    /// A name without a source, or with two.
     #[error("{place}: give either a `column`, or `topic` and `field`")]
     NoPlace {
         /// The name.
         place: String,
     },
-    /// A name that no formula can write.
+    /// A name that cannot be written in a formula.
     #[error("[names] \"{name}\" is no name: write it with letters, digits and _, as in p_hi")]
     BadName {
         /// The name.
         name: String,
     },
-    /// A key that says more about something that is not there.
+    /// A key that specifies details of something that is not given.
     #[error("{place}: `{key}` needs {wanted}")]
     KeyWithout {
         /// The signal, name or file.
         place: String,
         /// The key.
         key: &'static str,
-        /// What it belongs to.
+        /// What it requires.
         wanted: &'static str,
     },
     /// A formula that cannot be used.
@@ -82,9 +82,9 @@ pub enum MapError {
     Formula {
         /// The signal.
         signal: String,
-        /// What is wrong with it, and where.
+        /// The fault and its location.
         source: Box<FormulaError>,
-        /// The first names that there are.
+        /// The first few available names.
         known: Vec<String>,
     },
     /// A signal of a CAN frame in a map without DBC file.
@@ -93,12 +93,12 @@ pub enum MapError {
         /// The signal or name.
         place: String,
     },
-    /// A DBC file that cannot be used, or does not have what the map asks for.
+    /// A DBC file that is invalid, or lacks what the map refers to.
     #[error("{place}: {reason}")]
     Dbc {
         /// The signal, name or file.
         place: String,
-        /// What is wrong.
+        /// The fault.
         reason: String,
     },
     /// A message of the DBC file on a topic without frames.
@@ -116,12 +116,12 @@ pub enum MapError {
     NotJoined {
         /// The signal or name.
         place: String,
-        /// The file that it asks for.
+        /// The requested file.
         file: PathBuf,
         /// The joined files.
         joined: Vec<PathBuf>,
     },
-    /// A heading that several joined files have.
+    /// A heading that occurs in several joined files.
     #[error("{place}: column \"{column}\" is in {}; say which with `file`", listed(files))]
     Ambiguous {
         /// The signal or name.
@@ -131,7 +131,7 @@ pub enum MapError {
         /// The files.
         files: Vec<PathBuf>,
     },
-    /// Of two files only one says when it was.
+    /// Only one of two files contains dates.
     #[error(
         "{} and the data cannot be joined, because only {} has dates; give [[join]] `offset`, the time in s from the first row of \
          the data to the first row of the file",
@@ -144,7 +144,7 @@ pub enum MapError {
         /// Whether the joined file has dates.
         is_dated: bool,
     },
-    /// Files that have no time in common.
+    /// Files whose times do not overlap.
     #[error(
         "{} has no time in common with the data: it is from {from:.3} s to {to:.3} s, the data from 0 s to {duration:.3} s; give \
          [[join]] `offset`",
@@ -160,7 +160,7 @@ pub enum MapError {
         /// Length of the data, s.
         duration: f64,
     },
-    /// Files that follow each other, of which two are of the same time.
+    /// Two consecutive files whose times overlap.
     #[error(
         "{} and {} overlap by {overlap:.3} s, so they are not consecutive pieces of one recording; if they were recorded at the same time, join one to the other with --join",
         first.display(),
@@ -171,22 +171,22 @@ pub enum MapError {
         first: PathBuf,
         /// The next.
         second: PathBuf,
-        /// Time that both have, s.
+        /// Overlap, s.
         overlap: f64,
     },
-    /// Tables beside several files.
+    /// Joined tables with several data files.
     #[error("--join goes with one file, not with {pieces}: import each of them with its table, then the bags together")]
     JoinsOfPieces {
-        /// How many files there are.
+        /// Number of data files.
         pieces: usize,
     },
-    /// A joined table without a map that says what its columns are.
+    /// A joined table without a map that assigns its columns.
     #[error("{} has columns, but no map says which signals they are; give one with --map", file.display())]
     JoinWithoutMap {
         /// The joined file.
         file: PathBuf,
     },
-    /// A unit without meaning.
+    /// An unknown unit.
     #[error("{signal}: \"{unit}\" is no unit known here; known are {known}")]
     UnknownUnit {
         /// The signal.
@@ -196,19 +196,19 @@ pub enum MapError {
         /// All units.
         known: String,
     },
-    /// A unit of another kind than the signal.
+    /// A unit whose dimension differs from that of the signal.
     #[error("{signal} is a {wanted}, but {unit} is a {found}: give `scale`, like \"25 {}/{unit}\"", wanted.si_unit())]
     WrongDimension {
         /// The signal.
         signal: String,
-        /// What the signal is.
+        /// Dimension of the signal.
         wanted: Dimension,
         /// The unit.
         unit: String,
-        /// What the unit measures.
+        /// Dimension of the unit.
         found: Dimension,
     },
-    /// A number with unit that is none.
+    /// A number with a unit that cannot be parsed.
     #[error("{signal}: \"{text}\" in `{key}` is not understood; write a number in SI units or like \"{example}\"")]
     BadQuantity {
         /// The signal.
@@ -217,19 +217,19 @@ pub enum MapError {
         key: &'static str,
         /// As written.
         text: String,
-        /// What would do.
+        /// A valid example.
         example: &'static str,
     },
-    /// A number outside what makes sense.
+    /// A number outside the valid range.
     #[error("{place}: `{key}` = {found} must be {wanted}")]
     BadNumber {
         /// The signal, or "clock".
         place: String,
         /// The key.
         key: &'static str,
-        /// What is there.
+        /// The value found.
         found: f64,
-        /// What may be there.
+        /// The valid values.
         wanted: &'static str,
     },
     /// A field path that the type of the topic does not have.
@@ -239,15 +239,15 @@ pub enum MapError {
         signal: String,
         /// The topic.
         topic: String,
-        /// What is wrong with the path.
+        /// The fault in the path.
         source: PathError,
     },
-    /// A topic whose type is not known.
+    /// A topic whose type is unknown.
     #[error("topic {topic}: {source}")]
     Layout {
         /// The topic.
         topic: String,
-        /// What is wrong with the definition.
+        /// The fault in the definition.
         source: LayoutError,
     },
     /// A map of columns for a bag, or of topics for a table.
@@ -283,15 +283,15 @@ pub enum MapError {
     /// A table without time.
     #[error("the map does not say when rows were taken: give [clock] `column`, or `rate` in samples per second")]
     NoClock,
-    /// A time that is none.
+    /// A time that cannot be parsed.
     #[error("[clock] start = \"{text}\" is not understood: {reason}; write it like 2026-05-01T12:00:00Z")]
     BadStart {
         /// As written.
         text: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
-    /// Nothing with a time.
+    /// A clock without samples.
     #[error("{}: the clock ({clock}) has no sample", path.display())]
     EmptyClock {
         /// The data.
@@ -307,7 +307,8 @@ fn listed(files: &[PathBuf]) -> String {
 }
 
 impl MapError {
-    /// The faulty line of the map with a mark at the place; empty where there is none. It is for the person whose file it is.
+    /// The faulty line of the map with a mark at the location; empty if there is none. Intended for the owner of the
+    /// file.
     pub fn excerpt(&self) -> &str {
         match self {
             MapError::Syntax(fault) => &fault.excerpt,

@@ -1,4 +1,4 @@
-//! Other tables that were recorded beside the data.
+//! Tables that were recorded in parallel with the data.
 
 use std::path::{Path, PathBuf};
 
@@ -25,11 +25,11 @@ pub struct Join {
     pub table: TableFormat,
 }
 
-/// Largest offset, s: three years, beyond which it is a mistake.
+/// Maximum offset, s: three years; a larger one is a mistake.
 const LARGEST_OFFSET: f64 = 1e8;
 
 impl Join {
-    /// The table in a file, with nothing else known of it.
+    /// The table in a file, with default options.
     pub fn of(file: &Path) -> Join {
         Join { file: file.to_path_buf(), ..Join::default() }
     }

@@ -1,4 +1,4 @@
-//! Tables that are joined to the data, brought onto the times of the data.
+//! Aligns joined tables with the times of the data.
 
 use std::path::{Path, PathBuf};
 
@@ -11,16 +11,16 @@ use crate::BagError;
 use crate::reading::ReadReport;
 use crate::table::{Column, Table, Values};
 
-/// A table and when its rows were taken.
+/// A table and the stamps of its rows.
 pub(super) struct TimedTable {
-    /// As the map writes it; `None` for the data themselves.
+    /// As written in the map; `None` for the data themselves.
     pub file: Option<PathBuf>,
     pub table: Table,
-    /// Of each row, ns since the epoch; `None` for rows without time.
+    /// One per row, ns since the epoch; `None` for rows without time.
     pub stamps: Vec<Option<i64>>,
 }
 
-/// When the data were recorded.
+/// The time span of the data.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
     /// First and last stamp, ns.
@@ -29,19 +29,19 @@ pub(super) struct Span {
     pub dating: Dating,
 }
 
-/// The tables that a map joins, without their times: headings are needed before these.
+/// The tables that a map joins, without their times, since headings are needed first.
 ///
 /// # Errors
-/// Those of [`Table::read`].
+/// Errors of [`Table::read`].
 pub(super) fn read(data: &Path, map: &TopicMap) -> Result<Vec<Table>, BagError> {
     let folder = data.parent().unwrap_or(Path::new("."));
     map.join.iter().map(|join| Table::read(&folder.join(&join.file), &join.table)).collect()
 }
 
-/// Gives joined tables the times of the data.
+/// Aligns joined tables with the times of the data.
 ///
 /// # Errors
-/// Those of [`TableClock::of`]; [`MapError::OneIsUndated`], [`MapError::Apart`].
+/// Errors of [`TableClock::of`]; [`MapError::OneIsUndated`], [`MapError::Apart`].
 pub(super) fn timed(
     tables: Vec<Table>,
     map: &TopicMap,
@@ -61,7 +61,7 @@ pub(super) fn timed(
     Ok(timed)
 }
 
-/// The stamps of a joined table on the times of the data.
+/// The stamps of a joined table on the time base of the data.
 fn aligned(clock: TableClock, join: &Join, span: Span) -> Result<Vec<Option<i64>>, MapError> {
     let Some((first, last)) = clock.range() else {
         return Err(MapError::EmptyClock { path: join.file.clone(), clock: clock.name });
@@ -71,7 +71,7 @@ fn aligned(clock: TableClock, join: &Join, span: Span) -> Result<Vec<Option<i64>
     let shift = match (span.dating, clock.dating) {
         (Dating::Dated, Dating::Dated) => 0,
         (Dating::Undated(zero), Dating::Undated(own)) => zero.saturating_sub(own),
-        // Rows that are only counted begin with the data.
+        // Rows without time start with the data.
         (_, Dating::Counted) | (Dating::Counted, Dating::Undated(_)) => from_first_row,
         _ if join.offset.is_some() => from_first_row,
         (_, dating) => {
@@ -87,7 +87,7 @@ fn aligned(clock: TableClock, join: &Join, span: Span) -> Result<Vec<Option<i64>
     Ok(clock.stamps.into_iter().map(|stamp| stamp.map(|stamp| stamp.saturating_add(shift))).collect())
 }
 
-/// The headings that formulas may use: every one of the data, and those that one joined file has.
+/// The headings that formulas may use: those of the data and of all joined files, each once.
 pub(super) fn headings(own: Option<&Table>, joined: &[Table]) -> Vec<String> {
     let mut headings: Vec<String> = Vec::new();
     for table in own.into_iter().chain(joined) {
@@ -100,11 +100,11 @@ pub(super) fn headings(own: Option<&Table>, joined: &[Table]) -> Vec<String> {
     headings
 }
 
-/// The values of a column with their times, ns.
+/// The values of a column with their stamps, ns.
 ///
 /// # Errors
-/// [`MapError::NotJoined`], [`MapError::NoColumn`], [`MapError::Ambiguous`], [`MapError::ColumnLength`], and those of the
-/// conversion.
+/// [`MapError::NotJoined`], [`MapError::NoColumn`], [`MapError::Ambiguous`], [`MapError::ColumnLength`], and errors of
+/// the conversion.
 pub(super) fn samples(tables: &[TimedTable], wanted: &Wanted, name: &ColumnName) -> Result<Vec<(i64, f64)>, MapError> {
     let (table, column) = find(tables, wanted, name)?;
     let Values::Numbers(values) = &column.values else {
@@ -140,7 +140,7 @@ fn find<'t>(
     let joined: Vec<&TimedTable> = tables.iter().filter(|table| table.file.is_some()).collect();
     match (own.map(in_one), name) {
         (Some(Ok(found)), _) => Ok(found),
-        // The number of a column says nothing without its file.
+        // A column number is ambiguous without its file.
         (Some(error), ColumnName::Number(_)) => error,
         (own, _) => {
             let found: Vec<_> = joined.iter().filter_map(|table| in_one(table).ok()).collect();

@@ -1,4 +1,4 @@
-//! Moments that a map leaves out.
+//! Time ranges that a map leaves out.
 
 use excavator_model::recording::Recording;
 use serde::{Deserialize, Serialize};
@@ -27,11 +27,12 @@ pub struct LeaveOut {
 }
 
 impl LeaveOut {
-    /// Takes the signals away within the times, and tells the report what it cannot decide; conditions are for the report alone.
+    /// Removes the signals within the times. Records in the report what needs the machine to decide; conditions are
+    /// only recorded.
     ///
     /// # Errors
-    /// [`MapError::BadNumber`] for times that are no numbers or in the wrong order, [`MapError::LeavesNothingOut`] for a cylinder that
-    /// the recording has not.
+    /// [`MapError::BadNumber`] for times that are not numbers or are in the wrong order, [`MapError::LeavesNothingOut`]
+    /// for a cylinder that the recording does not have.
     pub(super) fn apply(&self, recording: &mut Recording, report: &mut ReadReport) -> Result<(), MapError> {
         if let Some(condition) = &self.condition {
             report.left_out_where.push(condition.clone());
@@ -102,7 +103,7 @@ mod tests {
         let missing: Vec<usize> = (0..10).filter(|sample| arm.displacement[*sample].is_nan()).collect();
         assert_eq!(missing, [2, 3, 4]);
         assert!(arm.orifice_area.iter().all(|area| area.is_finite()));
-        // What only the machine can decide is told.
+        // What only the machine can decide is recorded in the report.
         assert!(found.pump_pressure.iter().all(|pressure| *pressure == 2e7));
         assert_eq!(report.left_out, [[7_000_000_000, 9_000_000_000]]);
     }

@@ -1,4 +1,4 @@
-//! One topic of a bag from which signals are taken.
+//! One topic of a bag from which signals are read.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,21 +16,22 @@ use crate::BagError;
 use crate::can::{DataFrame, Database, FrameReader, Identifier, Place};
 use crate::reading::ReadReport;
 
-/// One topic from which signals are taken.
+/// One topic from which signals are read.
 #[derive(Default)]
 pub(super) struct MappedTopic<'m> {
     pub name: String,
     fields: Vec<MappedField<'m>>,
     clock_stamp: StampReader,
-    /// Of its messages, ns. Of frames those of each wanted identifier, since a bus carries more than what is mapped.
+    /// Stamps of its messages, ns. For CAN frames one list per wanted identifier, since a bus carries more than the
+    /// mapped frames.
     stamps: Vec<(Option<Identifier>, Vec<i64>)>,
-    /// The definition that the selectors were made for, with its layout.
+    /// The definition for which the selectors were resolved, with its layout.
     layout: Option<(Arc<Topic>, Layout)>,
     frames: Option<FrameReader>,
     seen: u64,
     undecodable: u64,
     first_undecodable: Option<BagError>,
-    /// Frames of a wanted message that are shorter than its signals need.
+    /// Frames of a wanted message that are too short for its signals.
     short_frames: u64,
 }
 
@@ -42,7 +43,7 @@ struct MappedField<'m> {
     samples: Vec<(i64, f64)>,
 }
 
-/// Where the number stands.
+/// The position of the number.
 enum At {
     /// In a field of the message.
     Field(FieldPath, Option<Selector>),
@@ -77,25 +78,25 @@ impl<'m> MappedTopic<'m> {
         Ok(())
     }
 
-    /// Which time is that of the clock, if this topic is it.
+    /// Sets which stamp is used if this topic is the clock.
     pub fn set_clock_stamp(&mut self, policy: &Stamp) {
         self.clock_stamp = StampReader { policy: policy.clone(), selector: None };
     }
 
-    /// The times of the topic; of the wanted frame that comes most often where it carries frames.
+    /// The stamps of the topic; for CAN frames those of the most frequent wanted frame.
     pub fn stamps(&self) -> &[i64] {
         self.stamps.iter().map(|(_, stamps)| &stamps[..]).max_by_key(|stamps| stamps.len()).unwrap_or_default()
     }
 
-    /// What was read.
+    /// The samples read.
     pub fn into_inputs(self) -> impl Iterator<Item = Input<'m>> {
         self.fields.into_iter().map(|field| Input::read(field.wanted, Samples::Timed(field.samples)))
     }
 
-    /// Takes the numbers of one message. Gives the bytes that they take.
+    /// Reads the numbers of one message. Returns the bytes of memory that they take.
     ///
     /// # Errors
-    /// Those of [`MappedTopic::prepare`]; a message that cannot be read is only counted.
+    /// Errors of [`MappedTopic::prepare`]; a message that cannot be read is only counted.
     pub fn take(&mut self, path: &Path, message: &RawMessage, extra: &Definitions) -> Result<u64, BagError> {
         if !self.layout.as_ref().is_some_and(|(topic, _)| Arc::ptr_eq(topic, &message.topic)) {
             self.prepare(path, &message.topic, extra)?;
@@ -116,7 +117,7 @@ impl<'m> MappedTopic<'m> {
         Ok((taken * size_of::<(i64, f64)>()) as u64)
     }
 
-    /// Looks every field up in the definition that this file has of the topic.
+    /// Resolves every field in the topic definition of this file.
     fn prepare(&mut self, path: &Path, topic: &Arc<Topic>, extra: &Definitions) -> Result<(), BagError> {
         if topic.message_encoding != "cdr" {
             let (path, format) = (path.to_path_buf(), topic.message_encoding.clone());
@@ -148,8 +149,8 @@ impl<'m> MappedTopic<'m> {
         Ok(())
     }
 
-    /// Takes nothing from a message that does not fit its definition from beginning to end. Gives how many numbers and times it
-    /// has taken.
+    /// Reads nothing from a message that does not fit its definition completely. Returns how many numbers and times
+    /// were read.
     fn read(&mut self, message: &RawMessage) -> Result<usize, CdrError> {
         let Some((_, layout)) = &self.layout else {
             return Ok(0);
@@ -196,7 +197,7 @@ impl<'m> MappedTopic<'m> {
         Ok(taken)
     }
 
-    /// Enters what could not be decoded into the report; a topic without any readable message is an error.
+    /// Adds what could not be decoded to the report; a topic without any readable message is an error.
     ///
     /// # Errors
     /// [`BagError::NoMessages`], [`BagError::NoTopic`], [`BagError::Undecodable`].
@@ -226,7 +227,7 @@ impl<'m> MappedTopic<'m> {
     }
 }
 
-/// Which time a message has.
+/// Which stamp of a message is used.
 #[derive(Debug, Clone, Default)]
 struct StampReader {
     policy: Stamp,

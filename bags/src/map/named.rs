@@ -90,7 +90,8 @@ struct Keys {
     maximum_gap: Option<f64>,
 }
 
-/// A heading, a number, or keys. By hand, since of an untagged enum the reader says only that nothing fits.
+/// A heading, a number, or keys. Written by hand, since for an untagged enum serde only reports that no variant
+/// matches.
 struct HeadingOrKeys;
 
 impl<'de> Visitor<'de> for HeadingOrKeys {

@@ -1,4 +1,4 @@
-//! Several files that are one recording: pieces, one after the other.
+//! Reads several consecutive files as one recording.
 
 use std::path::{Path, PathBuf};
 
@@ -31,16 +31,17 @@ impl Piece {
     }
 }
 
-/// Reads files that are one recording: each with the given map, else with the one beside it, else with that beside the first.
-/// `joins` are tables beside a single file, for which the map needs no `[[join]]`.
+/// Reads files that are one recording. Each is read with the given map, otherwise with the one next to it, otherwise
+/// with the one next to the first file. `joins` are tables recorded with a single file, for which the map needs no
+/// `[[join]]`.
 ///
-/// Files that say when they were recorded keep their times. A file that counts from a time 0 of its own, and so would begin
-/// before the end of the one before it, is moved behind that: by the shortest pause that makes it a piece of its own (see
-/// [`Recording::pieces`]).
+/// Files with absolute times keep them. A file with its own time 0 that would start before the end of the previous one
+/// is moved behind it, by the shortest pause that makes it a separate piece (see [`Recording::pieces`]).
 ///
 /// # Errors
-/// All of [`read_mapped`](super::read_mapped) and [`read_recording`](crate::read_recording); [`MapError::PiecesOverlap`] for
-/// files of the same time, [`MapError::JoinsOfPieces`], [`MapError::JoinWithoutMap`].
+/// All of [`read_mapped`](super::read_mapped) and [`read_recording`](crate::read_recording);
+/// [`MapError::PiecesOverlap`] for files whose times overlap, [`MapError::JoinsOfPieces`],
+/// [`MapError::JoinWithoutMap`].
 pub fn read_pieces(
     paths: &[PathBuf],
     map: Option<&Path>,
@@ -96,9 +97,9 @@ fn add_joins(data: &Path, map: Option<&mut TopicMap>, joins: &[PathBuf]) -> Resu
     Ok(())
 }
 
-/// Moves pieces without dates behind the one before them where they would overlap.
+/// Moves undated pieces behind the previous one if they would overlap.
 fn place(pieces: &mut [Piece], notes: &mut Vec<String>) -> Result<(), MapError> {
-    // Longer than any gap within a piece, whichever of their intervals the whole recording has.
+    // Longer than any gap within a piece, whichever of their intervals applies to the whole recording.
     let interval = pieces.iter().map(|piece| piece.recording.sample_interval()).fold(0.0, f64::max);
     let pause = longest_gap(interval) + interval;
     for number in 1..pieces.len() {
@@ -125,7 +126,7 @@ fn place(pieces: &mut [Piece], notes: &mut Vec<String>) -> Result<(), MapError> 
     Ok(())
 }
 
-/// The samples of all pieces on one clock; what a piece did not measure is `NaN` in it.
+/// The samples of all pieces on one clock; `NaN` for signals that a piece did not measure.
 fn one_of(pieces: &[Piece]) -> Recording {
     let start = pieces.first().map_or(0, Piece::first);
     let mut time = Vec::new();

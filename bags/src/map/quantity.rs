@@ -1,4 +1,4 @@
-//! Numbers with or without unit.
+//! Numbers with or without a unit.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// The SI value of something that must have this dimension. A difference, so that `"10 K"` is 10 K.
+    /// The SI value of a quantity with this dimension. Treated as a difference, so that `"10 K"` is 10 K.
     pub(super) fn to_si(&self, signal: &str, key: &'static str, dimension: Dimension) -> Result<f64, MapError> {
         match self {
             Quantity::Number(number) => finite(*number, signal, key),
@@ -35,7 +35,7 @@ impl Quantity {
             Quantity::Number(number) => finite(*number, signal, "scale"),
             Quantity::Text(text) => {
                 let (number, units) = split(text).ok_or_else(bad)?;
-                // Units have slashes of their own: l/min per rpm, mm/s per V, l/min per rad/s.
+                // Units can contain slashes: l/min per rpm, mm/s per V, l/min per rad/s.
                 let ratio = units.match_indices('/').find_map(|(at, slash)| {
                     let over = Unit::named(&units[..at]).filter(|unit| unit.dimension == to)?;
                     let under = Unit::named(&units[at + slash.len()..]).filter(|unit| unit.dimension == from)?;
@@ -62,7 +62,7 @@ fn finite(number: f64, signal: &str, key: &'static str) -> Result<f64, MapError>
     Err(MapError::BadNumber { place: signal.to_string(), key, found: number, wanted: "a finite number" })
 }
 
-/// The number in front and the unit behind.
+/// The leading number and the unit after it.
 fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE_".contains(c))).unwrap_or(text.len());

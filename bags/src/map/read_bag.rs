@@ -1,4 +1,4 @@
-//! Mapped topics of a bag as tracks.
+//! Reads the mapped topics of a bag as tracks.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::can::Database;
 use crate::reading::{ReadReport, TopicCounts, truncated_after};
 use crate::{BagError, own_definitions};
 
-/// Reads the signals of a map from a bag. Also says whether its stamps are times of day.
+/// Reads the signals of a map from a bag. Also returns whether its stamps are absolute times.
 pub(super) fn read_bag(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport, Dating), BagError> {
     let mut extra = own_definitions().clone();
     for file in &map.definitions {
@@ -99,7 +99,7 @@ fn topic_of<'t, 'm>(topics: &'t mut Vec<MappedTopic<'m>>, name: &str) -> &'t mut
     &mut topics[index]
 }
 
-/// The stamps of the clock's topic: that of the map, else the one with most messages.
+/// The stamps of the clock topic: the one in the map, otherwise the topic with the most messages.
 fn clock(map: &TopicMap, topics: &mut [MappedTopic]) -> (String, Vec<i64>) {
     let mut best: Option<&mut MappedTopic> = None;
     for topic in topics {

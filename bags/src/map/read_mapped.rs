@@ -1,4 +1,4 @@
-//! Any data with its map as a recording.
+//! Reads data of any format with its map as a recording.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -17,18 +17,18 @@ use crate::{BagError, Topics};
 /// Reads the signals of a map from the data at `path`: a bag in any storage, or a table (see
 /// [`Table::is_table`]).
 ///
-/// The clock is that of the map; every signal is brought onto it as the map says. Signals that the map does not have, or
-/// that are missing at a time, are `NaN`. What was dropped, sorted, damaged or missing is in the report.
+/// The clock is the one in the map; every signal is resampled to it as the map specifies. Signals that are not in the
+/// map, or are missing at a time, are `NaN`. The report contains what was dropped, sorted, damaged or missing.
 ///
 /// # Errors
-/// [`BagError::Map`] when the map does not fit the data; all of [`RawMessages::open`](rosbag2::RawMessages::open);
+/// [`BagError::Map`] if the map does not fit the data; all of [`RawMessages::open`](rosbag2::RawMessages::open);
 /// [`BagError::NoTopic`], [`BagError::NoMessages`], [`BagError::Undecodable`] for a mapped topic;
 /// [`BagError::BadTable`], [`rosbag2::Error::BadDefinition`].
 pub fn read_mapped(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport), BagError> {
     read_dated(path, map).map(|(recording, report, _)| (recording, report))
 }
 
-/// As [`read_mapped`]; also says what the times are.
+/// As [`read_mapped`]; also returns the kind of the times.
 pub(super) fn read_dated(path: &Path, map: &TopicMap) -> Result<(Recording, ReadReport, Dating), BagError> {
     let (mut recording, mut report, dating) = if Table::is_table(path) {
         read_table(path, Table::read(path, &map.table)?, map)?
@@ -41,16 +41,16 @@ pub(super) fn read_dated(path: &Path, map: &TopicMap) -> Result<(Recording, Read
     Ok((recording, report, dating))
 }
 
-/// How signals are found in data.
+/// Options for finding signals in data.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Origin<'o> {
-    /// File of a map; without, the map beside the data counts, if there is one (see [`TopicMap::beside`]).
+    /// File of a map; if not given, the map next to the data is used, if it exists (see [`TopicMap::beside`]).
     pub map: Option<&'o Path>,
-    /// Namespace of the machine in a bag of our own topics; without, see [`Topics::in_bag`].
+    /// Namespace of the machine in a bag of our own topics; if not given, see [`Topics::in_bag`].
     pub namespace: Option<&'o str>,
 }
 
-/// Reads the data at `path` with a map, or without any as a bag of our own topics.
+/// Reads the data at `path` with a map, or without one as a bag of our own topics.
 ///
 /// ```no_run
 /// use std::path::Path;
@@ -64,14 +64,15 @@ pub struct Origin<'o> {
 /// ```
 ///
 /// # Errors
-/// All of [`read_mapped`], [`Topics::in_bag`] and [`read_recording`](crate::read_recording); [`BagError::BadTable`] for a table without map.
+/// All of [`read_mapped`], [`Topics::in_bag`] and [`read_recording`](crate::read_recording); [`BagError::BadTable`] for
+/// a table without a map.
 pub fn read_recording_or_mapped(path: &Path, origin: Origin<'_>) -> Result<(Recording, ReadReport), BagError> {
     let map = map_of(path, origin.map)?;
     read_with(path, map.as_ref(), origin.namespace).map(|(recording, report, _)| (recording, report))
 }
 
-/// Looks at the signals of the data at `path`, read as by [`read_recording_or_mapped`]; a bag of our own topics in blocks, so that its length
-/// costs no memory.
+/// Summarizes the signals of the data at `path`, read as by [`read_recording_or_mapped`]. A bag of our own topics is
+/// read in blocks, so that memory does not grow with its length.
 ///
 /// # Errors
 /// As [`read_recording_or_mapped`].
@@ -89,10 +90,10 @@ pub fn read_signals(path: &Path, origin: Origin<'_>) -> Result<(SignalsInfo, Rea
     Ok((tally.info(), report))
 }
 
-/// Samples that are in memory at a time.
+/// Number of samples in memory at a time.
 const BLOCK: usize = 20_000;
 
-/// The map in the given file, else the one beside the data, if there is one.
+/// The map in the given file, otherwise the one next to the data, if it exists.
 pub(super) fn map_of(data: &Path, map: Option<&Path>) -> Result<Option<TopicMap>, BagError> {
     if !data.exists() {
         return Err(rosbag2::Error::DoesNotExist { path: data.to_path_buf() }.into());
@@ -100,7 +101,7 @@ pub(super) fn map_of(data: &Path, map: Option<&Path>) -> Result<Option<TopicMap>
     map.map(Path::to_path_buf).or_else(|| TopicMap::beside(data)).map(|map| TopicMap::read(&map)).transpose()
 }
 
-/// Reads data with this map, or without any as a bag of our own topics.
+/// Reads data with this map, or without one as a bag of our own topics.
 pub(super) fn read_with(
     path: &Path,
     map: Option<&TopicMap>,

@@ -1,4 +1,4 @@
-//! Mapped columns of a table as tracks.
+//! Reads the mapped columns of a table as tracks.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::BagError;
 use crate::reading::ReadReport;
 use crate::table::{Column, Table, heading_of};
 
-/// Reads the signals of a map from a table. Also says what the times of its rows are.
+/// Reads the signals of a map from a table. Also returns the kind of the row times.
 pub(super) fn read_table(
     path: &Path,
     table: Table,
@@ -56,7 +56,7 @@ pub(super) fn read_table(
     Ok((recording, report, clock.dating))
 }
 
-/// Rows of the first column of the table that the map asks for; columns of a MATLAB file have different lengths.
+/// Rows of the first column that the map refers to; columns of a MATLAB file can have different lengths.
 fn rows(table: &Table, wanted: &[Wanted]) -> usize {
     let own = wanted.iter().filter(|wanted| wanted.file().is_none());
     let first = own.filter_map(|wanted| table.column(wanted.from.column.as_ref()?).ok()).next();
@@ -65,7 +65,7 @@ fn rows(table: &Table, wanted: &[Wanted]) -> usize {
 }
 
 impl Table {
-    /// The column of this name, or of this number from 1. A name may carry the unit of the heading.
+    /// The column with this name, or with this number from 1. A name may include the unit of the heading.
     pub(super) fn column(&self, name: &ColumnName) -> Result<&Column, MapError> {
         let find = |fits: &dyn Fn(&Column) -> bool| self.columns.iter().find(|column| fits(column));
         let found = match name {

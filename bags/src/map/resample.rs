@@ -1,22 +1,22 @@
-//! From the times of a signal to those of the clock.
+//! Resamples a signal to the times of the clock.
 
 use super::document::Resampling;
 use super::track::Track;
 
-/// So many of its own median intervals may lie between two values that are joined by a line: one or two lost messages
-/// are bridged, a sensor that was silent is not invented.
+/// Maximum distance for linear interpolation, in median intervals of the signal: one or two lost messages are bridged,
+/// but no values are invented for a silent sensor.
 const INTERVALS_BRIDGED: f64 = 5.0;
 
-/// How a signal is brought onto the clock.
+/// How a signal is resampled to the clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Policy {
     pub method: Resampling,
-    /// Longest time that is bridged, ns.
+    /// Maximum time that is bridged, ns.
     pub maximum_gap: f64,
 }
 
 impl Policy {
-    /// The policy for a track; `maximum_gap` in s as the map has it.
+    /// The policy for a track; `maximum_gap` in s, as in the map.
     pub fn of(method: Resampling, maximum_gap: Option<f64>, track: &Track) -> Policy {
         let maximum_gap = match (maximum_gap, method) {
             (Some(seconds), _) => seconds * 1e9,
@@ -27,9 +27,9 @@ impl Policy {
     }
 }
 
-/// The values of a track at the times of the clock (ns, ascending); `NaN` where the policy gives none.
+/// The values of a track at the clock times (ns, ascending); `NaN` where the policy yields no value.
 pub(super) fn resample(track: &Track, clock: &[i64], policy: Policy) -> Vec<f64> {
-    // Place of the first sample after the time of the clock; both ascend, so it only moves on.
+    // Index of the first sample after the clock time; both ascend, so it only increases.
     let mut after = 0;
     clock
         .iter()

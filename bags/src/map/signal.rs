@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::error::MapError;
 use super::unit::Dimension;
 
-/// A signal, whichever cylinder it is of.
+/// A kind of signal, independent of the cylinder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs)]
 pub enum SignalKind {
@@ -44,7 +44,7 @@ impl SignalKind {
         SignalKind::OilTemperature,
     ];
 
-    /// The name, as the messages have it.
+    /// The name in the messages.
     pub fn name(self) -> &'static str {
         match self {
             SignalKind::JointAngle => "joint_angle",
@@ -67,8 +67,8 @@ impl SignalKind {
         self <= SignalKind::OrificeCommand
     }
 
-    /// Whether a number of this dimension is a value of it as it stands. A motor turns where a cylinder moves, and what opens a valve may be
-    /// told as a voltage, a current or a share: the model then says so too.
+    /// Whether a number of this dimension is a valid value without conversion. A motor has an angle instead of a
+    /// displacement, and a valve opening may be a voltage, a current, a flow or a ratio if the model defines it so.
     pub fn takes(self, dimension: Dimension) -> bool {
         dimension == self.dimension()
             || match self {
@@ -81,7 +81,7 @@ impl SignalKind {
             }
     }
 
-    /// What it measures.
+    /// Its dimension.
     pub fn dimension(self) -> Dimension {
         match self {
             SignalKind::JointAngle => Dimension::Angle,
@@ -108,7 +108,7 @@ pub struct SignalName {
 }
 
 impl SignalName {
-    /// The column of the recording that the name stands for; a cylinder that is not there yet is added.
+    /// The column of this signal in the recording; adds the cylinder if it does not exist yet.
     pub fn column<'r>(&self, recording: &'r mut Recording) -> &'r mut Vec<f64> {
         let samples = recording.len();
         let Some(name) = &self.cylinder else {

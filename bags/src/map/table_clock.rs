@@ -1,42 +1,43 @@
-//! When the rows of a table were taken.
+//! Determines when the rows of a table were recorded.
 
 use super::document::ClockSource;
 use super::error::MapError;
 use super::unit::{Dimension, Unit};
 use crate::table::{Column, Table, Values};
 
-/// Headings that are taken for the time when the map names no column.
+/// Headings recognised as time if the map names no column.
 const TIME_NAMES: [&str; 6] = ["time", "t", "timestamp", "stamp", "zeit", "time_s"];
-/// Time 0 of a table that says nothing else: 1 January 2000. Not the epoch, since a stamp of zero means "not set".
+/// Time 0 of a table without a date: 1 January 2000. Not the epoch, since a stamp of zero means "not set".
 const DEFAULT_START: i64 = 946_684_800_000_000_000;
-/// Numbers above this are seconds since the epoch (1973 and later), below it since the start of the recording.
+/// Larger numbers are seconds since the epoch (1973 and later), smaller ones are seconds since the start of the
+/// recording.
 pub(super) const EPOCH_SECONDS: f64 = 1e8;
 
-/// What stamps say.
+/// The meaning of stamps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dating {
-    /// When a row was taken.
+    /// Absolute time of the row.
     Dated,
-    /// How long after a time 0 of its own, whose stamp this is.
+    /// Time since a time 0 of the table, whose stamp this is.
     Undated(i64),
-    /// How many rows were before it.
+    /// Number of previous rows.
     Counted,
 }
 
 /// The times of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TableClock {
-    /// For people.
+    /// For display.
     pub name: String,
-    /// Of each row, ns since the epoch; `None` for rows without time.
+    /// One per row, ns since the epoch; `None` for rows without time.
     pub stamps: Vec<Option<i64>>,
     pub dating: Dating,
-    /// What was taken from lines before the table.
+    /// Information from lines before the table.
     pub note: Option<String>,
 }
 
 impl TableClock {
-    /// The times of a table by what a map says of them. `rows` is how many there are.
+    /// The times of a table according to a map. `rows` is the number of rows.
     ///
     /// # Errors
     /// [`MapError::NoColumn`], [`MapError::NoClock`], [`MapError::UnknownUnit`], [`MapError::BadStart`].
@@ -88,7 +89,7 @@ impl TableClock {
         };
         let stamp = |&time: &f64| {
             let nanoseconds = (unit.to_si(time) * 1e9).round();
-            // What a stamp cannot hold is no time.
+            // A time that does not fit in a stamp is treated as missing.
             let holds = nanoseconds.abs() < 9e18;
             holds.then(|| zero.checked_add(nanoseconds as i64)).flatten()
         };
@@ -102,7 +103,7 @@ impl TableClock {
     }
 }
 
-/// The column that is most likely the time: one of dates, else one with a usual heading.
+/// The column that is most likely the time: one of dates, otherwise one with a common heading.
 pub(super) fn time_column(table: &Table) -> Option<&Column> {
     let by_name = |column: &&Column| TIME_NAMES.contains(&column.name.to_lowercase().as_str());
     let dates = table.columns.iter().find(|column| matches!(column.values, Values::Stamps(_)));

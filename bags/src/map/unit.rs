@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What a unit measures.
+/// The dimension of a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum Dimension {
@@ -22,7 +22,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// The unit in which recordings carry it; °C for temperatures.
+    /// The unit used in recordings; °C for temperatures.
     pub fn si_unit(self) -> &'static str {
         match self {
             Dimension::Length => "m",
@@ -65,12 +65,12 @@ impl fmt::Display for Dimension {
 /// A unit: SI value = number · `multiply` / `divide` + `add`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// As it is written.
+    /// As written.
     pub name: &'static str,
     /// What it measures.
     pub dimension: Dimension,
     multiply: f64,
-    /// Apart from `multiply`, since dividing by a thousand is exact where multiplying by its inverse is not.
+    /// Separate from `multiply`, since division by a thousand is exact and multiplication by its inverse is not.
     divide: f64,
     add: f64,
 }
@@ -83,7 +83,7 @@ const INCH: f64 = 0.0254;
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
 const GALLON: f64 = 3.785_411_784e-3;
 
-/// Every unit, SI first within its dimension.
+/// All units; the SI unit is the first of its dimension.
 const UNITS: [Unit; 64] = {
     use Dimension::{
         Angle, Area, Current, Flow, Force, Length, Number, Pressure, RotationalSpeed, Temperature, Time, Velocity,
@@ -159,8 +159,8 @@ const UNITS: [Unit; 64] = {
 };
 
 impl Unit {
-    /// The unit of this name: `bar`, `l/min`, `mm²`, `°C`; capitals count only where it matters (`mm`, `MM`, but
-    /// `mPa` is not `MPa`).
+    /// The unit with this name: `bar`, `l/min`, `mm²`, `°C`. Case matters only where it distinguishes units (`mm`,
+    /// `MM`, but `mPa` is not `MPa`).
     ///
     /// ```
     /// use excavator_bags::map::Unit;
@@ -201,19 +201,19 @@ impl Unit {
         UNITS.iter().find(|unit| unit.name == name).copied().unwrap_or(unit(name, dimension, 1.0, 1.0))
     }
 
-    /// A number in this unit as SI value.
+    /// Converts a number in this unit to SI.
     pub fn to_si(&self, number: f64) -> f64 {
         let scaled = if self.multiply == 1.0 { number } else { number * self.multiply };
         let scaled = if self.divide == 1.0 { scaled } else { scaled / self.divide };
         if self.add == 0.0 { scaled } else { scaled + self.add }
     }
 
-    /// SI value of one of this unit, as a factor: without the zero of a temperature scale.
+    /// SI value of one unit, as a factor: without the offset of a temperature scale.
     pub fn factor(&self) -> f64 {
         self.multiply / self.divide
     }
 
-    /// All names, for people.
+    /// All names, for display.
     pub fn names() -> String {
         UNITS.iter().map(|unit| unit.name).collect::<Vec<_>>().join(", ")
     }

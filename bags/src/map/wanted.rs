@@ -1,4 +1,4 @@
-//! What is read from the data for a map: its signals, and what the formulas of others need.
+//! The values to read from the data for a map: its signals, and the inputs of its formulas.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -11,14 +11,14 @@ use super::error::MapError;
 use super::named::NamedColumn;
 use super::signal::SignalKind;
 
-/// Numbers that are read: those of a signal, or those that a name in formulas stands for.
+/// Values to read: those of a signal, or of a name in formulas.
 #[derive(Debug, Clone)]
 pub(super) struct Wanted<'m> {
     /// The signal or the name.
     pub label: String,
     /// The signal; `None` for a name.
     pub signal: Option<&'m SignalSource>,
-    /// Where they come from, and when they were measured.
+    /// Their source and their stamps.
     pub from: Cow<'m, NamedColumn>,
 }
 
@@ -50,7 +50,7 @@ impl<'m> Wanted<'m> {
         Wanted { label: heading.to_string(), signal: None, from: Cow::Owned(column) }
     }
 
-    /// From a number in a cell or message to the value; `unit` is that of the heading or of the DBC file.
+    /// The conversion from a number in a cell or message; `unit` is that of the heading or of the DBC file.
     pub fn conversion(&self, unit: Option<&str>) -> Result<Conversion, MapError> {
         match self.signal {
             Some(source) => Conversion::of(source, unit),
@@ -58,40 +58,40 @@ impl<'m> Wanted<'m> {
         }
     }
 
-    /// What is added to a time, ns.
+    /// Offset added to stamps, ns.
     pub fn shift(&self) -> i64 {
         (self.from.time_shift.unwrap_or(0.0) * 1e9).round() as i64
     }
 
-    /// Between measurements.
+    /// Interpolation between measurements.
     pub fn resampling(&self) -> Resampling {
         self.from.resample.unwrap_or(Resampling::Linear)
     }
 
-    /// The file that the column is in, where the map says so.
+    /// The file of the column, if the map gives it.
     pub fn file(&self) -> Option<&Path> {
         self.from.file.as_deref()
     }
 }
 
-/// A signal that is computed.
+/// A signal computed by a formula.
 #[derive(Debug, Clone)]
 pub(super) struct Computed<'m> {
     pub source: &'m SignalSource,
     pub formula: ColumnFormula,
-    /// Labels of the inputs of the formula, in its order.
+    /// Labels of the formula inputs, in order.
     pub inputs: Vec<String>,
     /// From the value of the formula to that of the signal.
     pub conversion: Conversion,
 }
 
-/// Names that an error lists.
+/// Maximum number of names listed in an error.
 const LISTED: usize = 12;
 
-/// What is read, and what is computed from it. `headings` are the columns that formulas may use by their headings.
+/// What to read, and what to compute from it. `headings` are the columns that formulas may refer to by heading.
 ///
 /// # Errors
-/// [`MapError::Formula`], and those of [`Conversion::of`].
+/// [`MapError::Formula`], and errors of [`Conversion::of`].
 pub(super) fn wanted<'m>(
     map: &'m TopicMap,
     headings: &[String],
@@ -99,7 +99,7 @@ pub(super) fn wanted<'m>(
     let read = |source: &&SignalSource| source.value.is_none() && source.formula.is_none();
     let mut wanted: Vec<Wanted<'m>> = map.signals.iter().filter(read).map(Wanted::signal).collect();
     wanted.extend(map.names.iter().map(|(name, named)| Wanted::name(name, named)));
-    // Names of the map come first, then signals, then headings: what is written in the map is meant.
+    // Names of the map come first, then signals, then headings: what the map defines takes precedence.
     let mut names: Vec<String> = map.names.keys().cloned().collect();
     let known = map.signals.iter().filter(|source| source.formula.is_none());
     let signals = known.map(|source| source.signal.to_string());

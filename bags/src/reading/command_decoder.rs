@@ -1,4 +1,4 @@
-//! Commands, their numbers read in place where a message looks like the one before.
+//! Decodes commands; numbers are read in place if a message has the same shape as the previous one.
 
 use std::ops::Range;
 
@@ -15,12 +15,12 @@ pub(super) struct CommandDecoder {
 }
 
 impl CommandDecoder {
-    /// The areas of a command that looks like the last one that was decoded; `None` for any other.
+    /// The areas of a command with the same shape as the last decoded one; `None` for any other.
     pub fn numbers<'m>(&'m self, bytes: &'m [u8]) -> Option<Numbers<'m>> {
         self.shape.numbers(bytes)
     }
 
-    /// The command that the bytes stand for.
+    /// Decodes a command.
     pub fn decode(&mut self, bytes: &[u8]) -> Result<OrificeCommand, CdrError> {
         self.shape.forget();
         let command = cdr::decode(bytes)?;
@@ -31,7 +31,8 @@ impl CommandDecoder {
     }
 }
 
-/// Where the areas of a command are, bytes from the start of the message; `None` for bytes that are none.
+/// The position of the areas in a command, bytes from the start of the message; `None` for bytes that are not a
+/// command.
 fn areas(bytes: &[u8]) -> Option<Range<usize>> {
     let mut content = Content::of(bytes)?;
     let _stamp: [[u8; 4]; 2] = [content.aligned::<4>()?, content.aligned::<4>()?];

@@ -1,4 +1,4 @@
-//! Commands, held from one message to the next.
+//! Holds commands from one message to the next.
 
 use excavator_model::recording::Recording;
 use excavator_msgs::OrificeCommand;
@@ -22,7 +22,7 @@ pub(super) struct CommandTrack {
     cylinders: Vec<CylinderCommands>,
     infinite_values: u64,
     malformed: u64,
-    /// Which cylinder each area of the last message belongs to.
+    /// The cylinder of each area of the last message.
     named: Vec<usize>,
 }
 
@@ -38,8 +38,8 @@ impl CommandTrack {
         self.push_areas(command.header.stamp.nanoseconds(), command.areas.iter().copied());
     }
 
-    /// Adds a message that looks like the last one but for its numbers, which are the areas; `false` where that one was
-    /// none, or not to be understood: then it has to come through [`CommandTrack::push`].
+    /// Adds a message that differs from the last one only in its numbers, which are the areas. `false` if there is no
+    /// last message, or it was invalid: the caller must then use [`CommandTrack::push`].
     pub fn push_numbers(&mut self, numbers: Numbers) -> bool {
         if self.named.is_empty() {
             return false;
@@ -66,7 +66,7 @@ impl CommandTrack {
         }
     }
 
-    /// A track that begins with the commands that are held at the end of this one.
+    /// A track that starts with the commands held at the end of this one.
     pub fn continued(&self) -> Self {
         let held = |own: &CylinderCommands| {
             let last = own.commands.iter().max_by_key(|(stamp, _)| *stamp).copied();
@@ -75,8 +75,9 @@ impl CommandTrack {
         CommandTrack { cylinders: self.cylinders.iter().map(held).collect(), ..CommandTrack::default() }
     }
 
-    /// Fills in the commands of the recording, whose clock in ns since the epoch is `stamps`: at each sample the
-    /// latest command with a stamp not after it, `NaN` before the first. Of commands with equal stamps the last counts.
+    /// Fills in the commands of the recording, whose clock in ns since the epoch is `stamps`. Each sample gets the
+    /// latest command whose stamp is not after it, `NaN` before the first. Of commands with equal stamps the last one
+    /// is used.
     pub fn hold(mut self, recording: &mut Recording, stamps: &[i64], report: &mut ReadReport) {
         report.infinite_values += self.infinite_values;
         report.malformed_commands += self.malformed;

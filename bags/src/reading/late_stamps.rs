@@ -1,10 +1,10 @@
-//! Stamps that are earlier than one before them.
+//! Detects stamps that are earlier than a previous one.
 
-/// Messages one after the other, each later than the last but earlier than one before all of them, from which on it was no message
-/// that took a longer way: a network changes the order of a few.
+/// Minimum number of consecutive rising stamps, all earlier than a previous stamp, that is a clock step. Fewer are late
+/// messages: a network reorders a few.
 const FEWEST_OF_A_STEP: usize = 20;
 
-/// How many stamps are smaller than one before them.
+/// The number of stamps that are smaller than a previous one.
 pub(crate) fn count_late(stamps: &[i64]) -> u64 {
     let mut latest = i64::MIN;
     let mut late = 0;
@@ -15,8 +15,8 @@ pub(crate) fn count_late(stamps: &[i64]) -> u64 {
     late
 }
 
-/// A line for each time that the clock (stamps in ns) was set back: from then on until it is where it had been, two moments of the
-/// machine have the same time, and in a recording that is sorted by time they are mixed.
+/// One line for each time that the clock (stamps in ns) was set back. Until the clock reaches its previous value, two
+/// moments of the machine have the same time; a recording that is sorted by time mixes them.
 pub(crate) fn steps_back(stamps: &[i64]) -> Vec<String> {
     let start = stamps.iter().min().copied().unwrap_or_default();
     let seconds = |stamp: i64| stamp.saturating_sub(start) as f64 / 1e9;
@@ -62,7 +62,7 @@ mod tests {
         let lines = steps_back(&back);
         assert_eq!(lines.len(), 1);
         assert!(lines[0].contains("set back by 0.399 s at 0.999 s: from 0.600 s"), "{}", lines[0]);
-        // A table that is upside down has no such step.
+        // A table in reverse order has no such step.
         let reversed: Vec<i64> = even.iter().rev().copied().collect();
         assert!(steps_back(&reversed).is_empty());
     }

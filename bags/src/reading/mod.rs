@@ -1,4 +1,4 @@
-//! From a bag to a recording.
+//! Reads a bag as a recording.
 
 mod command_decoder;
 mod command_track;

@@ -1,4 +1,4 @@
-//! State and command messages of a bag as one recording.
+//! Reads the state and command messages of a bag as one recording.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -19,15 +19,15 @@ use crate::{BagError, Topics};
 
 /// Reads the bag at `path` (a rosbag2 folder or a bare `.mcap` file) as a recording.
 ///
-/// The clock is that of the stamps in the headers of the state messages, sorted; commands are held from their own
-/// stamp until the next one. A topic of commands is not needed: without it `orifice_command` is `NaN`. What was dropped, sorted,
-/// damaged or missing is in the report.
+/// The clock consists of the stamps in the headers of the state messages, sorted. Commands are held from their own
+/// stamp until the next one. A command topic is not required: without it `orifice_command` is `NaN`. The report
+/// contains what was dropped, sorted, damaged or missing.
 ///
 /// # Errors
 /// All of [`RawMessages::open`]; [`BagError::NoTopic`] and [`BagError::NoMessages`] for the state topic;
 /// [`BagError::WrongType`], [`BagError::OtherDefinition`], [`rosbag2::Error::UnsupportedSerialization`] for either topic;
-/// [`BagError::Undecodable`] when not one message of a topic can be decoded; [`rosbag2::Error::Limit`] for a bag whose values need more
-/// memory than [`ReadLimits`](rosbag2::ReadLimits) allow.
+/// [`BagError::Undecodable`] if no message of a topic can be decoded; [`rosbag2::Error::Limit`] for a bag whose values
+/// need more memory than [`ReadLimits`](rosbag2::ReadLimits) allow.
 pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadReport), BagError> {
     let mut recording = Recording::default();
     let report = read_recording_in_blocks(path, topics, usize::MAX, |whole| {
@@ -37,12 +37,12 @@ pub fn read_recording(path: &Path, topics: &Topics) -> Result<(Recording, ReadRe
     Ok((recording, report))
 }
 
-/// As [`read_recording`], in blocks of `samples` state messages, which `take` gets one after the other as they are read:
-/// for recordings that do not fit into memory. `take` can end the reading. Messages are sorted by their stamps within a
-/// block; the first samples of a block can be older than the last ones of the block before.
+/// As [`read_recording`], but passes blocks of `samples` state messages to `take` as they are read: for recordings that
+/// do not fit into memory. `take` can stop the reading. Messages are sorted by stamp within a block; the first samples
+/// of a block can be older than the last ones of the previous block.
 ///
 /// # Errors
-/// As [`read_recording`]; blocks may have been taken before.
+/// As [`read_recording`]; `take` may already have received blocks.
 pub fn read_recording_in_blocks(
     path: &Path,
     topics: &Topics,
@@ -102,7 +102,7 @@ pub fn read_recording_in_blocks(
     Ok(report)
 }
 
-/// Makes recordings of tables, and adds up what is said about them.
+/// Converts tables to recordings, and adds up their reports.
 struct BlockMaker {
     source: String,
     /// Stamp of the first sample of the first block, ns.
@@ -127,7 +127,7 @@ fn no_state(messages: &RawMessages, topics: &Topics, report: &ReadReport) -> Bag
     let path = messages.path().to_path_buf();
     let topic = topics.state.clone();
     let existing: Vec<String> = messages.topics().iter().map(|topic| topic.name.clone()).collect();
-    // Where there is damage, the definition of the topic itself may be lost.
+    // If there is damage, the definition of the topic itself may be lost.
     if existing.contains(&topic) || (existing.is_empty() && !report.damage.is_empty()) {
         let damage = report.damage.iter().map(ToString::to_string).collect();
         BagError::NoMessages { path, topic, damage }
@@ -136,14 +136,14 @@ fn no_state(messages: &RawMessages, topics: &Topics, report: &ReadReport) -> Bag
     }
 }
 
-/// Seconds from the first message of the bag to the last before the first missing end of a file.
+/// Time from the first message of the bag to the last one before the first missing end of a file, s.
 pub(crate) fn truncated_after(damage: &[Damage], first_log_time: Option<u64>) -> Option<f64> {
     let cut = damage.iter().find(|damage| damage.is_truncation())?;
     let nanoseconds = cut.readable_until.zip(first_log_time).map_or(0, |(until, first)| until.saturating_sub(first));
     Some(nanoseconds as f64 / 1e9)
 }
 
-/// Messages per topic. Counted per shared [`Topic`] first, since a look-up by name for every message costs more than
+/// Messages per topic. Counted per shared [`Topic`] first, since a lookup by name for every message costs more than
 /// decompressing it.
 #[derive(Default)]
 pub(crate) struct TopicCounts(Vec<(Arc<Topic>, u64)>);
@@ -157,7 +157,7 @@ impl TopicCounts {
         }
     }
 
-    /// Enters the counts into the report.
+    /// Adds the counts to the report.
     pub fn write_to(self, report: &mut ReadReport) {
         for (topic, count) in self.0 {
             *report.messages.entry(topic.name.clone()).or_default() += count;
@@ -165,7 +165,7 @@ impl TopicCounts {
     }
 }
 
-/// Decodes the messages of one topic, after a check of each definition that the bag has of it.
+/// Decodes the messages of one topic, after checking each of its definitions in the bag.
 struct TopicReader<'r, M> {
     path: &'r Path,
     topic: &'r str,
@@ -194,12 +194,12 @@ impl<'r, M: Message> TopicReader<'r, M> {
         self.is_checked(message) || message.topic.name == self.topic
     }
 
-    /// Whether it has the definition of the last message that was checked.
+    /// Whether it has the definition that was checked last.
     fn is_checked(&self, message: &RawMessage) -> bool {
         self.checked.as_ref().is_some_and(|checked| Arc::ptr_eq(checked, &message.topic))
     }
 
-    /// The message, `None` if its bytes make none.
+    /// The message; `None` if its bytes cannot be decoded.
     fn decode<T>(
         &mut self,
         message: &RawMessage,
@@ -227,7 +227,7 @@ impl<'r, M: Message> TopicReader<'r, M> {
         }
     }
 
-    /// Enters what could not be decoded into the report. All of it is an error: then the type is not what it says.
+    /// Adds what could not be decoded to the report. If no message could be decoded, it is an error: the type is wrong.
     fn finish(self, report: &mut ReadReport) -> Result<(), BagError> {
         let Some(error) = self.first_undecodable else {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Everything about the reading of a bag that was not perfect.
+//! All imperfections found when reading a bag.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -58,11 +58,11 @@ pub struct ReadReport {
     pub left_out: Vec<[i64; 2]>,
 }
 
-/// Gaps that a report keeps at most.
+/// Maximum number of gaps in a report.
 const MOST_GAPS: usize = 10_000;
 
 impl ReadReport {
-    /// Adds what was found in one block of a recording.
+    /// Adds the findings in one block of a recording.
     pub(super) fn add_block(&mut self, block: ReadReport) {
         self.duplicates += block.duplicates;
         self.reordered += block.reordered;
@@ -80,7 +80,7 @@ impl ReadReport {
         }
     }
 
-    /// Adds what was found in one file of several that are one recording. Gaps are those of the whole recording.
+    /// Adds the findings in one of several files of a recording. Gaps are those of the whole recording.
     pub(crate) fn add_piece(&mut self, path: &Path, piece: ReadReport) {
         for (topic, count) in piece.messages.clone() {
             *self.messages.entry(topic).or_default() += count;
@@ -101,7 +101,7 @@ impl ReadReport {
         self.add_block(ReadReport { gaps: Vec::new(), ..piece });
     }
 
-    /// Bytes lost to damage, in all files together.
+    /// Bytes lost to damage, in all files.
     pub fn lost_bytes(&self) -> u64 {
         self.damage.iter().map(|damage| damage.lost_bytes).fold(0, u64::saturating_add)
     }
@@ -111,7 +111,7 @@ impl ReadReport {
         self.damage.iter().filter(|damage| matches!(damage.kind, rosbag2::DamageKind::BadChunk { .. })).count()
     }
 
-    /// One line for people about each kind of imperfection; empty for a perfect bag.
+    /// One line of text for each kind of imperfection; empty for a perfect bag.
     pub fn problems(&self) -> Vec<String> {
         let mut lines: Vec<String> = self.damage.iter().map(ToString::to_string).collect();
         if let Some(time) = self.truncated_after {

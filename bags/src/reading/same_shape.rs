@@ -1,7 +1,7 @@
-//! Messages that differ from an earlier one in nothing but their stamp and their numbers.
+//! Detects messages that differ from an earlier one only in their stamp and numbers.
 //!
-//! On a topic of a machine that is every message but the first: names, lengths and positions repeat. To compare them with
-//! those of the first costs a tenth of reading them again.
+//! On a topic of a machine, this applies to every message but the first: names, lengths and positions repeat. Comparing
+//! them with the first costs a tenth of decoding them again.
 
 use std::ops::Range;
 
@@ -9,14 +9,14 @@ use excavator_msgs::Time;
 
 use super::content::ENCAPSULATION;
 
-/// The header comes first in a message, and in it the stamp.
+/// The header is the first field of a message, and the stamp is the first field of the header.
 const STAMP: Range<usize> = ENCAPSULATION..ENCAPSULATION + size_of::<i32>() + size_of::<u32>();
 
-/// A message that has been read in full, and where its numbers are.
+/// A message that was fully decoded, and the positions of its numbers.
 #[derive(Debug, Default)]
 pub(super) struct Shape {
     message: Vec<u8>,
-    /// Numbers of eight bytes one after the other, bytes from the start of the message; ascending.
+    /// Ranges of consecutive 8-byte numbers, bytes from the start of the message; ascending.
     runs: Vec<Range<usize>>,
 }
 
@@ -28,20 +28,20 @@ pub(super) struct Numbers<'m> {
 }
 
 impl Shape {
-    /// Takes a message as the one that others are compared with; `runs` as in [`Shape`], all within the message.
+    /// Sets the message to compare with; `runs` as in [`Shape`], all within the message.
     pub fn learn(&mut self, message: &[u8], runs: &[Range<usize>]) {
         self.forget();
         self.message.extend_from_slice(message);
         self.runs.extend_from_slice(runs);
     }
 
-    /// No message is of this shape.
+    /// After this, no message has this shape.
     pub fn forget(&mut self) {
         self.message.clear();
         self.runs.clear();
     }
 
-    /// The numbers of a message; `None` when it differs in more.
+    /// The numbers of a message; `None` if it differs in anything else.
     pub fn numbers<'m>(&'m self, message: &'m [u8]) -> Option<Numbers<'m>> {
         if message.len() != self.message.len() || message.is_empty() {
             return None;
@@ -57,7 +57,7 @@ impl Shape {
             }
             fixed_from = run.end;
         }
-        // What follows the last number is padding.
+        // Only padding follows the last number.
         Some(Numbers { message, runs: &self.runs })
     }
 }

@@ -1,9 +1,9 @@
-//! State messages decoded without a single allocation.
+//! Decodes state messages without allocation.
 //!
-//! A recording is almost only state messages. Through serde each costs a `String` per cylinder and a `Vec`, together as
-//! much as decompressing it; here the numbers of a message that looks like the one before are read in place, and one
-//! [`ArmState`] is filled again and again for those that do not. Whatever this decoder does not take goes through
-//! [`cdr::decode`], which knows every error by name; a test holds them together.
+//! Almost all messages of a recording are state messages. With serde each costs a `String` per cylinder and a `Vec`,
+//! together as much as decompressing it. Here, numbers are read in place if the message has the same shape as the
+//! previous one; other messages reuse one [`ArmState`]. Anything that this decoder rejects goes through
+//! [`cdr::decode`], which returns the precise error; a test checks that both agree.
 
 use std::ops::Range;
 
@@ -18,7 +18,7 @@ use super::same_shape::{Numbers, Shape};
 pub(super) struct StateDecoder {
     state: ArmState,
     shape: Shape,
-    /// Where the numbers of the last message are.
+    /// The positions of the numbers in the last message.
     runs: Vec<Range<usize>>,
 }
 
@@ -38,13 +38,13 @@ impl StateDecoder {
         }
     }
 
-    /// The numbers of a message that looks like the last one that was decoded: those of each cylinder in the order of the
-    /// message, then those that all share. `None` for any other message.
+    /// The numbers of a message with the same shape as the last decoded one: those of each cylinder in message order,
+    /// then those of the machine. `None` for any other message.
     pub fn numbers<'m>(&'m self, bytes: &'m [u8]) -> Option<Numbers<'m>> {
         self.shape.numbers(bytes)
     }
 
-    /// The message that the bytes stand for.
+    /// Decodes a message.
     pub fn decode(&mut self, bytes: &[u8]) -> Result<&ArmState, CdrError> {
         if self.fill(bytes).is_some() {
             self.shape.learn(bytes, &self.runs);
@@ -90,9 +90,9 @@ impl StateDecoder {
     }
 }
 
-/// `None` for bytes that are no text.
+/// `None` for bytes that are not text.
 fn set_text(target: &mut String, text: &[u8]) -> Option<()> {
-    // Almost always it is the same name as in the message before.
+    // The name is almost always the same as in the previous message.
     if target.as_bytes() != text {
         target.clear();
         target.push_str(std::str::from_utf8(text).ok()?);

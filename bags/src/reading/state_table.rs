@@ -1,4 +1,4 @@
-//! State messages as columns: grown message by message, then sorted by stamp.
+//! Collects state messages in columns, then sorts them by stamp.
 
 use excavator_model::recording::{CylinderSignals, Recording};
 use excavator_msgs::{ArmState, CylinderState};
@@ -10,14 +10,14 @@ use super::same_shape::Numbers;
 /// An interval longer than this many median intervals is a gap.
 const GAP_FACTOR: f64 = 1.5;
 const NANOSECONDS_PER_SECOND: f64 = 1e9;
-/// Columns of a cylinder, and those that all share with the clock.
+/// Number of columns per cylinder, and of columns for the whole machine, including the clock.
 const CYLINDER_COLUMNS: usize = 8;
 const SHARED_COLUMNS: usize = 5;
 
-/// Numbers of a cylinder in a message, and those that all share.
+/// Numbers per cylinder in a message, and for the whole machine.
 const CYLINDER_NUMBERS: usize = 7;
 const SHARED_NUMBERS: usize = 4;
-/// Rows that wait to become columns. 128 of three cylinders are 26 kB, which fit into the first cache.
+/// Rows buffered before they are moved to columns. 128 rows of three cylinders are 26 kB, which fit into the L1 cache.
 const WAITING_ROWS: usize = 128;
 
 /// The state messages read so far, in the order of the bag.
@@ -31,15 +31,15 @@ pub struct StateTable {
     oil_temperature: Vec<f64>,
     infinite_values: u64,
     repeated_cylinders: u64,
-    /// Numbers of the last messages, one row after the other; the cylinders of each are those of the table, in their order.
+    /// Numbers of the last messages, row by row; the cylinders are those of the table, in the same order.
     waiting: Vec<f64>,
-    /// Whether the cylinders of the last message are those of the table, in their order.
+    /// Whether the last message has the cylinders of the table, in the same order.
     is_regular: bool,
 }
 
 impl StateTable {
-    /// Adds a message that looks like the last one but for its numbers; `false` where that one had other cylinders than the
-    /// table, or there was none: then it has to come through [`StateTable::push`].
+    /// Adds a message that differs from the last one only in its numbers. `false` if the last one had other cylinders
+    /// than the table, or there was none: the caller must then use [`StateTable::push`].
     pub(super) fn push_numbers(&mut self, numbers: Numbers) -> bool {
         if !self.is_regular {
             return false;
@@ -52,12 +52,12 @@ impl StateTable {
         true
     }
 
-    /// Numbers in a message with the cylinders of the table.
+    /// Numbers in a message that has the cylinders of the table.
     fn row_width(&self) -> usize {
         CYLINDER_NUMBERS * self.cylinders.len() + SHARED_NUMBERS
     }
 
-    /// Makes columns of the rows that wait.
+    /// Moves the buffered rows to columns.
     fn settle(&mut self) {
         let width = self.row_width();
         let (waiting, infinite) = (&self.waiting, &mut self.infinite_values);
@@ -89,7 +89,7 @@ impl StateTable {
     }
 
     fn push_cylinder(&mut self, row: usize, position: usize, state: &CylinderState) {
-        // Almost always the cylinders come in the same order in every message.
+        // The cylinders almost always have the same order in every message.
         let at_position = self.cylinders.get(position).is_some_and(|cylinder| cylinder.name == state.name);
         let known = if at_position {
             Some(position)
@@ -105,7 +105,7 @@ impl StateTable {
             self.repeated_cylinders += 1;
             return;
         }
-        // In message order, as the columns; the command comes in messages of its own.
+        // In message order, as the columns; the command has its own messages.
         let values = [
             state.joint_angle,
             state.displacement,
@@ -122,7 +122,8 @@ impl StateTable {
         }
     }
 
-    /// Bytes that the columns take once a message of so many cylinders is in, also those of cylinders that are in few messages.
+    /// Bytes that the columns take after adding a message with this many cylinders; includes cylinders that occur in
+    /// few messages.
     pub fn memory_with(&self, cylinders: usize) -> u64 {
         let columns = SHARED_COLUMNS + CYLINDER_COLUMNS * cylinders.max(self.cylinders.len());
         (columns * (self.len() + 1) * size_of::<f64>()) as u64
@@ -138,7 +139,7 @@ impl StateTable {
         self.stamps.is_empty()
     }
 
-    /// The recording named `source`, its clock in ns since the epoch; `report` gets the counts of what had to be set right.
+    /// The recording named `source`, with its clock in ns since the epoch; adds the counts of corrections to `report`.
     pub fn into_recording(mut self, source: &str, report: &mut ReadReport) -> (Recording, Vec<i64>) {
         self.settle();
         report.infinite_values += self.infinite_values;
@@ -153,7 +154,7 @@ impl StateTable {
             self.sort(report);
         }
         let start = self.stamps.first().copied().unwrap_or_default();
-        // Division, not multiplication by 1e-9: it gives the double nearest to the decimal number.
+        // Division, not multiplication by 1e-9: it yields the double nearest to the decimal number.
         let time: Vec<f64> = self.stamps.iter().map(|&stamp| (stamp - start) as f64 / NANOSECONDS_PER_SECOND).collect();
         let recording = Recording {
             source: source.to_string(),
@@ -169,7 +170,7 @@ impl StateTable {
         (recording, self.stamps)
     }
 
-    /// Sorts the rows by stamp, and drops all but the first of each stamp.
+    /// Sorts the rows by stamp, and keeps only the first of each stamp.
     fn sort(&mut self, report: &mut ReadReport) {
         report.reordered = count_late(&self.stamps);
         report.notes.extend(steps_back(&self.stamps));
@@ -187,13 +188,13 @@ fn push_finite(column: &mut Vec<f64>, value: f64, infinite_values: &mut u64) {
     column.push(finite(value, infinite_values));
 }
 
-/// The value, `NaN` for an infinite one, which is counted.
+/// The value; `NaN` for an infinite one, which is counted.
 fn finite(value: f64, infinite_values: &mut u64) -> f64 {
     *infinite_values += u64::from(value.is_infinite());
     if value.is_infinite() { f64::NAN } else { value }
 }
 
-/// Rows in the order of their stamps; of rows with equal stamps only the first.
+/// Row indices in order of stamp; of rows with equal stamps only the first.
 fn rows_by_stamp(stamps: &[i64]) -> Vec<usize> {
     let mut rows: Vec<usize> = (0..stamps.len()).collect();
     rows.sort_by_key(|&row| stamps[row]);
@@ -201,7 +202,7 @@ fn rows_by_stamp(stamps: &[i64]) -> Vec<usize> {
     rows
 }
 
-/// Pauses of the recording's clock.
+/// Gaps in the clock of the recording.
 pub(crate) fn gaps(recording: &Recording) -> Vec<Gap> {
     let limit = GAP_FACTOR * recording.sample_interval();
     let steps = recording.time.windows(2).map(|pair| Gap { after: pair[0], length: pair[1] - pair[0] });

@@ -1,4 +1,4 @@
-//! Whether a topic carries what we can decode.
+//! Checks whether the messages of a topic can be decoded.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::BagError;
 
 /// Checks type, serialization and definition of a topic before its first message is decoded.
 ///
-/// A definition with other fields would not always fail to decode: it can also give wrong numbers.
+/// A definition with other fields does not always fail to decode: it can also yield wrong numbers.
 pub(super) fn check<M: Message>(path: &Path, topic: &Topic) -> Result<(), BagError> {
     let path = || path.to_path_buf();
     let name = || topic.name.clone();

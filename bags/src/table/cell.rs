@@ -1,25 +1,26 @@
-//! Numbers in cells: plain, with an SI prefix (`3.3k`), or with a unit (`25.1 mm`); and the cells of a column.
+//! Parses numbers in cells: plain, with an SI prefix (`3.3k`), or with a unit (`25.1 mm`); collects the cells of a
+//! column.
 
 use super::Values;
 use super::dates::parse_date;
 use crate::map::Unit;
 
-/// SI prefixes that stand right behind a number without a unit, and what they multiply by. K is the kelvin.
+/// SI prefixes that directly follow a number without a unit, and their factors. K is the kelvin.
 const PREFIXES: [(&str, f64); 9] =
     [("G", 1e9), ("M", 1e6), ("k", 1e3), ("m", 1e-3), ("u", 1e-6), ("µ", 1e-6), ("μ", 1e-6), ("n", 1e-9), ("p", 1e-12)];
 
-/// What stands behind a number.
+/// The suffix of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Suffix {
     None,
-    /// A prefix, by which the number is multiplied already.
+    /// A prefix; the number is already multiplied by it.
     Prefix,
-    /// An `m` without a blank: a thousandth, as a prefix is, unless the column is one of metres.
+    /// An `m` without a blank: the prefix milli, unless the column is in metres.
     Milli,
     Unit(&'static str),
 }
 
-/// The number in a cell and what stands behind it.
+/// The number in a cell and its suffix.
 pub(super) fn read(cell: &str, decimal: char) -> Option<(f64, Suffix)> {
     let cell = cell.trim();
     if let Some(number) = number(cell, decimal) {
@@ -31,7 +32,7 @@ pub(super) fn read(cell: &str, decimal: char) -> Option<(f64, Suffix)> {
     }
     let number = number(digits, decimal)?;
     let name = rest.trim_start();
-    // A prefix stands at its number; behind a blank there is a unit.
+    // A prefix directly follows its number; after a blank there is a unit.
     if name.len() == rest.len()
         && let Some((prefix, factor)) = PREFIXES.iter().find(|(prefix, _)| *prefix == name)
     {
@@ -41,7 +42,7 @@ pub(super) fn read(cell: &str, decimal: char) -> Option<(f64, Suffix)> {
     unit(name).map(|unit| (number, Suffix::Unit(unit)))
 }
 
-/// A unit behind a number. Stricter than in a heading: `5-` is no number of a unit `-`, and `5 M` are no metres.
+/// A unit after a number. Stricter than in a heading: `5-` is not a number with a unit `-`, and `5 M` is not in metres.
 fn unit(name: &str) -> Option<&'static str> {
     let found = Unit::named(name)?.name;
     let initial = |text: &str| text.chars().next();
@@ -50,7 +51,7 @@ fn unit(name: &str) -> Option<&'static str> {
     (!["1", "-"].contains(&found) && !changes_meaning).then_some(found)
 }
 
-/// Bytes of the number that a text begins with: sign, digits and separators, exponent.
+/// Length in bytes of the number at the start of a text: sign, digits and separators, exponent.
 fn end_of_number(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut end = usize::from(text.starts_with(['+', '-']));
@@ -67,46 +68,46 @@ fn end_of_number(text: &str) -> usize {
     end
 }
 
-/// The number in a cell without anything behind it.
+/// The number in a cell without a suffix.
 pub(super) fn number(cell: &str, decimal: char) -> Option<f64> {
     let cell = cell.trim();
     if decimal == '.' {
         return cell.parse().ok();
     }
-    // With a decimal comma a point would group thousands.
+    // With a decimal comma, a point separates thousands.
     cell.replace('.', "").replace(',', ".").parse().ok()
 }
 
-/// Whether a cell says that there is no value.
+/// Whether a cell marks a missing value.
 pub(super) fn is_missing(cell: &str) -> bool {
     let cell = cell.trim();
     cell.is_empty() || ["nan", "na", "n/a", "null", "none", "-", "--"].contains(&cell.to_lowercase().as_str())
 }
 
-/// The values of one column as far as they are read.
+/// The values of one column read so far.
 #[derive(Default)]
 pub(super) struct Cells {
-    /// `None` before the first cell that is not empty: a column is one of dates if that is a date.
+    /// `None` before the first cell that is not empty: that cell decides whether the column contains dates.
     values: Option<Values>,
-    /// Empty cells before the first other one.
+    /// Number of empty cells before the first value.
     missing: usize,
-    /// Cells that are neither number nor empty.
+    /// Number of cells that are neither a number nor empty.
     bad: usize,
     /// Unit in the heading.
     heading: Option<String>,
-    /// Unit that every cell has, where the heading gives none.
+    /// Unit of all cells, if the heading gives none.
     unit: Option<&'static str>,
-    /// Numbers without a unit.
+    /// Number of values without a unit.
     without_unit: usize,
-    /// Cells whose unit is another than that of the column, or that have none where others have.
+    /// Number of cells whose unit differs from that of the column, or that have none where others have.
     other_unit: usize,
-    /// Cells that may be metres or thousandths, and the first of them.
+    /// Number of cells that may be metres or thousandths, and the first of them.
     doubtful: usize,
     first_doubtful: String,
 }
 
 impl Cells {
-    /// Of a column whose heading gives this unit.
+    /// A column whose heading gives this unit.
     pub fn new(heading: Option<String>) -> Cells {
         Cells { heading, ..Cells::default() }
     }
@@ -134,7 +135,7 @@ impl Cells {
         }
     }
 
-    /// The number in a cell; `NaN` where it is none, or of another unit than the column.
+    /// The number in a cell; `NaN` if it is not a number, or its unit differs from that of the column.
     fn value(&mut self, cell: &str, decimal: char) -> f64 {
         let Some((number, suffix)) = read(cell, decimal) else {
             self.bad += usize::from(!is_missing(cell));
@@ -148,7 +149,7 @@ impl Cells {
                 }
                 return f64::NAN;
             }
-            // Not a number: no unit is missing there.
+            // Not a number, so no unit is missing.
             _ if number.is_nan() => true,
             Suffix::None | Suffix::Prefix | Suffix::Milli => {
                 self.without_unit += 1;
@@ -168,7 +169,7 @@ impl Cells {
         if fits { number } else { f64::NAN }
     }
 
-    /// Unit and values of the column of this name, and what was not perfect.
+    /// Unit and values of the column with this name; adds imperfections to `notes`.
     pub fn finish(self, name: &str, notes: &mut Vec<String>) -> (Option<String>, Values) {
         if self.bad > 0 {
             let bad = self.bad;

@@ -1,12 +1,12 @@
-//! Dates in cells.
+//! Parses dates in cells.
 
 use jiff::civil::DateTime;
 use jiff::{Timestamp, tz::TimeZone};
 
-/// ns since the epoch of an ISO 8601 date with time; without time zone it is taken as UTC. `None` for anything else.
+/// An ISO 8601 date with time, in ns since the epoch; UTC if it has no time zone. `None` for anything else.
 pub fn parse_date(text: &str) -> Option<i64> {
     let text = text.trim();
-    // Numbers are the common case and never dates.
+    // Numbers are the common case and are never dates.
     if text.len() < 10 || !text.as_bytes().get(4).is_some_and(|sign| [b'-', b'/'].contains(sign)) {
         return None;
     }

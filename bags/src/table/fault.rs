@@ -1,4 +1,4 @@
-//! Why a table cannot be read.
+//! Errors when reading a table.
 
 use rosbag2::LimitError;
 use thiserror::Error;
@@ -6,13 +6,13 @@ use thiserror::Error;
 /// Why a table cannot be read.
 #[derive(Debug, Error)]
 pub(super) enum TableFault {
-    /// It costs too much.
+    /// The table exceeds a limit.
     #[error(transparent)]
     Limit(#[from] LimitError),
-    /// The operating system refused to read on.
+    /// A read error of the operating system.
     #[error("{0}")]
     Io(#[from] std::io::Error),
-    /// What is wrong with it, in one line.
+    /// The fault, in one line.
     #[error("{0}")]
     Text(String),
 }

@@ -1,4 +1,4 @@
-//! How a text table is laid out.
+//! The layout of a text table.
 
 use serde::{Deserialize, Serialize};
 

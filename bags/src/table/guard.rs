@@ -1,4 +1,4 @@
-//! Panics of a library as errors.
+//! Converts panics of a library to errors.
 
 use std::any::Any;
 use std::cell::Cell;
@@ -10,7 +10,7 @@ thread_local! {
 }
 static HOOK: Once = Once::new();
 
-/// What `work` gives, or the message of its panic, which nobody gets to see otherwise.
+/// The result of `work`, or its panic message, which is not printed otherwise.
 pub(super) fn without_panic<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     HOOK.call_once(|| {
         let usual = take_hook();

@@ -1,8 +1,8 @@
-//! Names and units in the headings of columns.
+//! Parses names and units in the headings of columns.
 
 use crate::map::{Dimension, Unit};
 
-/// Name and unit of a heading: `p_A [bar]`, `stroke (mm)`, `flow / l/min`, `pressure_bar`.
+/// Splits a heading into name and unit: `p_A [bar]`, `stroke (mm)`, `flow / l/min`, `pressure_bar`.
 pub(crate) fn split(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim().trim_start_matches('\u{feff}').trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {
@@ -16,11 +16,11 @@ pub(crate) fn split(heading: &str) -> (String, Option<String>) {
     for separator in [" / ", " in ", ", ", "_", " "] {
         if let Some((name, unit)) = heading.rsplit_once(separator)
             && is_telling(unit)
-            // "3 bar" over forces are those at 3 bar.
+            // "3 bar" above forces means forces at 3 bar.
             && name.trim().parse::<f64>().is_err()
             && let Some(unit) = Unit::named(unit).filter(|found| !is_a_word(unit, found.dimension))
         {
-            // The unit stays part of a name like `time_ms`: that is how the column is asked for.
+            // The unit remains part of a name like `time_ms`, since users refer to the column by that name.
             let name = if separator == "_" { heading } else { name.trim() };
             return (name.to_string(), Some(unit.name.to_string()));
         }
@@ -28,12 +28,13 @@ pub(crate) fn split(heading: &str) -> (String, Option<String>) {
     (heading.to_string(), None)
 }
 
-/// Whether an ending without brackets is meant as a unit: `p_A` is the pressure at port A, no current, and `x_1` the first x.
+/// Whether a suffix without brackets is a unit: `p_A` is the pressure at port A, not a current, and `x_1` is the first
+/// x.
 fn is_telling(unit: &str) -> bool {
     unit.chars().count() > 1 || ["s", "m", "N", "%"].contains(&unit)
 }
 
-/// Whether an ending that could be a unit is a word: `Boom Ms` is the measured boom, no time.
+/// Whether a suffix that could be a unit is a word: `Boom Ms` is the measured boom, not a time.
 fn is_a_word(ending: &str, dimension: Dimension) -> bool {
     dimension == Dimension::Time && ending.chars().any(char::is_uppercase)
 }

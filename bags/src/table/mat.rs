@@ -1,4 +1,4 @@
-//! MATLAB files of versions 4, 6 and 7 as tables: every real numeric vector is a column.
+//! Reads MATLAB files of versions 4, 6 and 7 as tables: every real numeric vector is a column.
 
 use rosbag2::{Limit, LimitError, ReadLimits};
 
@@ -10,14 +10,14 @@ use super::{Column, Table, Values, mat4, mat5};
 pub(super) struct Variable {
     pub name: String,
     pub rows: usize,
-    /// Column by column; a whole number of columns.
+    /// In column-major order; an integer number of columns.
     pub values: Vec<f64>,
 }
 
-/// Headings of the columns of a matrix beyond this many are of no use to anybody.
+/// Maximum number of columns read from a matrix; more are of no use.
 const COLUMN_LIMIT: usize = 256;
 
-/// The table in a file. `Err` says in one line what is wrong.
+/// Reads the table in a file. `Err` contains the fault in one line.
 pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Table, TableFault> {
     let mut table = Table::default();
     let variables = if mat5::is_mat5(bytes) {
@@ -32,7 +32,7 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Table, TableFau
     for Variable { name, rows, values } in variables {
         let name = if name.is_empty() { format!("column_{}", table.columns.len() + 1) } else { name };
         let columns = values.len().checked_div(rows).unwrap_or(0);
-        // A row is a column that lies down.
+        // A row vector is treated as a column.
         if rows == 1 || columns == 1 {
             table.columns.push(Column { name, unit: None, values: Values::Numbers(values) });
             continue;
@@ -48,7 +48,7 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Table, TableFau
     Ok(table)
 }
 
-/// What the variables of a file may still take.
+/// The remaining memory for the variables of a file.
 pub(super) struct Budget<'l> {
     limits: &'l ReadLimits,
     file_bytes: u64,
@@ -62,22 +62,22 @@ impl<'l> Budget<'l> {
         Budget { limits, file_bytes: file.len() as u64, values: 0, variables: 0 }
     }
 
-    /// Counts a variable of so many values.
+    /// Counts a variable with this many values.
     pub fn take(&mut self, values: usize) -> Result<(), LimitError> {
         self.variables += 1;
         Limit::Fields.check(self.variables as u64, self.limits.fields as u64)?;
-        // Once as a variable, once more in the columns that are made of it.
+        // Once for the variable, once more for the columns made from it.
         self.values = self.values.saturating_add(2 * (values as u64).saturating_mul(size_of::<f64>() as u64));
         self.limits.check_memory(self.values, self.file_bytes)
     }
 
-    /// Checks the bytes that a variable unpacks to, beside the values so far.
+    /// Checks the decompressed size of a variable, in addition to the values so far.
     pub fn unpacks_to(&self, bytes: u64) -> Result<(), LimitError> {
         self.limits.check_memory(self.values.saturating_add(bytes), self.file_bytes)
     }
 }
 
-/// Numbers of one storage type, told apart by both formats.
+/// The storage types of numbers, common to both formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Number {
     I8,
@@ -102,7 +102,7 @@ impl Number {
         }
     }
 
-    /// All whole numbers in the bytes.
+    /// Decodes all complete numbers in the bytes.
     pub fn read(self, bytes: &[u8], big_endian: bool) -> Vec<f64> {
         macro_rules! read {
             ($type:ty, $convert:expr) => {

@@ -1,4 +1,4 @@
-//! MATLAB version 4: a header of five integers, a name, the numbers (MAT-File Format, chapter 2).
+//! Reads MATLAB version 4: a header of five integers, a name, the numbers (MAT-File Format, chapter 2).
 
 use rosbag2::ReadLimits;
 
@@ -6,10 +6,10 @@ use super::fault::TableFault;
 use super::mat::{Budget, Number, Variable};
 
 const HEADER: usize = 20;
-/// No variable has a longer name; a longer one is no file of this format.
+/// Maximum length of a variable name; a longer one means that the file has another format.
 const NAME_LIMIT: usize = 256;
 
-/// The real full matrices in a file; others are noted.
+/// The real full matrices in a file; others are added to `notes`.
 pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>, limits: &ReadLimits) -> Result<Vec<Variable>, TableFault> {
     let mut budget = Budget::new(limits, bytes);
     let mut variables = Vec::new();
@@ -34,11 +34,11 @@ pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>, limits: &ReadLimits) 
     Ok(variables)
 }
 
-/// The next variable, or its name if it is of a kind that is not read, and what follows.
+/// The next variable, or its name if its kind is not supported, and the remaining bytes.
 fn next(bytes: &[u8]) -> Option<(Result<Variable, String>, &[u8])> {
     let (header, rest) = bytes.split_at_checked(HEADER)?;
     let little = |at: usize| header.get(at..at + 4)?.try_into().ok().map(u32::from_le_bytes);
-    // The type is a decimal MOPT; read in the wrong byte order even the smallest is far above 4052.
+    // The type is a decimal MOPT; in the wrong byte order even the smallest is far above 4052.
     let big_endian = little(0)? > 4052;
     let field = |at: usize| little(at).map(|value| if big_endian { value.swap_bytes() } else { value });
     let kind = field(0)?;

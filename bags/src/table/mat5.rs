@@ -1,4 +1,4 @@
-//! MATLAB versions 5 to 7: elements with a tag, variables packed with zlib (MAT-File Format, chapter 1).
+//! Reads MATLAB versions 5 to 7: elements with a tag, variables compressed with zlib (MAT-File Format, chapter 1).
 
 use std::io::Read;
 
@@ -8,10 +8,10 @@ use super::fault::TableFault;
 use super::mat::{Budget, Number, Variable};
 
 const HEADER: usize = 128;
-/// Structs within structs that are looked into.
+/// Maximum nesting of structs.
 const DEPTH_LIMIT: usize = 8;
 
-/// Dimensions of an array that are looked at, and bytes of a name; real ones have three and 63.
+/// Maximum number of dimensions of an array, and of bytes of a name; real ones have three and 63.
 const DIMENSION_LIMIT: usize = 32;
 const NAME_LIMIT: usize = 256;
 
@@ -22,12 +22,12 @@ const STRUCT_CLASS: u8 = 2;
 const NUMERIC_CLASSES: std::ops::RangeInclusive<u8> = 6..=15;
 const COMPLEX_FLAG: u8 = 0x08;
 
-/// Whether the bytes begin like a file of these versions.
+/// Whether the bytes start like a file of these versions.
 pub(super) fn is_mat5(bytes: &[u8]) -> bool {
     matches!(bytes.get(124..128), Some([0, 1, b'I', b'M'] | [1, 0, b'M', b'I']))
 }
 
-/// The real numeric arrays in a file, those in structs as `struct.field`; others are noted.
+/// The real numeric arrays in a file, those in structs as `struct.field`; others are added to `notes`.
 pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>, limits: &ReadLimits) -> Result<Vec<Variable>, TableFault> {
     let big_endian = bytes.get(126) == Some(&b'M');
     let mut found = Found { variables: Vec::new(), notes, budget: Budget::new(limits, bytes), fault: None };
@@ -53,7 +53,7 @@ pub(super) fn parse(bytes: &[u8], notes: &mut Vec<String>, limits: &ReadLimits) 
     Ok(found.variables)
 }
 
-/// The bytes of a packed variable; of more than its own tag announces nothing is unpacked.
+/// The bytes of a compressed variable. No more bytes are decompressed than its own tag announces.
 fn unpack(element: &Element, big_endian: bool, budget: &Budget) -> Result<std::io::Result<Vec<u8>>, LimitError> {
     let mut decoder = flate2::read::ZlibDecoder::new(element.content);
     let mut tag = [0; 8];
@@ -62,7 +62,7 @@ fn unpack(element: &Element, big_endian: bool, budget: &Budget) -> Result<std::i
     }
     let tag_only = Elements { rest: &tag, big_endian };
     let (Some(kind), Some(length)) = (tag_only.word(0), tag_only.word(4)) else { return Ok(Ok(Vec::new())) };
-    // A small element has its content in its tag.
+    // The content of a small element is in its tag.
     let length = if kind >> 16 == 0 { u64::from(length) } else { 0 };
     budget.unpacks_to(length)?;
     let mut unpacked = Vec::with_capacity(tag.len() + usize::try_from(length).unwrap_or_default());
@@ -83,10 +83,10 @@ struct Elements<'b> {
 }
 
 impl<'b> Elements<'b> {
-    /// The next element; `None` when there is no whole one.
+    /// The next element; `None` if there is no complete one.
     fn next(&mut self) -> Option<Element<'b>> {
         let first = self.word(0)?;
-        // Up to four bytes of content may stand in the tag itself; then the length is in its upper half.
+        // Up to four bytes of content may be in the tag itself; then the length is in its upper half.
         if first >> 16 != 0 {
             let length = (first >> 16) as usize;
             let content = self.rest.get(4..8)?.get(..length)?;
@@ -96,7 +96,7 @@ impl<'b> Elements<'b> {
         let length = self.word(4)? as usize;
         let content = self.rest.get(8..)?.get(..length)?;
         let end = 8 + length;
-        // Packed elements are not padded, all others to eight bytes, except perhaps the last.
+        // Compressed elements are not padded. All others are padded to eight bytes, except perhaps the last.
         let end = if first == COMPRESSED { end } else { end.next_multiple_of(8).min(self.rest.len()) };
         self.rest = self.rest.get(end..)?;
         Some(Element { kind: first, content })
@@ -108,7 +108,7 @@ impl<'b> Elements<'b> {
     }
 }
 
-/// The name in a field of bytes, which ends at a zero.
+/// The name in a byte field, terminated by a zero.
 fn name_in(bytes: &[u8]) -> String {
     let name = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
     String::from_utf8_lossy(name.get(..NAME_LIMIT).unwrap_or(name)).into_owned()
@@ -118,7 +118,7 @@ struct Found<'n> {
     variables: Vec<Variable>,
     notes: &'n mut Vec<String>,
     budget: Budget<'n>,
-    /// Set when the budget is spent.
+    /// Set when the budget is exhausted.
     fault: Option<LimitError>,
 }
 
@@ -134,13 +134,13 @@ impl Found<'_> {
         self.fault.map_or(Ok(()), Err)
     }
 
-    /// Counts a variable; `None` when it is too much.
+    /// Counts a variable; `None` if it exceeds the budget.
     fn afford(&mut self, values: usize) -> Option<()> {
         self.fault = self.fault.or(self.budget.take(values).err());
         self.fault.is_none().then_some(())
     }
 
-    /// Takes a matrix; `name` replaces its own. `None` when it makes no sense.
+    /// Reads a matrix; `name` replaces its own. `None` if it is invalid.
     fn matrix(&mut self, content: &[u8], big_endian: bool, name: Option<String>, depth: usize) -> Option<()> {
         self.afford(0)?;
         if content.is_empty() {

@@ -1,4 +1,4 @@
-//! Tables: columns of numbers from text files, spreadsheets, MATLAB files and Parquet files.
+//! Reads tables: columns of numbers from text files, spreadsheets, MATLAB files and Parquet files.
 
 mod cell;
 mod dates;
@@ -40,14 +40,14 @@ pub use sampling::Sampling;
 /// The values of one column.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// Numbers as written, `NaN` for empty cells and nulls.
+    /// Numbers as written; `NaN` for empty cells and nulls.
     Numbers(Vec<f64>),
     /// Dates, ns since the epoch; `None` for empty cells and nulls.
     Stamps(Vec<Option<i64>>),
 }
 
 impl Values {
-    /// Rows of the column.
+    /// Number of rows.
     pub fn len(&self) -> usize {
         match self {
             Values::Numbers(values) => values.len(),
@@ -55,7 +55,7 @@ impl Values {
         }
     }
 
-    /// Whether the column has no row.
+    /// Whether the column has no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -64,9 +64,9 @@ impl Values {
 /// One column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
-    /// Heading without its unit, or name of the variable; `column_3` without heading.
+    /// Heading without its unit, or name of the variable; `column_3` without a heading.
     pub name: String,
-    /// Unit that the heading names, else the one that every cell has; if it is one that is known here.
+    /// Unit in the heading, otherwise the one that every cell has, if it is known.
     pub unit: Option<String>,
     /// The values.
     pub values: Values,
@@ -77,15 +77,15 @@ pub struct Column {
 pub struct Table {
     /// In the order of the file. Columns of a MATLAB file may have different lengths.
     pub columns: Vec<Column>,
-    /// How often rows were taken, where a line before them says so.
+    /// Sampling rate, if a line before the table gives it.
     pub sampling: Option<Sampling>,
-    /// What was not perfect, one line each.
+    /// Imperfections, one line each.
     pub notes: Vec<String>,
 }
 
 impl Table {
-    /// Whether the file is a table, by its extension: `.csv`, `.tsv`, `.txt`, `.dat`, `.xlsx`, `.xlsm`, `.mat`,
-    /// `.parquet` or `.pq`.
+    /// Whether the file is a table, according to its extension: `.csv`, `.tsv`, `.txt`, `.dat`, `.xlsx`, `.xlsm`,
+    /// `.mat`, `.parquet` or `.pq`.
     pub fn is_table(path: &Path) -> bool {
         let ends = ["csv", "tsv", "txt", "dat", "xlsx", "xlsm", "mat", "parquet", "pq"];
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
@@ -120,7 +120,7 @@ impl Table {
         })
     }
 
-    /// The table in the text of a CSV file of any dialect.
+    /// Parses the text of a CSV file of any dialect.
     ///
     /// ```
     /// use excavator_bags::table::{Table, TableFormat, Values};
@@ -132,41 +132,41 @@ impl Table {
     /// ```
     ///
     /// # Errors
-    /// What is wrong, in one line.
+    /// The fault, in one line.
     pub fn from_text(bytes: &[u8], format: &TableFormat) -> Result<Table, String> {
         text::parse(&mut Cursor::new(bytes), bytes.len() as u64, format, &ReadLimits::DEFAULT)
             .map_err(|fault| fault.to_string())
     }
 
-    /// The table in a MATLAB file of version 4, 6 or 7.
+    /// Reads a MATLAB file of version 4, 6 or 7.
     ///
     /// # Errors
-    /// What is wrong, in one line.
+    /// The fault, in one line.
     #[cfg(feature = "tables")]
     pub fn from_mat(bytes: &[u8]) -> Result<Table, String> {
         mat::parse(bytes, &ReadLimits::DEFAULT).map_err(|fault| fault.to_string())
     }
 
-    /// The table in a sheet of a spreadsheet.
+    /// Reads a sheet of a spreadsheet.
     ///
     /// # Errors
-    /// What is wrong, in one line.
+    /// The fault, in one line.
     #[cfg(feature = "tables")]
     pub fn from_xlsx(bytes: Vec<u8>, format: &TableFormat) -> Result<Table, String> {
         xlsx::parse(bytes, format, &ReadLimits::DEFAULT).map_err(|fault| fault.to_string())
     }
 
-    /// The table in a Parquet file.
+    /// Reads a Parquet file.
     ///
     /// # Errors
-    /// What is wrong, in one line.
+    /// The fault, in one line.
     #[cfg(feature = "tables")]
     pub fn from_parquet(bytes: Vec<u8>) -> Result<Table, String> {
         parquet::parse(bytes.into(), &ReadLimits::DEFAULT).map_err(|fault| fault.to_string())
     }
 }
 
-/// The kinds of tables that are no text, by the extensions of their files.
+/// The kinds of tables that are not text, by file extension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Packed {
     Mat,
@@ -175,7 +175,7 @@ enum Packed {
 }
 
 impl Packed {
-    /// What the extension says; `None` for text.
+    /// The kind for the extension; `None` for text.
     fn of(path: &Path) -> Option<Packed> {
         let extension = path.extension()?.to_string_lossy().to_lowercase();
         match extension.as_str() {
@@ -193,7 +193,7 @@ impl Packed {
         format: &TableFormat,
         limits: &ReadLimits,
     ) -> Result<Result<Table, TableFault>, BagError> {
-        // What is held as a whole beside its values may be as large as they.
+        // A file that is held in memory as a whole may be as large as its values.
         let whole = read_regular(path, limits.memory)?;
         Ok(match self {
             Packed::Mat => mat::parse(&whole, limits),

@@ -1,21 +1,21 @@
-//! Lines before the table: titles, who measured, how often.
+//! Parses the lines before the table: titles, author, sampling rate.
 
 use super::cell;
 use super::dates::parse_date;
 use super::sampling::Sampling;
 use super::text_lines::Line;
 
-/// Where the table begins, and what is said before.
+/// Where the table starts, and the information before it.
 #[derive(Debug, Default)]
 pub(super) struct Preamble {
-    /// The first line of the table.
+    /// Index of the first line of the table.
     pub lines: usize,
     pub sampling: Option<Sampling>,
     pub notes: Vec<String>,
 }
 
-/// Looks for the first line of the table. Only what cannot be a part of it is left out: comments, lines that
-/// are shorter than its rows, and lines that say how often rows were taken. `skipped` are lines that the map leaves out.
+/// Finds the first line of the table. Skips only lines that cannot be part of it: comments, lines that are shorter than
+/// its rows, and lines with the sampling rate. `skipped` are lines that the map leaves out.
 pub(super) fn find(skipped: &[String], lines: &[Line], delimiter: u8, decimal: char) -> Preamble {
     let of_lines = |lines: &[&str]| -> Vec<Sampling> {
         lines.iter().filter_map(|line| Sampling::of(line, delimiter, decimal)).collect()
@@ -25,13 +25,13 @@ pub(super) fn find(skipped: &[String], lines: &[Line], delimiter: u8, decimal: c
     let is_row =
         |line: &Line| is_data(&line.text, delimiter, width) && Sampling::of(&line.text, delimiter, decimal).is_none();
     let data = lines.iter().position(is_row);
-    // Without a row of data nobody can say what is before it.
+    // Without a data row, it is unknown which lines are before the table.
     let before: Vec<&str> = lines.iter().take(data.unwrap_or(0)).map(|line| line.text.as_str()).collect();
     let mut begin = 0;
     for (number, line) in before.iter().enumerate() {
         let cells = cells(line, delimiter);
         let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
-        // A cell goes on in the next line.
+        // A cell continues in the next line.
         if line.matches('"').count() % 2 == 1 {
             break;
         }
@@ -43,7 +43,7 @@ pub(super) fn find(skipped: &[String], lines: &[Line], delimiter: u8, decimal: c
             break;
         }
     }
-    // Whatever stands before a line about sampling is no heading.
+    // Lines before a line with the sampling rate are not headings.
     let last = before.iter().rposition(|line| Sampling::of(line, delimiter, decimal).is_some());
     let begin = begin.max(last.map_or(0, |last| last + 1));
     let mut preamble = Preamble { lines: begin, ..Preamble::default() };
@@ -59,7 +59,7 @@ pub(super) fn find(skipped: &[String], lines: &[Line], delimiter: u8, decimal: c
     preamble
 }
 
-/// The number of cells that most lines have; of two that are equally frequent the larger.
+/// The most frequent number of cells per line; the larger of two that are equally frequent.
 fn usual_width(lines: &[Line], delimiter: u8) -> usize {
     let mut widths: Vec<usize> =
         lines.iter().filter(|line| !is_comment(&line.text)).map(|line| cells(&line.text, delimiter).len()).collect();
@@ -68,7 +68,7 @@ fn usual_width(lines: &[Line], delimiter: u8) -> usize {
     longest.and_then(|same| same.first()).copied().unwrap_or(0)
 }
 
-/// Whether a line of the usual width has numbers or dates in half of its cells at least.
+/// Whether a line of the usual width has numbers or dates in at least half of its cells.
 fn is_data(line: &str, delimiter: u8, width: usize) -> bool {
     let cells = cells(line, delimiter);
     if is_comment(line) || cells.len() != width {
@@ -111,13 +111,13 @@ mod tests {
         assert_eq!(begins(rows, b';'), (0, None));
         assert_eq!(begins(&format!("Rig 3\nSampling rate: 500 Hz\na;b;c\n{rows}"), b';'), (2, Some(500.0)));
         assert_eq!(begins(&format!("# fs=100\na;b;c\n{rows}"), b';'), (1, Some(100.0)));
-        // A spreadsheet gives every line the same number of cells.
+        // A spreadsheet writes the same number of cells in every line.
         assert_eq!(begins(&format!("Rig;;\nSample rate;250;\na;b;c\n{rows}"), b';'), (2, Some(250.0)));
         assert_eq!(begins("Operator,Smith\nSample interval,0.001\nt,p\n0,1\n1,2\n", b','), (2, Some(1000.0)));
         assert_eq!(begins("fs=1000\n1.5\n2.5\n", b' '), (1, Some(1000.0)));
-        // Headings of R are one cell shorter.
+        // In files from R, the heading line is one cell shorter.
         assert_eq!(begins("a;b\n1;2;3\n4;5;6\n", b';'), (0, None));
-        // A first row that is not whole stays a row.
+        // An incomplete first row is still a row.
         assert_eq!(begins(&format!("0\n{rows}"), b';'), (0, None));
         assert_eq!(begins("\"two\nlines\";b;c\n1;2;3\n4;5;6", b';'), (0, None));
         assert_eq!(begins("", b';'), (0, None));

@@ -1,8 +1,8 @@
-//! How often rows were taken, from a line before the table: `Sampling rate: 500 Hz`, `dt = 0.002 s`.
+//! Parses the sampling rate from a line before the table: `Sampling rate: 500 Hz`, `dt = 0.002 s`.
 
 use crate::map::{Dimension, Unit};
 
-/// How often the rows of a table were taken, as a line before it says.
+/// The sampling rate of a table, from a line before it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sampling {
     /// Rows per second, Hz.
@@ -11,7 +11,7 @@ pub struct Sampling {
     pub line: String,
 }
 
-/// What is written before a rate, in small letters.
+/// Keys of a rate, in lower case.
 const RATES: [&str; 21] = [
     "sampling rate",
     "sample rate",
@@ -35,7 +35,7 @@ const RATES: [&str; 21] = [
     "messfrequenz",
     "aufzeichnungsrate",
 ];
-/// What is written before the time from row to row.
+/// Keys of a sampling interval.
 const INTERVALS: [&str; 17] = [
     "sample interval",
     "sampling interval",
@@ -55,19 +55,19 @@ const INTERVALS: [&str; 17] = [
     "abtastschritt",
     "zeitschritt",
 ];
-/// The same, or how long the measurement took.
+/// Keys of either a sampling interval or the duration of the measurement.
 const INTERVALS_OR_DURATIONS: [&str; 3] = ["sample time", "sampling time", "abtastzeit"];
-/// Of the latter, longer ones are durations, s.
+/// For the latter keys, longer times are durations, s.
 const LONGEST_INTERVAL: f64 = 1.0;
-/// Rates that make sense, Hz.
+/// Valid rates, Hz.
 const SENSIBLE: std::ops::RangeInclusive<f64> = 1e-6..=1e7;
-/// Share by which two lines may differ that say the same.
+/// Maximum relative difference between two lines that agree.
 const TOLERANCE: f64 = 1e-3;
-/// Characters of a line that are kept.
+/// Maximum number of characters kept of a line.
 const LONGEST_LINE: usize = 120;
 
 impl Sampling {
-    /// What a line says. `delimiter` and `decimal` are those of the table.
+    /// Parses a line. `delimiter` and `decimal` are those of the table.
     pub(super) fn of(line: &str, delimiter: u8, decimal: char) -> Option<Sampling> {
         let line = line.trim();
         let text = line.trim_start_matches(|c: char| c.is_whitespace() || "#%/*\"'".contains(c));
@@ -82,7 +82,7 @@ impl Sampling {
         let (number, rest) = number(rest, delimiter, decimal)?;
         let unit = unit(rest, unit_of_key, delimiter)?;
         let is_rate = RATES.contains(&key.as_str());
-        // The name of LabVIEW; without its underscore it may be a length.
+        // The key of LabVIEW; without its underscore it may be a length.
         let is_interval = INTERVALS.contains(&key.as_str()) || before.trim_end().eq_ignore_ascii_case("delta_x");
         let is_doubtful = INTERVALS_OR_DURATIONS.contains(&key.as_str());
         let rate = match unit {
@@ -98,7 +98,7 @@ impl Sampling {
         SENSIBLE.contains(&rate).then(|| Sampling { rate, line: line.chars().take(LONGEST_LINE).collect() })
     }
 
-    /// The one that all lines agree on; else a note.
+    /// The rate on which all lines agree; otherwise adds a note.
     pub(super) fn agreed(found: Vec<Sampling>, notes: &mut Vec<String>) -> Option<Sampling> {
         let first = found.first()?.clone();
         let differs = |other: &&Sampling| (other.rate / first.rate - 1.0).abs() > TOLERANCE;
@@ -113,7 +113,7 @@ impl Sampling {
     }
 }
 
-/// Key in small letters, and the unit in brackets behind it.
+/// Key in lower case, and the unit in brackets after it.
 fn key(before: &str) -> (String, Option<String>) {
     let open = before.find(['[', '(']);
     let unit = open.map(|at| before[at + 1..].split([']', ')']).next().unwrap_or_default().trim().to_string());
@@ -122,18 +122,18 @@ fn key(before: &str) -> (String, Option<String>) {
     (name.split_whitespace().collect::<Vec<_>>().join(" "), unit)
 }
 
-/// The number in front and what follows; `None` where a comma or point could be either.
+/// The leading number and the text after it; `None` if a comma or point is ambiguous.
 fn number(text: &str, delimiter: u8, decimal: char) -> Option<(f64, &str)> {
     let is_part = |c: char| c.is_ascii_digit() || c == '.' || (c == ',' && delimiter != b',');
     let mut end = text.find(|c: char| !is_part(c)).unwrap_or(text.len());
-    // A separator at the end is none of the number's.
+    // A trailing separator is not part of the number.
     end = text[..end].trim_end_matches(['.', ',']).len();
     let mantissa = &text[..end];
     let separators: Vec<char> = mantissa.chars().filter(|c| !c.is_ascii_digit()).collect();
     let is_fraction = mantissa.starts_with("0.") || mantissa.starts_with("0,") || mantissa.starts_with('.');
     let plain = match separators.as_slice() {
         [] => mantissa.to_string(),
-        // 1,000 is one or a thousand, unless the table says what a comma is.
+        // 1,000 is one or a thousand, unless the table defines the meaning of a comma.
         [separator] if *separator == decimal || is_fraction => mantissa.replace(',', "."),
         _ => return None,
     };
@@ -147,13 +147,14 @@ fn number(text: &str, delimiter: u8, decimal: char) -> Option<(f64, &str)> {
     (value > 0.0 && value.is_finite()).then_some((value, &rest[exponent..]))
 }
 
-/// What a number is, with its factor to Hz or s.
+/// The quantity of a number, with its factor to Hz or s.
 enum Given {
     Frequency(f64),
     Time(f64),
 }
 
-/// The unit behind a number, else that of its key; `Some(None)` without any, `None` for one that is neither frequency nor time.
+/// The unit after a number, otherwise that of its key. `Some(None)` without a unit, `None` for a unit of neither
+/// frequency nor time.
 fn unit(rest: &str, of_key: Option<String>, delimiter: u8) -> Option<Option<Given>> {
     let is_sign = |c: char| c.is_whitespace() || ";,\"'".contains(c) || c == char::from(delimiter);
     let rest = rest.trim_matches(is_sign).trim_start_matches(['[', '(']);

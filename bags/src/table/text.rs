@@ -1,4 +1,4 @@
-//! Text tables: CSV in its dialects.
+//! Reads text tables: CSV in its dialects.
 
 use std::borrow::Cow;
 use std::io::{Read, Seek};
@@ -12,17 +12,17 @@ use super::text_lines::{self, Line, Rows};
 use super::{Column, Table, TableFormat, heading, preamble};
 use crate::map::Unit;
 
-/// Lines from which the dialect is told, and what is before the table.
+/// Number of lines from which the dialect and the preamble are detected.
 const LINES_LOOKED_AT: usize = 200;
-/// Rows from which headings are told.
+/// Number of rows from which headings are detected.
 const ROWS_LOOKED_AT: usize = 20;
 
-/// Cells that a table may have whatever its length, and beyond that for each of its bytes. A table of equal rows has one
-/// cell in a byte at most.
+/// Number of cells that a table may have regardless of its length, and additional cells per byte. A table of equal rows
+/// has at most one cell per byte.
 const FEWEST_CELLS: usize = 1000;
 const CELLS_PER_BYTE: usize = 4;
 
-/// The table in a text of so many bytes.
+/// Parses the table in a text of `bytes` bytes.
 pub(super) fn parse<R: Read + Seek>(
     source: &mut R,
     bytes: u64,
@@ -53,11 +53,11 @@ pub(super) fn parse<R: Read + Seek>(
     Ok(table)
 }
 
-/// The first rows, and how many there are in all.
+/// The first rows, and the number of all rows.
 struct FirstRows {
     rows: Vec<csv::StringRecord>,
     count: usize,
-    /// Cells of the longest of the first rows.
+    /// Number of cells in the longest of the first rows.
     longest: usize,
 }
 
@@ -75,12 +75,12 @@ impl FirstRows {
     }
 }
 
-/// What the columns are called and where their values begin.
+/// The names of the columns and the start of their values.
 struct Layout {
     decimal: char,
     names: Vec<String>,
     units: Vec<Option<String>>,
-    /// Rows of headings.
+    /// Number of heading rows.
     headings: usize,
 }
 
@@ -99,7 +99,7 @@ impl Layout {
             return Err(format!("decimal = \"{decimal}\" must be . or ,").into());
         }
         let has_header = format.header.unwrap_or_else(|| are_headings(rows, decimal));
-        // One broken line of many cells would make as many columns of as many rows as the table has.
+        // A single broken line with many cells would create that many columns for every row of the table.
         let cells = usize::try_from(bytes).unwrap_or(usize::MAX).saturating_mul(CELLS_PER_BYTE);
         let width = (*longest).min(FEWEST_CELLS.saturating_add(cells) / (*count).max(1)).min(limits.fields);
         let (mut names, mut units) = (Vec::new(), Vec::new());
@@ -157,8 +157,8 @@ fn text(cell: &[u8]) -> Cow<'_, str> {
     String::from_utf8_lossy(cell)
 }
 
-/// The sign that stands equally often in the first lines, most often; blanks if none does. A short table under a long text
-/// shows in the second half of these lines.
+/// The first of tab, semicolon and comma that occurs equally often in at least 70 % of the first lines; blanks if there
+/// is none. A short table after a long text is detected in the second half of these lines.
 fn guess_delimiter(lines: &[Line]) -> u8 {
     let rows: Vec<&str> = lines.iter().map(|line| line.text.as_str()).filter(|line| !line.starts_with('#')).collect();
     sign_between(&rows).or_else(|| sign_between(&rows[rows.len() / 2..])).unwrap_or(b' ')
@@ -166,16 +166,16 @@ fn guess_delimiter(lines: &[Line]) -> u8 {
 
 fn sign_between(lines: &[&str]) -> Option<u8> {
     let count = |line: &str, sign: u8| line.bytes().filter(|&byte| byte == sign).count();
-    // The comma last: in half of the world it is the decimal sign.
+    // The comma is last: many countries use it as the decimal sign.
     [b'\t', b';', b','].into_iter().find(|&sign| {
         let counts: Vec<usize> = lines.iter().map(|line| count(line, sign)).collect();
         let alike = |wanted: usize| counts.iter().filter(|&&count| count == wanted).count();
-        // Titles and broken lines are few.
+        // Only a few lines are titles or broken.
         counts.iter().any(|&count| count > 0 && 10 * alike(count) >= 7 * lines.len())
     })
 }
 
-/// The decimal sign of lines, before it is known where the table begins.
+/// The decimal sign, detected before the start of the table is known.
 fn decimal_of(lines: &[Line], delimiter: u8) -> char {
     let cells = || {
         let is_between = move |c: char| if delimiter == b' ' { c.is_whitespace() } else { c == char::from(delimiter) };
@@ -189,7 +189,7 @@ fn guess_decimal<'c, C: Iterator<Item = &'c str>>(cells: &dyn Fn() -> C, delimit
     if delimiter != b',' && with(',') > with('.') { ',' } else { '.' }
 }
 
-/// Whether the first row has headings. A measurement that is missing in it makes no heading of it.
+/// Whether the first row contains headings. A missing measurement does not make a row a heading.
 fn are_headings(rows: &[csv::StringRecord], decimal: char) -> bool {
     let Some((first, below)) = rows.split_first() else { return false };
     let is_plain = |cell: &str| is_missing(cell) || number(cell, decimal).is_some() || parse_date(cell).is_some();
@@ -197,7 +197,7 @@ fn are_headings(rows: &[csv::StringRecord], decimal: char) -> bool {
     if first.iter().all(is_plain) {
         return false;
     }
-    // A heading may be "5 bar", but then the cells below are plain numbers.
+    // A heading may be "5 bar", but then the cells below it are plain numbers.
     let is_row =
         |row: &csv::StringRecord| first.iter().zip(row).any(|(cell, below)| has_suffix(cell) && has_suffix(below));
     !(first.iter().all(|cell| is_plain(cell) || has_suffix(cell)) && below.iter().any(is_row))

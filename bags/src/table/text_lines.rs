@@ -1,4 +1,4 @@
-//! The rows of a text table, read piece by piece: no more than a line is in memory.
+//! Reads the rows of a text table piece by piece: at most one line is in memory.
 
 use std::cell::Cell;
 use std::io::{BufRead, BufReader, Error, Read, Result, Seek, SeekFrom};
@@ -8,28 +8,28 @@ use rosbag2::{Limit, LimitError};
 
 use super::fault::TableFault;
 
-/// A line and where it begins.
+/// A line and its offset.
 pub(super) struct Line {
-    /// Bytes before it.
+    /// Number of bytes before it.
     pub begin: u64,
-    /// Without its end.
+    /// Without its line end.
     pub text: String,
 }
 
 /// The first lines of a text.
 pub(super) struct Head {
-    /// Lines that are left out, as far as they are kept.
+    /// The skipped lines that are kept.
     pub skipped: Vec<String>,
-    /// Those after them that are not blank.
+    /// The lines after them that are not blank.
     pub lines: Vec<Line>,
 }
 
-/// Bytes of lines beyond which no more are looked at than the first few: lines can be long.
+/// Maximum size of the examined lines, bytes; the first few are always examined: lines can be long.
 const LOOKED_AT: usize = 1 << 20;
-/// These few.
+/// Number of lines that are always examined.
 const FEW_LINES: usize = 20;
 
-/// Reads past the mark of byte order and `skip` lines, then the first `count` lines that are not blank.
+/// Skips the byte order mark and `skip` lines, then reads the first `count` lines that are not blank.
 pub(super) fn head<R: Read + Seek>(
     source: &mut R,
     skip: usize,
@@ -67,7 +67,7 @@ pub(super) fn head<R: Read + Seek>(
     Ok(head)
 }
 
-/// The next line with its end, of at most `most` bytes.
+/// The next line with its line end, at most `most` bytes.
 fn line(reader: &mut impl BufRead, most: u64) -> Result<Option<Vec<u8>>> {
     let mut line = Vec::new();
     reader.take(most.saturating_add(1)).read_until(b'\n', &mut line)?;
@@ -75,16 +75,17 @@ fn line(reader: &mut impl BufRead, most: u64) -> Result<Option<Vec<u8>>> {
     Ok(Some(line).filter(|line| !line.is_empty()))
 }
 
-/// The rows of a table one after the other.
+/// Iterates over the rows of a table.
 pub(super) struct Rows<'s> {
     reader: csv::Reader<Box<dyn Read + 's>>,
-    /// Bytes read since the last row ended.
+    /// Number of bytes read since the end of the last row.
     since: Rc<Cell<u64>>,
     record: csv::ByteRecord,
 }
 
 impl<'s> Rows<'s> {
-    /// From byte `start` of the source on; columns with blanks between them for a delimiter of a blank.
+    /// Reads from byte `start` of the source. If the delimiter is a blank, columns are separated by any number of
+    /// blanks.
     pub fn new<R: Read + Seek>(source: &'s mut R, start: u64, delimiter: u8, most: u64) -> Result<Rows<'s>> {
         source.seek(SeekFrom::Start(start))?;
         let reader = BufReader::with_capacity(1 << 16, source);
@@ -111,7 +112,7 @@ impl<'s> Rows<'s> {
     }
 }
 
-/// Refuses to read on when a row does not end.
+/// Returns an error if a row does not end.
 struct BoundedLines<R> {
     reader: R,
     since: Rc<Cell<u64>>,
@@ -130,7 +131,7 @@ impl<R: Read> Read for BoundedLines<R> {
     }
 }
 
-/// Lines with a single tab between their columns, where the source has any number of blanks.
+/// Replaces runs of blanks between columns by a single tab.
 struct Squeezed<R> {
     reader: R,
     most: u64,

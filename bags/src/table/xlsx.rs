@@ -1,5 +1,5 @@
-//! Sheets of spreadsheets (.xlsx, .xlsm) as tables: written as text, and read as that is, so that headings, units and lines
-//! before the table are found alike.
+//! Reads sheets of spreadsheets (.xlsx, .xlsm) as tables. A sheet is converted to text and read as a text table, so
+//! that headings, units and the lines before the table are handled alike.
 
 use std::io::{Cursor, Read};
 
@@ -9,14 +9,15 @@ use rosbag2::{Limit, ReadLimits};
 use super::fault::TableFault;
 use super::{Table, TableFormat, guard, text};
 
-/// Bytes in memory for each byte of shared texts: an empty one is `<si/>`, and a `String`.
+/// Bytes in memory for each byte of shared texts: an empty one is `<si/>`, and becomes a `String`.
 const SHARED_TEXT_EXPANSION: u64 = 8;
-/// Characters of a text that are taken: headings have fewer.
+/// Maximum number of characters of a text: headings have fewer.
 const LONGEST_TEXT: usize = 200;
-/// A byte that no XML has as text, and one that begins another encoding: with either, what follows is not what it seems.
+/// A byte that is invalid in XML text, and one that starts another encoding: after either, the content cannot be
+/// checked.
 const NOT_XML: [u8; 2] = [0x00, 0x1b];
 
-/// The table in a file. `Err` says in one line what is wrong.
+/// Reads the table in a file. `Err` contains the fault in one line.
 pub(super) fn parse(bytes: Vec<u8>, format: &TableFormat, limits: &ReadLimits) -> Result<Table, TableFault> {
     if bytes.starts_with(b"\xd0\xcf\x11\xe0") {
         return Err("it is an old or encrypted spreadsheet; save it as .xlsx without a password".into());
@@ -25,10 +26,10 @@ pub(super) fn parse(bytes: Vec<u8>, format: &TableFormat, limits: &ReadLimits) -
         return Err("it is no spreadsheet: it does not begin with PK".into());
     }
     let size = bytes.len() as u64;
-    // The libraries answer most broken files with an error, and some with a panic.
+    // The libraries return an error for most broken files, but panic on some.
     let sheet = guard::without_panic(|| check_sizes(&bytes, limits).and_then(|()| sheet(&bytes, format, limits)))
         .unwrap_or_else(|panic| Err(format!("the spreadsheet is broken: {panic}").into()))?;
-    // What is written here is written for one reader.
+    // The text was written in this format.
     let format = TableFormat { delimiter: Some("tab".to_string()), decimal: Some('.'), ..format.clone() };
     let length = sheet.text.len() as u64;
     limits.check_memory(length, size)?;
@@ -37,7 +38,7 @@ pub(super) fn parse(bytes: Vec<u8>, format: &TableFormat, limits: &ReadLimits) -
     Ok(table)
 }
 
-/// Unpacks every part once and counts: a file says of its parts what it likes, and the library believes it.
+/// Decompresses every part once and counts: a file can announce any size, and the library trusts it.
 fn check_sizes(bytes: &[u8], limits: &ReadLimits) -> Result<(), TableFault> {
     let broken = |error: zip::result::ZipError| TableFault::from(format!("the spreadsheet is broken: {error}"));
     let size = bytes.len() as u64;
@@ -62,7 +63,7 @@ fn check_sizes(bytes: &[u8], limits: &ReadLimits) -> Result<(), TableFault> {
         if unpacked.iter().any(|byte| NOT_XML.contains(byte)) {
             return Err(format!("the spreadsheet is broken: {name} is not text in UTF-8").into());
         }
-        // The library makes room for as many texts as are announced.
+        // The library reserves space for as many texts as are announced.
         for announced in announced(&unpacked) {
             limits.check_memory(announced.saturating_mul(size_of::<String>() as u64), size)?;
         }
@@ -70,7 +71,7 @@ fn check_sizes(bytes: &[u8], limits: &ReadLimits) -> Result<(), TableFault> {
     Ok(())
 }
 
-/// Every count of texts that a part announces.
+/// All announced counts of texts in a part.
 fn announced(part: &[u8]) -> impl Iterator<Item = u64> {
     const KEY: &[u8] = b"uniqueCount";
     let places = part.windows(KEY.len()).enumerate().filter(|(_, window)| *window == KEY);
@@ -83,7 +84,7 @@ fn announced(part: &[u8]) -> impl Iterator<Item = u64> {
     })
 }
 
-/// A sheet as text with tabs.
+/// A sheet as tab-separated text.
 struct Sheet {
     text: Vec<u8>,
     note: Option<String>,
@@ -115,7 +116,7 @@ fn sheet(bytes: &[u8], format: &TableFormat, limits: &ReadLimits) -> Result<Shee
         .flexible(true)
         .from_writer(Vec::new());
     let mut row: (u32, Vec<String>) = (0, Vec::new());
-    // What is written, and the cells that wait for the end of their row.
+    // Memory for the text written so far, and for the cells of the current row.
     let mut written = 0_u64;
     while let Some(cell) = cells.next_cell().map_err(broken)? {
         let (number, column) = cell.get_position();
@@ -129,7 +130,7 @@ fn sheet(bytes: &[u8], format: &TableFormat, limits: &ReadLimits) -> Result<Shee
             row.0 = number;
         }
         if row.1.len() <= column {
-            // A tab each in the text, a text each until then.
+            // One tab in the text, and one `String` until then.
             written = written.saturating_add(3 * (column + 1 - row.1.len()) as u64);
             row.1.resize(column + 1, String::new());
         }
@@ -154,7 +155,7 @@ fn write(writer: &mut csv::Writer<Vec<u8>>, row: &mut Vec<String>) -> Result<(),
     Ok(())
 }
 
-/// A cell as text; empty for an error or nothing.
+/// A cell as text; empty for an error or an empty cell.
 fn shown(value: &DataRef, is_1904: bool) -> String {
     match value {
         DataRef::Int(number) => number.to_string(),
@@ -171,12 +172,13 @@ fn in_a_line(text: &str) -> String {
     text.chars().take(LONGEST_TEXT).map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
-/// Day 0 of the calendar that begins in 1900, in days before 1970; and of the one that begins in 1904 after it.
+/// Day 0 of the 1900 date system, in days before 1970; and of the 1904 date system, in days after it.
 const EPOCH_DAYS: f64 = 25_569.0;
 const DAYS_TO_1904: f64 = 1462.0;
 const SECONDS_PER_DAY: f64 = 86_400.0;
 
-/// A date as ISO 8601, to 10 µs: a number of days holds 0.6 µs. A duration, or a time of day without a date, as seconds.
+/// A date as ISO 8601, to 10 µs: a number of days resolves 0.6 µs. A duration, or a time of day without a date, in
+/// seconds.
 fn date_or_time(date: &ExcelDateTime, is_1904: bool) -> String {
     let days = date.as_f64();
     if date.is_duration() || days.abs() < 1.0 {

@@ -1,8 +1,8 @@
-//! Chunks unpacked on another core before they are asked for.
+//! Decompresses chunks on another core before the reader needs them.
 //!
-//! To unpack a chunk takes half of the time of reading a bag. The index says where chunks begin, so that can be done while
-//! the one before is read. What comes from here is what [`chunk::decompress`] says of the same bytes; whoever asks for a
-//! chunk that was not unpacked does it on the spot.
+//! Decompression takes half of the time of reading a bag. The index lists where chunks begin, so a thread can
+//! decompress the next chunk while the current one is read. Results are those of [`chunk::decompress`] for the same
+//! bytes. The reader decompresses a chunk itself if this thread did not.
 
 use std::path::Path;
 use std::sync::mpsc::{Receiver, sync_channel};
@@ -14,20 +14,20 @@ use super::chunk::{self, ChunkFault};
 use super::framing::{RecordFile, RecordHead};
 use crate::limits::ReadLimits;
 
-/// Larger chunks are not unpacked ahead, bytes in the file. A recorder closes a chunk at 1 to 4 MB before compression;
-/// two of them wait, so that this adds some megabytes to what a reader holds.
+/// Larger chunks are not decompressed ahead; bytes in the file. A recorder closes a chunk at 1 to 4 MB before
+/// compression. Two chunks are buffered, which adds some megabytes to the memory of a reader.
 const LARGEST: u64 = 4 << 20;
-/// Chunks that wait beside the one that is unpacked.
+/// Chunks that are buffered besides the one in progress.
 const WAITING: usize = 1;
 
-/// A thread that unpacks the chunks of one file in their order. It ends when this is dropped.
+/// A thread that decompresses the chunks of one file in order. It ends when this is dropped.
 #[derive(Debug)]
 pub(super) struct Ahead {
     chunks: Receiver<Unpacked>,
     next: Option<Unpacked>,
 }
 
-/// A chunk whose record has this head.
+/// The decompressed chunk whose record has this head.
 #[derive(Debug)]
 struct Unpacked {
     offset: u64,
@@ -36,8 +36,8 @@ struct Unpacked {
 }
 
 impl Ahead {
-    /// Begins with the chunks of the file at `path` that begin at `offsets`, which ascend; `None` where there is nothing to
-    /// gain: one chunk, one core, or no thread to be had.
+    /// Starts with the chunks of the file at `path` at `offsets`, which ascend. `None` if there is no benefit: one
+    /// chunk, one core, or no thread available.
     pub fn start(path: &Path, offsets: Vec<u64>, limits: ReadLimits) -> Option<Ahead> {
         if offsets.len() < 2 || std::thread::available_parallelism().map_or(1, usize::from) < 2 {
             return None;
@@ -51,7 +51,8 @@ impl Ahead {
         Some(Ahead { chunks, next: None })
     }
 
-    /// The records of the chunk with this head; `None` for one that was not unpacked. Chunks are asked for in their order.
+    /// The records of the chunk with this head; `None` if it was not decompressed ahead. Callers request chunks in file
+    /// order.
     pub fn take(&mut self, head: RecordHead) -> Option<Result<Bytes, ChunkFault>> {
         loop {
             let next = self.next.take().or_else(|| self.chunks.recv().ok())?;
@@ -66,8 +67,8 @@ impl Ahead {
     }
 }
 
-/// Gives the chunks to `take` until that says `None`. What the index says is not believed: no byte is unpacked twice, and
-/// no more than a reader of the whole file would unpack.
+/// Passes chunks to `take` until it returns `None`. The index is not trusted: no byte is decompressed twice, and no
+/// more than a reader of the whole file would decompress.
 fn unpack_all(
     mut file: RecordFile,
     offsets: &[u64],

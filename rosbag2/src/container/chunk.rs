@@ -1,4 +1,4 @@
-//! Chunks: many records under one compression and one checksum.
+//! Chunks: many records that share one compression and one checksum.
 
 use std::io::Read;
 
@@ -8,11 +8,12 @@ use thiserror::Error;
 use super::fields::Fields;
 use crate::limits::{Limit, LimitError};
 
-/// First reservation for decompressed bytes: the size that rosbag2 and we give a chunk, and then some.
+/// First reservation for decompressed bytes: somewhat more than the chunk size of rosbag2 and of our writer.
 const FIRST_RESERVATION: u64 = 1 << 20;
 
-/// A chunk that announces no more is unpacked in one step, without a buffer between, bytes. What is announced is reserved
-/// before a byte of it is seen, so it has to be little: recorders close a chunk at 1 to 4 MB plus one message.
+/// Chunks that announce at most this size are decompressed in one step without an intermediate buffer; bytes. The
+/// announced size is reserved before any byte is seen, so it must be small: recorders close a chunk at 1 to 4 MB plus
+/// one message.
 const LARGEST_AT_ONCE: u64 = 8 << 20;
 
 /// Why a chunk cannot be trusted.
@@ -89,8 +90,8 @@ pub(super) fn decompress(record: Bytes, most: u64) -> Result<Bytes, ChunkFault> 
     Ok(records)
 }
 
-/// What can be won from a chunk of which the end is missing. Its checksum covers what is missing, so it is of no use.
-/// A writer that was killed leaves the sizes in the head unset (all ones): they are not believed either.
+/// Recovers what is readable from a chunk whose end is missing. Its checksum covers the missing part and cannot be
+/// used. A writer that was killed leaves the sizes in the head unset (all ones), so they are not used either.
 pub(super) fn salvage(record: Bytes, most: u64) -> Bytes {
     let Some(head) = ChunkHead::parse(&record) else {
         return Bytes::new();
@@ -104,9 +105,9 @@ pub(super) fn salvage(record: Bytes, most: u64) -> Bytes {
     }
 }
 
-/// Decompresses up to `limit` bytes, and says why when something stopped it before.
+/// Decompresses up to `limit` bytes, and returns the reason if it stopped earlier.
 ///
-/// The limit, not the end of the compressed data, is the end: some writers pad the data with zeros.
+/// The limit is the end, not the end of the compressed data: some writers pad the data with zeros.
 fn inflate(compression: &str, compressed: &[u8], limit: u64) -> Result<(Vec<u8>, Option<String>), ChunkFault> {
     if compression == "zstd"
         && limit <= LARGEST_AT_ONCE

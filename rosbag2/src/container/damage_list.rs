@@ -1,8 +1,8 @@
-//! The damaged places of one file, not more of them than anybody reads.
+//! The damaged places of one file, up to a readable number.
 
 use super::damage::{Damage, DamageKind};
 
-/// Places that are listed one by one. A chunk of nonsense can have a million; beyond this many they are only counted.
+/// Places that are listed one by one. A corrupt chunk can have a million; beyond this many they are only counted.
 const MOST_PLACES: usize = 1000;
 
 /// Damaged places in the order in which they were met.
@@ -10,7 +10,7 @@ const MOST_PLACES: usize = 1000;
 pub(crate) struct DamageList(Vec<Damage>);
 
 impl DamageList {
-    /// Adds a place; beyond the first thousand it is added up in the last entry.
+    /// Adds a place. Beyond the first thousand, places are summed in the last entry.
     pub fn push(&mut self, damage: Damage) {
         if self.0.len() < MOST_PLACES {
             self.0.push(damage);
@@ -29,7 +29,7 @@ impl DamageList {
         &self.0
     }
 
-    /// All entries, to complete them.
+    /// All entries, for later completion.
     pub fn as_mut_slice(&mut self) -> &mut [Damage] {
         &mut self.0
     }

@@ -1,6 +1,6 @@
-//! Little-endian fields from the front of a slice. `None` = the slice is too short.
+//! Reads little-endian fields from the front of a slice. `None` = the slice is too short.
 
-/// The rest of a record that is being taken apart.
+/// The part of a record that has not been parsed yet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fields<'b>(pub &'b [u8]);
 
@@ -33,19 +33,19 @@ impl<'b> Fields<'b> {
         self.array().map(u64::from_le_bytes)
     }
 
-    /// Bytes with their number in front.
+    /// Bytes preceded by their count.
     pub fn counted(&mut self) -> Option<&'b [u8]> {
         let length = usize::try_from(self.u32()?).ok()?;
         self.bytes(length)
     }
 
-    /// Text with its length in front.
+    /// Text preceded by its length.
     pub fn text(&mut self) -> Option<&'b str> {
         std::str::from_utf8(self.counted()?).ok()
     }
 }
 
-/// What stands before the bytes of a message.
+/// The fields before the bytes of a message.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MessageHeader {
     pub channel: u16,

@@ -1,4 +1,4 @@
-//! Records of a file, one after the other: one byte of opcode, eight of length, content.
+//! Reads the records of a file in sequence: one byte of opcode, eight of length, content.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -20,7 +20,7 @@ pub(super) struct RecordHead {
     pub length: u64,
 }
 
-/// A file of records and the place where the next one begins.
+/// A file of records and the offset of the next record.
 #[derive(Debug)]
 pub(super) struct RecordFile {
     path: PathBuf,
@@ -30,7 +30,7 @@ pub(super) struct RecordFile {
 }
 
 impl RecordFile {
-    /// Opens the file at `path`, which people know as `name`.
+    /// Opens the file at `path`; messages call it `name`.
     pub fn open(path: &Path, name: &Path) -> Result<RecordFile, Error> {
         let (file, length) = open_regular(path)?;
         Ok(RecordFile {
@@ -66,7 +66,7 @@ impl RecordFile {
         Ok(())
     }
 
-    /// Passes over bytes, which may be more than the file has left: then the end is reached.
+    /// Skips bytes; stops at the end of the file if it has fewer left.
     pub fn skip(&mut self, count: u64) -> Result<(), Error> {
         let target = self.position.saturating_add(count).min(self.length);
         // Relative seeks keep the buffer: message indexes are skipped by the thousand.
@@ -76,7 +76,7 @@ impl RecordFile {
         Ok(())
     }
 
-    /// The next `count` bytes, fewer where the file ends.
+    /// The next `count` bytes, or fewer at the end of the file.
     pub fn read(&mut self, count: u64) -> Result<Vec<u8>, Error> {
         let count = count.min(self.remaining());
         let mut bytes = Vec::with_capacity(usize::try_from(count).unwrap_or_default());
@@ -99,9 +99,9 @@ impl RecordFile {
     }
 }
 
-/// Takes the next record off the front of bytes in memory: opcode and range of its content.
+/// Parses the next record in memory and advances: opcode and range of its content.
 ///
-/// `Ok(None)` at the end, `Err` with the bytes left when they are no whole record.
+/// `Ok(None)` at the end; `Err` with the number of bytes left if they are not a whole record.
 pub(super) fn next_in_memory(
     bytes: &[u8],
     position: &mut usize,

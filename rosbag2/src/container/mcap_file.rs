@@ -1,4 +1,4 @@
-//! The messages of one MCAP file in the order in which they were written.
+//! Reads the messages of one MCAP file in the order in which they were written.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -25,14 +25,15 @@ pub(crate) struct McapFile {
     file: RecordFile,
     registry: Registry,
     summary: Option<Summary>,
-    /// Chunks that another core unpacks, begun with the first one; `None` inside where there is nothing to gain.
+    /// Chunks that another core decompresses, started at the first chunk; the inner `None` means that there is no
+    /// benefit.
     ahead: Option<Option<Ahead>>,
     opened: PathBuf,
-    /// Whether the file ends as a closed file does, summary or not.
+    /// Whether the file has the end of a closed file, with or without summary.
     closed: bool,
     chunk: Option<OpenChunk>,
     damage: DamageList,
-    /// Bytes unpacked from chunks so far.
+    /// Bytes decompressed from chunks so far.
     unpacked: u64,
     last_log_time: Option<u64>,
     unknown_topic: UnknownTopic,
@@ -46,7 +47,7 @@ struct OpenChunk {
     offset: u64,
     records: Bytes,
     position: usize,
-    /// Set when the end of the chunk is missing: the messages won so far, and what the damage will be reported as.
+    /// Set when the end of the chunk is missing: the messages recovered so far, and the damage to report.
     cut: Option<Damage>,
     recovered: u64,
 }
@@ -60,8 +61,8 @@ struct UnknownTopic {
 }
 
 impl McapFile {
-    /// Opens the file at `path`, which people know as `name`, and reads its summary, if it has one; `None` when it is no
-    /// MCAP file.
+    /// Opens the file at `path`, which messages call `name`, and reads its summary, if it has one. `None` if it is not
+    /// an MCAP file.
     pub fn open(path: &Path, name: &Path, limits: &ReadLimits) -> Result<Option<McapFile>, Error> {
         let mut file = RecordFile::open(path, name)?;
         if file.read(mcap::MAGIC.len() as u64)? != mcap::MAGIC {
@@ -90,25 +91,25 @@ impl McapFile {
         }))
     }
 
-    /// The topics known so far: with a summary all, without one those already met.
+    /// The topics known so far: all topics if there is a summary, otherwise those already seen.
     pub fn topics(&self) -> impl Iterator<Item = &Arc<Topic>> {
         self.registry.topics()
     }
 
-    /// Whether the file ends with an index that can be trusted.
+    /// Whether the file ends with a valid index.
     pub fn has_index(&self) -> bool {
         self.summary.is_some() && self.closed
     }
 
-    /// The damage met so far; complete once [`McapFile::next_message`] has returned `None`.
+    /// The damage found so far; complete once [`McapFile::next_message`] has returned `None`.
     pub fn damage(&self) -> &[Damage] {
         self.damage.as_slice()
     }
 
-    /// The next message, `None` at the end. Damage is noted and passed over.
+    /// The next message, `None` at the end. Damage is recorded and skipped.
     ///
     /// # Errors
-    /// Only what the operating system refuses.
+    /// Only errors of the operating system.
     pub fn next_message(&mut self) -> Result<Option<RawMessage>, Error> {
         while !self.finished {
             let message = match self.chunk.take() {
@@ -123,9 +124,9 @@ impl McapFile {
         Ok(None)
     }
 
-    /// Reads on in the chunk and puts it back while it has more; `None` when something else than a message came.
+    /// Continues in the chunk and puts it back if it has more; `None` if the next record is not a message.
     fn next_in_chunk(&mut self, mut chunk: OpenChunk) -> Option<RawMessage> {
-        // A chunk can be nothing but empty records of no use, seven million of them: they are passed over here.
+        // A chunk can consist of seven million empty, useless records: they are skipped here.
         let next = loop {
             match next_in_memory(&chunk.records, &mut chunk.position) {
                 Ok(Some((opcode, _))) if !matches!(opcode, op::MESSAGE | op::SCHEMA | op::CHANNEL) => {}
@@ -163,7 +164,7 @@ impl McapFile {
         }
     }
 
-    /// A message if the record is one; definitions are taken in, everything else is passed over.
+    /// Returns a message if the record is one. Registers definitions and ignores all other records.
     fn in_memory_record(
         &mut self,
         opcode: u8,
@@ -217,7 +218,7 @@ impl McapFile {
             return Ok(None);
         }
         if head.length > self.file.remaining() {
-            // With a summary at the end nothing was cut off: then it is the length that is wrong.
+            // A summary at the end means that nothing was cut off, so the length is wrong.
             if self.summary.is_some() {
                 self.resynchronise(head)?
             } else {
@@ -234,7 +235,7 @@ impl McapFile {
         match head.opcode {
             op::DATA_END | op::FOOTER => {
                 if !self.closed {
-                    // Nothing is lost to us, but other readers refuse a file like this.
+                    // We lose nothing, but other readers reject such a file.
                     self.note(head.offset, 0, DamageKind::NotClosed);
                 }
                 self.finish();
@@ -280,10 +281,10 @@ impl McapFile {
         Ok(chunk::decompress(record, self.limits.message))
     }
 
-    /// The file ends inside the record: takes what a cut chunk still gives, and ends.
+    /// The file ends inside the record: recovers what it can from a cut chunk, and ends.
     fn cut_off(&mut self, head: RecordHead) -> Result<(), Error> {
         let available = self.file.remaining();
-        // A length that no file can have was never set, so how much is missing is not known.
+        // A length that no file can have was never set, so the missing amount is unknown.
         let missing = if head.length > i64::MAX as u64 { 0 } else { head.length - available };
         let kind = DamageKind::CutOff { recovered_messages: 0 };
         if head.opcode == op::CHUNK {
@@ -301,7 +302,7 @@ impl McapFile {
         Ok(())
     }
 
-    /// The record makes no sense: goes on at the next chunk that the index knows, or ends.
+    /// The record is invalid: continues at the next chunk in the index, or ends.
     fn resynchronise(&mut self, head: RecordHead) -> Result<(), Error> {
         let (next, end) = match &self.summary {
             Some(summary) => {

@@ -1,8 +1,8 @@
-//! The records of one MCAP file, read around damage.
+//! Reads the records of one MCAP file and skips damage.
 //!
-//! The `mcap` crate reads whole files in good order, or up to the first fault. Recordings of machines end with the
-//! battery, so here every fault is a fact to report: the framing of records is read by hand, with seeks over what is
-//! not needed, and the index at the end of the file shows the way past a broken place.
+//! The `mcap` crate reads intact files, or stops at the first fault. Recordings of machines end with the battery, so
+//! here every fault is reported and reading continues. The framing of records is parsed by hand, unneeded records are
+//! skipped by seeking, and the index at the end of the file locates the next chunk after a damaged place.
 
 mod ahead;
 mod chunk;

@@ -1,16 +1,16 @@
-//! Records that the `mcap` crate takes apart, their lengths looked at first.
+//! Parses records with the `mcap` crate after a check of their lengths.
 
 use mcap::McapError;
 use mcap::records::{Record, op};
 
 use super::fields::Fields;
 
-/// A schema, a channel or a chunk's index.
+/// Parses a schema, a channel or a chunk index.
 ///
-/// The crate takes memory for a text before it looks whether the text is there: four bytes could ask for 4 GB.
+/// The crate allocates a text before it checks that the text exists: four bytes could request 4 GB.
 ///
 /// # Errors
-/// [`McapError::UnexpectedEof`] where a length goes beyond the record, else what the crate says.
+/// [`McapError::UnexpectedEof`] if a length exceeds the record; otherwise the errors of the crate.
 pub(super) fn parsed(opcode: u8, content: &[u8]) -> Result<Record<'_>, McapError> {
     let mut fields = Fields(content);
     let fits = match opcode {
@@ -23,13 +23,13 @@ pub(super) fn parsed(opcode: u8, content: &[u8]) -> Result<Record<'_>, McapError
     mcap::parse_record(opcode, content)
 }
 
-/// Number, name, encoding, text.
+/// Id, name, encoding, text.
 fn schema_fits(fields: &mut Fields<'_>) -> Option<()> {
     fields.bytes(2)?;
     (0..3).try_for_each(|_| fields.counted().map(drop))
 }
 
-/// Two numbers, topic, encoding, a map of texts.
+/// Two ids, topic, encoding, a map of texts.
 fn channel_fits(fields: &mut Fields<'_>) -> Option<()> {
     fields.bytes(4)?;
     (0..2).try_for_each(|_| fields.counted().map(drop))?;
@@ -40,7 +40,7 @@ fn channel_fits(fields: &mut Fields<'_>) -> Option<()> {
     Some(())
 }
 
-/// Times and place, a map of numbers, a length, the compression's name.
+/// Times and offset, a map of numbers, a length, name of the compression.
 fn chunk_index_fits(fields: &mut Fields<'_>) -> Option<()> {
     fields.bytes(32)?;
     fields.counted()?;

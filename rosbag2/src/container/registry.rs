@@ -1,4 +1,4 @@
-//! The topics of one file, as its schema and channel records define them.
+//! The topics of one file, from its schema and channel records.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -11,17 +11,17 @@ use super::record::parsed;
 use crate::limits::{Limit, LimitError, ReadLimits};
 use crate::raw_messages::Topic;
 
-/// Schemas and topics by their numbers in the file.
+/// Schemas and topics by their ids in the file.
 #[derive(Debug)]
 pub(super) struct Registry {
     schemas: HashMap<u16, Arc<Schema>>,
     topics: HashMap<u16, Arc<Topic>>,
-    /// Bytes of all definitions taken in, also of those that were replaced: messages may still hold them.
+    /// Bytes of all definitions registered, including replaced ones: messages may still hold them.
     bytes: u64,
     limits: ReadLimits,
 }
 
-/// Why a definition is not taken in.
+/// Why a definition is rejected.
 #[derive(Debug, Error)]
 pub(super) enum DefinitionFault {
     #[error(transparent)]
@@ -42,7 +42,7 @@ impl Registry {
         Registry { schemas: HashMap::new(), topics: HashMap::new(), bytes: 0, limits: *limits }
     }
 
-    /// The topic with this number.
+    /// The topic with this id.
     pub fn topic(&self, channel: u16) -> Option<&Arc<Topic>> {
         self.topics.get(&channel)
     }
@@ -52,7 +52,7 @@ impl Registry {
         self.topics.values()
     }
 
-    /// Takes in a schema or channel record; other opcodes are ignored. A repeated definition keeps the first [`Arc`],
+    /// Registers a schema or channel record; other opcodes are ignored. A repeated definition keeps the first [`Arc`],
     /// so that messages of one topic share it; a different one replaces it.
     pub fn define(&mut self, opcode: u8, content: &[u8]) -> Result<(), DefinitionFault> {
         if opcode != op::SCHEMA && opcode != op::CHANNEL {
@@ -89,7 +89,7 @@ impl Registry {
         }
         Ok(())
     }
-    /// Counts a definition; every topic has its own copy of its type's.
+    /// Counts a definition; every topic has its own copy of the definition of its type.
     fn count(&mut self, text: usize, name: &str) -> Result<(), LimitError> {
         let bytes = self.bytes + (text + name.len()) as u64;
         Limit::Definitions.check(bytes, self.limits.definitions)?;

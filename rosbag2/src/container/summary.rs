@@ -1,4 +1,4 @@
-//! The index at the end of a file: a way past damage, and a second copy of the topics' definitions.
+//! The index at the end of a file: used to skip damage, and as a second copy of the topic definitions.
 
 use mcap::records::{Record, op};
 
@@ -11,10 +11,10 @@ use crate::limits::ReadLimits;
 
 /// Content of a footer record, bytes.
 const FOOTER_LENGTH: u64 = 20;
-/// Bytes of the footer that its own checksum does not cover: the checksum.
+/// Bytes of the footer that its checksum does not cover: the checksum itself.
 const CHECKSUM_LENGTH: usize = 4;
 
-/// What is used of the summary section.
+/// The parts of the summary section that are used.
 #[derive(Debug, Default)]
 pub(super) struct Summary {
     /// Where chunks begin, bytes from the start of the file, ascending.
@@ -24,8 +24,8 @@ pub(super) struct Summary {
 }
 
 impl Summary {
-    /// Reads the summary and enters its definitions into the registry; `None` when the file has none that can be
-    /// trusted. The position of the file is undefined afterwards.
+    /// Reads the summary and adds its definitions to the registry. `None` if the file has no valid summary. The
+    /// position of the file is undefined afterwards.
     pub fn read(file: &mut RecordFile, registry: &mut Registry, limits: &ReadLimits) -> Result<Option<Summary>, Error> {
         let tail_length = HEADER_LENGTH + FOOTER_LENGTH + mcap::MAGIC.len() as u64;
         let Some(footer_offset) = file.length().checked_sub(tail_length) else {
@@ -36,7 +36,7 @@ impl Summary {
         let Some((start, checksum)) = parse_footer(&tail) else {
             return Ok(None);
         };
-        // A summary that is too large to hold is not needed either: the data is read from its beginning.
+        // A summary that is too large to hold is not needed: the data is read from its beginning.
         if start == 0 || start >= footer_offset || footer_offset - start > limits.message {
             return Ok(None);
         }
@@ -68,7 +68,7 @@ fn parse_footer(tail: &[u8]) -> Option<(u64, u32)> {
 fn read_section(section: &[u8], registry: &mut Registry) -> Vec<u64> {
     let mut chunk_offsets = Vec::new();
     let mut position = 0;
-    // Whatever makes no sense here is simply not used: the data itself is read in any case.
+    // Invalid records here are ignored: the data itself is read in any case.
     while let Ok(Some((opcode, range))) = next_in_memory(section, &mut position) {
         let content = &section[range];
         if opcode == op::CHUNK_INDEX {

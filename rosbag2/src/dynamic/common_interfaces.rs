@@ -1,4 +1,5 @@
-//! Definitions of common interfaces for bags without any: SQLite3 bags of ROS 2 Humble and before. Comments are left out.
+//! Definitions of the common interfaces, for bags that contain none: SQLite3 bags of ROS 2 Humble and before. Comments
+//! are left out.
 
 /// Name as `package/Type` and fields.
 pub(super) const TEXTS: [(&str, &str); 58] = [

@@ -1,9 +1,9 @@
-//! A place in the bytes of a message. Nothing is allocated, and nothing is believed that the bytes cannot hold.
+//! A read position in the bytes of a message. Allocates nothing, and rejects lengths that exceed the bytes.
 
 use super::layout::{Count, Kind, Layout, Primitive};
 use crate::cdr::CdrError;
 
-/// Bytes after the encapsulation, from which alignment counts, and how far they have been read.
+/// Bytes after the encapsulation, from which alignment counts, and the number read so far.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cursor<'b> {
     bytes: &'b [u8],
@@ -12,7 +12,7 @@ pub(super) struct Cursor<'b> {
 }
 
 impl<'b> Cursor<'b> {
-    /// The beginning of a message with its encapsulation.
+    /// The start of a message with encapsulation.
     pub fn new(message: &'b [u8]) -> Result<Cursor<'b>, CdrError> {
         let Some((&[high, low, _, _], bytes)) = message.split_first_chunk::<4>() else {
             return Err(CdrError::NoEncapsulation(message.len()));
@@ -62,7 +62,7 @@ impl<'b> Cursor<'b> {
         self.fixed().map(i32::from_le_bytes)
     }
 
-    /// A number of any type; 64-bit integers lose what an `f64` cannot hold.
+    /// A number of any type; 64-bit integers are rounded to `f64`.
     pub fn number(&mut self, primitive: Primitive) -> Result<f64, CdrError> {
         Ok(match primitive {
             Primitive::Bool | Primitive::U8 => f64::from(u8::from_le_bytes(self.fixed()?)),
@@ -78,27 +78,27 @@ impl<'b> Cursor<'b> {
         })
     }
 
-    /// Text without its closing zero.
+    /// Text without its terminating zero.
     pub fn text(&mut self) -> Result<&'b [u8], CdrError> {
         let length = self.u32()? as usize;
         let bytes = self.take(length)?;
-        // Some writers give an empty text no zero.
+        // Some writers omit the zero of an empty text.
         Ok(bytes.strip_suffix(&[0]).unwrap_or(bytes))
     }
 
-    /// So many bytes.
+    /// The next `count` bytes.
     pub fn octets(&mut self, count: usize) -> Result<&'b [u8], CdrError> {
         self.take(count)
     }
 
-    /// How many elements come; for a sequence its length is read.
+    /// The number of elements; for a sequence, reads its length.
     pub fn count(&mut self, count: Count) -> Result<usize, CdrError> {
         match count {
             Count::One => Ok(1),
             Count::Fixed(length) => Ok(length),
             Count::Sequence => {
                 let length = self.u32()? as usize;
-                // An element takes at least a byte, so a longer sequence cannot be.
+                // An element takes at least one byte, so a longer sequence is impossible.
                 if length > self.remaining() {
                     return Err(self.malformed(format!("a sequence of {length} elements does not fit")));
                 }
@@ -107,7 +107,7 @@ impl<'b> Cursor<'b> {
         }
     }
 
-    /// Passes over `count` elements.
+    /// Skips `count` elements.
     pub fn skip(&mut self, layout: &Layout, kind: &Kind, count: usize) -> Result<(), CdrError> {
         match kind {
             _ if count == 0 => Ok(()),
@@ -122,17 +122,17 @@ impl<'b> Cursor<'b> {
         }
     }
 
-    /// Passes over one struct.
+    /// Skips one struct.
     pub fn skip_struct(&mut self, layout: &Layout, number: usize) -> Result<(), CdrError> {
         let members = layout.structure(number).map_or(&[][..], |structure| &structure.members);
         if members.is_empty() {
-            // The generators of ROS 2 give a message without fields one byte.
+            // The ROS 2 generators give a message without fields one byte.
             return self.take(1).map(|_| ());
         }
         self.skip_members(layout, number, members.len())
     }
 
-    /// Passes over the first `count` members of a struct.
+    /// Skips the first `count` members of a struct.
     pub fn skip_members(&mut self, layout: &Layout, number: usize, count: usize) -> Result<(), CdrError> {
         let members = layout.structure(number).map_or(&[][..], |structure| &structure.members);
         for member in members.iter().take(count) {

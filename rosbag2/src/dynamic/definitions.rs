@@ -1,4 +1,4 @@
-//! Definitions of types from bags, from `.msg` files, and the ones that come with us.
+//! Definitions of types from bags, from `.msg` files, and the built-in ones.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -13,11 +13,11 @@ use crate::Error;
 use crate::limits::{Limit, ReadLimits};
 use crate::regular_file::read_regular_text;
 
-/// One member as defined.
+/// One member of a definition.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct DefinedMember {
     pub name: String,
-    /// A primitive in the words of `ros2msg`, or `package/Type`.
+    /// A primitive by its `ros2msg` name, or `package/Type`.
     pub type_name: String,
     pub count: Count,
 }
@@ -29,8 +29,8 @@ pub struct Definitions {
 }
 
 impl Definitions {
-    /// The types in the schema of a topic: `ros2msg` or `ros2idl`. Nothing for an empty schema or another language,
-    /// since the type may be defined elsewhere.
+    /// The types in the schema of a topic: `ros2msg` or `ros2idl`. Empty for an empty schema or another language, since
+    /// the type may be defined elsewhere.
     ///
     /// # Errors
     /// [`LayoutError::Syntax`], [`LayoutError::Limit`].
@@ -38,7 +38,7 @@ impl Definitions {
         if schema.trim().is_empty() {
             return Ok(Definitions::default());
         }
-        // What the parsers hold in memory is up to fifty times the text.
+        // The parsers use up to fifty times the size of the text in memory.
         Limit::Definition.check(schema.len() as u64, ReadLimits::DEFAULT.definition)?;
         let types = match encoding {
             "ros2msg" => ros2msg::parse(type_name, schema)?,
@@ -48,7 +48,7 @@ impl Definitions {
         Ok(Definitions { types })
     }
 
-    /// The common interfaces that come with us.
+    /// The built-in common interfaces.
     pub(super) fn common() -> &'static Definitions {
         static COMMON: LazyLock<Definitions> = LazyLock::new(Definitions::read_common);
         &COMMON
@@ -57,14 +57,14 @@ impl Definitions {
     fn read_common() -> Definitions {
         let mut definitions = Definitions::default();
         for (name, text) in common_interfaces::TEXTS {
-            // The texts are ours: a test reads every one.
+            // The texts are built in: a test parses every one.
             definitions.types.extend(ros2msg::parse(name, text).unwrap_or_default());
         }
         definitions
     }
 
-    /// Adds the type `type_name` (`package/Type` or `package/msg/Type`) with the text of its `.msg` file, which the definitions of contained
-    /// types may follow as in a bag. A type that is known already gets the new definition.
+    /// Adds the type `type_name` (`package/Type` or `package/msg/Type`) from the text of its `.msg` file. The
+    /// definitions of contained types may follow, as in a bag. A known type gets the new definition.
     ///
     /// # Errors
     /// [`LayoutError::Syntax`].
@@ -73,7 +73,7 @@ impl Definitions {
         Ok(())
     }
 
-    /// Adds the type in a `.msg` file. Its package is the folder above `msg/`, else the folder that the file is in.
+    /// Adds the type in a `.msg` file. Its package is the folder above `msg/`, otherwise the folder of the file.
     ///
     /// # Errors
     /// [`Error::NotARegularFile`], [`Error::Limit`], [`Error::Io`], [`Error::BadDefinition`].

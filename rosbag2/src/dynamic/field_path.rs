@@ -1,4 +1,4 @@
-//! Paths to fields, as people write them: `position[name=arm]`, `data[3]`, `pose.position.x`.
+//! Field paths in text form: `position[name=arm]`, `data[3]`, `pose.position.x`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,8 +12,8 @@ use super::error::PathError;
 pub enum Index {
     /// By number, from 0.
     Number(usize),
-    /// `[key=value]`: the element whose field `key` is the text `value`; or, where a list of texts `key` stands beside
-    /// the array, the element at the place of `value` in that list (as in `sensor_msgs/JointState`).
+    /// `[key=value]`: the element whose field `key` is the text `value`. If the array has a sibling list of texts
+    /// `key`, the element at the position of `value` in that list (as in `sensor_msgs/JointState`).
     Named {
         /// Name of the field.
         key: String,
@@ -22,12 +22,12 @@ pub enum Index {
     },
 }
 
-/// One field on the way.
+/// One field of a path.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Step {
     /// Name of the field.
     pub field: String,
-    /// Which element, where it is an array.
+    /// Which element, if it is an array.
     pub index: Option<Index>,
 }
 

@@ -1,12 +1,12 @@
-//! The lines of a `.msg` file, and the names of types in them.
+//! Parses the lines of a `.msg` file and the type names in them.
 
-/// The types that contain no other.
+/// The types that contain no other type.
 const PRIMITIVES: [&str; 15] = [
     "bool", "byte", "char", "float32", "float64", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64",
     "uint64", "string", "wstring",
 ];
 
-/// One field as written.
+/// One field as written in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Field {
     /// Type with array suffix: `float64[]`, `std_msgs/Header`, `string<=10`.
@@ -31,17 +31,17 @@ impl Field {
     }
 }
 
-/// `package/Type` of a name that may be written `package/msg/Type`.
+/// `package/Type` of a name that may have the form `package/msg/Type`.
 pub(super) fn short_name(type_name: &str) -> String {
     type_name.replacen("/msg/", "/", 1)
 }
 
-/// The package of `package/Type`, `""` when there is none.
+/// The package of `package/Type`, `""` if there is none.
 pub(super) fn package(short_name: &str) -> &str {
     short_name.split_once('/').map_or("", |(package, _)| package)
 }
 
-/// Full short name of the type that a definition of `package` refers to.
+/// Full short name of the type that a definition in `package` refers to.
 pub(super) fn resolve(type_name: &str, package: &str) -> String {
     if type_name.contains('/') { short_name(type_name) } else { format!("{package}/{type_name}") }
 }

@@ -1,4 +1,4 @@
-//! In which order and type the bytes of a message come.
+//! The order and types of the bytes of a message.
 
 use std::collections::HashMap;
 
@@ -7,12 +7,12 @@ use super::error::LayoutError;
 use super::fields::short_name;
 use crate::{ReadLimits, Topic};
 
-/// Types within types; readers of messages go down as deep.
+/// Maximum nesting of types; message readers recurse to the same depth.
 const DEPTH_LIMIT: usize = ReadLimits::DEFAULT.nesting;
-/// Fields, all contained types together.
+/// Maximum number of fields, including those of all contained types.
 const FIELD_LIMIT: usize = ReadLimits::DEFAULT.fields;
 
-/// The types that are one number.
+/// The types that are a single number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum Primitive {
@@ -30,7 +30,7 @@ pub enum Primitive {
 }
 
 impl Primitive {
-    /// Bytes of one value, and what its position is a multiple of.
+    /// Size of one value, and its alignment, bytes.
     pub fn size(self) -> usize {
         match self {
             Primitive::Bool | Primitive::I8 | Primitive::U8 => 1,
@@ -41,16 +41,16 @@ impl Primitive {
     }
 }
 
-/// What one element of a member is.
+/// The kind of one element of a member.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
     Primitive(Primitive),
-    /// Text of bytes.
+    /// Text.
     Text,
-    /// Another struct of the layout, by its number.
+    /// Another struct of the layout, by its index.
     Struct(usize),
-    /// A type whose bytes writers do not agree on (`wstring`, `long double`): nothing behind it can be read.
+    /// A type that writers encode differently (`wstring`, `long double`): nothing after it can be read.
     Unreadable(String),
 }
 
@@ -59,9 +59,9 @@ pub enum Kind {
 pub enum Count {
     /// A single value.
     One,
-    /// An array of so many.
+    /// An array of fixed length.
     Fixed(usize),
-    /// As many as the message says.
+    /// A sequence whose length is in the message.
     Sequence,
 }
 
@@ -70,13 +70,13 @@ pub enum Count {
 pub struct Member {
     /// Name of the field.
     pub name: String,
-    /// What one element is.
+    /// Kind of one element.
     pub kind: Kind,
-    /// How many there are.
+    /// Number of elements.
     pub count: Count,
 }
 
-/// The members of one type in the order of their bytes.
+/// The members of one type in serialization order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StructLayout {
     /// `package/Type`.
@@ -92,8 +92,8 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// The layout of a topic's messages: by the definition in the bag, else by the given ones, else by the common
-    /// interfaces that come with us.
+    /// The layout of a topic's messages. Sources in order: the definition in the bag, the given definitions, the
+    /// built-in common interfaces.
     ///
     /// # Errors
     /// [`LayoutError`].
@@ -102,8 +102,8 @@ impl Layout {
         Layout::build(&topic.type_name, &[&own, extra])
     }
 
-    /// The layout of a type by the first of the sources that defines it, for each type that it contains; what none
-    /// defines is looked up among the common interfaces.
+    /// The layout of a type. For each contained type, the first source that defines it is used; the built-in common
+    /// interfaces come last.
     ///
     /// # Errors
     /// [`LayoutError`].
@@ -115,7 +115,7 @@ impl Layout {
         Ok(Layout { structs: builder.structs })
     }
 
-    /// The struct with this number; 0 is the message itself. `None` for a number that no [`Kind::Struct`] has.
+    /// The struct with this index; 0 is the message itself. `None` for an index that no [`Kind::Struct`] has.
     pub fn structure(&self, number: usize) -> Option<&StructLayout> {
         self.structs.get(number)
     }
@@ -124,13 +124,13 @@ impl Layout {
 struct Builder<'s> {
     sources: Vec<&'s Definitions>,
     structs: Vec<StructLayout>,
-    /// Number of each finished struct, and how many types deep it is.
+    /// Index and nesting height of each finished struct.
     known: HashMap<String, (usize, usize)>,
     fields: usize,
 }
 
 impl Builder<'_> {
-    /// Adds a type that `depth` others contain. Gives its number and how many types deep it is itself.
+    /// Adds a type at nesting depth `depth`. Returns its index and its own nesting height.
     fn add(&mut self, type_name: &str, parent: &str, depth: usize) -> Result<(usize, usize), LayoutError> {
         check_depth(type_name, depth)?;
         let Some(members) = self.sources.iter().find_map(|source| source.members(type_name)) else {
@@ -140,7 +140,7 @@ impl Builder<'_> {
         if self.fields > FIELD_LIMIT {
             return Err(LayoutError::TooLarge { type_name: type_name.to_string(), limit: FIELD_LIMIT });
         }
-        // Its number is taken before its members get theirs: the message itself is 0.
+        // Its index is assigned before those of its members: the message itself is 0.
         let number = self.structs.len();
         self.structs.push(StructLayout { name: type_name.to_string(), members: Vec::new() });
         let members = members.to_vec();
@@ -154,7 +154,7 @@ impl Builder<'_> {
                         Some(&known) => known,
                         None => self.add(&member.type_name, type_name, depth + 1)?,
                     };
-                    // A known type was deep enough where it was met first; here it may be too deep.
+                    // A known type passed the depth check where it was first used; here it may be too deep.
                     check_depth(&member.type_name, depth + 1 + below)?;
                     height = height.max(below + 1);
                     Kind::Struct(number)
@@ -163,7 +163,7 @@ impl Builder<'_> {
             laid_out.push(Member { name: member.name, kind, count: member.count });
         }
         self.structs[number].members = laid_out;
-        // Only now: a type that contains itself is not known yet, so it nests until it is too deep.
+        // Registered only now: a type that contains itself is not known yet, so it nests until the depth limit.
         self.known.insert(type_name.to_string(), (number, height));
         Ok((number, height))
     }
@@ -176,7 +176,7 @@ fn check_depth(type_name: &str, depth: usize) -> Result<(), LayoutError> {
     Ok(())
 }
 
-/// What a word that names no struct stands for, in the words of `ros2msg`.
+/// The primitive with this `ros2msg` name; `None` for the name of a struct.
 fn primitive(type_name: &str) -> Option<Kind> {
     Some(Kind::Primitive(match type_name {
         "bool" => Primitive::Bool,

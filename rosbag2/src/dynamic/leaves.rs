@@ -1,17 +1,17 @@
-//! Every number that a message holds, as paths: what a map can choose from.
+//! Lists the paths of all numbers in a message, from which a map can choose.
 
 use super::cursor::Cursor;
 use super::field_path::{FieldPath, Index, Step};
 use super::layout::{Count, Kind, Layout};
 use crate::cdr::CdrError;
 
-/// Elements of one array that are listed: a picture has a million numbers, none of them a signal.
+/// Elements listed per array: an image has a million numbers, none of them a signal.
 const ELEMENT_LIMIT: usize = 16;
-/// Paths listed of one message.
+/// Paths listed per message.
 const LEAF_LIMIT: usize = 400;
 
-/// Paths to the numbers in a message (with encapsulation), at most 16 elements of each array. Elements beside a list of
-/// names, or with a name within, are named.
+/// Paths to the numbers in a message (with encapsulation), at most 16 elements of each array. Elements are addressed by
+/// name if the array has a sibling list of names, or if the element contains a name.
 ///
 /// # Errors
 /// [`CdrError`] when the message does not fit the layout.
@@ -60,7 +60,7 @@ fn walk(
     Ok(())
 }
 
-/// The lists of texts that are members of the struct at `cursor`, with their names.
+/// The text lists among the members of the struct at `cursor`, with their names.
 fn lists_of_names(layout: &Layout, number: usize, mut cursor: Cursor) -> Result<Vec<(String, Vec<String>)>, CdrError> {
     let mut lists = Vec::new();
     for member in layout.structure(number).map_or(&[][..], |structure| &structure.members) {
@@ -81,7 +81,7 @@ fn lists_of_names(layout: &Layout, number: usize, mut cursor: Cursor) -> Result<
     Ok(lists)
 }
 
-/// How an element is best addressed: by its own name, by the list of names beside it, else by its number.
+/// The best address of an element: its own name, the sibling list of names, otherwise its index.
 fn index_of(
     layout: &Layout,
     kind: &Kind,
@@ -105,7 +105,7 @@ fn index_of(
     Ok(named.unwrap_or(Index::Number(element)))
 }
 
-/// `[key=value]`, unless the value could not be written so.
+/// `[key=value]`; `None` if the value cannot be written in that form.
 fn addressable(key: &str, value: &str) -> Option<Index> {
     let plain = !value.is_empty() && value.trim() == value && !value.contains(']');
     plain.then(|| Index::Named { key: key.to_string(), value: value.to_string() })

@@ -1,4 +1,4 @@
-//! Messages of any type, read by the definition in the bag: one number of one field at a time, without building the
+//! Reads messages of any type by the definition in the bag: one number of one field at a time, without building the
 //! message in memory.
 
 mod common_interfaces;

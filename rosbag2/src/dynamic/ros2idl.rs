@@ -1,4 +1,4 @@
-//! `ros2idl`: the subset of OMG IDL in which ROS 2 defines messages, several files in a row with lines of `=` between.
+//! Parses `ros2idl`: the subset of OMG IDL in which ROS 2 defines messages, several files separated by lines of `=`.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use super::definitions::DefinedMember;
 use super::error::LayoutError;
 use super::layout::Count;
 
-/// A type as written, with typedefs already replaced.
+/// A type as written, with typedefs already resolved.
 #[derive(Debug, Clone)]
 struct Written {
     type_name: String,
@@ -22,7 +22,8 @@ pub(super) fn parse(schema: &str) -> Result<HashMap<String, Vec<DefinedMember>>,
     Ok(parser.types)
 }
 
-/// Words, numbers, texts and single signs; comments, `#include` lines, separators and `IDL:` headings are left out.
+/// Words, numbers, texts and single characters; comments, `#include` lines, separators and `IDL:` headings are left
+/// out.
 fn tokens(schema: &str) -> Vec<String> {
     let text: String = schema
         .lines()
@@ -96,7 +97,7 @@ impl Parser {
         if found == wanted { Ok(()) } else { Err(wrong(&found, &format!("expected \"{wanted}\""))) }
     }
 
-    /// A module, struct, enum, constant or typedef; the end of a module.
+    /// Parses a module, struct, enum, constant or typedef, or the end of a module.
     fn definition(&mut self) -> Result<(), LayoutError> {
         self.skip_annotations();
         match self.next().as_str() {
@@ -141,7 +142,7 @@ impl Parser {
             let written = self.type_name()?;
             let (name, written) = self.declarator(written)?;
             self.expect(";")?;
-            // The generator of ROS 2 gives an empty message a byte of this name; it is in the bytes as well.
+            // The ROS 2 generator adds a byte of this name to an empty message; it is serialized as well.
             members.push(DefinedMember { name, type_name: written.type_name, count: written.count });
         }
         self.expect("}")?;
@@ -151,7 +152,7 @@ impl Parser {
         Ok(())
     }
 
-    /// A name with the array bounds behind it.
+    /// A name followed by its array bounds.
     fn declarator(&mut self, written: Written) -> Result<(String, Written), LayoutError> {
         let name = self.next();
         let mut count = written.count;
@@ -214,7 +215,7 @@ impl Parser {
             }
             "sequence" => {
                 self.expect("<")?;
-                // Not read by calling this function again and again: a definition could nest until the stack is full.
+                // Parsed without recursion: nested definitions could overflow the stack.
                 if self.peek() == "sequence" {
                     return Err(wrong("sequence", "sequences of sequences are not read"));
                 }
@@ -237,7 +238,7 @@ impl Parser {
         }
     }
 
-    /// A typedef, or a struct of this or another package.
+    /// Resolves a typedef, or a struct of this or another package.
     fn named(&self, parts: &[String]) -> Result<Written, LayoutError> {
         let name = parts.last().cloned().unwrap_or_default();
         if let Some(written) = self.typedefs.get(&name).filter(|_| parts.len() == 1) {

@@ -1,4 +1,4 @@
-//! `ros2msg`: the text of a `.msg` file, followed in bags by those of the contained types.
+//! Parses `ros2msg`: the text of a `.msg` file, followed in bags by the definitions of the contained types.
 
 use std::collections::HashMap;
 
@@ -7,10 +7,10 @@ use super::error::LayoutError;
 use super::fields::{self, short_name};
 use super::layout::Count;
 
-/// A run of `=` at least so long separates definitions; not every writer gets the 80 right.
+/// A run of `=` of at least this length separates definitions; not every writer uses exactly 80.
 const SHORTEST_SEPARATOR: usize = 10;
 
-/// The members of every type in a schema, the root under `type_name`.
+/// The members of every type in a schema; the root is under `type_name`.
 pub(super) fn parse(type_name: &str, schema: &str) -> Result<HashMap<String, Vec<DefinedMember>>, LayoutError> {
     let mut types = HashMap::new();
     let mut name = short_name(type_name);
@@ -50,7 +50,7 @@ fn members(text: &str, name: &str) -> Result<Vec<DefinedMember>, LayoutError> {
             let type_name = if field.is_primitive() {
                 base.to_string()
             } else if base == "Header" {
-                // Packages that come from ROS 1 still write it without its package.
+                // Packages from ROS 1 still write it without its package.
                 "std_msgs/Header".to_string()
             } else {
                 fields::resolve(base, package)

@@ -1,4 +1,4 @@
-//! From a field path and a layout to numbers.
+//! Resolves a field path in a layout and reads the numbers.
 
 use super::cursor::Cursor;
 use super::error::PathError;
@@ -6,7 +6,7 @@ use super::field_path::{FieldPath, Index};
 use super::layout::{Count, Kind, Layout, Member, Primitive, StructLayout};
 use crate::cdr::CdrError;
 
-/// As in [`cdr::decode`](crate::cdr::decode): what is left over must be padding.
+/// As in [`cdr::decode`](crate::cdr::decode): the rest must be padding.
 const PADDING_LIMIT: usize = 7;
 const NANOSECONDS_PER_SECOND: i64 = 1_000_000_000;
 
@@ -14,9 +14,9 @@ const NANOSECONDS_PER_SECOND: i64 = 1_000_000_000;
 enum ResolvedIndex {
     Single,
     Number(usize),
-    /// Place of the text in the member with this number, beside the array.
+    /// Position of the text in the sibling list that is the member with this index.
     Beside(usize, String),
-    /// The element whose member with this number is the text.
+    /// The element whose member with this index equals the text.
     Within(usize, String),
 }
 
@@ -26,16 +26,16 @@ struct ResolvedStep {
     index: ResolvedIndex,
 }
 
-/// A field path that was looked up in a layout.
+/// A field path resolved in a layout.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Selector {
     steps: Vec<ResolvedStep>,
-    /// What is at the end of the path.
+    /// The kind of value at the end of the path.
     kind: Kind,
 }
 
 impl Selector {
-    /// Looks up a path that must end at a number.
+    /// Resolves a path that must end at a number.
     ///
     /// # Errors
     /// [`PathError`].
@@ -50,7 +50,7 @@ impl Selector {
         Err(PathError::NotANumber { path: path.to_string(), found })
     }
 
-    /// Looks up a path that must end at a `builtin_interfaces/Time`.
+    /// Resolves a path that must end at a `builtin_interfaces/Time`.
     ///
     /// # Errors
     /// [`PathError`].
@@ -67,7 +67,7 @@ impl Selector {
         if is_time { Ok(selector) } else { Err(PathError::NotATime { path: path.to_string() }) }
     }
 
-    /// Looks up an array of bytes in the message itself.
+    /// Resolves an array of bytes in the message itself.
     ///
     /// # Errors
     /// [`PathError::NoField`], [`PathError::NotANumber`].
@@ -89,7 +89,7 @@ impl Selector {
         Ok(Selector { steps, kind: member.kind.clone() })
     }
 
-    /// The bytes of the array in a message, for a selector of [`Selector::octets`].
+    /// The bytes of the array in a message, for a selector from [`Selector::octets`].
     ///
     /// # Errors
     /// As [`Selector::read`].
@@ -132,7 +132,7 @@ impl Selector {
         Ok(Selector { steps, kind })
     }
 
-    /// The number in a message (with encapsulation); `None` when the array has no such element.
+    /// The number in a message (with encapsulation); `None` if the array has no such element.
     ///
     /// # Errors
     /// [`CdrError`] when the bytes up to the number do not fit the layout.
@@ -146,7 +146,7 @@ impl Selector {
         }
     }
 
-    /// The time in a message, ns since the epoch; `None` when the array has no such element.
+    /// The time in a message, ns since the epoch; `None` if the array has no such element.
     ///
     /// # Errors
     /// As [`Selector::read`].
@@ -186,7 +186,7 @@ impl Selector {
     }
 }
 
-/// How `[key=value]` finds its element.
+/// How `[key=value]` finds its element in this type.
 fn named(
     layout: &Layout,
     structure: Option<&StructLayout>,
@@ -210,7 +210,7 @@ fn named(
     }
 }
 
-/// Place of a text in the list that is member `list` of the struct at `cursor`.
+/// Position of a text in the list that is member `list` of the struct at `cursor`.
 fn place_in_list(
     layout: &Layout,
     number: usize,
@@ -228,7 +228,7 @@ fn place_in_list(
     Ok(None)
 }
 
-/// Place of the element whose member `key` is the text, among `count` at `cursor`.
+/// Position of the element whose member `key` equals the text, among `count` at `cursor`.
 fn place_of_element(
     layout: &Layout,
     kind: &Kind,
@@ -252,10 +252,10 @@ fn place_of_element(
 }
 
 impl Layout {
-    /// Whether a whole message (with encapsulation) fits: not too short, and nothing but padding left over.
+    /// Checks that a whole message (with encapsulation) fits: not too short, and only padding left over.
     ///
     /// # Errors
-    /// [`CdrError`], which says what does not fit.
+    /// [`CdrError`], with what does not fit.
     pub fn check(&self, message: &[u8]) -> Result<(), CdrError> {
         let mut cursor = Cursor::new(message)?;
         cursor.skip_struct(self, 0)?;

@@ -1,11 +1,11 @@
-//! One clock of a topic: the intervals between its times, and how often it steps back.
+//! One clock of a topic: the intervals between its times, and how often it goes backwards.
 
 use super::spread::{Bins, Spread};
 
-/// Times that wait to be sorted. One that comes later than so many others makes no interval of its own.
+/// Times buffered for sorting. A time that arrives later than this many others produces no interval of its own.
 const WAITING: usize = 1 << 15;
 
-/// Times in nanoseconds as they come.
+/// Times in nanoseconds, in order of arrival.
 #[derive(Debug, Default)]
 pub(super) struct Clock {
     count: u64,
@@ -14,7 +14,7 @@ pub(super) struct Clock {
     repeated: u64,
     waiting: Vec<i64>,
     first: Option<i64>,
-    /// The last time that has left the waiting ones.
+    /// The last time that left the buffer.
     last: Option<i64>,
     intervals: Spread,
     longest: i64,
@@ -28,12 +28,12 @@ pub(super) struct Intervals {
     pub bins: Bins,
     /// The longest, ns.
     pub longest: i64,
-    /// When that began, ns after the first time.
+    /// When that interval began, ns after the first time.
     pub longest_at: i64,
 }
 
 impl Clock {
-    /// Takes one time in.
+    /// Adds one time.
     pub fn note(&mut self, time: i64) {
         self.count += 1;
         self.backwards += u64::from(self.latest.is_some_and(|latest| time < latest));
@@ -45,17 +45,17 @@ impl Clock {
         }
     }
 
-    /// How many times there were.
+    /// Number of times.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// How many were earlier than one before them.
+    /// Number of times that were earlier than a previous one.
     pub fn backwards(&self) -> u64 {
         self.backwards
     }
 
-    /// How many were equal to the latest before them.
+    /// Number of times that were equal to the latest previous one.
     pub fn repeated(&self) -> u64 {
         self.repeated
     }
@@ -70,7 +70,7 @@ impl Clock {
         })
     }
 
-    /// Makes intervals of the earliest so many of the waiting times.
+    /// Converts the earliest `count` buffered times to intervals.
     fn settle(&mut self, count: usize) {
         self.waiting.sort_unstable();
         for time in self.waiting.drain(..count) {

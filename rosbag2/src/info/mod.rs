@@ -1,4 +1,4 @@
-//! What is in a bag, per topic.
+//! Summarizes the contents of a bag per topic.
 
 mod clock;
 mod spread;
@@ -74,8 +74,8 @@ impl TopicInfo {
     }
 }
 
-/// Reads through the whole bag at `path` and says what is in it. Nothing is taken from indexes or `metadata.yaml`,
-/// which may promise more than there is; where they do, it is a problem.
+/// Reads the whole bag at `path` and summarizes its contents. Nothing is taken from indexes or `metadata.yaml`. If the
+/// metadata declares more than was read, that is a problem.
 ///
 /// # Errors
 /// All of [`RawMessages::open`].
@@ -83,7 +83,8 @@ pub fn info(path: &Path) -> Result<BagInfo, Error> {
     info_with(path, &Definitions::default())
 }
 
-/// As [`info`], with the definitions of types that the bag may lack: without one, no stamps of a topic are read.
+/// As [`info`], with definitions of types that the bag may lack: without a definition, the stamps of a topic are not
+/// read.
 ///
 /// # Errors
 /// As [`info`].

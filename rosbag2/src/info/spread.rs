@@ -1,13 +1,14 @@
-//! How values spread, in memory that does not grow with their number.
+//! The distribution of values, in bounded memory.
 
 use hdrhistogram::Histogram;
 
-/// So many values are kept as they are: four minutes at 1 kHz, 2 MB. Beyond, they are counted in bins.
+/// This many values are stored exactly: four minutes at 1 kHz, 2 MB. Further values are counted in bins.
 const KEPT: usize = 1 << 18;
-/// Significant digits of a bin's distance from the first median: bins are 0.1 % of that distance wide, and 1 ns at least.
+/// Significant digits of a bin's distance from the first median: bins are 0.1 % of that distance wide, and at least 1
+/// ns.
 const DIGITS: u8 = 3;
 
-/// Values in nanoseconds: exact up to [`KEPT`], from there on in bins around the median of those.
+/// Values in nanoseconds: exact up to [`KEPT`], then in bins around the median of the first [`KEPT`].
 #[derive(Debug)]
 pub(super) enum Spread {
     Exact(Vec<i64>),
@@ -21,7 +22,7 @@ impl Default for Spread {
 }
 
 impl Spread {
-    /// Takes one value in.
+    /// Adds one value.
     pub fn note(&mut self, value: i64) {
         match self {
             Spread::Exact(values) if values.len() < KEPT => values.push(value),
@@ -32,7 +33,7 @@ impl Spread {
             Spread::Binned { centre, below, from_centre } => {
                 let side = if value < *centre { below } else { from_centre };
                 let distance = value.abs_diff(*centre);
-                // It grows as needed; what is beyond the largest that it can be counts as that.
+                // The histogram grows as needed; values beyond its range are clamped to its maximum.
                 if side.record(distance).is_err() {
                     side.saturating_record(distance);
                 }
@@ -96,7 +97,7 @@ impl Bins {
         at.map(|&(value, _)| value)
     }
 
-    /// How far the values are from `centre`.
+    /// The distances of the values from `centre`.
     pub fn distances_from(&self, centre: i64) -> Bins {
         let mut distances: Vec<(i64, u64)> =
             self.0.iter().map(|&(value, count)| (value.saturating_sub(centre).saturating_abs(), count)).collect();
@@ -104,7 +105,7 @@ impl Bins {
         Bins(distances)
     }
 
-    /// How many values are such.
+    /// The number of values that match.
     pub fn count(&self, such: impl Fn(i64) -> bool) -> u64 {
         self.0.iter().filter(|(value, _)| such(*value)).map(|(_, count)| count).sum()
     }
@@ -115,7 +116,7 @@ impl Bins {
 mod tests {
     use super::*;
 
-    /// A clock of 1 ms with jitter up to 50 us and one pause of 1 s: noted in bins, asked as if kept.
+    /// A clock of 1 ms with jitter up to 50 us and one pause of 1 s: binned quantiles must match the exact ones.
     #[test]
     fn bins_answer_as_the_values_would() {
         let mut spread = Spread::default();

@@ -9,7 +9,7 @@ use crate::raw_messages::{RawMessage, Topic};
 
 /// An interval longer than this many median intervals is a gap.
 const GAP_FACTOR: f64 = 1.5;
-/// Share of the intervals that jitter covers: the rest are gaps or bursts, told apart.
+/// Share of the intervals that jitter covers: the rest are gaps or bursts, which are reported separately.
 const JITTER_SHARE: f64 = 0.95;
 
 /// How regular a topic is. Intervals are those of the stamps where the messages have them, else of the log times.
@@ -51,7 +51,7 @@ pub struct StampTiming {
     pub delay_range: (f64, f64),
 }
 
-/// The times of one topic as they come.
+/// The times of one topic in order of arrival.
 #[derive(Debug, Default)]
 pub(super) struct Times {
     log: Clock,
@@ -65,7 +65,7 @@ pub(super) struct Times {
 }
 
 impl Times {
-    /// For messages of a topic; stamps are read where its type has a header.
+    /// For messages of a topic; stamps are read if its type has a header.
     pub fn of(topic: &Topic, extra: &Definitions) -> Times {
         let reader = || {
             let layout = Layout::of_topic(topic, extra).ok()?;
@@ -91,7 +91,7 @@ impl Times {
         self.delays.note(delay);
         let (least, largest) = self.delay_range.unwrap_or((delay, delay));
         self.delay_range = Some((least.min(delay), largest.max(delay)));
-        // A simulation may begin at zero: then the log time does as well.
+        // A simulation may start at zero: then the log time is zero as well.
         self.zero_stamps += u64::from(stamp == 0 && log != 0);
     }
 

@@ -1,8 +1,8 @@
-//! A bag whose recorder was killed, made readable for everybody.
+//! Makes a bag readable for other readers after its recorder was killed.
 //!
-//! A recorder that is killed leaves MCAP files without an end and a folder without `metadata.yaml`. We read that; `ros2 bag`
-//! and most other readers do not. Files that are whole stay as they are. The others are written anew beside the original,
-//! checked, and put in its place in one step; then the metadata is written.
+//! A recorder that is killed leaves MCAP files without an end and a folder without `metadata.yaml`. This crate reads
+//! such bags; `ros2 bag` and most other readers do not. Intact files are unchanged. The others are rewritten next to
+//! the original, verified, and moved to its place atomically; then the metadata is written.
 
 mod rewrite;
 mod tally;
@@ -18,29 +18,29 @@ use crate::{Damage, Error, Qos, ReadLimits};
 use rewrite::rewrite;
 use tally::Tally;
 
-/// What was done to a bag.
+/// The result of reindexing a bag.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reindexed {
     /// Each file, in the order of the bag.
     pub files: Vec<ReindexedFile>,
-    /// The metadata that was written; `None` for a bare file, which has none.
+    /// The metadata that was written; `None` for a bare file.
     pub metadata: Option<PathBuf>,
     /// Number of topics.
     pub topics: usize,
 }
 
-/// What was done to one file.
+/// The result of reindexing one file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReindexedFile {
     /// The file.
     pub path: PathBuf,
-    /// Whether it was written anew.
+    /// Whether it was rewritten.
     pub rewritten: bool,
-    /// Messages that it has now.
+    /// Number of messages after reindexing.
     pub messages: u64,
-    /// What of the original could not be read.
+    /// The damage in the original.
     pub damage: Vec<Damage>,
-    /// Where the original went; `None` when it was replaced or is unchanged.
+    /// Where the original was moved; `None` if it was replaced or is unchanged.
     pub original: Option<PathBuf>,
 }
 
@@ -53,12 +53,12 @@ impl Reindexed {
 }
 
 /// Makes the bag at `path` readable for other readers: a folder with MCAP or SQLite3 files, or a bare MCAP file. With
-/// `keep`, the original of a file that is written anew stays beside it as `NAME.damaged`.
+/// `keep`, the original of a rewritten file is kept next to it as `NAME.damaged`.
 ///
 /// # Errors
 /// [`Error::NotABag`] for files of which nothing can be read, [`Error::StillWritten`], [`Error::NotVerified`],
 /// [`Error::UnsupportedCompression`] for files that rosbag2 compressed as a whole; [`Error::Write`], [`Error::Io`].
-/// Where it fails, every file is as it was, or is written anew and whole.
+/// On failure, every file is either unchanged or completely rewritten.
 pub fn reindex(path: &Path, keep: bool) -> Result<Reindexed, Error> {
     let limits = ReadLimits::DEFAULT;
     if !path.exists() {
@@ -94,8 +94,8 @@ pub fn reindex(path: &Path, keep: bool) -> Result<Reindexed, Error> {
     Ok(Reindexed { files: done, metadata, topics: count })
 }
 
-/// The files that the metadata lists, where it does, else all in the folder; with those that it does not list, which a
-/// recorder that was killed had begun.
+/// The files listed in the metadata, otherwise all in the folder. Files that the metadata does not list are added: a
+/// killed recorder may have started them.
 fn files_of(folder: &Path, limits: &ReadLimits) -> Result<Vec<PathBuf>, Error> {
     let all = from_folder(folder)?.files;
     let mut listed = match BagFiles::locate(folder, limits) {
@@ -143,7 +143,7 @@ fn one_file(path: &Path, keep: bool, limits: &ReadLimits) -> Result<(ReindexedFi
         damage,
         original: None,
     };
-    // SQLite has no index of its own to be lost; its damage stays as it is.
+    // The index of SQLite is part of the database and cannot be missing; damage in it is not repaired.
     if !whole && kind == StorageKind::Mcap {
         drop(file);
         found.original = rewrite(path, &tally, before, keep, limits)?;
@@ -159,7 +159,7 @@ fn write_metadata(
     topics: Vec<(std::sync::Arc<crate::Topic>, u64)>,
 ) -> Result<PathBuf, Error> {
     let path = folder.join(FILE_NAME);
-    // What a user noted in the metadata stays.
+    // Custom data that a user added to the metadata is kept.
     let custom_data = Metadata::custom_data(&path, &ReadLimits::DEFAULT);
     let topics: Vec<TopicContents> = topics
         .into_iter()

@@ -1,4 +1,4 @@
-//! A damaged MCAP file written anew.
+//! Rewrites a damaged MCAP file.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
@@ -12,8 +12,8 @@ use super::tally::Tally;
 use crate::storage::StorageFile;
 use crate::{Error, ReadLimits, Topic, WriteOptions};
 
-/// Writes the readable messages of the file at `path` into a new file, checks that one against `tally`, and puts it in the
-/// original's place. Gives where the original went, if it was kept.
+/// Writes the readable messages of the file at `path` to a new file, verifies it against `tally`, and replaces the
+/// original. Returns the new path of the original, if it was kept.
 pub(super) fn rewrite(
     path: &Path,
     tally: &Tally,
@@ -22,7 +22,7 @@ pub(super) fn rewrite(
     limits: &ReadLimits,
 ) -> Result<Option<PathBuf>, Error> {
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // A name that no reader of the folder takes for a file of the bag; removed when anything fails.
+    // A name that no reader of the folder takes for a file of the bag; the file is removed on any failure.
     let beside = tempfile::Builder::new()
         .prefix(".reindex-")
         .tempfile_in(folder)
@@ -44,11 +44,11 @@ pub(super) fn rewrite(
         PathBuf::from(name)
     });
     if let Some(original) = &original {
-        // A second name for the same bytes: at no time is there no file of the bag.
+        // A hard link to the same bytes, so that the bag file exists at all times.
         std::fs::hard_link(path, original).map_err(Error::io("keep the original as", original))?;
     }
     beside.persist(path).map_err(|error| Error::io("replace", path)(error.error))?;
-    // The new name survives a power cut only once the folder is on the disk.
+    // The rename survives a power cut only after the folder is synced to disk.
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
     Ok(original)
 }
@@ -83,7 +83,7 @@ fn copy(path: &Path, file: File, limits: &ReadLimits) -> Result<(), Error> {
         };
         writer.write_to_known_channel(&header, &message.data).map_err(failed)?;
     }
-    // Topics without messages belong to the bag too.
+    // Topics without messages belong to the bag as well.
     for topic in source.topics() {
         if !channels.contains_key(&topic.name) {
             let added = add(&mut writer, topic).map_err(failed)?;
@@ -105,7 +105,7 @@ fn add<W: io::Write + io::Seek>(writer: &mut mcap::Writer<W>, topic: &Arc<Topic>
     writer.add_channel(schema, &topic.name, &topic.message_encoding, &metadata)
 }
 
-/// What the new file has, or nothing when it is not whole.
+/// The contents of the new file; empty if it is not intact.
 fn read_back(path: &Path, limits: &ReadLimits) -> Result<Tally, Error> {
     let mut file = StorageFile::open(path, limits)?;
     let mut tally = Tally::default();
@@ -119,7 +119,7 @@ fn read_back(path: &Path, limits: &ReadLimits) -> Result<Tally, Error> {
     Ok(tally)
 }
 
-/// Temporary files are for their user only; a file of a bag is as every other.
+/// Temporary files are readable only by their user; a bag file has the usual permissions.
 pub(super) fn with_usual_rights(file: &File) -> io::Result<()> {
     #[cfg(unix)]
     {

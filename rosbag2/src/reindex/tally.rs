@@ -1,4 +1,4 @@
-//! What a file has: messages by topic, times, and a sum over all bytes, by which a copy is checked.
+//! The contents of a file: messages per topic, times, and a checksum over all bytes, to verify a copy.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crate::{RawMessage, Topic};
 /// Topics and messages that were counted.
 #[derive(Debug, Default)]
 pub(super) struct Tally {
-    /// In the order in which they were met, each name once.
+    /// In order of first appearance, each name once.
     topics: Vec<(Arc<Topic>, u64)>,
     /// Log times of the earliest and the latest message, ns.
     span: Option<(u64, u64)>,
@@ -15,7 +15,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Takes in topics, also those without messages.
+    /// Adds topics, including those without messages.
     pub fn define<'t>(&mut self, topics: impl Iterator<Item = &'t Arc<Topic>>) {
         for topic in topics {
             self.index_of(topic);
@@ -45,7 +45,7 @@ impl Tally {
         }
     }
 
-    /// Adds what another file has.
+    /// Adds the tally of another file.
     pub fn add(&mut self, other: &Tally) {
         for (topic, messages) in &other.topics {
             let index = self.index_of(topic);
@@ -57,7 +57,7 @@ impl Tally {
         }
     }
 
-    /// All messages.
+    /// Number of messages.
     pub fn messages(&self) -> u64 {
         self.topics.iter().map(|(_, messages)| messages).sum()
     }
@@ -67,14 +67,14 @@ impl Tally {
         self.span
     }
 
-    /// Topics with their messages, sorted by name.
+    /// Topics with their message counts, sorted by name.
     pub fn topics(&self) -> Vec<(Arc<Topic>, u64)> {
         let mut topics = self.topics.clone();
         topics.sort_by(|a, b| a.0.name.cmp(&b.0.name));
         topics
     }
 
-    /// What has to be equal in a copy: messages, their bytes and times in order, and the names of topics.
+    /// The values that must be equal in a copy: messages, their bytes and times in order, and the names of topics.
     pub fn fingerprint(&self) -> (u64, u32, Vec<(String, u64)>) {
         let topics = self.topics().into_iter().map(|(topic, messages)| (topic.name.clone(), messages)).collect();
         (self.messages(), self.sum.clone().finalize(), topics)

@@ -1,4 +1,4 @@
-//! What rosbag2 compressed itself: whole files, or message by message, with zstd.
+//! Decompresses what rosbag2 compressed: whole files, or single messages, with zstd.
 
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::path::Path;
@@ -10,16 +10,16 @@ use crate::container::{Damage, DamageKind};
 use crate::limits::{Limit, ReadLimits};
 use crate::regular_file::open_regular;
 
-/// First bytes of every zstd frame. No message begins so: its encapsulation begins with a zero.
+/// First bytes of every zstd frame. No message starts with them: its encapsulation starts with a zero.
 const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// Whether the bytes begin like a zstd frame.
+/// Whether the bytes start like a zstd frame.
 pub(crate) fn is_zstd(bytes: &[u8]) -> bool {
     bytes.starts_with(&ZSTD_MAGIC)
 }
 
-/// Unpacks a file that was compressed as a whole into the folder for temporary files. What is damaged ends there: the
-/// bytes before it are kept.
+/// Decompresses a whole file to the folder for temporary files. Decompression stops at damage; the bytes before it are
+/// kept.
 pub(super) fn unpack(path: &Path, limits: &ReadLimits) -> Result<(tempfile::TempPath, Option<Damage>), Error> {
     let (packed, packed_length) = open_regular(path)?;
     let mut reader = zstd::stream::read::Decoder::new(BufReader::new(packed)).map_err(Error::io("read", path))?;
@@ -61,7 +61,7 @@ fn cannot_write(writer: &BufWriter<tempfile::NamedTempFile>, error: std::io::Err
 /// Messages that were compressed one by one.
 #[derive(Debug)]
 pub(crate) struct MessageDecompressor {
-    /// Most bytes of a message.
+    /// Maximum size of a message, bytes.
     most: u64,
     bad_messages: u64,
     bad_bytes: u64,
@@ -73,7 +73,7 @@ impl MessageDecompressor {
         MessageDecompressor { most: limits.message, bad_messages: 0, bad_bytes: 0, first_reason: None }
     }
 
-    /// The message as it was before compression; `None`, and counted, when it cannot be won.
+    /// The decompressed message; `None`, and counted, if it cannot be decompressed.
     pub fn decompress(&mut self, data: Bytes) -> Option<Bytes> {
         if !is_zstd(&data) {
             return Some(data);
@@ -94,7 +94,7 @@ impl MessageDecompressor {
         }
     }
 
-    /// What could not be decompressed, as damage of the bag.
+    /// The messages that could not be decompressed, as damage of the bag.
     pub fn damage(&self, bag: &Path) -> Option<Damage> {
         let reason = self.first_reason.clone()?;
         Some(Damage {

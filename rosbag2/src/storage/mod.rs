@@ -1,4 +1,4 @@
-//! One face for the storages of rosbag2: whatever a file is, it gives topics, messages and damage.
+//! A common interface to the storages of rosbag2: topics, messages and damage.
 
 mod compressed;
 #[cfg(feature = "sqlite")]
@@ -28,7 +28,7 @@ pub(crate) struct StorageFile {
     kind: Kind,
     /// The unpacked copy of a file that rosbag2 compressed as a whole; removed when dropped.
     unpacked_copy: Option<tempfile::TempPath>,
-    /// What is wrong with the compression of the whole file.
+    /// Damage in the compression of the whole file.
     compression_damage: Vec<Damage>,
 }
 
@@ -56,12 +56,12 @@ enum Kind {
     Mcap(Box<McapFile>),
     #[cfg(feature = "sqlite")]
     Sqlite(Box<SqliteFile>),
-    /// Not one message can be won.
+    /// No message can be read.
     Nothing,
 }
 
 impl StorageFile {
-    /// Opens a file as what its first bytes say that it is. A file of which nothing can be read is damage, no error.
+    /// Opens a file in the format that its first bytes indicate. An unreadable file is damage, not an error.
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<StorageFile, Error> {
         if !is_zstd(&location::first_bytes(path)?) {
             return Ok(match open_plain(path, path, limits)? {
@@ -84,12 +84,12 @@ impl StorageFile {
         StorageFile { kind: Kind::Nothing, unpacked_copy: None, compression_damage: damage }
     }
 
-    /// Whether not one message can be won from the file.
+    /// Whether no message can be read from the file.
     pub fn is_unreadable(&self) -> bool {
         matches!(self.kind, Kind::Nothing)
     }
 
-    /// What the file is; `None` when nothing can be read.
+    /// The storage of the file; `None` if nothing can be read.
     pub fn kind(&self) -> Option<StorageKind> {
         match &self.kind {
             Kind::Mcap(_) => Some(StorageKind::Mcap),
@@ -99,12 +99,12 @@ impl StorageFile {
         }
     }
 
-    /// Whether rosbag2 compressed it as a whole.
+    /// Whether rosbag2 compressed the whole file.
     pub fn is_compressed(&self) -> bool {
         self.unpacked_copy.is_some()
     }
 
-    /// Whether it ends with the index that other readers need; of SQLite3 it is part of the file.
+    /// Whether it ends with the index that other readers need; in SQLite3 the index is part of the file.
     pub fn has_index(&self) -> bool {
         match &self.kind {
             Kind::Mcap(file) => file.has_index(),
@@ -124,7 +124,7 @@ impl StorageFile {
         }
     }
 
-    /// The damage met so far; complete once [`StorageFile::next_message`] has returned `None`.
+    /// The damage found so far; complete once [`StorageFile::next_message`] has returned `None`.
     pub fn damage(&self) -> impl Iterator<Item = &Damage> {
         let own = match &self.kind {
             Kind::Mcap(file) => file.damage(),
@@ -135,10 +135,10 @@ impl StorageFile {
         self.compression_damage.iter().chain(own)
     }
 
-    /// The next message, `None` at the end. Damage is noted and passed over.
+    /// The next message, `None` at the end. Damage is recorded and skipped.
     ///
     /// # Errors
-    /// Only what the operating system refuses.
+    /// Only errors of the operating system.
     pub fn next_message(&mut self) -> Result<Option<RawMessage>, Error> {
         match &mut self.kind {
             Kind::Mcap(file) => file.next_message(),
@@ -149,7 +149,7 @@ impl StorageFile {
     }
 }
 
-/// Opens the file at `path`, which people know as `name`.
+/// Opens the file at `path`; messages call it `name`.
 fn open_plain(path: &Path, name: &Path, limits: &ReadLimits) -> Result<Result<Kind, Damage>, Error> {
     let length = std::fs::metadata(path).map_err(Error::io("read", path))?.len();
     let nothing = |kind| Damage { file: name.to_path_buf(), offset: 0, lost_bytes: length, readable_until: None, kind };

@@ -1,8 +1,8 @@
-//! A database of somebody else, opened so that it can do nothing but give its rows.
+//! Opens an untrusted database so that it can only return its rows.
 //!
-//! A database brings its own program: views, triggers, virtual tables and computed columns. None of them is needed in a bag.
-//! Their functions are switched off (`trusted_schema`), only plain tables are asked, and each question has a number of
-//! steps after which SQLite gives up.
+//! A database can contain code: views, triggers, virtual tables and computed columns. A bag needs none of them. Their
+//! functions are disabled (`trusted_schema`), only plain tables are queried, and each query has a step limit after
+//! which SQLite aborts.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -15,12 +15,12 @@ use thiserror::Error;
 
 use crate::limits::{Limit, LimitError, ReadLimits};
 
-/// Steps of SQLite's machine between two looks at their number.
+/// Steps of the SQLite virtual machine between two checks of the step count.
 const STEPS_AT_ONCE: i32 = 10_000;
-/// Longest question that we ask, bytes, and much more than we ever do.
+/// Maximum length of a query, bytes; much more than any of ours.
 const LONGEST_QUESTION: i32 = 1 << 16;
 
-/// Why a database does not answer.
+/// Why a query fails.
 #[derive(Debug, Error)]
 pub(super) enum SqliteFault {
     #[error(transparent)]
@@ -35,18 +35,17 @@ pub(super) enum SqliteFault {
     Computed { table: &'static str, column: String },
 }
 
-/// A connection on which every question has a bounded number of steps.
+/// A connection on which every query has a limited number of steps.
 #[derive(Debug)]
 pub(super) struct Bounded {
     connection: Connection,
-    /// Steps since the last question was asked.
+    /// Steps since the last query started.
     steps: Arc<AtomicU64>,
     limits: ReadLimits,
 }
 
 impl Bounded {
-    /// Opens a database for reading, also one that was cut, or whose writer left a journal behind that only a writer may
-    /// play back.
+    /// Opens a database for reading. It may be truncated, or have a leftover journal that only a writer may roll back.
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<Bounded, SqliteFault> {
         let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let first = Connection::open_with_flags(path, flags).map_err(SqliteFault::from);
@@ -60,7 +59,7 @@ impl Bounded {
         }
     }
 
-    /// Sets the connection up and makes sure that it answers.
+    /// Configures the connection and checks that it responds.
     fn prepared(mut connection: Connection, limits: &ReadLimits) -> Result<Bounded, SqliteFault> {
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_TRUSTED_SCHEMA, false)?;
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_TRIGGER, false)?;
@@ -73,7 +72,7 @@ impl Bounded {
         let step = STEPS_AT_ONCE.unsigned_abs().into();
         let give_up = move || counted.fetch_add(step, Ordering::Relaxed).saturating_add(step) > most;
         connection.progress_handler(STEPS_AT_ONCE, Some(give_up))?;
-        // Nothing is written. This is the switch by which SQLite reads a file that is shorter than its header says.
+        // Nothing is written. This pragma makes SQLite read a file that is shorter than its header declares.
         connection.pragma_update(None, "writable_schema", true)?;
         let bounded = Bounded { connection, steps, limits: *limits };
         bounded.ask(|connection| connection.query_row("SELECT 1 FROM sqlite_master LIMIT 1", [], |_| Ok(()))).or_else(
@@ -90,7 +89,7 @@ impl Bounded {
         &self.limits
     }
 
-    /// Asks a question, which has the steps of [`ReadLimits::steps`] for its answer.
+    /// Runs a query, limited to [`ReadLimits::steps`].
     pub fn ask<T>(&self, question: impl FnOnce(&Connection) -> rusqlite::Result<T>) -> Result<T, SqliteFault> {
         self.steps.store(0, Ordering::Relaxed);
         question(&self.connection).map_err(|error| match error {
@@ -102,12 +101,12 @@ impl Bounded {
         })
     }
 
-    /// Whether there is such a table.
+    /// Whether the table exists.
     ///
     /// # Errors
     /// [`SqliteFault::NotATable`] for a view or a virtual table, [`SqliteFault::Computed`] for computed columns.
     pub fn is_table(&self, table: &'static str) -> Result<bool, SqliteFault> {
-        // The list of tables that SQLite has made of the schema, not the schema's own text about them.
+        // Uses the table list that SQLite derived from the schema, not the text in the schema.
         let wanted = "SELECT type FROM pragma_table_list WHERE schema = 'main' AND name = ?1 LIMIT 1";
         let kind = self.ask(|connection| {
             let mut statement = connection.prepare(wanted)?;
@@ -129,7 +128,7 @@ impl Bounded {
     }
 }
 
-/// A path as it stands in a `file:` address.
+/// A path encoded for a `file:` URI.
 fn uri_path(path: &Path) -> String {
     let mut text = String::new();
     for character in path.to_string_lossy().chars() {

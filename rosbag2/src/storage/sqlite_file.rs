@@ -1,4 +1,4 @@
-//! The messages of one SQLite3 file in the order in which they were written.
+//! Reads the messages of one SQLite3 file in the order in which they were written.
 
 use std::collections::{HashMap, VecDeque};
 use std::path::{Path, PathBuf};
@@ -13,9 +13,9 @@ use crate::container::{Damage, DamageKind, DamageList};
 use crate::limits::ReadLimits;
 use crate::raw_messages::{RawMessage, Topic};
 
-/// Rows that are read at once: enough that asking costs nothing against reading.
+/// Rows per query: enough that the cost of the query is small compared with reading.
 const BATCH_ROWS: usize = 1000;
-/// Bytes of messages after which a batch ends: a few pictures are as much as a thousand states.
+/// Bytes of messages after which a batch ends: a few images take as much as a thousand states.
 const BATCH_BYTES: usize = 1 << 20;
 
 /// One open database.
@@ -29,13 +29,13 @@ pub(super) struct SqliteFile {
     next_row: i64,
     damage: DamageList,
     last_log_time: Option<u64>,
-    /// Messages without data or whose topic is not in the table of topics, and their bytes.
+    /// Number and bytes of messages without data, or whose topic is not in the table of topics.
     unknown: (u64, u64),
     finished: bool,
 }
 
 impl SqliteFile {
-    /// Opens the database at `path`, which people know as `name`. `Err` says why nothing can be read.
+    /// Opens the database at `path`; messages call it `name`. `Err` contains the reason why nothing can be read.
     pub fn open(path: &Path, name: &Path, limits: &ReadLimits) -> Result<SqliteFile, String> {
         let connection = Bounded::open(path, limits).map_err(|error| error.to_string())?;
         let topics = topics(&connection).map_err(|error| format!("its table of topics cannot be read: {error}"))?;
@@ -61,7 +61,7 @@ impl SqliteFile {
         self.topics.values()
     }
 
-    /// The damage met so far.
+    /// The damage found so far.
     pub fn damage(&self) -> &[Damage] {
         self.damage.as_slice()
     }
@@ -94,7 +94,7 @@ impl SqliteFile {
         }
     }
 
-    /// Reads the next batch; where that fails, looks for the way past the bad rows.
+    /// Reads the next batch; on failure, skips the unreadable rows.
     fn fill(&mut self) {
         let (batch, mut bytes) = (&mut self.batch, 0);
         let result = rows_from(&self.connection, self.next_row, |row| {
@@ -105,7 +105,7 @@ impl SqliteFile {
         match (self.batch.back().map(|row| row.id.checked_add(1)), result) {
             (Some(Some(next)), Ok(false) | Err(_)) => self.next_row = next,
             (Some(None), _) | (_, Ok(_)) => self.finish(),
-            // A question without end has no row after which it ends.
+            // The query exceeded its limit, so no next readable row can be searched for.
             (None, Err(error @ SqliteFault::Limit(_))) => {
                 let reason = error.to_string();
                 self.note(0, 0, DamageKind::LostRows { first: self.next_row.max(1), messages: None, reason });
@@ -116,7 +116,7 @@ impl SqliteFile {
     }
 
     fn skip(&mut self, reason: &str) {
-        // Writers number rows from 1: before the first row nothing else can be lost.
+        // Writers number rows from 1, so nothing else can be lost before the first row.
         let first = self.next_row.max(1);
         let next = next_readable(&self.connection, first.saturating_sub(1));
         let lost = next.map(|next| u64::try_from(next.saturating_sub(first)).unwrap_or_default());
@@ -132,7 +132,7 @@ impl SqliteFile {
         if messages > 0 {
             self.note(0, bytes, DamageKind::UnknownTopic { messages });
         }
-        // What was cut off came after everything that could be read.
+        // The part that was cut off came after everything that could be read.
         for damage in self.damage.as_mut_slice() {
             if damage.is_truncation() {
                 damage.readable_until = self.last_log_time;
@@ -147,7 +147,7 @@ impl SqliteFile {
     }
 }
 
-/// How many bytes shorter the file is than its header says, if it is.
+/// Number of bytes by which the file is shorter than its header declares, if it is.
 fn missing_end(path: &Path) -> Option<u64> {
     use std::io::Read;
     let mut header = Vec::new();
@@ -160,7 +160,7 @@ fn missing_end(path: &Path) -> Option<u64> {
         &[high, low] => u64::from(u16::from_be_bytes([high, low])),
         _ => return None,
     };
-    // SQLite believes the size in the header only when both counters agree (file format, 1.3.7).
+    // SQLite uses the size in the header only if both counters agree (file format, 1.3.7).
     let (pages, changed, valid_for) = (u64::from(field(28)?), field(24)?, field(92)?);
     (changed == valid_for).then(|| (pages * page_size).saturating_sub(length)).filter(|&missing| missing > 0)
 }

@@ -1,4 +1,4 @@
-//! The tables of a SQLite3 bag: how its topics and messages are asked for.
+//! Queries the tables of a SQLite3 bag for topics and messages.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -15,11 +15,11 @@ pub(super) struct Row {
     pub id: i64,
     pub topic: i64,
     pub timestamp: i64,
-    /// `None` when the column holds no bytes.
+    /// `None` if the column is not a blob.
     pub data: Option<Vec<u8>>,
 }
 
-/// The topics by their numbers, with the definitions that databases since version 4 have.
+/// The topics by id, with their definitions, which databases since version 4 have.
 pub(super) fn topics(database: &Bounded) -> Result<HashMap<i64, Arc<Topic>>, SqliteFault> {
     for table in ["topics", "messages"] {
         if !database.is_table(table)? {
@@ -58,7 +58,7 @@ pub(super) fn topics(database: &Bounded) -> Result<HashMap<i64, Arc<Topic>>, Sql
         .and_then(|topics| room.checked(topics))
 }
 
-/// Encoding and text of each type's definition; none for databases of before version 4.
+/// Encoding and text of each type's definition; empty for databases before version 4.
 fn definitions(database: &Bounded) -> Result<HashMap<String, (String, String)>, SqliteFault> {
     if !database.is_table("message_definitions")? {
         return Ok(HashMap::new());
@@ -80,13 +80,13 @@ fn definitions(database: &Bounded) -> Result<HashMap<String, (String, String)>, 
     });
     match found {
         Ok(definitions) => room.checked(definitions),
-        // Without definitions the messages can still be read: their types may be known.
+        // Without definitions the messages are still readable: their types may be known.
         Err(SqliteFault::Sqlite(_)) => Ok(HashMap::new()),
         Err(other) => Err(other),
     }
 }
 
-/// What the rows of a table of definitions may still take.
+/// The remaining limits for the rows of a table of definitions.
 struct Room {
     limits: ReadLimits,
     rows: usize,
@@ -99,12 +99,12 @@ impl Room {
         Room { limits: *database.limits(), rows: 0, bytes: 0, fault: None }
     }
 
-    /// Rows to ask for: one more than allowed, to see that there are more.
+    /// Rows to query: one more than allowed, to detect that there are more.
     fn most_rows(&self) -> i64 {
         i64::try_from(self.limits.fields).unwrap_or(i64::MAX).saturating_add(1)
     }
 
-    /// Counts a row of texts; `false` when it is too much.
+    /// Counts a row of texts; `false` if a limit is exceeded.
     fn takes(&mut self, texts: &[&String]) -> bool {
         let length = |text: &&String| text.len() as u64;
         self.rows += 1;
@@ -128,9 +128,9 @@ fn text(value: ValueRef) -> String {
     }
 }
 
-/// Hands the rows from number `first` on to `take`, in their order, until it returns `false`; then `Ok(false)`, and
-/// `Ok(true)` after the last row. By row number, not by time: that is the order of the table itself, so nothing is
-/// sorted and a broken index does no harm.
+/// Passes the rows from id `first` on to `take`, in order, until it returns `false`; then returns `Ok(false)`, or
+/// `Ok(true)` after the last row. Ordered by row id, not by time: that is the order of the table itself, so nothing is
+/// sorted and a damaged index has no effect.
 pub(super) fn rows_from(
     database: &Bounded,
     first: i64,
@@ -148,7 +148,7 @@ pub(super) fn rows_from(
             };
             let number = |column: usize| row.get_ref(column).map(|value| value.as_i64().unwrap_or(-1));
             let row = Row { id: number(0)?, topic: number(1)?, timestamp: number(2)?, data };
-            // A broken tree can lead back to where it has been: without this, reading it would never end.
+            // A damaged B-tree can contain a cycle: without this check, reading would never end.
             if row.id < least {
                 let corrupt = rusqlite::ffi::Error::new(rusqlite::ffi::SQLITE_CORRUPT);
                 return Err(rusqlite::Error::SqliteFailure(corrupt, Some("its rows are out of order".to_string())));
@@ -162,7 +162,7 @@ pub(super) fn rows_from(
     })
 }
 
-/// The largest row number.
+/// The largest row id.
 pub(super) fn last_row(database: &Bounded) -> Result<Option<i64>, SqliteFault> {
     database.ask(|connection| connection.query_row("SELECT max(rowid) FROM messages", [], |row| row.get(0)))
 }

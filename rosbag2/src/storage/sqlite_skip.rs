@@ -1,14 +1,14 @@
-//! The way past rows that cannot be read.
+//! Skips rows that cannot be read.
 
 use super::sqlite_connection::{Bounded, SqliteFault};
 use super::sqlite_query::{last_row, rows_from};
 
-/// About the rows of one page of the database. Larger steps could pass over whole good pages between two bad ones.
+/// About the number of rows in one page of the database. Larger steps could skip intact pages between two damaged ones.
 const LARGEST_STEP: i64 = 64;
-/// After so many probes without success the steps grow without limit: so much is then lost that speed matters more.
+/// After this many failed probes the step size is no longer limited: so much is lost that speed matters more.
 const PATIENT_PROBES: usize = 5_000;
 
-/// The first row number after `bad` from which on reading succeeds; `None` when nothing readable follows.
+/// The first row id after `bad` from which reading succeeds; `None` if nothing readable follows.
 pub(super) fn next_readable(connection: &Bounded, bad: i64) -> Option<i64> {
     let last = last_row(connection).ok().flatten().unwrap_or(i64::MAX);
     let (mut before, mut step) = (bad, 1_i64);
@@ -24,7 +24,7 @@ pub(super) fn next_readable(connection: &Bounded, bad: i64) -> Option<i64> {
             step = step.saturating_mul(2);
         }
     };
-    // Between `before`, which fails, and `good`: the first that succeeds.
+    // Binary search between `before`, which fails, and `good` for the first that succeeds.
     while good.checked_sub(before).is_some_and(|distance| distance > 1) {
         let middle = before + (good - before) / 2;
         match first_row(connection, middle) {
@@ -36,7 +36,7 @@ pub(super) fn next_readable(connection: &Bounded, bad: i64) -> Option<i64> {
     Some(good)
 }
 
-/// Number of the first row at or after `from`, after it has been read whole.
+/// Id of the first row at or after `from`, after the whole row has been read.
 fn first_row(connection: &Bounded, from: i64) -> Result<Option<i64>, SqliteFault> {
     let mut found = None;
     rows_from(connection, from, |row| {

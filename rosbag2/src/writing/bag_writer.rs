@@ -1,4 +1,4 @@
-//! Messages as bytes into a rosbag2 folder.
+//! Writes messages as bytes to a rosbag2 folder.
 
 use std::collections::BTreeMap;
 use std::fs::Permissions;
@@ -22,31 +22,30 @@ pub struct TopicToWrite {
     pub type_name: String,
     /// Definition of the type and of all types that it contains, `ros2msg`.
     pub schema: String,
-    /// Quality of service that the publishers offer, one entry per publisher; may be empty.
+    /// QoS that the publishers offer, one entry per publisher; may be empty.
     pub qos: Vec<Qos>,
 }
 
-/// A topic of the [`BagWriter`] that gave it.
+/// The id of a topic in the [`BagWriter`] that returned it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TopicId(usize);
 
-/// Writes CDR messages of any type to a new rosbag2 folder: `NAME/NAME_0.mcap`, further files where [`WriteOptions`] limits
-/// their size or length, and `NAME/metadata.yaml` at the end.
+/// Writes CDR messages of any type to a new rosbag2 folder: `NAME/NAME_0.mcap`, further files if [`WriteOptions`]
+/// limits their size or duration, and `NAME/metadata.yaml` at the end.
 ///
-/// A chunk goes to the file only when it is whole, so a recorder that is killed loses what came after the last chunk
-/// or [`BagWriter::flush`], and nothing before it. Dropping the writer closes the bag as [`BagWriter::finish`] does,
-/// but cannot report errors.
+/// Only complete chunks are written to the file, so a recorder that is killed loses only what came after the last chunk
+/// or [`BagWriter::flush`]. Dropping the writer closes the bag as [`BagWriter::finish`] does, but cannot report errors.
 pub struct BagWriter {
     folder: PathBuf,
     name: String,
     options: WriteOptions,
-    /// The file that is being written; `None` once the bag is closed.
+    /// The file being written; `None` once the bag is closed.
     part: Option<Part>,
     finished: Vec<(Location, Written)>,
     gone: Vec<GoneFile>,
-    /// Files created so far.
+    /// Number of files created so far.
     count: usize,
-    /// Until the bag is closed.
+    /// Held until the bag is closed.
     reserve: Option<Reserve>,
     topics: Vec<WrittenTopic>,
     custom_data: BTreeMap<String, String>,
@@ -58,7 +57,7 @@ struct WrittenTopic {
 }
 
 impl BagWriter {
-    /// Creates the folder, which must not exist yet, and in it an empty MCAP file.
+    /// Creates the folder, which must not exist yet, and an empty MCAP file in it.
     ///
     /// # Errors
     /// [`Error::AlreadyExists`], [`Error::NoName`], [`Error::Io`], [`Error::Write`].
@@ -68,14 +67,14 @@ impl BagWriter {
         if let Some(parent) = folder.parent() {
             std::fs::create_dir_all(parent).map_err(Error::io("create", parent))?;
         }
-        // Creating and looking in one step: two recorders started at once must not share a folder.
+        // Checks and creates in one step: two recorders started at once must not share a folder.
         std::fs::create_dir(folder).map_err(|error| match error.kind() {
             std::io::ErrorKind::AlreadyExists => Error::AlreadyExists { path: folder.to_path_buf() },
             _ => Error::io("create", folder)(error),
         })?;
         let opened = Reserve::take(folder)
             .and_then(|reserve| Ok((reserve, Part::create(folder, file_name(&name, 0), options)?)))
-            // Nothing is in the folder but what failed.
+            // The folder contains only what failed.
             .inspect_err(|_| drop(std::fs::remove_dir_all(folder)));
         let (reserve, part) = opened?;
         Ok(BagWriter {
@@ -97,10 +96,10 @@ impl BagWriter {
         &self.folder
     }
 
-    /// Adds a topic. Adding the same topic again gives the same id.
+    /// Adds a topic. Adding the same topic again returns the same id.
     ///
     /// # Errors
-    /// [`Error::TopicConflict`] when the name has another type or definition already; [`Error::Write`].
+    /// [`Error::TopicConflict`] if the name already has another type or definition; [`Error::Write`].
     pub fn add_topic(&mut self, topic: &TopicToWrite) -> Result<TopicId, Error> {
         if let Some(index) = self.topics.iter().position(|known| known.topic.name == topic.name) {
             let known = &self.topics[index].topic;
@@ -118,15 +117,15 @@ impl BagWriter {
         Ok(TopicId(self.topics.len() - 1))
     }
 
-    /// Writes one message: its bytes with encapsulation, and when it was received and published, ns since the epoch.
+    /// Writes one message: its bytes with encapsulation, its receive time and its publish time, ns since the epoch.
     ///
     /// # Errors
-    /// [`Error::Write`] when the file cannot be written, or the id is of another writer.
+    /// [`Error::Write`] if the file cannot be written, or the id belongs to another writer.
     pub fn write(&mut self, topic: TopicId, log_time: u64, publish_time: u64, data: &[u8]) -> Result<(), Error> {
         if self.part.as_ref().is_some_and(|part| part.is_full(log_time, &self.options)) {
             self.begin_next_file()?;
         }
-        // The recorder's own count per topic: gaps in it are gaps in the file.
+        // The recorder's own count per topic: a gap in it means that messages are missing in the file.
         let messages = self.topics.get(topic.0).map_or(0, |written| written.messages);
         let sequence = u32::try_from(messages & u64::from(u32::MAX)).unwrap_or_default();
         self.part()?.write(topic.0, sequence, log_time, publish_time, data)?;
@@ -141,7 +140,7 @@ impl BagWriter {
         self.custom_data.insert(key.to_string(), value.to_string());
     }
 
-    /// Closes the chunk and hands everything to the operating system, so that it survives the end of this process.
+    /// Closes the chunk and passes all data to the operating system, so that it survives the end of this process.
     ///
     /// # Errors
     /// [`Error::Write`].
@@ -149,11 +148,11 @@ impl BagWriter {
         self.part()?.flush()
     }
 
-    /// Looks whether the file that is being written is still where it was created. If not it is closed, so that one that was
-    /// moved is complete, and the bag goes on in another file, in the folder of the same name.
+    /// Checks whether the current file is still where it was created. If not, it is closed, so that a moved file is
+    /// complete, and the bag continues in another file in the folder of the same name.
     ///
     /// # Errors
-    /// [`Error::Io`], [`Error::Write`] when there is no other file.
+    /// [`Error::Io`], [`Error::Write`] if no other file can be created.
     pub fn stay_in_place(&mut self) -> Result<Option<&GoneFile>, Error> {
         let Some(part) = self.part.take_if(|part| !part.location().is_kept()) else { return Ok(None) };
         self.end(part)?;
@@ -163,8 +162,8 @@ impl BagWriter {
         Ok(self.gone.last())
     }
 
-    /// Writes the index and `metadata.yaml`. After a failure to write, the bag is closed with what the file had at the last
-    /// [`BagWriter::flush`]. Returns the files that are not at their places any more, and so not in the metadata.
+    /// Writes the index and `metadata.yaml`. After a write failure, the bag is closed with the contents of the file at
+    /// the last [`BagWriter::flush`]. Returns the files that were moved or deleted, and so are not in the metadata.
     ///
     /// # Errors
     /// [`Error::Write`], [`Error::Io`], [`Error::NoSpace`].
@@ -173,7 +172,7 @@ impl BagWriter {
         Ok(std::mem::take(&mut self.gone))
     }
 
-    /// Ends the file and goes on in another one that knows all topics, as readers of one file of a bag expect.
+    /// Closes the file and continues in a new one with all topics, as readers of a single file of a bag expect.
     fn begin_next_file(&mut self) -> Result<(), Error> {
         let Some(part) = self.part.take() else { return Ok(()) };
         self.end(part)?;
@@ -197,7 +196,7 @@ impl BagWriter {
         Ok(())
     }
 
-    /// Takes the files that are not at their places out of the bag.
+    /// Removes files that were moved or deleted from the bag.
     fn note_gone(&mut self) {
         let gone = self.finished.extract_if(.., |(location, _)| !location.is_kept());
         self.gone.extend(gone.map(|(location, written)| GoneFile::new(&location, written)));
@@ -205,7 +204,7 @@ impl BagWriter {
 
     fn close(&mut self) -> Result<(), Error> {
         let Some(reserve) = self.reserve.take() else { return Ok(()) };
-        // It is for the end of the file and the metadata.
+        // The reserved space is for the end of the file and the metadata.
         drop(reserve);
         let ended = self.part.take().map_or(Ok(()), |part| self.end(part));
         self.note_gone();
@@ -251,21 +250,21 @@ impl BagWriter {
         written().map_err(Error::io("write", &path))
     }
 
-    /// The file that is being written, which is there as long as the bag is not closed and nothing failed.
+    /// The file being written; it exists unless the bag is closed or an operation failed.
     fn part(&mut self) -> Result<&mut Part, Error> {
         let path = self.folder.clone();
         self.part.as_mut().ok_or(Error::Write { path, source: mcap::McapError::AttemptedWriteAfterFailure })
     }
 }
 
-/// `NAME_0.mcap`, as rosbag2 names the files of a bag.
+/// `NAME_0.mcap`, the file naming of rosbag2.
 fn file_name(bag: &str, number: usize) -> String {
     format!("{bag}_{number}.mcap")
 }
 
 impl Drop for BagWriter {
     fn drop(&mut self) {
-        // A drop has nobody to tell; finish() is there for those who want to know.
+        // Drop cannot report an error; callers that need it use finish().
         let _ = self.close();
     }
 }

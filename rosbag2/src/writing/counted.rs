@@ -1,14 +1,14 @@
-//! A file that counts what is written to it, and remembers why writing failed.
+//! A file that counts the bytes written to it, and stores the first write error.
 
 use std::fs::File;
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Kind of an error of the operating system, and its number where it has one: errors themselves cannot be copied.
+/// Kind of an OS error, and its code if it has one: errors themselves cannot be cloned.
 type Failure = (io::ErrorKind, Option<i32>);
 
-/// What became of the bytes for a [`Counted`] file; clones share it.
+/// The write progress of a [`Counted`] file; shared between clones.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Progress {
     bytes: Arc<AtomicU64>,
@@ -16,12 +16,12 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// Bytes that have left for the operating system.
+    /// Bytes passed to the operating system.
     pub fn bytes(&self) -> u64 {
         self.bytes.load(Ordering::Relaxed)
     }
 
-    /// The first error of the operating system.
+    /// The first OS error.
     pub fn failure(&self) -> Option<io::Error> {
         let failure = *self.failure.lock().unwrap_or_else(PoisonError::into_inner);
         failure.map(|(kind, number)| number.map_or_else(|| kind.into(), io::Error::from_raw_os_error))
@@ -32,7 +32,8 @@ impl Progress {
     }
 }
 
-/// A file that counts what is written to it. After a failure it takes nothing more: what came after a gap would be no bag.
+/// A file that counts the bytes written to it. After a failure it rejects further writes: data after a gap would not be
+/// a valid bag.
 pub(super) struct Counted {
     file: File,
     progress: Progress,
@@ -70,7 +71,7 @@ impl Write for Counted {
     }
 }
 
-// The library asks for it, and does not seek when it is told not to.
+// The library requires the trait, but does not seek when seeking is disabled.
 impl io::Seek for Counted {
     fn seek(&mut self, position: io::SeekFrom) -> io::Result<u64> {
         self.file.seek(position)

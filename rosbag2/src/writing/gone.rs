@@ -1,17 +1,17 @@
-//! Files of a bag that somebody deletes or moves while it is written.
+//! Files of a bag that are deleted or moved during recording.
 
 use std::path::PathBuf;
 
 use super::part::{Location, Written};
 
-/// A file of a bag that was not at its place any more. One that was moved is complete where it is now.
+/// A file of a bag that is no longer at its path. A moved file is complete at its new path.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GoneFile {
-    /// Where it was.
+    /// Its original path.
     pub path: PathBuf,
-    /// Messages in it, of each topic in the order in which they were added.
+    /// Number of messages per topic, in the order in which the topics were added.
     pub by_topic: Vec<u64>,
-    /// Its size.
+    /// Its size, bytes.
     pub bytes: u64,
 }
 
@@ -20,7 +20,7 @@ impl GoneFile {
         GoneFile { path: location.path().to_path_buf(), by_topic: written.by_topic, bytes: written.bytes }
     }
 
-    /// Messages in it.
+    /// Number of messages in it.
     pub fn messages(&self) -> u64 {
         self.by_topic.iter().sum()
     }

@@ -1,4 +1,4 @@
-//! From messages to a bag.
+//! Writes messages to a bag.
 
 mod bag_writer;
 mod counted;

@@ -1,4 +1,4 @@
-//! How a bag is written.
+//! Options for writing a bag.
 
 use std::collections::BTreeMap;
 
@@ -9,8 +9,8 @@ pub enum Compression {
     None,
     /// Fast, about half the size.
     Lz4,
-    /// About a third of the size. The default: a disk that is full ends a recording, and 0.37 million messages per
-    /// second are far more than a machine sends.
+    /// About a third of the size. The default: a full disk ends a recording, and 0.37 million messages per second are
+    /// far more than a machine sends.
     #[default]
     Zstd,
 }
@@ -25,19 +25,20 @@ impl Compression {
     }
 }
 
-/// How a bag is written.
+/// Options for writing a bag.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WriteOptions {
     /// Compression of the chunks.
     pub compression: Compression,
-    /// Size at which a chunk is closed, bytes before compression. What is in an open chunk is lost with the power.
+    /// Size at which a chunk is closed, bytes before compression. A power cut loses the open chunk.
     pub chunk_size: u64,
-    /// Size of a file after which the bag goes on in another one, bytes; `None`: one file however large.
+    /// File size after which the bag continues in another file, bytes; `None`: one file of any size.
     pub most_file_bytes: Option<u64>,
-    /// Time between a file's first message and the one that goes into another file, ns; `None`: one file however long.
+    /// Time between the first message of a file and the first message of the next file, ns; `None`: one file of any
+    /// duration.
     pub most_file_nanoseconds: Option<u64>,
-    /// Whether a bag of the same name is replaced by one that is made in a [`Staging`](crate::Staging). A
-    /// [`BagWriter`](crate::BagWriter) alone never does.
+    /// Whether a bag of the same name is replaced by one made in a [`Staging`](crate::Staging). A
+    /// [`BagWriter`](crate::BagWriter) alone never replaces a bag.
     pub replace: bool,
     /// Pairs for `custom_data` in `metadata.yaml`, which `ros2 bag info` shows.
     pub custom_data: BTreeMap<String, String>,

@@ -1,4 +1,4 @@
-//! One file of a bag that is being written.
+//! One file of a bag during writing.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -14,13 +14,13 @@ use super::options::WriteOptions;
 use crate::metadata::FileContents;
 use crate::{Error, Qos};
 
-/// What a file of a bag has.
+/// The contents of a bag file.
 #[derive(Debug, Clone)]
 pub(super) struct Written {
     pub contents: FileContents,
-    /// Messages of each topic of the bag, in the bag's order.
+    /// Number of messages per topic, in the topic order of the bag.
     pub by_topic: Vec<u64>,
-    /// Size of the file.
+    /// Size of the file, bytes.
     pub bytes: u64,
 }
 
@@ -32,7 +32,7 @@ pub(super) struct Location {
 }
 
 impl Location {
-    /// Whether the path still leads to the file. Where the system does not say, it does.
+    /// Whether the path still refers to the file. Also true if the system cannot report it.
     pub fn is_kept(&self) -> bool {
         match self.path.symlink_metadata() {
             Ok(found) => (found.dev(), found.ino()) == self.identity,
@@ -52,18 +52,18 @@ impl Location {
 pub(super) struct Part {
     location: Location,
     mcap: mcap::Writer<BufWriter<Counted>>,
-    /// The same file, to close it where the library cannot.
+    /// The same file, to close it if the library cannot.
     file: File,
     progress: Progress,
-    /// Channel of each topic of the bag, in the bag's order.
+    /// Channel of each topic, in the topic order of the bag.
     channels: Vec<u16>,
     written: Written,
-    /// What the file had at the last flush, all of which is in it.
+    /// The contents of the file at the last flush, all of which were written.
     flushed: Written,
 }
 
 impl Part {
-    /// Creates `name` in `folder`, which must not exist yet.
+    /// Creates `name`, which must not exist yet, in `folder`.
     pub fn create(folder: &Path, name: String, options: &WriteOptions) -> Result<Self, Error> {
         let path = folder.join(&name);
         let opened = || {
@@ -77,10 +77,10 @@ impl Part {
             .profile("ros2")
             .library(concat!("excavator ", env!("CARGO_PKG_VERSION")))
             .compression(options.compression.to_mcap())
-            // Threads for compression cost more than they bring at the rates of a machine.
+            // Compression threads cost more than they save at the data rates of a machine.
             .compression_threads(0)
             .chunk_size(Some(options.chunk_size))
-            // No seeking: whole chunks only reach the file, never one with sizes still to be filled in.
+            // No seeking: only whole chunks are written, never one whose sizes are filled in later.
             .disable_seeking(true)
             .create(BufWriter::new(Counted::new(same_file, &progress)))
             .map_err(|source| Error::Write { path: path.clone(), source })?;
@@ -104,7 +104,7 @@ impl Part {
         Ok(())
     }
 
-    /// Writes a message of the bag's topic number `topic`.
+    /// Writes a message of topic number `topic` of the bag.
     pub fn write(
         &mut self,
         topic: usize,
@@ -126,7 +126,7 @@ impl Part {
         Ok(())
     }
 
-    /// Whether a message at `log_time` belongs into another file.
+    /// Whether a message at `log_time` belongs in another file.
     pub fn is_full(&self, log_time: u64, options: &WriteOptions) -> bool {
         let Some((start, _)) = self.written.contents.span else { return false };
         options.most_file_bytes.is_some_and(|most| self.progress.bytes() >= most)
@@ -138,7 +138,7 @@ impl Part {
         &self.location
     }
 
-    /// Closes the chunk and hands everything to the operating system.
+    /// Closes the chunk and passes all data to the operating system.
     pub fn flush(&mut self) -> Result<(), Error> {
         self.mcap.flush().map_err(|source| self.error(source))?;
         self.written.bytes = self.progress.bytes();
@@ -146,8 +146,8 @@ impl Part {
         Ok(())
     }
 
-    /// Writes the index. Where that fails, and where writing has failed before, the file ends after what it had at the last
-    /// flush, without an index. Returns what the file has, and what failed now.
+    /// Writes the index. If that fails, or writing failed before, the file ends after its contents at the last flush,
+    /// without an index. Returns the contents of the file, and the error of this call.
     pub fn finish(mut self) -> (Written, Result<(), Error>) {
         let failed_before = self.progress.failure().is_some();
         let finished =
@@ -155,7 +155,7 @@ impl Part {
         let Part { location, mcap, file, progress, mut written, flushed, .. } = self;
         let buffer = mcap.into_inner();
         if finished.is_ok() && !failed_before {
-            // The library leaves the end of the file in our buffer; on a full disk it is here that writing fails.
+            // The library leaves the end of the file in our buffer; on a full disk, this write fails.
             let ended = buffer.into_inner().map_err(io::IntoInnerError::into_error).and_then(|_| file.sync_all());
             let Err(source) = ended else {
                 written.bytes = progress.bytes();
@@ -165,13 +165,13 @@ impl Part {
             end_plainly(&file, &flushed);
             return (flushed, Err(error));
         }
-        // Nothing of what is in the buffer may follow.
+        // The rest of the buffer must not be written.
         drop(buffer.into_parts());
         end_plainly(&file, &flushed);
         (flushed, finished)
     }
 
-    /// What the operating system said is of more use than what the compression says about it.
+    /// The OS error is more useful than the error of the compressor that it causes.
     fn error(&self, source: mcap::McapError) -> Error {
         match self.progress.failure() {
             Some(failure) => write_error(&self.location.path, self.flushed.bytes, failure),
@@ -189,9 +189,9 @@ fn write_error(path: &Path, bytes: u64, source: io::Error) -> Error {
     }
 }
 
-/// Ends the file after what was flushed.
+/// Ends the file after the flushed data.
 fn end_plainly(file: &File, flushed: &Written) {
-    // Where not even this succeeds the file is as a killed recorder leaves it, and can be read as that.
+    // If even this fails, the file is like that of a killed recorder, and can be read as such.
     let ended = file.set_len(flushed.bytes).and_then(|()| file.write_all_at(&plain_end(), flushed.bytes));
     if ended.is_err() {
         let _ = file.set_len(flushed.bytes);
@@ -199,7 +199,8 @@ fn end_plainly(file: &File, flushed: &Written) {
     let _ = file.sync_all();
 }
 
-/// End of an MCAP file without an index: DataEnd without checksum, Footer without summary, magic. A full disk has room for it.
+/// The end of an MCAP file without an index: DataEnd without checksum, Footer without summary, magic. It fits on a full
+/// disk.
 fn plain_end() -> Vec<u8> {
     let record = |opcode: u8, length: u8| {
         let mut bytes = vec![opcode, length];

@@ -1,4 +1,4 @@
-//! A bag that takes its name only when it is complete.
+//! Builds a bag under a temporary name and renames it when it is complete.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::Error;
 use crate::metadata::FILE_NAME;
 
-/// A folder beside the target in which a bag is made.
+/// A folder next to the target in which a bag is built.
 #[derive(Debug)]
 #[must_use = "without `put_in_place`, what was made is removed"]
 pub struct Staging {
@@ -17,7 +17,7 @@ pub struct Staging {
 }
 
 impl Staging {
-    /// Makes the folder. Nothing may be at the target but, where it is to be replaced, a bag.
+    /// Creates the folder. The target must not exist, or must be a bag if it is to be replaced.
     ///
     /// # Errors
     /// [`Error::AlreadyExists`], [`Error::NotReplaceable`], [`Error::NoName`], [`Error::Io`].
@@ -38,16 +38,16 @@ impl Staging {
         Ok(Staging { target: target.to_path_buf(), made: temporary.path().join(name), replace, temporary })
     }
 
-    /// Where the bag is to be made.
+    /// The path at which to build the bag.
     #[must_use]
     pub fn folder(&self) -> &Path {
         &self.made
     }
 
-    /// Gives the bag its name.
+    /// Renames the bag to its target.
     ///
     /// # Errors
-    /// [`Error::AlreadyExists`] where something has taken the name since; [`Error::NotReplaceable`], [`Error::Io`].
+    /// [`Error::AlreadyExists`] if the name has been taken since; [`Error::NotReplaceable`], [`Error::Io`].
     pub fn put_in_place(self) -> Result<(), Error> {
         let failed = |error: std::io::Error| match error.kind() {
             ErrorKind::AlreadyExists => Error::AlreadyExists { path: self.target.clone() },
@@ -62,7 +62,8 @@ impl Staging {
                 failed(error)
             });
         }
-        // The name is taken in one step with looking; an empty folder of that name is then replaced in one step.
+        // Creating the folder checks and takes the name in one step; the rename then replaces the empty folder
+        // atomically.
         std::fs::create_dir(&self.target).map_err(failed)?;
         std::fs::rename(&self.made, &self.target).map_err(|error| {
             let _ = std::fs::remove_dir(&self.target);
@@ -70,7 +71,7 @@ impl Staging {
         })
     }
 
-    /// The error with the bag's own name in it.
+    /// The error with the target path of the bag.
     #[must_use]
     pub fn named(&self, error: Error) -> Error {
         let own = |path: PathBuf| path.strip_prefix(&self.made).map_or(path.clone(), |rest| self.target.join(rest));
@@ -83,7 +84,7 @@ impl Staging {
     }
 }
 
-/// Checks that a bag may be replaced: a folder, not a link to one, with nothing in it but files of a bag and its map.
+/// Checks that a bag may be replaced: a folder, not a link to one, that contains only files of a bag and its map.
 ///
 /// # Errors
 /// [`Error::NotReplaceable`], [`Error::Io`].

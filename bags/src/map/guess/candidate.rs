@@ -6,7 +6,7 @@ use super::super::document::{ClockSource, ColumnName, SignalSource};
 use super::super::signal::SignalName;
 use super::super::unit::{Dimension, Unit};
 
-/// Where the numbers come from.
+/// Source of the numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Origin {
     Column(String),
@@ -19,26 +19,26 @@ pub(super) struct Candidate {
     pub origin: Origin,
     /// Lower-case words of its name.
     pub words: Vec<String>,
-    /// Unit that a heading or the type of the message gives, and who says so.
+    /// Unit from a heading or from the message type, and its source.
     pub unit: Option<(Unit, String)>,
-    /// What the type of the message says that it measures.
+    /// Dimension from the message type.
     pub dimension: Option<Dimension>,
     /// s.
     pub time: Vec<f64>,
     pub values: Vec<f64>,
 }
 
-/// What data may have.
+/// The candidates found in data.
 pub(super) struct Found {
     pub candidates: Vec<Candidate>,
-    /// The clock and why.
+    /// The clock and the reason for it.
     pub clock: (ClockSource, String),
-    /// What can only be read when more is known, with what that is.
+    /// What cannot be read without more information, and which information.
     pub unreadable: Vec<String>,
 }
 
 impl Candidate {
-    /// How people call it.
+    /// Its name for display.
     pub fn label(&self) -> String {
         match &self.origin {
             Origin::Column(name) => name.clone(),
@@ -61,7 +61,8 @@ impl Candidate {
     }
 }
 
-/// Lower-case words of a name: at signs, at changes from lower to upper case, and between letters and digits.
+/// Lower-case words of a name: split at special characters, at changes from lower to upper case, and between letters
+/// and digits.
 pub(super) fn words(name: &str) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     let mut before = ' ';

@@ -1,4 +1,4 @@
-//! Which candidate is which signal.
+//! Assigns candidates to signals.
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -13,33 +13,33 @@ use super::names;
 use super::shapes::{Shape, derivative, rest, short};
 use super::{Confidence, GuessedSignal, Hints, Possibility};
 
-/// Below this a name alone is no reason.
+/// Below this score, a name alone is not sufficient.
 const LEAST_SCORE: f64 = 0.5;
-/// A velocity that goes with the derivative of a position so closely is its velocity.
+/// A velocity that correlates this strongly with the derivative of a position belongs to it.
 const LEAST_CORRELATION: f64 = 0.8;
 
-/// A column whose derivative goes with the command so closely is the position that the command moves; less is enough where
-/// its name says that it is measured.
+/// A column whose derivative correlates this strongly with the command is the position that the command moves. The
+/// second value applies if its name marks it as measured.
 const LEAST_FOLLOWING: [f64; 2] = [0.5, 0.3];
 
-/// A candidate, a signal that it may be, and how good that is.
+/// A candidate, a possible signal for it, and a score.
 pub(super) struct Pair {
     pub candidate: usize,
     pub kind: SignalKind,
     pub score: f64,
     pub reason: String,
-    /// Whether only order, size or motion speak for it.
+    /// Whether only order, size or motion support it.
     pub is_weak: bool,
 }
 
-/// The signals, and the labels of what is left.
+/// The signals, and the labels of unused candidates.
 pub(super) fn choose(candidates: Vec<Candidate>, hints: Hints<'_>) -> (Vec<GuessedSignal>, Vec<String>) {
     let shapes: Vec<Option<Shape>> = candidates.iter().map(|candidate| Shape::of(&candidate.values)).collect();
     let mut pairs = pairs(&candidates, &shapes);
     pairs.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.candidate.cmp(&b.candidate)));
     let (mut used, mut taken, mut signals) = (HashSet::new(), HashSet::new(), Vec::new());
     let named: BTreeSet<&str> = candidates.iter().filter_map(|candidate| names::cylinder(&candidate.words)).collect();
-    // Where names speak of one cylinder only, everything is of that one.
+    // If the names mention only one cylinder, all signals belong to it.
     let cylinder = if named.len() == 1 { named.first().copied().unwrap_or(hints.cylinder) } else { hints.cylinder };
     let own = |candidate: usize| names::cylinder(&candidates[candidate].words).unwrap_or(cylinder).to_string();
     let name_of = |pair: &Pair| {
@@ -54,7 +54,7 @@ pub(super) fn choose(candidates: Vec<Candidate>, hints: Hints<'_>) -> (Vec<Guess
         let (confidence, remark) = confidence(&pairs, place, &used, &name_of);
         let confidence = match &candidates[pair.candidate].unit {
             Some((unit, _)) if pair.kind.takes(unit.dimension) => confidence,
-            // Which signal it is may be sure, but its numbers are not.
+            // The assignment may be certain, but the unit is not.
             _ => confidence.min(Confidence::Likely),
         };
         used.insert(pair.candidate);
@@ -85,7 +85,7 @@ pub(super) fn choose(candidates: Vec<Candidate>, hints: Hints<'_>) -> (Vec<Guess
     (signals, left.collect())
 }
 
-/// A candidate as a signal: its entry in a map, and why.
+/// A candidate as a signal: its map entry, and the reasons.
 fn possibility(
     candidate: &Candidate,
     shape: Option<Shape>,
@@ -107,7 +107,7 @@ fn possibility(
     }
     let mut source = candidate.source(name, unit.as_ref().map(|unit| unit.name));
     if let Some(unit) = unit.as_ref().filter(|unit| !kind.takes(unit.dimension)) {
-        // A map needs a scale here; only the maker of the sensor knows it.
+        // The map needs a scale here, which only the sensor's data sheet provides.
         let text = format!("1 {}/{}", kind.dimension().si_unit(), unit.name);
         source.scale = Some(super::super::Quantity::Text(text));
     }
@@ -140,7 +140,7 @@ fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {
         let Some(shape) = shapes[index] else { continue };
         for kind in SignalKind::ALL {
             if let Some((score, reason)) = by_name_and_unit(kind, candidate) {
-                // A signal that never changes says little, except for tank pressure and flow.
+                // A signal that never changes is weak evidence, except for tank pressure, flow and oil temperature.
                 let may_rest =
                     matches!(kind, SignalKind::TankPressure | SignalKind::PumpFlow | SignalKind::OilTemperature);
                 let score = if shape.is_constant() && !may_rest { 0.7 * score } else { score };
@@ -154,20 +154,20 @@ fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {
     pairs
 }
 
-/// What name, unit and type say together.
+/// The score from name, unit and type together.
 fn by_name_and_unit(kind: SignalKind, candidate: &Candidate) -> Option<(f64, String)> {
     let wanted = kind.dimension();
     let named = names::score(kind, &candidate.words);
     match candidate.dimension {
-        // Its flow, but for the displacement per turn.
+        // The flow of the pump, except for the displacement per revolution.
         Some(Dimension::RotationalSpeed) if kind == SignalKind::PumpFlow && names::is_of_pump(&candidate.words) => {
             Some((LEAST_SCORE, "speed of the pump".to_string()))
         }
         Some(found) if found == wanted => {
             let what = candidate.unit.as_ref().map_or(wanted.to_string(), |(unit, _)| format!("unit {}", unit.name));
-            // A joint's speed in a JointState, a force in a Wrench: the type has said it all.
+            // The type is sufficient evidence: a joint's speed in a JointState, a force in a Wrench.
             match named {
-                // A pressure of which nothing says where it is may be any of them.
+                // A pressure without a place may be any of them.
                 Some((score, word)) if wanted == Dimension::Pressure && score < LEAST_SCORE => {
                     Some((0.3, format!("named \"{word}\", {what}")))
                 }
@@ -177,7 +177,7 @@ fn by_name_and_unit(kind: SignalKind, candidate: &Candidate) -> Option<(f64, Str
                 None => Some((0.55, what)),
             }
         }
-        // Raw volts and counts keep the name as the only reason.
+        // Raw volts and counts: the name is the only evidence.
         Some(Dimension::Voltage | Dimension::Current | Dimension::Number) | None => {
             named.map(|(score, word)| (0.9 * score, format!("named \"{word}\"")))
         }
@@ -185,7 +185,7 @@ fn by_name_and_unit(kind: SignalKind, candidate: &Candidate) -> Option<(f64, Str
     }
 }
 
-/// A position and a velocity that is its derivative make each other sure.
+/// A position and the velocity that is its derivative confirm each other.
 fn add_derivatives(candidates: &[Candidate], pairs: &mut [Pair]) {
     let of_kind =
         |pairs: &[Pair], kind| -> Vec<usize> { (0..pairs.len()).filter(|&index| pairs[index].kind == kind).collect() };
@@ -208,7 +208,7 @@ fn add_derivatives(candidates: &[Candidate], pairs: &mut [Pair]) {
     }
 }
 
-/// Columns of which nothing says what they are, and whose derivative follows the command of the same cylinder.
+/// Unidentified columns whose derivative follows the command of the same cylinder.
 fn add_followers(candidates: &[Candidate], pairs: &mut Vec<Pair>) {
     let placed: HashSet<usize> =
         pairs.iter().filter(|pair| pair.score >= LEAST_SCORE).map(|pair| pair.candidate).collect();
@@ -241,8 +241,8 @@ fn add_followers(candidates: &[Candidate], pairs: &mut Vec<Pair>) {
     pairs.extend(found);
 }
 
-/// Pressures whose names do not say where they are: the highest on average is the supply, the lowest the tank, two
-/// between them the chambers.
+/// Pressures whose names give no place: the highest mean is the supply, the lowest the tank, two between them the
+/// chambers.
 fn add_places_of_pressures(candidates: &[Candidate], shapes: &[Option<Shape>], pairs: &mut Vec<Pair>) {
     let placed: HashSet<usize> =
         pairs.iter().filter(|pair| pair.score >= LEAST_SCORE).map(|pair| pair.candidate).collect();
@@ -277,7 +277,7 @@ fn add_places_of_pressures(candidates: &[Candidate], shapes: &[Option<Shape>], p
             format!("lowest of the pressures, {} on average", pressure_text(mean)),
         );
     }
-    // In the order of the data: people write the cap side first.
+    // In the order of the data: the cap side usually comes first.
     loose.sort_by_key(|&(candidate, _)| candidate);
     for (candidate, mean) in loose {
         if open.is_empty() {
@@ -295,7 +295,7 @@ fn si_mean(candidate: &Candidate, shape: Shape) -> f64 {
     unit.unwrap_or(Unit::si(Dimension::Pressure)).to_si(shape.mean)
 }
 
-/// The unit of a candidate as a signal of this dimension, `None` for SI, and why.
+/// The unit of a candidate as a signal of this dimension, `None` for SI, and the reason.
 fn unit(candidate: &Candidate, shape: Option<Shape>, dimension: Dimension) -> (Option<Unit>, String) {
     if let Some((unit, who)) = &candidate.unit {
         let why = match unit.dimension == dimension {
@@ -323,10 +323,10 @@ fn unit(candidate: &Candidate, shape: Option<Shape>, dimension: Dimension) -> (O
     }
 }
 
-/// The electrical unit that a name speaks of.
+/// The electrical unit that a name refers to.
 fn raw_unit(candidate: &Candidate, shape: Option<Shape>) -> Option<Unit> {
     let says = |wanted: &[&str]| candidate.words.iter().any(|word| wanted.contains(&word.as_str()));
-    // No valve takes 30 A, and none is moved by 30 mA.
+    // No valve draws 30 A, and 30 mA moves none.
     let is_large = shape.is_some_and(|shape| shape.most.abs().max(shape.least.abs()) > 30.0);
     match () {
         () if says(&["current", "strom"]) => Unit::named(if is_large { "mA" } else { "A" }),

@@ -1,4 +1,4 @@
-//! How sure a choice is: what speaks for it, and what else would be nearly as good.
+//! Confidence in a choice: its evidence, and alternatives that are nearly as good.
 
 use std::collections::HashSet;
 
@@ -6,16 +6,16 @@ use super::super::signal::SignalName;
 use super::Confidence;
 use super::choose::Pair;
 
-/// From here on name, unit and shape together are enough.
+/// From this score, name, unit and shape together are sufficient.
 const SURE_SCORE: f64 = 0.75;
-/// What is better by less may as well be the other.
+/// A smaller difference in score does not decide between two candidates.
 const LEAST_MARGIN: f64 = 0.1;
-/// Below this something is no alternative.
+/// Below this score, a candidate is not an alternative.
 const LEAST_ALTERNATIVE: f64 = 0.25;
-/// Alternatives that are told.
+/// Maximum number of alternatives listed.
 const MOST_ALTERNATIVES: usize = 5;
 
-/// How sure it is that the pair at `place` is right, and what is to be said of it. `used` are the candidates that better pairs have.
+/// The confidence in the pair at `place`, and a remark. `used` are the candidates of better pairs.
 pub(super) fn confidence(
     pairs: &[Pair],
     place: usize,
@@ -36,7 +36,7 @@ pub(super) fn confidence(
         .iter()
         .filter(|other| other.candidate != pair.candidate && !used.contains(&other.candidate) && name_of(other) == name)
         .filter(is_near)
-        // What is better as something else is none.
+        // A candidate that fits another signal better is not a rival.
         .filter(|other| best_elsewhere(other.candidate) < other.score + LEAST_MARGIN)
         .count();
     if rivals > 0 {
@@ -48,7 +48,7 @@ pub(super) fn confidence(
         others.map(|other| other.score).fold(0.0, f64::max)
     };
     let mut of_same = pairs.iter().filter(|other| other.candidate == pair.candidate && name_of(other) != name);
-    // Another signal that nothing suits better may be meant as well.
+    // Another signal that has no better candidate is equally possible.
     if let Some(other) = of_same.find(|other| is_near(other) && best_of(&name_of(other)) <= other.score) {
         return (Confidence::Unsure, format!("; it may be {} as well", name_of(other)));
     }
@@ -56,7 +56,7 @@ pub(super) fn confidence(
     (if sure { Confidence::Sure } else { Confidence::Likely }, String::new())
 }
 
-/// What else the signal of the pair at `place` may be, best first: what no sure signal has.
+/// Other candidates for the signal of the pair at `place`, best first, without those of sure signals.
 pub(super) fn alternatives<'p>(
     pairs: &'p [Pair],
     place: usize,

@@ -1,4 +1,4 @@
-//! Candidates of a bag.
+//! Finds the candidates in a bag.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -14,17 +14,17 @@ use super::candidate::{Candidate, Found, Origin, words};
 use crate::can::FrameReader;
 use crate::{BagError, own_definitions};
 
-/// Fields of one topic that are looked at.
+/// Maximum number of fields examined per topic.
 const FIELD_LIMIT: usize = 64;
-/// Messages of one topic that are looked at.
+/// Maximum number of messages examined per topic.
 const MESSAGE_LIMIT: usize = 20_000;
-/// Parts of paths that never are signals.
+/// Parts of paths that are never signals.
 const NO_SIGNALS: [&str; 10] =
     ["header", "stamp", "covariance", "variance", "seq", "layout", "nanosec", "orientation", "quaternion", "angular"];
 /// Types that never carry signals of a cylinder.
 const NO_SIGNAL_TYPES: [&str; 5] = ["Imu", "BatteryState", "Log", "DiagnosticArray", "Clock"];
 
-/// One topic as far as it has been read.
+/// The data of one topic read so far.
 struct Seen {
     layout: Layout,
     fields: Vec<(FieldPath, Selector)>,
@@ -32,7 +32,7 @@ struct Seen {
     values: Vec<Vec<f64>>,
 }
 
-/// The fields that may be signals, the clock, and topics of CAN frames, of which nothing is known without their DBC file.
+/// The fields that may be signals, the clock, and topics of CAN frames, which are opaque without their DBC file.
 pub(super) fn candidates(path: &Path) -> Result<Found, BagError> {
     let mut frames: Vec<String> = Vec::new();
     let mut topics: HashMap<String, (Arc<Topic>, Option<Seen>)> = HashMap::new();
@@ -73,7 +73,7 @@ pub(super) fn candidates(path: &Path) -> Result<Found, BagError> {
     Ok(Found { candidates, clock, unreadable: frames })
 }
 
-/// Layout and fields of a topic, `None` when its type is not known.
+/// Layout and fields of a topic; `None` if its type is unknown.
 fn look_at(topic: &Topic, message: &[u8]) -> Option<Seen> {
     if NO_SIGNAL_TYPES.contains(&topic.type_name.rsplit('/').next().unwrap_or_default()) {
         return None;
@@ -100,7 +100,8 @@ fn of_topic(topic: &Topic, seen: Seen) -> Vec<Candidate> {
         .map(|((field, _), values)| {
             let text = field.to_string();
             let (dimension, unit) = by_type(&topic.type_name, &text);
-            // The definition asks for absolute pressures in Pa; numbers under 1 kPa show that nobody kept to it.
+            // The definition requires absolute pressures in Pa; values that are all below 1 kPa show that the bag does
+            // not follow it.
             let is_fluid = topic.type_name.ends_with("/FluidPressure") && values.iter().any(|&value| value > 1e3);
             let unit = match unit.and_then(Unit::named) {
                 Some(unit) => Some((unit, format!("{} is defined so", topic.type_name))),
@@ -122,11 +123,11 @@ fn of_topic(topic: &Topic, seen: Seen) -> Vec<Candidate> {
         .collect()
 }
 
-/// What a field of a common type measures, and in which unit where that is fixed.
+/// Dimension of a field of a common type, and its unit if that is fixed.
 fn by_type(type_name: &str, field: &str) -> (Option<Dimension>, Option<&'static str>) {
     let name = type_name.rsplit('/').next().unwrap_or_default();
     if type_name.starts_with("excavator_msgs/") {
-        // Our own, in SI; its fields have the names of the signals.
+        // Our own type, in SI; its fields have the names of the signals.
         let last = field.rsplit('.').next().unwrap_or_default();
         let kind = SignalKind::ALL.into_iter().find(|kind| kind.name() == last);
         let dimension = kind.map(SignalKind::dimension).or(last.starts_with("areas").then_some(Dimension::Area));
@@ -135,7 +136,7 @@ fn by_type(type_name: &str, field: &str) -> (Option<Dimension>, Option<&'static 
     match (name, field.split(['[', '.']).next().unwrap_or_default()) {
         ("FluidPressure", _) => (Some(Dimension::Pressure), None),
         ("Temperature", _) => (Some(Dimension::Temperature), Some("degC")),
-        // A prismatic joint in m, a revolute one in rad: the numbers must tell.
+        // A prismatic joint is in m, a revolute one in rad: only the numbers can distinguish them.
         ("JointState", "velocity") => (Some(Dimension::Velocity), None),
         ("JointState", "effort") => (Some(Dimension::Force), None),
         ("WrenchStamped" | "Wrench", _) if field.contains("force") => (Some(Dimension::Force), Some("N")),
@@ -143,7 +144,7 @@ fn by_type(type_name: &str, field: &str) -> (Option<Dimension>, Option<&'static 
     }
 }
 
-/// The names in a path. Its numbers count elements and say nothing.
+/// The names in a path, without indices, which carry no information.
 fn spoken(field: &FieldPath) -> String {
     let names = field.steps().iter().map(|step| match &step.index {
         Some(Index::Named { value, .. }) => format!("{} {value}", step.field),

@@ -1,4 +1,4 @@
-//! Candidates of a table.
+//! Finds the candidates in a table.
 
 use super::super::document::{ClockSource, ColumnName};
 use super::super::table_clock::time_column;
@@ -9,7 +9,7 @@ use crate::table::{Sampling, Table, Values};
 /// The columns that may be signals, and the clock.
 pub(super) fn candidates(table: &Table) -> Found {
     let found = time_column(table).map(|column| (column, "named or written like a time")).or_else(|| {
-        // A column without name that only grows, from the first row on; unless a line says how often rows were taken.
+        // Otherwise the first column that increases from the first row on, unless a line states the sampling rate.
         let column = table.columns.iter().find(|column| table.sampling.is_none() && grows(&column.values))?;
         Some((column, "the first column that only grows"))
     });
@@ -50,7 +50,7 @@ fn found_with(candidates: Vec<Candidate>, clock: (ClockSource, String)) -> Found
     Found { candidates, clock, unreadable: Vec::new() }
 }
 
-/// Rows per second of a table that says nothing, Hz: a placeholder.
+/// Assumed rate of a table without any information, Hz: a placeholder.
 const GUESSED_RATE: f64 = 100.0;
 
 fn columns(table: &Table, clock: &str, rows: usize, time: &[f64]) -> Vec<Candidate> {
@@ -81,7 +81,7 @@ fn grows(values: &Values) -> bool {
     }
 }
 
-/// Unit of a time column and why.
+/// Unit of a time column and the reason for it.
 fn time_unit(heading: Option<&str>, numbers: &[f64]) -> (&'static str, &'static str) {
     let named = heading.and_then(Unit::named).filter(|unit| unit.dimension == Dimension::Time);
     if let Some(unit) = named {

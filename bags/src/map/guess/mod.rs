@@ -1,4 +1,4 @@
-//! Guessing a map: from names, types, units, and the shapes of the signals. A guess is for people to confirm.
+//! Guesses a map from names, types, units, and the shapes of the signals. The user must confirm a guess.
 
 mod candidate;
 mod choose;
@@ -16,21 +16,21 @@ use super::document::{ClockSource, SignalSource, TopicMap};
 use crate::BagError;
 use crate::table::{Table, TableFormat};
 
-/// How sure a guess is.
+/// Confidence in a guess.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Confidence {
-    /// Something else is nearly as likely, or only order and size speak for it.
+    /// Something else is nearly as likely, or only order and size support it.
     Unsure,
-    /// Nothing speaks against it, and little for it; or its unit is only told by the size of its numbers.
+    /// Nothing contradicts it, but there is little evidence; or its unit follows only from the size of its numbers.
     Likely,
-    /// Name, unit or shape say so, and of nothing else.
+    /// Name, unit or shape support it, and nothing else.
     Sure,
-    /// A person said so.
+    /// Chosen by the user.
     Chosen,
 }
 
 impl Confidence {
-    /// In a word.
+    /// The name in one word.
     pub fn name(self) -> &'static str {
         match self {
             Confidence::Unsure => "unsure",
@@ -41,17 +41,17 @@ impl Confidence {
     }
 }
 
-/// What is known before the data are looked at.
+/// Information that is known before the data are examined.
 #[derive(Debug, Clone, Copy)]
 pub struct Hints<'h> {
-    /// The cylinder that signals belong to where their names do not say.
+    /// The cylinder of signals whose names do not contain one.
     pub cylinder: &'h str,
     /// Strokes of cylinders by name, m.
     pub strokes: &'h [(String, f64)],
 }
 
 impl<'h> From<&'h str> for Hints<'h> {
-    /// Nothing is known but a cylinder's name.
+    /// Only the name of a cylinder is known.
     fn from(cylinder: &'h str) -> Self {
         Hints { cylinder, strokes: &[] }
     }
@@ -67,31 +67,31 @@ impl Hints<'_> {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Possibility {
-    /// As it would stand in the map.
+    /// Its map entry.
     pub source: SignalSource,
-    /// How people call the column or field.
+    /// Name of the column or field for display.
     pub label: String,
-    /// Why this source is this signal.
+    /// Reason for the assignment.
     pub reason: String,
-    /// Why it has this unit.
+    /// Reason for the unit.
     pub unit_reason: String,
 }
 
-/// One guessed signal and why.
+/// One guessed signal and the reasons for it.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct GuessedSignal {
-    /// As it stands in the map.
+    /// Its map entry.
     pub source: SignalSource,
-    /// How people call the column or field.
+    /// Name of the column or field for display.
     pub label: String,
-    /// Why this source is this signal.
+    /// Reason for the assignment.
     pub reason: String,
-    /// Why it has this unit.
+    /// Reason for the unit.
     pub unit_reason: String,
-    /// How sure that is.
+    /// Confidence in the assignment.
     pub confidence: Confidence,
-    /// What else it may be, where it is not sure.
+    /// Other possible sources, if it is not sure.
     pub alternatives: Vec<Possibility>,
 }
 
@@ -101,16 +101,16 @@ pub struct GuessedSignal {
 pub struct Guess {
     /// The data.
     pub data: String,
-    /// The clock and why.
+    /// The clock and the reason for it.
     pub clock: (ClockSource, String),
     /// The signals, in the order of the messages.
     pub signals: Vec<GuessedSignal>,
-    /// Columns and fields that are no signal as far as can be told.
+    /// Columns and fields that do not appear to be signals.
     pub left: Vec<String>,
 }
 
 impl Guess {
-    /// The guess as a map, without what is not sure.
+    /// The guess as a map, without unsure signals.
     pub fn map(&self) -> TopicMap {
         let taken = self.signals.iter().filter(|guessed| guessed.confidence > Confidence::Unsure);
         TopicMap {
@@ -121,7 +121,8 @@ impl Guess {
         }
     }
 
-    /// A person says which source a signal has: 0 the guessed one, 1 the first alternative. No other signal has it then.
+    /// Sets the user's choice of source for a signal: 0 is the guessed one, 1 the first alternative. It is removed from
+    /// all other unsure signals.
     pub fn choose(&mut self, signal: usize, choice: usize) {
         let Some(guessed) = self.signals.get_mut(signal) else { return };
         let before = guessed.label.clone();
@@ -156,8 +157,8 @@ impl GuessedSignal {
     }
 }
 
-/// Guesses which signals the bag or table at `path` has. `cylinder` is the one that signals belong to whose names do
-/// not say.
+/// Guesses which signals the bag or table at `path` has. Signals whose names do not contain a cylinder belong to
+/// `cylinder`.
 ///
 /// ```no_run
 /// use std::path::Path;
@@ -171,7 +172,7 @@ impl GuessedSignal {
 /// ```
 ///
 /// # Errors
-/// When the data cannot be read: those of [`RawMessages::open`](rosbag2::RawMessages::open), [`BagError::BadTable`].
+/// If the data cannot be read: the errors of [`RawMessages::open`](rosbag2::RawMessages::open), [`BagError::BadTable`].
 pub fn guess<'h>(path: &Path, hints: impl Into<Hints<'h>>) -> Result<Guess, BagError> {
     let Found { candidates, clock, unreadable } = if Table::is_table(path) {
         from_table::candidates(&Table::read(path, &TableFormat::default())?)
@@ -183,7 +184,7 @@ pub fn guess<'h>(path: &Path, hints: impl Into<Hints<'h>>) -> Result<Guess, BagE
     Ok(Guess { data: path.display().to_string(), clock, signals, left })
 }
 
-/// The clock of a table and why.
+/// The clock of a table and the reason for it.
 pub(crate) fn clock_of_table(table: &Table) -> (ClockSource, String) {
     from_table::candidates(table).clock
 }

@@ -1,9 +1,9 @@
-//! What names say.
+//! Evidence from names.
 
 use super::super::signal::SignalKind;
 use super::super::unit::Dimension;
 
-/// Cylinders that names speak of, in words and in ours.
+/// Cylinder names in other vocabularies, with ours.
 const CYLINDERS: [(&str, &str); 7] = [
     ("boom", "boom"),
     ("arm", "arm"),
@@ -13,7 +13,7 @@ const CYLINDERS: [(&str, &str); 7] = [
     ("swing", "swing"),
     ("load", "load"),
 ];
-/// What turns, and is no cylinder.
+/// Words for rotating machines, which are not cylinders.
 const ROTATING: [&str; 6] = ["pump", "pumpe", "engine", "rpm", "drehzahl", "diesel"];
 
 /// Words for what is measured.
@@ -54,19 +54,19 @@ const COMMANDS: [&str; 16] = [
     "soll",
     "pwm",
 ];
-/// Words that tell a measured value from the one that was asked for.
+/// Words that distinguish a measured value from a setpoint.
 const MEASURED: [&str; 10] =
     ["ms", "meas", "measured", "measurement", "actual", "act", "ist", "feedback", "fbk", "sensor"];
 const OPENINGS: [&str; 4] = ["spool", "opening", "orifice", "area"];
 
-/// How well a name suits a signal, 0 to 1, and the word that says so.
+/// How well a name matches a signal, 0 to 1, and the matching word.
 pub(super) fn score(kind: SignalKind, words: &[String]) -> Option<(f64, String)> {
     let command = find(words, &COMMANDS);
     let opening = find(words, &OPENINGS);
     match kind {
         SignalKind::OrificeCommand => command,
         SignalKind::OrificeArea => opening.filter(|_| command.as_ref().is_none_or(|(_, word)| word.starts_with("v"))),
-        // What is commanded is not what is measured.
+        // A command is not a measurement.
         _ if command.as_ref().is_some_and(|(_, word)| word.len() > 1 && !word.starts_with("v")) => None,
         SignalKind::CapPressure | SignalKind::RodPressure | SignalKind::PumpPressure | SignalKind::TankPressure => {
             let places = PLACES.iter().find(|(place, _)| *place == kind).map_or(&[][..], |(_, places)| places);
@@ -76,23 +76,23 @@ pub(super) fn score(kind: SignalKind, words: &[String]) -> Option<(f64, String)>
                 None => Some((0.35 * what, word)),
             }
         }
-        // The speed of a pump is none of its cylinder's, however well the two go together.
+        // The speed of a pump is not that of a cylinder, however strong the correlation.
         _ if kind.is_of_cylinder() && find(words, &ROTATING).is_some() => None,
         _ => find(words, quantity(kind.dimension())),
     }
 }
 
-/// Whether a name says that something is measured, whatever it is.
+/// Whether a name marks a measured value of any kind.
 pub(super) fn is_measured(words: &[String]) -> bool {
     find(words, &MEASURED).is_some()
 }
 
-/// Whether a name speaks of a pump.
+/// Whether a name refers to a pump.
 pub(super) fn is_of_pump(words: &[String]) -> bool {
     find(words, &["pump", "pumpe"]).is_some()
 }
 
-/// The cylinder that a name speaks of.
+/// The cylinder that a name refers to.
 pub(super) fn cylinder(words: &[String]) -> Option<&'static str> {
     CYLINDERS.into_iter().find(|(word, _)| words.iter().any(|found| found == word)).map(|(_, name)| name)
 }
@@ -101,10 +101,10 @@ fn quantity(dimension: Dimension) -> &'static [&'static str] {
     QUANTITIES.iter().find(|(of, _)| *of == dimension).map_or(&[][..], |(_, words)| words)
 }
 
-/// From so many letters on a wanted word also counts within another: `Pumpendruck`, `chambers`.
+/// A wanted word of at least this many letters also matches inside another word: `Pumpendruck`, `chambers`.
 const LETTERS_WITHIN: usize = 4;
 
-/// The longest of the words that is, or contains, one of those wanted. Single letters say less.
+/// The longest word that equals, or contains, a wanted one. Words of one or two letters score lower.
 fn find(words: &[String], wanted: &[&str]) -> Option<(f64, String)> {
     let found = words
         .iter()
@@ -114,7 +114,7 @@ fn find(words: &[String], wanted: &[&str]) -> Option<(f64, String)> {
     Some((weight, found.clone()))
 }
 
-/// `ps`, `pt`: quantity and place in one word.
+/// `ps`, `pt`: quantity and place combined in one word.
 fn joined(words: &[String], places: &[&str]) -> Option<(f64, String)> {
     let word = words.iter().find(|word| word.starts_with('p') && places.contains(&word.as_str()) && word.len() == 2)?;
     Some((0.6, word.clone()))

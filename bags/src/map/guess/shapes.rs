@@ -1,4 +1,4 @@
-//! What the numbers themselves say.
+//! Evidence from the numbers themselves.
 
 use super::super::unit::Dimension;
 
@@ -24,19 +24,19 @@ impl Shape {
         (count > 0.0).then_some(shape)
     }
 
-    /// Whether nothing happens.
+    /// Whether the values never change.
     pub fn is_constant(&self) -> bool {
         self.most - self.least <= 1e-9 * self.most.abs().max(self.least.abs())
     }
 
-    /// The unit that numbers of this size most likely have, and why; `None` when they fit SI.
+    /// The most likely unit for numbers of this size, and the reason; `None` if they fit SI.
     pub fn unit(&self, dimension: Dimension) -> Option<(&'static str, String)> {
         let size = self.most.abs().max(self.least.abs());
         let most = short(size);
         match dimension {
-            // Zeros are the same in every unit.
+            // Zero is the same in every unit.
             _ if size == 0.0 => None,
-            // No machine has a stroke of 5 m, or one that never leaves 5 mm.
+            // No machine has a stroke of 5 m, or a stroke that stays within 5 mm.
             Dimension::Length if size > 5.0 => Some(("mm", format!("numbers up to {most} are no metres"))),
             Dimension::Velocity if size > 10.0 => {
                 Some(("mm/s", format!("numbers up to {most} are no metres per second")))
@@ -58,8 +58,8 @@ impl Shape {
     }
 }
 
-/// The value of a command that a valve rests at, where that is not zero, and the share of the time that it does. A lever
-/// that is let go gives the same number again and again, and others to both sides of it.
+/// The command value at which a valve rests, if it is not zero, and the share of time at rest. A released lever gives
+/// the same number repeatedly, and others on both sides of it.
 pub(super) fn rest(values: &[f64]) -> Option<(f64, f64)> {
     let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     known.sort_by(f64::total_cmp);
@@ -70,9 +70,9 @@ pub(super) fn rest(values: &[f64]) -> Option<(f64, f64)> {
     (share >= LEAST_REST && to_both_sides && value.abs() > 0.02 * (most - least)).then_some((value, share))
 }
 
-/// Least share of the time that a valve rests.
+/// Minimum share of time at rest.
 const LEAST_REST: f64 = 0.3;
-/// Least share of its range that a command has to each side of where it rests.
+/// Minimum share of the command range on each side of the rest value.
 const BOTH_SIDES: f64 = 0.1;
 
 /// A number with three digits.
@@ -84,11 +84,11 @@ pub(super) fn short(value: f64) -> String {
     format!("{value:.2e}")
 }
 
-/// How well `velocity` is the derivative of `position` (each with its times in s): correlation, and units of position
-/// per second for one of velocity. `None` for too little motion.
+/// How well `velocity` matches the derivative of `position` (each with its times in s): the correlation, and units of
+/// position per second for one unit of velocity. `None` if there is too little motion.
 pub(super) fn derivative(position: (&[f64], &[f64]), velocity: (&[f64], &[f64])) -> Option<(f64, f64)> {
     let ((time, x), (other_time, v)) = (position, velocity);
-    // Wide steps, so that noise on the position does not hide the motion.
+    // Wide steps, so that position noise does not mask the motion.
     let stride = (x.len() / 2000).max(3);
     let (mut products, mut slopes, mut speeds) = (0.0, 0.0, 0.0);
     let mut count = 0;

@@ -1,4 +1,4 @@
-//! A guess as a map with a reason on each line.
+//! Writes a guess as a map with a reason on each line.
 
 use std::fmt::Write;
 
@@ -6,14 +6,14 @@ use super::super::error::MapError;
 use super::super::signal::SignalKind;
 use super::{Confidence, Guess, GuessedSignal};
 
-/// Column at which reasons begin, so that the map can be read without them.
+/// Column at which reasons start, so that the map is readable without them.
 const REASON_COLUMN: usize = 52;
 
 impl Guess {
-    /// The guess as the text of a map, with the reason for each line behind it.
+    /// The guess as map text, with the reason for each line after it.
     ///
     /// # Errors
-    /// [`MapError::Syntax`] when a number is none that TOML can hold.
+    /// [`MapError::Syntax`] if TOML cannot represent a number.
     pub fn to_text(&self) -> Result<String, MapError> {
         let mut text = format!("# Guessed from {}. Check every line, above all units, signs and offsets.\n", self.data);
         let unsure = self.signals.iter().filter(|guessed| guessed.confidence == Confidence::Unsure).count();
@@ -48,7 +48,7 @@ impl Guess {
     }
 }
 
-/// The entry of a signal, with reasons; as a comment where it is not sure.
+/// The map entry of a signal, with reasons; commented out if it is not sure.
 fn push_signal(text: &mut String, guessed: &GuessedSignal) -> Result<(), MapError> {
     let is_unsure = guessed.confidence == Confidence::Unsure;
     let mark = if is_unsure { "# " } else { "" };
@@ -78,7 +78,7 @@ fn toml_lines<T: serde::Serialize>(value: &T) -> Result<Vec<String>, MapError> {
 
 fn push_line(text: &mut String, mark: &str, line: &str, reason: &str) {
     let line = format!("{mark}{line}");
-    // Nothing that comes from the data may end a comment.
+    // Text from the data must not end a comment.
     let reason = reason.replace(char::is_control, " ");
     // Writing to a String cannot fail.
     let _ = match reason.is_empty() {
@@ -87,7 +87,7 @@ fn push_line(text: &mut String, mark: &str, line: &str, reason: &str) {
     };
 }
 
-/// A comment over as many lines as it takes.
+/// A comment, wrapped over several lines.
 fn push_comment(text: &mut String, comment: &str) {
     let mut line = String::from("#");
     for word in comment.replace(char::is_control, " ").split(' ') {

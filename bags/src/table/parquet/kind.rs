@@ -1,19 +1,19 @@
-//! What the values of a column mean.
+//! The meaning of the values of a column.
 
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use parquet::schema::types::ColumnDescriptor;
 
-/// Digits of a decimal that fit in 16 bytes.
+/// Number of decimal digits that fit in 16 bytes.
 const DIGITS: i32 = 38;
 
-/// What the values of a column mean.
+/// The meaning of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
-    /// Numbers as they are; whole numbers without sign are stored in types that have one.
+    /// Plain numbers; unsigned integers are stored in signed types.
     Number { unsigned: bool },
-    /// Numbers without their decimal point: so many digits belong behind it.
+    /// Numbers without their decimal point, with `scale` digits after it.
     Decimal { scale: i32 },
-    /// Two bytes of floating point.
+    /// Half-precision floating point, two bytes.
     Half,
     /// Instants, with ns per unit.
     Stamp { nanoseconds: i64 },
@@ -22,7 +22,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// What a column holds, or what it is that cannot be read.
+    /// The kind of a column, or the name of its unsupported type.
     pub fn of(column: &ColumnDescriptor) -> Result<Kind, &'static str> {
         if column.max_rep_level() > 0 {
             return Err("lists");
@@ -32,7 +32,7 @@ impl Kind {
         match column.physical_type() {
             Type::BOOLEAN | Type::FLOAT | Type::DOUBLE => Ok(number),
             Type::INT32 | Type::INT64 => Ok(logical.map_or_else(|| by_older_name(column), by_name).unwrap_or(number)),
-            // Spark and old versions of pandas store instants so, and nobody anything else.
+            // Only Spark and old versions of pandas store instants in this type, and nothing else uses it.
             Type::INT96 => Ok(Kind::Stamp { nanoseconds: 1 }),
             Type::BYTE_ARRAY | Type::FIXED_LEN_BYTE_ARRAY => match (logical, column.converted_type()) {
                 (Some(LogicalType::Decimal(_)), _) | (None, ConvertedType::DECIMAL) => {
@@ -49,7 +49,7 @@ impl Kind {
         }
     }
 
-    /// The unit that the type itself gives.
+    /// The unit that follows from the type.
     pub fn unit(self) -> Option<&'static str> {
         match self {
             Kind::TimeOfDay { unit } => Some(unit),
@@ -69,7 +69,7 @@ fn by_name(logical: &LogicalType) -> Option<Kind> {
     })
 }
 
-/// Files of before 2018 have names without parameters.
+/// Files from before 2018 have type names without parameters.
 fn by_older_name(column: &ColumnDescriptor) -> Option<Kind> {
     Some(match column.converted_type() {
         ConvertedType::UINT_8 | ConvertedType::UINT_16 | ConvertedType::UINT_32 | ConvertedType::UINT_64 => {
@@ -87,7 +87,7 @@ fn by_older_name(column: &ColumnDescriptor) -> Option<Kind> {
 
 const DAYS: Kind = Kind::Stamp { nanoseconds: 86_400_000_000_000 };
 
-/// Name of a unit and ns in it.
+/// Name of a unit and its length in ns.
 fn unit(unit: TimeUnit) -> (&'static str, i64) {
     match unit {
         TimeUnit::MILLIS => ("ms", 1_000_000),

@@ -1,4 +1,4 @@
-//! Parquet files as tables: every column of numbers, switches, dates or times is a column.
+//! Reads Parquet files as tables: every column of numbers, booleans, dates or times is a column.
 
 mod kind;
 mod pages;
@@ -15,7 +15,7 @@ use super::{Column, Table, guard, heading};
 use kind::Kind;
 use values::Cells;
 
-/// The table in a file. `Err` says in one line what is wrong.
+/// Reads the table in a file. `Err` contains the fault in one line.
 pub(super) fn parse(bytes: Bytes, limits: &ReadLimits) -> Result<Table, TableFault> {
     if !bytes.starts_with(b"PAR1") {
         return Err("it is no Parquet file: it does not begin with PAR1".into());
@@ -23,12 +23,12 @@ pub(super) fn parse(bytes: Bytes, limits: &ReadLimits) -> Result<Table, TableFau
     if !bytes.ends_with(b"PAR1") {
         return Err("the end is missing: a Parquet file can only be read whole".into());
     }
-    // The library answers most broken files with an error and some with a panic.
+    // The library returns an error for most broken files, but panics on some.
     guard::without_panic(|| read(bytes, limits))
         .unwrap_or_else(|panic| Err(format!("the Parquet file is broken: {panic}").into()))
 }
 
-/// A column of the file that is one of the table.
+/// A column of the file that becomes a column of the table.
 struct Wanted {
     index: usize,
     name: String,
@@ -91,7 +91,7 @@ fn read(bytes: Bytes, limits: &ReadLimits) -> Result<Table, TableFault> {
     Ok(table)
 }
 
-/// The columns that can be read; the others are noted.
+/// The supported columns; the others are added to `notes`.
 fn wanted(metadata: &ParquetMetaData, notes: &mut Vec<String>) -> Vec<Wanted> {
     let mut wanted = Vec::new();
     for (index, column) in metadata.file_metadata().schema_descr().columns().iter().enumerate() {
@@ -105,7 +105,7 @@ fn wanted(metadata: &ParquetMetaData, notes: &mut Vec<String>) -> Vec<Wanted> {
     wanted
 }
 
-/// Rows of all groups.
+/// Number of rows of all row groups.
 fn rows(metadata: &ParquetMetaData) -> Result<u64, String> {
     metadata.row_groups().iter().try_fold(0_u64, |sum, group| {
         let rows = group.num_rows();

@@ -1,15 +1,15 @@
-//! What the pages of a column say that they unpack to, before anything is unpacked.
+//! Checks the announced sizes of the pages of a column before decompression.
 //!
-//! The library reserves as much memory as a page's header asks for. Headers are read here first, as far as that
+//! The library reserves as much memory as a page header requests. This module reads the headers first, up to that
 //! number, in the compact protocol of Apache Thrift.
 
 use parquet::file::metadata::ColumnChunkMetaData;
 use rosbag2::ReadLimits;
 
-/// Structs within structs that a header may have.
+/// Maximum nesting of structs in a header.
 const DEPTH_LIMIT: usize = 8;
 
-/// Bytes that the file's pages unpack to, those of this column added to those `before`.
+/// Decompressed bytes of the pages of the file: those of this column added to those `before`.
 pub(super) fn check(
     file: &[u8],
     column: &ColumnChunkMetaData,
@@ -29,7 +29,7 @@ pub(super) fn check(
         let at = file.len() - rest.len();
         let (header, after) = Header::read(rest).ok_or("a page without a readable header; the file is broken")?;
         unpacked = unpacked.saturating_add(header.unpacked);
-        // Pages are unpacked one at a time, but a page is whole in memory.
+        // Pages are decompressed one at a time, but each is held in memory as a whole.
         limits
             .check_memory(header.unpacked, size)
             .and_then(|()| limits.check_unpacked(unpacked, size))
@@ -39,14 +39,14 @@ pub(super) fn check(
     Ok(unpacked)
 }
 
-/// The sizes in the header of a page.
+/// The sizes in a page header.
 struct Header {
     unpacked: u64,
     packed: usize,
 }
 
 impl Header {
-    /// The header at the start of the bytes and what follows it.
+    /// The header at the start of the bytes, and the remaining bytes.
     fn read(bytes: &[u8]) -> Option<(Header, &[u8])> {
         let mut reader = Compact { rest: bytes };
         let (mut unpacked, mut packed, mut id) = (None, None, 0);
@@ -63,7 +63,7 @@ impl Header {
 
 const I32: u8 = 5;
 
-/// The compact protocol, as far as it takes to skip things.
+/// The compact protocol, as far as needed to skip fields.
 struct Compact<'b> {
     rest: &'b [u8],
 }
@@ -87,13 +87,13 @@ impl Compact<'_> {
         None
     }
 
-    /// A whole number with sign, which stands in the lowest bit.
+    /// A zigzag-encoded signed integer; the sign is in the lowest bit.
     fn whole(&mut self) -> Option<i64> {
         let number = self.variable()?;
         Some((number >> 1) as i64 ^ -((number & 1) as i64))
     }
 
-    /// Number and type of the next field, `Some(None)` at the end of the struct; `id` is the number of the one before.
+    /// Id and type of the next field, `Some(None)` at the end of the struct; `id` is the id of the previous field.
     fn field(&mut self, id: &mut i64) -> Option<Option<(i64, u8)>> {
         let byte = self.byte()?;
         if byte & 0x0f == 0 {
@@ -114,7 +114,7 @@ impl Compact<'_> {
     fn skip(&mut self, kind: u8, depth: usize) -> Option<()> {
         let depth = depth.checked_sub(1)?;
         match kind {
-            // A boolean field is its type.
+            // The type of a boolean field is its value.
             1 | 2 => Some(()),
             3 => self.bytes(1),
             4..=6 => self.variable().map(|_| ()),
@@ -127,7 +127,7 @@ impl Compact<'_> {
                 let byte = self.byte()?;
                 let count = if byte >> 4 == 15 { self.variable()? } else { u64::from(byte >> 4) };
                 let element = byte & 0x0f;
-                // In a list a boolean takes a byte.
+                // In a list, a boolean takes one byte.
                 (0..count).try_for_each(|_| if element <= 2 { self.bytes(1) } else { self.skip(element, depth) })
             }
             12 => {
@@ -137,7 +137,7 @@ impl Compact<'_> {
                 }
                 Some(())
             }
-            // No header has maps.
+            // No header contains maps.
             _ => None,
         }
     }
@@ -150,7 +150,8 @@ mod tests {
 
     #[test]
     fn sizes_are_read_past_everything_else() {
-        // Type 0, 300 unpacked, 20 packed, a struct with an integer, a text, a list of two booleans, a switch, a number.
+        // Type 0, 300 decompressed, 20 compressed, a struct with an integer, a text, a list of two booleans, a boolean,
+        // a number.
         let fields = [0x15, 0x00, 0x15, 0xd8, 0x04, 0x15, 0x28, 0x2c, 0x15, 0x02, 0x18, 0x02, b'h', b'i'];
         let more = [0x19, 0x21, 0x01, 0x00, 0x11, 0x17, 0, 0, 0, 0, 0, 0, 0, 0, 0x00, 0x00, b'x'];
         let bytes = [&fields[..], &more[..]].concat();
@@ -159,7 +160,7 @@ mod tests {
         for cut in 0..bytes.len() - 1 {
             assert!(Header::read(&bytes[..cut]).is_none(), "cut to {cut} bytes");
         }
-        // A size below zero, and structs without end.
+        // A negative size, and a struct without end.
         assert!(Header::read(&[0x25, 0x01, 0x15, 0x28, 0x00]).is_none());
         assert!(Header::read(&[0x1c; 1000]).is_none());
     }

@@ -1,4 +1,4 @@
-//! The values of one column, batch by batch.
+//! Reads the values of one column, batch by batch.
 
 use half::f16;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -8,16 +8,16 @@ use parquet::errors::Result;
 use super::kind::Kind;
 use crate::table::Values;
 
-/// Rows that are decoded at a time.
+/// Number of rows decoded at a time.
 const BATCH: usize = 8192;
 
-/// A column as far as it is read.
+/// A column read so far.
 pub(super) struct Cells {
     kind: Kind,
     /// Definition level of values, see [`batches`].
     level: i16,
     pub values: Values,
-    /// Instants that do not fit in ns since the epoch.
+    /// Number of instants that do not fit in ns since the epoch.
     pub out_of_range: usize,
 }
 
@@ -30,7 +30,7 @@ impl Cells {
         Cells { kind, level, values, out_of_range: 0 }
     }
 
-    /// Adds one row group and says how many rows it had. Nulls are not measured.
+    /// Adds one row group and returns its number of rows. Nulls count as not measured.
     pub fn extend(&mut self, reader: ColumnReader, rows: usize) -> Result<usize> {
         let rows = (rows, self.level);
         match reader {
@@ -38,7 +38,7 @@ impl Cells {
                 batches(reader, rows, |value| self.number(value.map(|&value| f64::from(u8::from(value)))))
             }
             ColumnReader::Int32ColumnReader(reader) => batches(reader, rows, |value| {
-                // The bits of a number without sign, which alone may be above 2^31.
+                // Reinterpret the bits of an unsigned number, which may exceed 2^31.
                 let unsigned = self.kind == Kind::Number { unsigned: true };
                 let whole = |&value: &i32| if unsigned { i64::from(value as u32) } else { i64::from(value) };
                 self.integer(value.map(whole));
@@ -66,7 +66,7 @@ impl Cells {
         }
     }
 
-    /// A stamp, `None` for a null, or `Some(None)` for one that is out of range.
+    /// Adds a stamp: `None` for a null, `Some(None)` for one that is out of range.
     fn stamp(&mut self, value: Option<Option<i64>>) {
         self.out_of_range += usize::from(value == Some(None));
         if let Values::Stamps(stamps) = &mut self.values {
@@ -88,7 +88,7 @@ impl Cells {
         self.number(value.map(|bytes| match (kind, bytes) {
             (Kind::Half, &[low, high]) => f64::from(f16::from_le_bytes([low, high])),
             (Kind::Decimal { scale }, &[first, ..]) if bytes.len() <= size_of::<i128>() => {
-                // Two's complement, highest byte first.
+                // Two's complement, most significant byte first.
                 let start = if first < 0x80 { 0 } else { -1 };
                 shifted(bytes.iter().fold(start, |sum: i128, &byte| sum << 8 | i128::from(byte)) as f64, scale)
             }
@@ -97,13 +97,13 @@ impl Cells {
     }
 }
 
-/// With so many digits behind the point.
+/// Shifts the decimal point by `scale` digits.
 fn shifted(digits: f64, scale: i32) -> f64 {
     digits / 10_f64.powi(scale)
 }
 
-/// Gives each value of `rows` rows, `None` for nulls, to `take`; says how many rows there were. Values are at the level
-/// `highest`; 0 where nulls cannot be.
+/// Passes each value of `rows` rows to `take`, `None` for nulls; returns the number of rows. Values have the definition
+/// level `highest`, which is 0 if nulls are impossible.
 fn batches<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     (rows, highest): (usize, i16),
@@ -123,7 +123,7 @@ fn batches<T: DataType>(
             values.iter().for_each(|value| take(Some(value)));
             continue;
         }
-        // Without lists a row has one level, the highest where there is a value.
+        // Without lists each row has one level, which is the highest if there is a value.
         let mut present = values.iter();
         for &level in &levels {
             take(if level == highest { present.next() } else { None });
