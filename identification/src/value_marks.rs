@@ -1,11 +1,11 @@
-//! What must be said of an identified value beside its number.
+//! Marks identified values that must not be taken as properties of the machine.
 
 use std::fmt;
 
 use excavator_model::effects::Text;
 use excavator_model::{Model, ModelEffect, Parameter};
 
-/// Why an identified value is not to be taken as a property of the machine.
+/// Why an identified value must not be taken as a property of the machine.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ValueMark {
     /// The recordings do not determine it: there is no error of the value, or one that is larger than the value.
