@@ -25,7 +25,7 @@ const POLISHING: usize = 8;
 const LEAST_LOAD: f64 = 1.0;
 /// Smallest and largest Stribeck speed that is tried, m/s.
 const STRIBECK_SPEEDS: (f64, f64) = (3e-3, 0.1);
-/// Number of speeds tried between them: neighbours differ by 6 %.
+/// Steps between them: neighbouring trial speeds differ by 6 %.
 const STRIBECK_TRIALS: i32 = 60;
 
 /// One steady stretch.
