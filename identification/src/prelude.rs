@@ -1,4 +1,4 @@
-//! What most programs need: `use excavator_identification::prelude::*;`, beside `excavator_model::prelude`.
+//! What most programs need, together with `excavator_model::prelude`: `use excavator_identification::prelude::*;`.
 //!
 //! Data goes from a regression or a fit through scores and a decision to a refinement; [`identify`](fn@identify) and
 //! [`refine`](fn@refine) run the whole chain. Error types are not included, because each step has its own.

@@ -58,7 +58,7 @@ pub fn remedies(model: &Model, fitted: &[usize]) -> Vec<(Vec<String>, Text)> {
 /// [`value_mark`] of a parameter of one of the model's effects.
 pub fn mark(model: &Model, effect: &ModelEffect, parameter: &Parameter) -> Option<ValueMark> {
     let card = &parameter.card;
-    // Nuisances are about zero as often as not, and nobody acts on them.
+    // Nuisances scatter around zero, and no action follows from them.
     if parameter.known || card.prior.is_some() {
         return None;
     }
@@ -73,7 +73,7 @@ pub fn mark(model: &Model, effect: &ModelEffect, parameter: &Parameter) -> Optio
         return Some(ValueMark::AtItsBound);
     }
     let margin = parameter.margin_95.unwrap_or(f64::INFINITY);
-    // What may have either sign may be zero; what cannot be zero must be told from it.
+    // A parameter that may have either sign may be zero; one that cannot be zero must differ from it significantly.
     let needs_a_value = card.minimum >= 0.0;
     (!margin.is_finite() || needs_a_value && margin > parameter.value.abs()).then_some(ValueMark::Undetermined)
 }
