@@ -1,4 +1,4 @@
-//! The unknown parameters of a model from recordings, by any of the methods.
+//! Identifies the unknown parameters of a model from recordings, with any of the methods.
 
 use std::fmt;
 
@@ -43,11 +43,11 @@ pub struct Identified {
     pub conditions: Vec<ConditionNumber>,
     /// Rows of the regression; 0 where there was none.
     pub rows: usize,
-    /// How well each equation is met.
+    /// How well each equation fits.
     pub equations: Vec<EquationGauge>,
-    /// Indices of parameters that take part in no equation whose signals are measured, with the reason.
+    /// Indices of parameters that appear in no equation with measured signals, with the reason.
     pub not_identified: Vec<(usize, String)>,
-    /// What the recordings say of parameters whose standard errors say little.
+    /// Profile intervals of parameters whose standard errors are not informative.
     pub profiles: Vec<ProfileInterval>,
 }
 
@@ -55,10 +55,10 @@ pub struct Identified {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IdentifyError {
-    /// The equations give no numbers.
+    /// The regression fails.
     #[error(transparent)]
     Regression(#[from] RegressionError),
-    /// The outputs cannot be fitted.
+    /// The fit of the outputs fails.
     #[error(transparent)]
     Fit(#[from] FitError),
 }
@@ -92,7 +92,7 @@ pub fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Res
     let regression = match method {
         Method::LeastSquares => Some(least_squares(model, recordings)?),
         Method::WeakForm => Some(in_weak_form(model, recordings)?),
-        // Where the equations lack signals the given values are the start.
+        // If the equations lack signals, the fit starts from the given values.
         Method::OutputError => in_weak_form(model, recordings).ok(),
     };
     let mut result = regression.map_or_else(|| Identified::unchanged(model), Identified::from);

@@ -1,8 +1,8 @@
-//! What a recording says about a model: which parameters it has, how far it is from the measurement, where it fails, and
-//! which physical effect it is missing.
+//! Compares a model with recordings: identifies its parameters, measures its misfit, finds where it fails and which
+//! physical effect is missing.
 //!
 //! Data flows one way: recording -> regression -> model -> simulation -> hypotheses -> scores -> verdict ->
-//! refinement. This crate reads no files and knows no ROS; the pages with its results are those of `excavator-report`.
+//! refinement. This crate reads no files and does not depend on ROS; `excavator-report` writes the pages with its results.
 
 pub mod characterisation;
 pub mod checks;

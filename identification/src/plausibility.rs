@@ -1,5 +1,5 @@
-//! Fitted values that point to a wrong unit or a wrong length rather than to a missing effect: a model whose pressures are all ten times
-//! too large fits as well as the right one, with ten times the inertia.
+//! Finds fitted values that point to a wrong unit or a wrong length rather than to a missing effect. A model whose pressures are
+//! all ten times too large fits as well as the right one, with ten times the inertia.
 
 use excavator_model::effects::{Family, Kind, Text};
 use excavator_model::{Model, ModelEffect, Parameter};
@@ -20,25 +20,25 @@ pub struct Implausible {
 /// Why a fitted value is hard to believe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Doubt {
-    /// The model that was given has another one.
+    /// The value differs strongly from that of the given model.
     FarFromGiven {
-        /// That value.
+        /// Value in the given model.
         given: f64,
     },
     /// A bulk modulus that no hydraulic fluid has.
     StifferThanFluid,
 }
 
-/// By what factor a fitted value must differ from the given one. Inertias, moments and flow gains are known from drawings within a
-/// third; a bulk modulus with air and hoses in it is not, but hardly by more than this.
+/// Factor between fitted and given value above which the fitted one is implausible. Drawings give inertias, moments and flow
+/// gains to within a third. A bulk modulus with air and hoses is less certain, but hardly by more than this factor.
 const FAR: f64 = 4.0;
 
-/// Bulk modulus, Pa, that no hydraulic fluid has: mineral oil has 1.4e9 to 2e9, water 2.2e9, both more by a fifth at 400 bar.
+/// Bulk modulus, Pa, that no hydraulic fluid reaches: mineral oil has 1.4e9 to 2e9, water 2.2e9, both a fifth more at 400 bar.
 const STIFFEST_FLUID: f64 = 3e9;
 
-/// All such values among the fitted parameters of `found`, which was `given` before it was fitted. Only parameters of what every machine
-/// has are looked at: friction and leakage differ by more from one machine to the next. One that the recordings hardly show
-/// is none.
+/// Returns the implausible values among the fitted parameters of `found`; `given` is the model before the fit. Only effects that
+/// every machine has are examined, because friction and leakage differ more between machines. A value that the recordings hardly
+/// determine is not reported.
 pub fn implausible(given: &Model, found: &Model) -> Vec<Implausible> {
     let names = found.parameter_names();
     let fitted = found
@@ -53,7 +53,7 @@ pub fn implausible(given: &Model, found: &Model) -> Vec<Implausible> {
         .collect()
 }
 
-/// Whether a parameter is one that people know within a factor before it is fitted.
+/// Whether a parameter is usually known within a factor before it is fitted.
 fn is_known_roughly(effect: &ModelEffect, parameter: &Parameter) -> bool {
     effect.physics.card().family == Family::Base && !parameter.known && parameter.card.kind != Kind::Shape
 }

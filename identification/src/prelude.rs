@@ -1,7 +1,7 @@
-//! What most programs need: `use excavator_identification::prelude::*;`, beside `excavator_model::prelude`.
+//! What most programs need, together with `excavator_model::prelude`: `use excavator_identification::prelude::*;`.
 //!
-//! Data goes from a regression or a fit over scores and a decision to a refinement; [`identify`](fn@identify) and
-//! [`refine`](fn@refine) do all of it. Errors are not among it: each step has its own.
+//! Data goes from a regression or a fit through scores and a decision to a refinement; [`identify`](fn@identify) and
+//! [`refine`](fn@refine) run the whole chain. Error types are not included, because each step has its own.
 
 pub use crate::decision::{Kind, Policy, Scores, Verdict, decide};
 pub use crate::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};

@@ -1,11 +1,11 @@
-//! What must be said of an identified value beside its number.
+//! Marks identified values that must not be taken as properties of the machine.
 
 use std::fmt;
 
 use excavator_model::effects::Text;
 use excavator_model::{Model, ModelEffect, Parameter};
 
-/// Why an identified value is not to be taken as a property of the machine.
+/// Why an identified value must not be taken as a property of the machine.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ValueMark {
     /// The recordings do not determine it: there is no error of the value, or one that is larger than the value.
@@ -58,7 +58,7 @@ pub fn remedies(model: &Model, fitted: &[usize]) -> Vec<(Vec<String>, Text)> {
 /// [`value_mark`] of a parameter of one of the model's effects.
 pub fn mark(model: &Model, effect: &ModelEffect, parameter: &Parameter) -> Option<ValueMark> {
     let card = &parameter.card;
-    // Nuisances are about zero as often as not, and nobody acts on them.
+    // Nuisances scatter around zero, and no action follows from them.
     if parameter.known || card.prior.is_some() {
         return None;
     }
@@ -73,7 +73,7 @@ pub fn mark(model: &Model, effect: &ModelEffect, parameter: &Parameter) -> Optio
         return Some(ValueMark::AtItsBound);
     }
     let margin = parameter.margin_95.unwrap_or(f64::INFINITY);
-    // What may have either sign may be zero; what cannot be zero must be told from it.
+    // A parameter that may have either sign may be zero; one that cannot be zero must differ from it significantly.
     let needs_a_value = card.minimum >= 0.0;
     (!margin.is_finite() || needs_a_value && margin > parameter.value.abs()).then_some(ValueMark::Undetermined)
 }

@@ -1,17 +1,17 @@
-//! Oil balance of one chamber over a time with closed valve.
+//! Oil balance of one chamber while the valve is closed.
 
 use super::edge::Side;
 use super::stretches::Still;
 use super::track::Track;
 
-/// Samples per second at which balances are taken: noise of neighbouring samples is then not the same noise twice.
+/// Samples per second at which balances are taken, low enough that neighbouring rows do not share their noise.
 const RATE: f64 = 50.0;
 
 /// One balance `oil stored and displaced = C_pump pump_drop + C_tank (-tank_drop)` since the start of its hold, each less
 /// its mean over the hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BalanceRow {
-    /// `V/b p ± A s` and known leakage that went elsewhere, m³.
+    /// `V/b p ± A s` and known leakage to elsewhere, m³.
     pub oil: f64,
     /// Integral of pump pressure less chamber pressure, Pa s.
     pub pump: f64,

@@ -9,15 +9,16 @@ use super::refusal::Refusal;
 use super::stretches::{Still, length, settled, still};
 use super::track::Track;
 
-/// Opening that counts as closed, as a share of the largest: under any overlap that is made on purpose.
+/// Opening that counts as closed, as a share of the largest. It is below any intentional overlap.
 const CLOSED: f64 = 0.02;
-/// Least time with closed valve, s.
+/// Minimum time with the valve closed, s.
 const LEAST_HOLD: f64 = 0.5;
-/// Holds that are needed: with less than two a common error of a hold cannot be seen.
+/// Number of holds needed. An error common to one hold is visible only with at least two.
 const NEEDED: usize = 3;
-/// Standard errors below zero at which a coefficient is no leakage: fewer than one in 700 of those with none is so far below.
+/// Standard errors below zero beyond which a coefficient cannot be leakage: chance puts fewer than one zero coefficient in 700 so
+/// low.
 const OPPOSED: f64 = 3.0;
-/// Standard error over value above which a coefficient says nothing.
+/// Standard error over value above which a coefficient is useless.
 const USELESS: f64 = 0.5;
 
 /// Leakage past the lands at one chamber while the valve is closed.
@@ -29,13 +30,13 @@ pub struct ChamberLeakage {
     pub to_tank: Estimate,
     /// Time constant V / (b (C1 + C2)) at mid-stroke with the piston held, s.
     pub time_constant: Estimate,
-    /// Share C1 / (C1 + C2) of the pump pressure (above tank) that the chamber comes to.
+    /// Share C1 / (C1 + C2) of the pump pressure (above tank) at which the chamber pressure settles.
     pub static_gain: Estimate,
-    /// Root mean square of what the balances leave, m³.
+    /// Root mean square residual of the balances, m³.
     pub residual: f64,
 }
 
-/// A time with closed valve.
+/// A time with the valve closed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hold {
     /// Recording, as an index.
@@ -59,7 +60,7 @@ pub struct ClosedValve {
     pub cap: Result<ChamberLeakage, Refusal>,
     /// Rod side: C3, C4.
     pub rod: Result<ChamberLeakage, Refusal>,
-    /// Bulk modulus that the coefficients rest on, Pa.
+    /// Bulk modulus on which the coefficients depend, Pa.
     pub bulk_modulus: f64,
     /// The transients.
     pub holds: Vec<Hold>,
@@ -72,13 +73,13 @@ impl ChamberLeakage {
     }
 }
 
-/// Leakage coefficients from all times with closed valve.
+/// Leakage coefficients from all times with the valve closed.
 ///
-/// Eq. 14 as printed holds the piston and loses the pump's share of the leakage in the time constant; Eq. 12 has
-/// `C1 (Pp - P1) - C2 (P1 - Pt)`, so the time constant is `V / (b (C1 + C2))` and the static gain `C1 / (C1 + C2)`. A load that
-/// friction alone holds creeps while pressures change, so the balance is taken with the oil that the piston displaces, and
-/// integrated, so that nothing measured is differentiated. Both coefficients come from one least-squares fit over all holds.
-/// Leakage past the piston's seals and to the outside is what the model says.
+/// Eq. 14 as printed assumes a held piston and omits the pump's share of the leakage from the time constant. Eq. 12 has
+/// `C1 (Pp - P1) - C2 (P1 - Pt)`, so the time constant is `V / (b (C1 + C2))` and the static gain `C1 / (C1 + C2)`. If only
+/// friction holds the load, the piston creeps while pressures change. The balance therefore includes the oil that the piston
+/// displaces, and it is integrated so that no measured signal is differentiated. Both coefficients come from one least-squares
+/// fit over all holds. Leakage past the piston's seals and to the outside is taken from the model.
 ///
 /// # Errors
 /// [`Refusal`].
@@ -143,7 +144,7 @@ fn chamber(
         relative_error: 100.0 * relative,
     };
     let (values, covariance, residual) = balance_fit(&rows).ok_or_else(|| refused(f64::INFINITY))?;
-    // The scale of stored oil rests on the bulk modulus; the share of the balance that it decides is at most all of it.
+    // The bulk modulus scales the stored oil. The part of the balance that it affects is at most the whole.
     let scale = bulk_error / bulk_modulus;
     let covariance = covariance + values * values.transpose() * (scale * scale);
     let opposed = (0..2).find(|&at| values[at] < -OPPOSED * covariance[(at, at)].sqrt());
@@ -182,8 +183,8 @@ fn chamber(
     })
 }
 
-/// Oil leaks from the higher pressure to the lower one. A coefficient that noise alone puts below zero is zero, and the other one is what
-/// the balances say with that.
+/// Applies the constraint that oil leaks from the higher pressure to the lower one. A coefficient that noise puts below zero
+/// becomes zero, and the other one is the constrained solution of the balances.
 fn at_least_zero(values: Vector2<f64>, covariance: &Matrix2<f64>) -> Vector2<f64> {
     let Some(at) = (0..2).find(|&at| values[at] < 0.0) else { return values };
     let other = 1 - at;
@@ -192,8 +193,8 @@ fn at_least_zero(values: Vector2<f64>, covariance: &Matrix2<f64>) -> Vector2<f64
     bounded
 }
 
-/// Coefficients, covariance and root mean square residual; the covariance is the larger of what the scatter of single
-/// balances and that of whole holds says.
+/// Coefficients, covariance and root mean square residual. The covariance is the larger of two: from the scatter of single
+/// balances and from the scatter of whole holds.
 fn balance_fit(holds: &[Vec<BalanceRow>]) -> Option<(Vector2<f64>, Matrix2<f64>, f64)> {
     let rows: Vec<&BalanceRow> = holds.iter().flatten().collect();
     if rows.len() < 10 {
@@ -224,7 +225,7 @@ fn balance_fit(holds: &[Vec<BalanceRow>]) -> Option<(Vector2<f64>, Matrix2<f64>,
     values.iter().all(|v| v.is_finite()).then_some((values, covariance, all.norm() / (rows.len() as f64).sqrt()))
 }
 
-/// A hold for the page, with two hundred points at most.
+/// A hold for the page, thinned to at most two hundred points.
 fn shown(tracks: &[Track], number: usize, run: Still) -> Hold {
     let track = &tracks[number];
     let stride = (run.last - run.first).div_ceil(200).max(1);

@@ -9,14 +9,14 @@ use super::refusal::Refusal;
 use super::sweeps::{HIGH, LOW, SLOWEST, Sweep, fastest, sweeps};
 use super::track::Track;
 
-/// Pressure drop below which flow over its root says little, Pa: fifty times where an orifice turns laminar.
+/// Pressure drop below which flow over its root is not informative, Pa: fifty times the laminar transition of an orifice.
 pub(super) const LEAST_DROP: f64 = 1e5;
-/// Runs of each kind that are needed.
+/// Runs of each kind needed.
 const NEEDED: usize = 2;
-/// Part of the way from the edge to the largest opening of the run that the curve is fitted to: near the turning point an
-/// opening with play stands still.
+/// Fitted part of the way from the edge to the largest opening of the run. Near the turning point an opening with play does not
+/// move.
 const FITTED: f64 = 0.6;
-/// Standard errors below zero at which a hysteresis is none: noise is so far off in one of 700 tests.
+/// Standard errors below zero beyond which a hysteresis is rejected: noise is so far off in one of 700 tests.
 const LEADS: f64 = 3.0;
 /// Runs of each kind that are shown.
 const SHOWN: usize = 6;
@@ -32,7 +32,7 @@ pub struct EdgeCurve {
     pub points: Vec<(f64, f64)>,
 }
 
-/// Where flow through a metering edge begins and ends. Openings by size, m².
+/// Where flow through a metering edge begins and ends. Openings are magnitudes, m².
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeadZone {
     /// Opening at which flow begins while the valve opens.
@@ -41,13 +41,13 @@ pub struct DeadZone {
     pub closing: Estimate,
     /// Dead zone: the mean of both.
     pub dead_zone: Estimate,
-    /// Hysteresis: opening less closing, at least zero; the width of a play.
+    /// Hysteresis: opening less closing, at least zero; the width of the play.
     pub hysteresis: Estimate,
     /// Rate of the opening at the edge, m²/s: a lag of `hysteresis / (2 rate)` would look the same.
     pub rate: f64,
-    /// Runs that opened and closed.
+    /// Number of opening and of closing runs.
     pub runs: (usize, usize),
-    /// Some of them, for the page.
+    /// Some of the curves, for the page.
     pub curves: Vec<EdgeCurve>,
 }
 
@@ -64,7 +64,7 @@ struct Run {
     edge: Estimate,
     /// Rate of the opening at the edge, m²/s.
     rate: f64,
-    /// How far the opening runs in half a sample interval, m²: which side of the edge a sample is on is not known better.
+    /// Half of what the opening changes in a sample interval, m². The edge cannot be located better between two samples.
     step: f64,
     curve: EdgeCurve,
 }
@@ -75,8 +75,8 @@ impl Run {
     }
 }
 
-/// Mean of the runs' edges, and the rate that goes with it. Slow runs count most. The error of half a sample interval is
-/// common to all runs, so it stays however many there are.
+/// Mean of the runs' edges and the matching rate. Slow runs have the largest weight. The error of half a sample interval is
+/// common to all runs, so it does not fall with their number.
 fn mean_edge(runs: &[Run]) -> Option<(Estimate, f64)> {
     let edges: Vec<Estimate> = runs.iter().map(|run| Estimate { value: run.edge.value, error: run.error() }).collect();
     let mean = Estimate::mean(&edges)?;
@@ -87,10 +87,10 @@ fn mean_edge(runs: &[Run]) -> Option<(Estimate, f64)> {
 
 /// Dead zone and hysteresis of each edge.
 ///
-/// In every run of the valve through an edge, `flow / sqrt(drop)` against opening is a line or a weak curve that begins at the
-/// edge; its root is the edge. The paper neglects compressibility and leakage and takes the flow from the piston's speed
-/// alone; here measured pressures give the oil that is compressed, and known leakage is taken off, because near the edge
-/// both are as large as the flow.
+/// In every run of the valve through an edge, `flow / sqrt(drop)` against opening is a line or a slightly bent curve that begins
+/// at the edge; its root is the edge. The paper neglects compressibility and leakage and computes the flow from the piston's
+/// speed alone. Near the edge both are as large as the flow, so here the measured pressures give the compressed oil, and known
+/// leakage is subtracted.
 pub fn dead_zones(tracks: &[Track]) -> Vec<(Edge, Result<DeadZone, Refusal>)> {
     Edge::ALL.iter().map(|&edge| (edge, dead_zone(tracks, edge))).collect()
 }
@@ -133,7 +133,7 @@ fn dead_zone(tracks: &[Track], edge: Edge) -> Result<DeadZone, Refusal> {
         opening: begins,
         closing: ends,
         dead_zone: Estimate { value: 0.5 * (begins.value + ends.value), error: 0.5 * both },
-        // A play has no negative width; noise gives it one.
+        // Play has no negative width; a negative value is noise.
         hysteresis: Estimate { value: (begins.value - ends.value).max(0.0), error: both },
         rate: 0.5 * (opening_rate + closing_rate),
         runs: (opening.len(), closing.len()),
@@ -141,8 +141,8 @@ fn dead_zone(tracks: &[Track], edge: Edge) -> Result<DeadZone, Refusal> {
     })
 }
 
-/// The edge in one run: first from a line through the middle of the flow, then, three times over, from a curve through the
-/// part behind the edge that smoothing does not reach.
+/// The edge in one run. The first estimate comes from a line through the middle of the flow. Three refinements fit a curve to the
+/// part behind the edge that smoothing does not affect.
 fn run(track: &Track, edge: Edge, sweep: Sweep) -> Option<Run> {
     let sign = edge.direction.sign();
     let samples: Vec<(f64, f64, f64)> = (sweep.first..=sweep.last)
@@ -183,7 +183,7 @@ fn run(track: &Track, edge: Edge, sweep: Sweep) -> Option<Run> {
             return None;
         }
         root -= curve.coefficients[0] / slope;
-        // Flows within one parabola have the same noise.
+        // Flows within one smoothing parabola share their noise.
         let alike = (2.0 * track.half_width / interval(track, sweep)).max(1.0);
         error = curve.error_at(0.0) / slope * alike.sqrt();
     }
@@ -202,7 +202,7 @@ fn rate_at(samples: &[(f64, f64, f64)], opening: f64) -> Option<f64> {
     Some(nearest.2)
 }
 
-/// Root mean square distance from a parabola.
+/// Root mean square distance from a fitted parabola.
 fn scatter(points: &[Point]) -> Option<f64> {
     let curve = Polynomial::of_degree(points, 2)?;
     let squares: f64 = points.iter().map(|point| (point.y - curve.at(point.x)).powi(2)).sum();

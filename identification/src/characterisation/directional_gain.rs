@@ -10,19 +10,19 @@ use super::refusal::Refusal;
 use super::stretches::{LEAST_STEADY, SETTLING, Steady, different, length, steady, still};
 use super::track::Track;
 
-/// Stretches that are needed at an edge, and at how many openings.
+/// Stretches needed at an edge, and the number of different openings.
 const NEEDED: (usize, usize) = (5, 4);
-/// Openings that are nearer to each other than this share of the largest are the same.
+/// Openings closer to each other than this share of the largest count as the same.
 const SAME_OPENING: f64 = 0.02;
 /// Highest degree of a polynomial.
 const HIGHEST_DEGREE: usize = 4;
-/// What a gain is uncertain by besides noise, as a share of it: speed and pressures of a stretch are not quite steady.
+/// Relative uncertainty of a gain besides noise, because speed and pressures of a stretch are not exactly steady.
 const UNSTEADY: f64 = 1e-3;
 
 /// One steady stretch at one edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GainPoint {
-    /// Opening by size, m².
+    /// Magnitude of the opening, m².
     pub opening: f64,
     /// Piston speed, m/s.
     pub speed: f64,
@@ -30,9 +30,9 @@ pub struct GainPoint {
     pub flow: f64,
     /// Pressure drop over the edge, Pa.
     pub pressure_drop: f64,
-    /// Flow over opening and root of the pressure drop, m/(s sqrt(Pa)): k of Eq. 11 in the area law of this project.
+    /// Flow over opening and root of the pressure drop, m/(s sqrt(Pa)): k of Eq. 11 with the area law of this project.
     pub gain: Estimate,
-    /// The same with the opening counted from the edge of the dead zone, where that is known; the error has the edge's.
+    /// The same with the opening counted from the edge of the dead zone, if that is known; the error includes that of the edge.
     pub gain_past_edge: Option<Estimate>,
 }
 
@@ -41,9 +41,9 @@ pub struct GainPoint {
 pub struct DirectionalGain {
     /// Stretches, in order of opening.
     pub points: Vec<GainPoint>,
-    /// k over x = |u|/umax, as the paper has it: the dead zone bends it.
+    /// k over x = |u|/umax, as in the paper; the dead zone bends it.
     pub polynomial: Polynomial,
-    /// Gain over x with the opening counted from the edge; `None` where the dead zone is not known.
+    /// Gain over x with the opening counted from the edge; `None` if the dead zone is unknown.
     pub past_edge: Option<Polynomial>,
     /// Largest opening umax, m².
     pub maximum: f64,
@@ -51,8 +51,8 @@ pub struct DirectionalGain {
 
 /// Gain of each edge as a function of the opening.
 ///
-/// `k = A v / (|u| sqrt(drop))`: Eq. 11 with the area law `u` in the place of alpha, which is singular at |xv| = 1. Flow is
-/// the piston's, with the oil that a slow change of pressure compresses and known leakage; Eq. 10 takes both for zero.
+/// `k = A v / (|u| sqrt(drop))`: Eq. 11 with the area law `u` in place of alpha, which is singular at |xv| = 1. The flow is that
+/// of the piston, corrected for known leakage and for the oil that a slow change of pressure compresses; Eq. 10 neglects both.
 pub fn directional_gains(
     tracks: &[Track],
     dead_zones: &[(Edge, Result<DeadZone, Refusal>)],
@@ -107,7 +107,7 @@ fn gain(
     let polynomial = Polynomial::through(&over(&|point| Some(point.gain)), highest).ok_or_else(refused)?;
     let past_edge = begins.and_then(|begins| {
         let mut curve = Polynomial::through(&over(&|point| point.gain_past_edge), highest)?;
-        // All points share the error of the edge.
+        // All points share the error of the edge position.
         let shifted = Estimate { value: begins.value + begins.error, ..begins };
         let moved = |point: &GainPoint| {
             let past = point.opening - shifted.value;
@@ -147,7 +147,7 @@ fn point(track: &Track, stretch: &Steady, edge: Edge, begins: Option<Estimate>) 
     })
 }
 
-/// Longest time at constant opening to one side, s.
+/// Longest time at constant opening on one side, s.
 fn longest(track: &Track, sign: f64) -> f64 {
     let least = SAME_OPENING * track.maximum_opening();
     let open = |run: &super::stretches::Still| sign * track.smooth_opening[(run.first + run.last) / 2] > least;

@@ -9,7 +9,7 @@ pub enum Side {
     Rod,
 }
 
-/// To which side the spool is moved.
+/// To which side the spool moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// u > 0: pump to cap side.
@@ -28,7 +28,7 @@ impl Direction {
     }
 }
 
-/// One metering edge: it is open while the spool is to its side.
+/// One metering edge. It is open while the spool is on its side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Edge {
     /// Chamber.
@@ -46,7 +46,7 @@ impl Edge {
         Edge { side: Side::Rod, direction: Direction::Negative },
     ];
 
-    /// From where to where the oil goes.
+    /// Where the oil comes from and where it goes.
     pub fn name(self) -> &'static str {
         match (self.side, self.direction) {
             (Side::Cap, Direction::Positive) => "pump to cap side",
@@ -66,7 +66,7 @@ impl Edge {
         }
     }
 
-    /// Flow through the edge towards its usual end (m³/s), given the flow into its chamber.
+    /// Flow through the edge in its normal direction (m³/s), from the flow into its chamber.
     pub fn flow(self, into_chamber: f64) -> f64 {
         if self.is_fed() { into_chamber } else { -into_chamber }
     }

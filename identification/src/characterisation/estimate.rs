@@ -1,4 +1,4 @@
-//! A number and how well it is known.
+//! A value with its standard error.
 
 /// An estimate with its standard error, both in the unit of the quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,14 +10,13 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Standard error over size of the value; infinite for zero.
+    /// Standard error over magnitude of the value; infinite for zero.
     pub fn relative_error(&self) -> f64 {
         if self.value == 0.0 { f64::INFINITY } else { (self.error / self.value).abs() }
     }
 
-    /// Mean of estimates, weighted by their errors. Its own error is the larger of what their errors say and what their
-    /// scatter says, so that repeats that disagree are not averaged into a precision that nobody has. `None` for no estimate
-    /// at all.
+    /// Mean of estimates, weighted by their errors. Its error is the larger of two: from their errors and from their scatter.
+    /// Repeats that disagree therefore do not average to an unrealistic precision. `None` for an empty slice.
     pub fn mean(estimates: &[Estimate]) -> Option<Estimate> {
         let weights: Vec<f64> = estimates.iter().map(|one| one.error.powi(-2)).collect();
         let sum: f64 = weights.iter().sum();

@@ -11,21 +11,21 @@ use super::refusal::Refusal;
 use super::stretches::{LEAST_STEADY, SETTLING, different, steady};
 use super::track::Track;
 
-/// Stretches that are needed, and at how many speeds of one direction.
+/// Stretches needed, and the number of different speeds in one direction.
 const NEEDED: (usize, usize) = (6, 3);
-/// Fastest over slowest speed of one direction that is needed.
+/// Fastest over slowest speed needed in one direction.
 const NEEDED_RATIO: f64 = 2.0;
-/// Speeds that are nearer to each other than this share of the fastest are the same.
+/// Speeds closer to each other than this share of the fastest count as the same.
 const SAME_SPEED: f64 = 0.03;
-/// Probability of such an improvement by chance under which a term counts as there.
+/// Significance: a term is accepted if chance would bring such an improvement with less than this probability.
 const SIGNIFICANCE: f64 = 0.01;
-/// Steps of the search for that speed; each is a linear fit.
+/// Iterations of the search for the Stribeck speed; each is a linear fit.
 const POLISHING: usize = 8;
-/// Load that a share can be fitted to, N.
+/// Smallest load, N, whose share can be fitted.
 const LEAST_LOAD: f64 = 1.0;
-/// Slowest and fastest speed at which Stribeck friction is tried to have faded, m/s.
+/// Smallest and largest Stribeck speed that is tried, m/s.
 const STRIBECK_SPEEDS: (f64, f64) = (3e-3, 0.1);
-/// Speeds that are tried between them: neighbours differ by 6 %.
+/// Steps between them: neighbouring trial speeds differ by 6 %.
 const STRIBECK_TRIALS: i32 = 60;
 
 /// One steady stretch.
@@ -33,16 +33,16 @@ const STRIBECK_TRIALS: i32 = 60;
 pub struct ForcePoint {
     /// Piston speed, m/s.
     pub speed: f64,
-    /// Friction, the model's share of the load taken off, N.
+    /// Friction force after subtraction of the load, N.
     pub force: f64,
 }
 
 /// A term of the friction curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrictionTerm {
-    /// Effect of the catalogue that has it.
+    /// Effect of the catalogue with this term.
     pub effect: &'static str,
-    /// What it is multiplied by.
+    /// What the coefficient multiplies.
     pub shape: &'static str,
     /// Coefficient.
     pub coefficient: Estimate,
@@ -53,13 +53,13 @@ pub struct FrictionTerm {
 /// Friction against speed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionCurve {
-    /// Whether a load cell measured the load; otherwise it is the model's, times a fitted share.
+    /// Whether a load cell measured the load. Otherwise the load is that of the model, times a fitted share.
     pub from_load_cell: bool,
-    /// Load over the model's load, where no load cell measured it.
+    /// Ratio of load to the model's load, if no load cell measured it.
     pub load_share: Option<Estimate>,
-    /// Coulomb, viscous, and what else shows.
+    /// Coulomb and viscous friction, and other terms that are significant.
     pub terms: Vec<FrictionTerm>,
-    /// Speed at which Stribeck friction has fallen to 37 %, m/s, where it shows.
+    /// Speed at which Stribeck friction has fallen to 37 %, m/s, if that term is significant.
     pub stribeck_speed: Option<Estimate>,
     /// Root mean square distance of the points from the curve, N.
     pub scatter: f64,
@@ -71,7 +71,7 @@ pub struct FrictionCurve {
 }
 
 impl FrictionCurve {
-    /// Coefficient of an effect's term; `None` where it does not show.
+    /// Coefficient of an effect's term; `None` if the curve does not have it.
     pub fn coefficient(&self, effect: &str) -> Option<Estimate> {
         self.terms.iter().find(|term| term.effect == effect).map(|term| term.coefficient)
     }
@@ -95,15 +95,15 @@ impl FrictionCurve {
     }
 }
 
-/// Which terms a curve has beyond Coulomb and viscous friction.
+/// Terms of a curve beyond Coulomb and viscous friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Terms {
     hose: bool,
     stribeck: Option<Stribeck>,
 }
 
-/// Stribeck friction that fades by `speed` (m/s). With a `force` (N) the speed is an unknown too: a column says what its
-/// change does to the curve.
+/// Stribeck friction that fades by `speed` (m/s). With a `force` (N) the speed is an unknown too, and an additional column holds
+/// the derivative of the curve with respect to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Stribeck {
     speed: f64,
@@ -125,7 +125,7 @@ impl Terms {
         columns
     }
 
-    /// Unknowns, with the speed of Stribeck friction.
+    /// Number of unknowns, including the Stribeck speed.
     fn count(self) -> usize {
         2 + usize::from(self.hose) + 2 * usize::from(self.stribeck.is_some())
     }
@@ -133,7 +133,7 @@ impl Terms {
 
 struct Sample {
     speed: f64,
-    /// Pressure force, less what a load cell took.
+    /// Pressure force, less the load that a load cell measured.
     force: f64,
     /// The model's load; zero with a load cell.
     load: f64,
@@ -149,10 +149,10 @@ struct Fitted {
 /// Friction against speed from steady stretches.
 ///
 /// Eq. 16, `f = A1 P1 - A2 P2 - L`: the rod force of a recording is positive when it pushes the rod out, so L is its negative.
-/// Where nobody measures it, the load is what the model's inertia and gravity make of the motion, times a share that is fitted
-/// along with friction; motion in both directions tells one from the other. The quadratic term that the paper sees is the
-/// loss in hoses, `v |v|` here. Quadratic and Stribeck terms are there only if they take away squared error with a
-/// significance of 1 % (F test) and have the sign of a loss.
+/// Without a load cell, the load is the force that the model's inertia and gravity need for the motion, times a share that is
+/// fitted together with friction; motion in both directions separates the two. The quadratic term of the paper is the loss in
+/// hoses, `v |v|` here. Quadratic and Stribeck terms are included only if they reduce the squared error with a significance of
+/// 1 % (F test) and have the sign of a loss.
 ///
 /// # Errors
 /// [`Refusal`].
@@ -181,7 +181,7 @@ pub fn friction(
     let time_scale = tracks.first().map_or(1.0, |track| track.size.time());
     check(&samples, from_load_cell, time_scale)?;
     let alike = || Refusal::SpeedsTooAlike { found: samples.len() };
-    // A level drive without weight has no load to speak of, and no share of it.
+    // A level drive without weight has practically no load, so no share can be fitted.
     let with_load = samples.iter().any(|sample| sample.load.abs() > LEAST_LOAD);
     let mut best = fit(&samples, with_load, Terms { hose: false, stribeck: None }).ok_or_else(alike)?;
     let mut reasons = Vec::new();
@@ -230,9 +230,9 @@ pub fn friction(
     Ok(curve(&samples, from_load_cell, with_load, best, reasons.join("; ")))
 }
 
-/// Whether there are enough speeds; `time_scale` is that of the cylinder beside the reference.
+/// Checks that there are enough speeds; `time_scale` is the cylinder's unit of time relative to the reference.
 fn check(samples: &[Sample], from_load_cell: bool, time_scale: f64) -> Result<(), Refusal> {
-    // Each direction by itself: an offset of the load cell, or friction that differs, must not pass for a slope.
+    // Each direction separately: a load cell offset, or friction that depends on direction, must not look like a slope.
     let of = |sign: f64| -> Vec<f64> {
         samples.iter().map(|sample| sign * sample.speed).filter(|&speed| speed > 0.0).collect()
     };
@@ -292,8 +292,8 @@ fn fit(samples: &[Sample], with_load: bool, terms: Terms) -> Option<Fitted> {
     Some(Fitted { values, covariance, squares, terms })
 }
 
-/// The fit with the speed by which Stribeck friction fades as an unknown of its own: Gauss-Newton from where it is. The fit
-/// as it was where that leads nowhere.
+/// Refines a fit with the Stribeck speed as an additional unknown: Gauss-Newton from the start values. Returns the start if that
+/// does not improve the fit.
 fn polished(samples: &[Sample], with_load: bool, start: Fitted) -> Fitted {
     let Some(first) = start.terms.stribeck else { return start };
     let at = 2 + usize::from(start.terms.hose) + usize::from(with_load);
@@ -308,7 +308,7 @@ fn polished(samples: &[Sample], with_load: bool, start: Fitted) -> Fitted {
     best.filter(|fitted| fitted.squares <= start.squares).unwrap_or(start)
 }
 
-/// Whether what a fit has beyond Coulomb and viscous friction takes energy away.
+/// Whether the terms beyond Coulomb and viscous friction dissipate energy.
 fn is_loss(fitted: &Fitted, with_load: bool) -> bool {
     let first = 2 + usize::from(with_load);
     let losses = usize::from(fitted.terms.hose) + usize::from(fitted.terms.stribeck.is_some());

@@ -1,4 +1,4 @@
-//! The force that links and load ask of a piston, from the model.
+//! Piston force that links and load require, computed with the model.
 
 use excavator_model::Model;
 use excavator_model::equations::{Inputs, Layout, System};
@@ -6,11 +6,11 @@ use excavator_model::recording::Recording;
 
 use super::stretches::Steady;
 
-/// Effects that make the load.
+/// Effects that make up the load.
 const LOAD: [&str; 3] = ["inertia", "gravity", "payload"];
 
-/// Pressure force (N) that moves the model's links and load alone as `stretch` has them, without friction: what Eq. 16 of
-/// \[B\] reads from a load cell.
+/// Pressure force (N) that moves the model's links and load as in `stretch`, without friction: the load that Eq. 16 of \[B\]
+/// takes from a load cell.
 pub(super) fn load_force(model: &Model, cylinder: usize, recording: &Recording, stretch: &Steady) -> f64 {
     let mut load = model.clone();
     load.effects.retain(|effect| LOAD.contains(&effect.name()));
@@ -40,6 +40,6 @@ pub(super) fn load_force(model: &Model, cylinder: usize, recording: &Recording, 
     let inputs = Inputs::zero(model.machine.cylinders.len());
     system.rates(&mut workspace, &load.parameter_values(), &state, &inputs, &mut rates);
     let rows = &workspace.rows;
-    // G = ds/dq is one over the slope of q(s).
+    // G = ds/dq is the reciprocal of the slope of q(s).
     (rows.mass_at(cylinder, cylinder) * acceleration - rows.torque[cylinder]) * slope
 }

@@ -1,4 +1,5 @@
-//! The procedures of \[B\] Section IV on recordings: what a valve and its cylinder are, read off without a simulation.
+//! The procedures of \[B\] Section IV on recordings. They read the properties of a valve and its cylinder from measurements,
+//! without a simulation.
 //!
 //! | procedure | from | \[B\] |
 //! |---|---|---|
@@ -7,9 +8,9 @@
 //! | [`directional_gains`] | steady stretches at many openings | Eq. 7-11 |
 //! | [`friction`] | steady stretches at many speeds | Eq. 16 |
 //!
-//! Each takes what the one before it found: leakage is taken off flows, and gains count from the edge of the dead zone. A
-//! procedure that a recording does not suit says which signal or which manoeuvre is missing, with numbers
-//! ([`Refusal`]).
+//! Each procedure uses the results of the previous one: known leakage is subtracted from flows, and gains count from the edge of
+//! the dead zone. If a recording does not suit a procedure, [`Refusal`] states which signal or which manoeuvre is missing, with
+//! numbers.
 
 mod chamber_row;
 mod closed_valve;
@@ -40,12 +41,12 @@ pub use track::Track;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
-/// What the procedures found of one cylinder.
+/// Results of the procedures for one cylinder.
 #[derive(Debug, Clone)]
 pub struct Characterisation {
     /// Name of the cylinder.
     pub cylinder: String,
-    /// Largest orifice area umax of its valve section, m²; openings are plotted as shares of it. One without chambers.
+    /// Largest orifice area umax of its valve section, m²; openings are plotted as shares of it. 1 without chambers.
     pub maximum_orifice_area: f64,
     /// Leakage of the closed valve.
     pub leakage: Result<ClosedValve, Refusal>,
@@ -58,10 +59,10 @@ pub struct Characterisation {
 }
 
 impl Characterisation {
-    /// Results of recordings that suit every procedure: two for each edge, one for each of two chambers, and friction.
+    /// Number of results if the recordings suit every procedure: two for each edge, one for each of two chambers, and friction.
     pub const MOST_RESULTS: usize = 2 * Edge::ALL.len() + 3;
 
-    /// Results: gains and dead zones of edges, leakages of chambers, friction.
+    /// Number of results: gains and dead zones of edges, leakages of chambers, friction.
     pub fn results(&self) -> usize {
         let edges = self.gains.iter().filter(|(_, gain)| gain.is_ok()).count()
             + self.dead_zones.iter().filter(|(_, zone)| zone.is_ok()).count();
@@ -70,7 +71,7 @@ impl Characterisation {
     }
 }
 
-/// All procedures on every cylinder of `model`.
+/// Runs all procedures on every cylinder of `model`.
 pub fn characterise(model: &Model, recordings: &[&Recording]) -> Vec<Characterisation> {
     (0..model.machine.cylinders.len()).map(|cylinder| characterise_cylinder(model, cylinder, recordings)).collect()
 }

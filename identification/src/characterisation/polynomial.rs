@@ -1,9 +1,9 @@
-//! Polynomials through points with errors, of the least degree that the points ask for.
+//! Fits polynomials to points with errors, with the lowest degree that the points require.
 
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-/// Probability under which a higher degree counts as needed: one needless term in a hundred.
+/// Significance for a higher degree: one needless term in a hundred.
 const SIGNIFICANCE: f64 = 0.01;
 
 /// A polynomial `y = c0 + c1 x + c2 x^2 + ...` with the covariance of its coefficients.
@@ -28,9 +28,9 @@ pub(super) struct Point {
 }
 
 impl Polynomial {
-    /// The polynomial of least degree, at most `highest`, after which neither one nor two degrees more take away squared
-    /// error with a significance of 1 % (F test against scatter or stated errors, whichever is larger). `None` for fewer points than two more than coefficients, or points that
-    /// are all at one place.
+    /// The polynomial of lowest degree, at most `highest`, for which neither one nor two more degrees reduce the squared error
+    /// with a significance of 1 % (F test against scatter or stated errors, whichever is larger). `None` if there are fewer than
+    /// two points more than coefficients, or if all points coincide in x.
     pub(super) fn through(points: &[Point], highest: usize) -> Option<Polynomial> {
         let fits: Vec<Fitted> =
             (0..=highest).take_while(|degree| points.len() >= degree + 3).map_while(|d| fitted(points, d)).collect();
@@ -83,7 +83,7 @@ impl Polynomial {
         powers.dot(&(&self.covariance * &powers)).max(0.0).sqrt()
     }
 
-    /// Adds to the covariance what a common error of all points does, given the curve through the shifted points.
+    /// Adds to the covariance the effect of an error common to all points, given the curve through the shifted points.
     pub(super) fn widen(&mut self, shifted: &Polynomial) {
         let moved = DVector::from_fn(self.coefficients.len(), |power, _| {
             shifted.coefficients.get(power).copied().unwrap_or(0.0) - self.coefficients[power]
@@ -111,7 +111,7 @@ struct Fitted {
 }
 
 fn fitted(points: &[Point], degree: usize) -> Option<Fitted> {
-    // Centred and scaled, so that high powers of x stay apart.
+    // Centred and scaled, so that the powers of x are well conditioned.
     let count = points.len() as f64;
     let centre = points.iter().map(|point| point.x).sum::<f64>() / count;
     let width = points.iter().map(|point| (point.x - centre).abs()).fold(0.0, f64::max);
@@ -126,7 +126,7 @@ fn fitted(points: &[Point], degree: usize) -> Option<Fitted> {
     let inverse = (matrix.transpose() * &matrix).try_inverse()?;
     let scaled = &inverse * (matrix.transpose() * &right);
     let squares = (&right - &matrix * &scaled).norm_squared();
-    // From powers of (x - centre) / width back to powers of x.
+    // Converts powers of (x - centre) / width to powers of x.
     let change = DMatrix::from_fn(degree + 1, degree + 1, |power, from| {
         if power > from {
             return 0.0;
@@ -164,14 +164,14 @@ impl std::fmt::Display for FTest {
 fn f_test(fits: &[Fitted], from: usize, to: usize, points: usize) -> Option<FTest> {
     let (lower, higher) = (fits.get(from)?, fits.get(to)?);
     let freedom = points.checked_sub(to + 1).filter(|&left| left > 0)?;
-    // Squares are in units of the points' errors: scatter below those is luck, not knowledge.
+    // Squares are in units of the points' errors. Scatter below these errors is chance, not precision.
     let ratio_to_errors = (higher.squares / freedom as f64).max(1.0) * freedom as f64;
     let (ratio, probability) = f_ratio(lower.squares - higher.squares, ratio_to_errors, to - from, freedom)?;
     Some(FTest { degree: to, taken: 1.0 - higher.squares / lower.squares, ratio, probability })
 }
 
-/// F of two nested fits, from the squared error that `added` terms take away and what is left with `freedom` degrees of
-/// freedom, and the probability of such a ratio where the added terms are not there.
+/// F ratio of two nested fits and its p-value if the added terms are zero. `taken` is the squared error that the `added` terms
+/// remove, `left` the remaining one with `freedom` degrees of freedom.
 pub(super) fn f_ratio(taken: f64, left: f64, added: usize, freedom: usize) -> Option<(f64, f64)> {
     let ratio = (taken / added as f64) / (left / freedom as f64);
     let distribution = FisherSnedecor::new(added as f64, freedom as f64).ok()?;
@@ -188,7 +188,7 @@ mod tests {
         (0..30)
             .map(|k| {
                 let x = 0.25 + 0.025 * f64::from(k);
-                // A fixed pattern without a trend stands for noise.
+                // A fixed pattern without a trend serves as noise.
                 let pattern = f64::from((k * 7919 + 13) % 101) / 50.0 - 1.0;
                 Point { x, y: of(x) + noise * pattern, error: noise }
             })

@@ -7,7 +7,7 @@ fn counted(number: usize, one: &str, more: &str) -> String {
     format!("{number} {}", if number == 1 { one } else { more })
 }
 
-/// A recording does not suit a procedure.
+/// Why a recording does not suit a procedure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {
@@ -27,10 +27,10 @@ pub enum Refusal {
         /// What it is needed for.
         needed_for: &'static str,
     },
-    /// The clock or the cylinders of the recording are not what they must be.
+    /// The recording's clock or cylinders are invalid.
     #[error(transparent)]
     Recording(#[from] excavator_model::recording::RecordingError),
-    /// The model says nothing of the oil's stiffness.
+    /// The model has no bulk modulus.
     #[error(
         "the model gives {cylinder} no bulk modulus; pressure transients have no scale without (add oil_compressibility)"
     )]
@@ -54,10 +54,10 @@ pub enum Refusal {
         least: f64,
         /// Opening that counts as closed, m².
         limit: f64,
-        /// A good time, s.
+        /// Recommended time, s.
         suggested: f64,
     },
-    /// Pressures of the closed valve do not say anything.
+    /// The pressures of the closed valve do not determine the coefficients.
     #[error(
         "in {holds} holds with closed valve (the longest {longest:.2} s) the {side} pressure changes by {} at most: coefficients come out no better than {relative_error:.0} % of their value. Hold longer, and begin with the chamber near pump pressure and near tank pressure", pressure_text(*change)
     )]
@@ -80,14 +80,14 @@ pub enum Refusal {
     OpposedLeakage {
         /// Which chamber.
         side: &'static str,
-        /// Which way.
+        /// Leakage path.
         path: &'static str,
         /// Coefficient, m³/(s Pa).
         value: f64,
         /// Its standard error, m³/(s Pa).
         error: f64,
     },
-    /// Flow through an edge begins before the opening and ends before it.
+    /// Flow through an edge begins at a smaller opening than the one at which it ends.
     #[error(
         "flow begins at {:.2} mm2 while the valve opens and ends at {:.2} mm2 while it closes: flow leads the opening. Check that pressures and openings share one clock", 1e6 * begins, 1e6 * ends
     )]
@@ -97,7 +97,7 @@ pub enum Refusal {
         /// Opening at which it ends, m².
         ends: f64,
     },
-    /// The opening does not run slowly through the edge.
+    /// The opening does not pass the edge slowly enough.
     #[error(
         "{found_opening} opening and {found_closing} closing runs of the valve from below {low:.0} % to above {high:.0} % of its largest opening, within {slowest:.0} s and not faster than in {fastest:.2} s; {needed} of each are needed. Run sines of 0.3 Hz or slow trapezoids to this side"
     )]
@@ -135,7 +135,7 @@ pub enum Refusal {
         longest: f64,
         /// Least length of a stretch, s.
         least: f64,
-        /// Time that is left to settle, s.
+        /// Settling time, s.
         settling: f64,
     },
     /// Not enough speeds.
@@ -160,14 +160,14 @@ pub enum Refusal {
         needed_speeds: usize,
         /// Fastest over slowest needed.
         needed_ratio: f64,
-        /// Words for both directions, where they are needed.
+        /// Text that asks for both directions, if they are needed.
         both: &'static str,
         /// Least length of a stretch, s.
         least: f64,
-        /// Time that is left to settle, s.
+        /// Settling time, s.
         settling: f64,
     },
-    /// Columns of the friction fit that these speeds do not tell apart.
+    /// Columns of the friction fit are collinear at these speeds.
     #[error("{found} steady stretches do not tell friction's terms apart; run more speeds in both directions")]
     SpeedsTooAlike {
         /// Stretches found.

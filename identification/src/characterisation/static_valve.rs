@@ -1,4 +1,4 @@
-//! A valve from its static test: flow against input, at a known pressure drop, on a flow bench.
+//! Identifies a valve from its static test: flow against input at a known pressure drop on a flow bench.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,28 +15,28 @@ pub struct FlowReading {
     pub pressure_drop: f64,
 }
 
-/// What a static test says of one direction of the input: `Q = g (|u| - z) sqrt(drop)`, z larger by half the play while the valve opens
-/// and smaller by it while the valve closes.
+/// Result of a static test for one direction of the input: `Q = g (|u| - z) sqrt(drop)`. z is larger by half the play while the
+/// valve opens and smaller by half the play while it closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StaticEdge {
     /// Flow gain g per input and root of the pressure drop, m³/(s sqrt(Pa)) per unit of the input.
     pub gain: Estimate,
     /// Input z that moves no oil, in its unit.
     pub dead_zone: Estimate,
-    /// Input between opening and closing, in its unit; `None` where the test runs one way only.
+    /// Difference in input between opening and closing, in its unit; `None` if the test runs in one direction only.
     pub play: Option<Estimate>,
-    /// Readings that were used.
+    /// Number of readings used.
     pub readings: usize,
 }
 
-/// Shares of the largest flow between which a line is laid: below, edges leak and overlap is rounded; above, flow forces and channels
-/// other than the edge take over.
+/// Shares of the largest flow between which the line is fitted. Below, edges leak and overlap is rounded; above, flow forces and
+/// channels other than the edge dominate.
 const STRAIGHT: [f64; 2] = [0.1, 0.9];
 
 /// Fewest readings for a line.
 const FEWEST: usize = 6;
 
-/// Both directions of the input: above zero and below. `None` where too few readings lie on the straight part.
+/// Both directions of the input: above zero and below. `None` if too few readings lie on the straight part.
 pub fn static_valve(readings: &[FlowReading]) -> [Option<StaticEdge>; 2] {
     [1.0, -1.0].map(|side| static_edge(readings, side))
 }
@@ -49,7 +49,7 @@ fn static_edge(readings: &[FlowReading], side: f64) -> Option<StaticEdge> {
     let mut straight: Vec<(f64, f64, bool)> = Vec::new();
     for (before, now) in readings.iter().zip(readings.iter().skip(1)) {
         let (last, input) = (before.input * side, now.input * side);
-        // A reading at the same input belongs to the sweep that it stands in.
+        // A reading at an unchanged input belongs to the current sweep.
         if input != last {
             opens = input > last;
         }
@@ -80,7 +80,7 @@ fn static_edge(readings: &[FlowReading], side: f64) -> Option<StaticEdge> {
         return None;
     }
     let error = |column: usize| (variance * normal[(column, column)]).sqrt();
-    // z = -c/g: errors of both, with what they share.
+    // z = -c/g: errors of both with their covariance.
     let ratio = |column: usize| {
         let value = -solution[column] / gain;
         let shared = variance * normal[(0, column)];
@@ -116,7 +116,7 @@ mod tests {
             .map(|(number, (input, way))| {
                 let spool = input - way * play / 2.0;
                 let open = (spool - zones[0]).max(0.0) + (spool + zones[1]).min(0.0);
-                // One per cent of noise that repeats.
+                // Deterministic noise of one per cent.
                 let noise = 1.0 + 0.01 * (2.3 * number as f64).sin();
                 FlowReading { input, flow: gain * open * drop.sqrt() * noise, pressure_drop: drop }
             })
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn one_way_says_nothing_of_a_play() {
         let [positive, negative] = static_valve(&swept(2e-8, [0.0, 0.0], 0.0, false)).map(Option::unwrap);
-        // Up from -10 V, the valve closes on the negative side and opens on the positive one.
+        // From -10 V upwards, the valve closes on the negative side and opens on the positive one.
         assert_eq!((positive.play, negative.play), (None, None));
         assert!(positive.dead_zone.value.abs() < 0.02, "{positive:?}");
     }

@@ -1,4 +1,4 @@
-//! Stretches of time in which the valve stands still.
+//! Finds stretches of time in which the valve does not move.
 
 use excavator_model::recording::noise_level;
 
@@ -6,28 +6,28 @@ use super::edge::{Edge, Side};
 use super::estimate::Estimate;
 use super::track::Track;
 
-/// How fast an opening may change and still counts as constant, in largest openings per second: a fifth of the slowest
-/// ramp of a paper's trapezoid (0.25 in 0.5 s). Times, lengths and speeds here are those of a cylinder of the reference size.
+/// Rate below which an opening counts as constant, in largest openings per second: a fifth of the slowest ramp of a trapezoid in
+/// the paper (0.25 in 0.5 s). Times, lengths and speeds here are for a cylinder of the reference size.
 const STILL: f64 = 0.1;
-/// Time after a change of the opening in which pressures and speed settle, s: three periods of a loaded cylinder's
-/// oscillation of 30 Hz, more than any trapezoid with a ramp of 0.5 s needs.
+/// Settling time of pressures and speed after a change of the opening, s: three periods of a loaded cylinder's oscillation of
+/// 30 Hz, more than any trapezoid with a ramp of 0.5 s needs.
 pub(super) const SETTLING: f64 = 0.1;
-/// Least length of a steady stretch, s: the speed of 0.02 mm of sensor noise then is good to 0.1 mm/s.
+/// Minimum length of a steady stretch, s. With 0.02 mm of sensor noise its speed is accurate to 0.1 mm/s.
 pub(super) const LEAST_STEADY: f64 = 0.15;
-/// Longest stretch that is taken as one, s: in longer ones speed may change with position.
+/// Longest stretch that is used as one, s. In longer ones the speed may change with position.
 const LONGEST_STEADY: f64 = 1.0;
-/// How much the speed may change within a stretch, as a share of it.
+/// Relative change of the speed allowed within a stretch.
 const CHANGE: f64 = 0.2;
-/// Least speed, m/s: five times the speed over which the model's sign of the velocity is rounded.
+/// Minimum speed, m/s: five times the speed over which the model rounds the sign of the velocity.
 const LEAST_SPEED: f64 = 5e-3;
-/// A piston whose distance from a parabola is larger than sensor noise by this factor sticks and slips: mean forces are then
-/// not those of the mean speed.
+/// Ratio of the scatter about a parabola to sensor noise above which a piston counts as stick-slipping. The mean force is then
+/// not the force at the mean speed.
 const JERKY: f64 = 1.3;
-/// The same without sensor noise, as a share of the way travelled.
+/// Scatter allowed without sensor noise, as a share of the distance travelled.
 const SHAKE: f64 = 1e-3;
-/// Distance that is kept from the ends of the stroke, m.
+/// Distance kept from the ends of the stroke, m.
 const END: f64 = 2e-3;
-/// Acceleration up to which a motion without valve counts as steady, m/s², and its speed's change over a stretch.
+/// Largest acceleration, m/s², at which a motion without a valve counts as steady.
 const EVEN: f64 = 0.5;
 
 /// Samples `first..=last` of a track in which the opening is constant.
@@ -72,7 +72,7 @@ impl Steady {
     }
 }
 
-/// All stretches of constant opening, of constant speed where there is no valve.
+/// All stretches of constant opening, or of constant speed if there is no valve.
 pub(super) fn still(track: &Track) -> Vec<Still> {
     let quiet: Vec<bool> = if track.opening.is_empty() {
         let even = |(velocity, change): (&f64, f64)| change.abs() < CHANGE * velocity.abs();
@@ -131,7 +131,7 @@ pub(super) fn length(track: &Track, still: Still) -> f64 {
     track.time[still.last] - track.time[still.first]
 }
 
-/// What is left of a stretch after the time to settle.
+/// The stretch without its settling time; `None` if nothing remains.
 pub(super) fn settled(track: &Track, still: Still) -> Option<Still> {
     let begin = track.time[still.first] + SETTLING * track.size.time();
     let first = still.first + track.time[still.first..=still.last].partition_point(|&t| t < begin);
@@ -213,7 +213,7 @@ fn steady_piece(track: &Track, samples: Still) -> Option<Steady> {
     })
 }
 
-/// How many values differ from each other by more than `step`.
+/// Number of values that differ from each other by more than `step`.
 pub(super) fn different(values: impl Iterator<Item = f64>, step: f64) -> usize {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);

@@ -1,25 +1,25 @@
-//! Runs of the valve from about closed to open, and back.
+//! Finds runs of the valve from nearly closed to open, and back.
 
 use super::edge::Direction;
 use super::track::Track;
 
-/// Below this share of the largest opening a run must begin (or end).
+/// Share of the largest opening below which a run must begin (or end).
 pub(super) const LOW: f64 = 0.05;
-/// Above this share it must end (or begin).
+/// Share above which it must end (or begin).
 pub(super) const HIGH: f64 = 0.2;
 /// Longest run, s: in longer ones the load changes.
 pub(super) const SLOWEST: f64 = 30.0;
 /// Shortest run, in half widths of the smoothing parabola.
 const FASTEST: f64 = 5.0;
-/// Slowest rate of a run, in largest openings per second; slower is a rest at the turning point.
+/// Minimum rate of a run, in largest openings per second; anything slower is a rest at the turning point.
 const RUNNING: f64 = 0.005;
 
-/// Samples `first..=last` in which the opening runs one way.
+/// Samples `first..=last` in which the opening moves in one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sweep {
     pub first: usize,
     pub last: usize,
-    /// Away from closed.
+    /// Whether the valve opens.
     pub opens: bool,
 }
 

@@ -10,16 +10,16 @@ use super::edge::{Edge, Side};
 use super::refusal::Refusal;
 use crate::energy::Parabola;
 
-/// Half width of the parabolas that smooth and differentiate, s: a tenth of what the slowest trapezoids take to ramp, and
-/// wide enough that a displacement sensor with 0.02 mm of noise gives speeds to 0.1 mm/s at 500 Hz.
+/// Half width of the parabolas that smooth and differentiate, s: a tenth of the slowest trapezoid's ramp time, and wide enough
+/// that 0.02 mm of displacement noise gives speeds to 0.1 mm/s at 500 Hz.
 const HALF_WIDTH: f64 = 0.03;
-/// On a slow clock: samples in half a parabola.
+/// For a slow clock: samples in half a parabola.
 const FEWEST_SAMPLES: f64 = 3.0;
 
-/// One cylinder in one recording. `NaN` where something is not measured, and within half a parabola of the ends.
+/// One cylinder in one recording. `NaN` for unmeasured values, and within half a parabola of the ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
-    /// Where it comes from.
+    /// Name of the recording.
     pub source: String,
     /// Cylinder.
     pub cylinder: String,
@@ -29,7 +29,7 @@ pub struct Track {
     pub areas: (f64, f64),
     /// Stroke, m.
     pub stroke: f64,
-    /// How large the cylinder is.
+    /// Size of the cylinder.
     pub size: Size,
     /// Bulk modulus of the model (Pa) and its standard error.
     pub bulk_modulus: Option<(f64, f64)>,
@@ -37,11 +37,11 @@ pub struct Track {
     pub time: Vec<f64>,
     /// Half width of the parabolas, s.
     pub half_width: f64,
-    /// Opening as it was measured, or commanded where no sensor is, m². Empty without a valve.
+    /// Opening as measured, or as commanded if there is no sensor, m². Empty without a valve.
     pub opening: Vec<f64>,
-    /// The same, smooth, m².
+    /// The smoothed opening, m².
     pub smooth_opening: Vec<f64>,
-    /// Its rate, m²/s.
+    /// Rate of the opening, m²/s.
     pub opening_rate: Vec<f64>,
     /// Piston displacement as measured, m.
     pub displacement: Vec<f64>,
@@ -55,13 +55,13 @@ pub struct Track {
     pub pump_pressure: Vec<f64>,
     /// Tank pressure, Pa.
     pub tank_pressure: Vec<f64>,
-    /// Flow into the cap side through the valve: `A+ v + V+/b dp+/dt` and known leakage out, m³/s.
+    /// Flow into the cap side through the valve: `A+ v + V+/b dp+/dt` plus known leakage out of the chamber, m³/s.
     pub cap_flow: Vec<f64>,
     /// Flow into the rod side, m³/s.
     pub rod_flow: Vec<f64>,
     /// Force on the rod, N, + = pushes the rod out; empty without a load cell.
     pub rod_force: Vec<f64>,
-    /// Internal and external leakages that the model knows, m³/(s Pa): past the seals, cap side out, rod side out.
+    /// Internal and external leakages from the model, m³/(s Pa): past the seals, cap side out, rod side out.
     pub seal_leakage: [f64; 3],
 }
 
@@ -94,7 +94,7 @@ impl Track {
         };
         let (mut cap_pressure, mut rod_pressure) = (signals.cap_pressure.clone(), signals.rod_pressure.clone());
         if constants.imposed_motion.is_some() {
-            // As in simulation: a side without a sensor is open to the air.
+            // As in simulation: a side without a sensor is open to the atmosphere.
             for pressure in [&mut cap_pressure, &mut rod_pressure] {
                 if !is_measured(pressure) {
                     pressure.fill(0.0);
@@ -126,7 +126,7 @@ impl Track {
         let pump_pressure = constant_or(&recording.pump_pressure, supply)
             .ok_or_else(|| missing("pump_pressure", "gives the pressure drops of the edges towards the pump"))?;
         let tank_pressure = constant_or(&recording.tank_pressure, Some(tank)).unwrap_or_default();
-        // A column of zeros is what a machine without a load cell records.
+        // A machine without a load cell records a column of zeros.
         let measured_force = is_measured(&signals.rod_force) && signals.rod_force.iter().any(|&force| force != 0.0);
         let value = |parameter: &str| model.value_of(&format!("{name}.{parameter}"));
         let bulk_modulus = model.parameters().zip(model.parameter_names()).find_map(|((_, parameter), own)| {
@@ -193,7 +193,7 @@ impl Track {
         }
     }
 
-    /// Takes the valve's own leakage off the flows, so that what is left went through open edges.
+    /// Subtracts the valve's own leakage from the flows, so that the rest went through open edges.
     pub fn take_off(&mut self, leakage: &ClosedValve) {
         for index in 0..self.time.len() {
             let (pump, tank) = (self.pump_pressure[index], self.tank_pressure[index]);

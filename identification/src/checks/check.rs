@@ -1,4 +1,4 @@
-//! All that is asked of a recording.
+//! Runs all checks of a recording.
 
 use excavator_model::Model;
 use excavator_model::machine::{Chambers, Cylinder, Supply};
@@ -11,24 +11,24 @@ use super::runs::range;
 use super::stuck::{never_changes, stuck_position, stuck_pressure};
 use super::swapped::swapped_chambers;
 
-/// A signal must move over this many times its noise to say something of dynamics.
+/// Factor over its noise by which a signal must move to contain information on dynamics.
 const LEAST_MOTION: f64 = 20.0;
 
 /// Largest hydraulic pressure in use, Pa (gauge): mobile machines stay under 50 MPa.
 const HIGHEST_PRESSURE: f64 = 1e8;
 
-/// What a pressure reaches that is measured in Pa, even if only by its noise; 30 is what 3 MPa are in bar.
+/// Least value, Pa, that a pressure in Pa reaches, even if only by its noise. 3 MPa in bar are 30.
 const LEAST_PRESSURE: f64 = 1e3;
 
-/// What the higher of a cylinder's pressures reaches where it moves anything, and the pump's where it feeds that, Pa: 0.2 bar moves
-/// not even a seal; 3000 is what 3 MPa are in kPa.
+/// Least value, Pa, of the higher of a cylinder's pressures when it moves anything, and of the pump pressure that feeds it.
+/// 0.2 bar does not move even a seal; 3 MPa in kPa are 3000.
 const LEAST_WORKING_PRESSURE: f64 = 2e4;
 
-/// Checks that `recording` can be used with `model`. A refusal whose name ([`CheckError::name`]) is among `accepted` is overruled.
-/// Gives those that were.
+/// Checks that `recording` can be used with `model`. A refusal whose name ([`CheckError::name`]) is in `accepted` is overruled.
+/// Returns the overruled refusals.
 ///
 /// # Errors
-/// [`CheckError`], the first thing that is wrong and not overruled.
+/// [`CheckError`], the first one that is not overruled.
 pub fn check(model: &Model, recording: &Recording, accepted: &[String]) -> Result<Vec<CheckError>, CheckError> {
     recording.validate()?;
     let time_scale = model.machine.size().time();
@@ -44,7 +44,7 @@ pub fn check(model: &Model, recording: &Recording, accepted: &[String]) -> Resul
 struct Checks<'a> {
     model: &'a Model,
     recording: &'a Recording,
-    /// Unit of time of the machine beside that of the reference.
+    /// The machine's unit of time relative to that of the reference.
     time_scale: f64,
     accepted: &'a [String],
     overruled: Vec<CheckError>,
@@ -128,7 +128,7 @@ impl Checks<'_> {
         for (signal, values) in [("cap_pressure", &signals.cap_pressure), ("rod_pressure", &signals.rod_pressure)] {
             self.pressure(&name(signal), values, LEAST_PRESSURE)?;
         }
-        // Of one side alone nobody knows whether it is the one that works.
+        // With one side alone, it is unknown whether that side carries the load.
         if is_measured(&signals.cap_pressure) && is_measured(&signals.rod_pressure) {
             let cap_works = usual_size(&signals.cap_pressure) > usual_size(&signals.rod_pressure);
             let (signal, working) = if cap_works {
@@ -150,7 +150,7 @@ impl Checks<'_> {
         self.sensors(signals, opening, chambers)
     }
 
-    /// Sensors that are stuck, cut off or swapped.
+    /// Checks for sensors that are stuck, clipped or swapped.
     fn sensors(&mut self, signals: &CylinderSignals, opening: &[f64], chambers: &Chambers) -> Result<(), CheckError> {
         let name = |signal: &str| format!("{}.{signal}", signals.name);
         let (cap, rod) = (&signals.cap_pressure[..], &signals.rod_pressure[..]);
@@ -223,7 +223,7 @@ impl Checks<'_> {
         })
     }
 
-    /// Another zero than mid-stroke makes chambers of impossible volumes, and a simulation that cannot go on.
+    /// A zero point other than mid-stroke gives impossible chamber volumes, and the simulation fails.
     fn within_stroke(&mut self, name: &str, signal: &[f64], stroke: f64) -> Result<(), CheckError> {
         if usual_size(signal).is_none_or(|size| size <= (0.5 + BEYOND_THE_END) * stroke) {
             return Ok(());
@@ -242,7 +242,7 @@ impl Checks<'_> {
     fn pressure(&mut self, name: &str, signal: &[f64], least: f64) -> Result<(), CheckError> {
         self.at_most(name, signal, "Pa", HIGHEST_PRESSURE)?;
         match usual_size(signal) {
-            // Zero throughout is no measurement in another unit but a side that is open to the air, given as a constant.
+            // Zero throughout is not a wrong unit: the side is open to the atmosphere, and its pressure is a constant.
             Some(value) if value < least && value > 0.0 => self.refuse(CheckError::TooSmall {
                 source_name: self.source(),
                 signal: name.to_string(),
@@ -254,20 +254,20 @@ impl Checks<'_> {
     }
 }
 
-/// Whether two signals that move are one, reading for reading.
+/// Whether two moving signals are identical, reading for reading.
 fn is_the_same(one: &[f64], other: &[f64]) -> bool {
     let (low, high) = range(one);
     high > low && one.iter().zip(other).all(|(a, b)| a == b || a.is_nan() && b.is_nan())
 }
 
-/// Correlation of travel with opening below which a sign must be wrong: a load may move a piston against its valve now and
-/// then, not most of the time.
+/// Correlation of travel with opening below which a sign must be wrong. A load may move a piston against its valve at times, but
+/// not mostly.
 const AGAINST_THE_VALVE: f64 = -0.5;
 
-/// Time over which travel is taken, s: longer than valves and oil take to follow.
+/// Time over which travel is measured, s: longer than the response of valves and oil.
 const TRAVEL_TIME: f64 = 0.2;
 
-/// Correlation of the piston's travel over [`TRAVEL_TIME`] with the mean opening meanwhile; zero where there is none.
+/// Correlation of the piston's travel over [`TRAVEL_TIME`] with the mean opening in that time; zero if it is undefined.
 fn travel_by_opening(time: &[f64], displacement: &[f64], opening: &[f64], time_scale: f64) -> f64 {
     let (mut first, mut sums, mut count) = (0, [0.0; 3], 0usize);
     while let Some(&start) = time.get(first) {
@@ -286,10 +286,10 @@ fn travel_by_opening(time: &[f64], displacement: &[f64], opening: &[f64], time_s
     if count >= 10 && size > 0.0 { sums[0] / size } else { 0.0 }
 }
 
-/// Part of the stroke that a piston may seem to be beyond its ends: an offset of the sensor, and what stops give.
+/// Share of the stroke by which a piston may seem to pass its ends: sensor offset and compliance of the stops.
 const BEYOND_THE_END: f64 = 0.1;
 
-/// A robust largest size: single spikes are for the noise model, not for the units.
+/// A robust largest magnitude, insensitive to single spikes: they concern the noise model, not the units.
 pub(super) fn usual_size(signal: &[f64]) -> Option<f64> {
     let mut sizes: Vec<f64> = signal.iter().filter(|value| value.is_finite()).map(|value| value.abs()).collect();
     let position = (sizes.len().checked_sub(1)? as f64 * 0.99) as usize;

@@ -1,17 +1,18 @@
-//! Pressures that go beyond the range of their sensor.
+//! Finds pressures that exceed the range of their sensor.
 
 use super::runs::{Run, runs};
 
-/// Fewest samples at the largest value that make a plateau.
+/// Fewest samples at the largest value that form a plateau.
 const PLATEAU: usize = 10;
 
-/// And so many times as long as any other stretch of one value: a signal in coarse steps stands still everywhere.
+/// A plateau must be this many times longer than any other run of one value: a coarsely quantised signal has such runs
+/// everywhere.
 const LONGER: usize = 5;
 
-/// Fewest plateaus: one alone may be a rest.
+/// Fewest plateaus: a single one may be a rest.
 const PLATEAUS: usize = 2;
 
-/// A signal that is cut off.
+/// A clipped signal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cut {
     /// Its largest value.
@@ -22,14 +23,14 @@ pub(super) struct Cut {
     pub share: f64,
 }
 
-/// Whether a signal is cut off at its largest value. Not asked of the smallest: pressures rest at zero truly.
+/// Finds a signal that is clipped at its largest value. The smallest value is not examined, because pressures do rest at zero.
 pub(super) fn clipped(time: &[f64], signal: &[f64]) -> Option<Cut> {
     let all = runs(signal);
     let value = all.iter().map(|run| run.value).fold(f64::NEG_INFINITY, f64::max);
     let (at_top, others): (Vec<&Run>, Vec<&Run>) = all.iter().partition(|run| run.value == value);
     let other = others.iter().map(|run| run.len()).max()?;
     let least = PLATEAU.max(LONGER * other);
-    // One that the recording begins or ends with was not risen to or fallen from.
+    // A plateau at the start or end of the recording has no visible rise or fall.
     let inner = at_top.iter().filter(|run| run.first > 0 && run.last + 1 < signal.len() && run.len() >= least);
     if inner.count() < PLATEAUS {
         return None;

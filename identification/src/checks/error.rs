@@ -2,13 +2,13 @@
 
 use excavator_model::display::pressure_text;
 
-/// Shortest recording that says anything on a machine of the reference size, s: a stroke of a tenth of the cylinder.
+/// Shortest useful recording on a machine of the reference size, s: a stroke of a tenth of the cylinder.
 pub(super) const SHORTEST: f64 = 0.5;
 
-/// Fewest samples: a few for each number that a recording has of its own, its initial state and noise.
+/// Fewest samples: a few for each number that is fitted per recording, which are its initial state and noise.
 pub(super) const FEWEST_SAMPLES: usize = 50;
 
-/// A recording that cannot be used, in one line that says what to do.
+/// Why a recording cannot be used, in one line that states what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckError {
@@ -26,7 +26,7 @@ pub enum CheckError {
         /// Least length on this machine, s.
         needed: f64,
     },
-    /// Nothing of a cylinder was measured.
+    /// A required signal of a cylinder was not measured.
     #[error("{source_name} does not measure {signal} (all {samples} values are NaN), which {machine} needs")]
     NotMeasured {
         /// The recording.
@@ -56,7 +56,7 @@ pub enum CheckError {
         /// Noise.
         noise: f64,
     },
-    /// A value that cannot be in SI units.
+    /// A value that is impossible in SI units.
     #[error(
         "{source_name}: {signal} reaches {value:.3e} {unit}, but {machine} allows at most {limit:.3e} {unit}; is it in {unit}?"
     )]
@@ -93,7 +93,7 @@ pub enum CheckError {
         /// The machine.
         machine: String,
     },
-    /// A signal far too small to be in SI units.
+    /// A signal that is far too small for SI units.
     #[error(
         "{source_name}: {signal} never exceeds {value:.3e} {unit}, far below anything hydraulic; is it in {unit}, not in kPa, bar or MPa?"
     )]
@@ -119,7 +119,7 @@ pub enum CheckError {
         /// Correlation of piston travel with opening.
         correlation: f64,
     },
-    /// A sensor shows one value while the machine works.
+    /// A sensor reads one value while the machine works.
     #[error(
         "{source_name}: {signal} stands still at {value:.4e} {unit} from {begin:.2} s to {end:.2} s while the machine works; leave that time out (BAG@FROM..TO), or the sensor"
     )]
@@ -137,7 +137,7 @@ pub enum CheckError {
         /// Last sample with it, s.
         end: f64,
     },
-    /// A pressure goes beyond the range of its sensor.
+    /// A pressure exceeds the range of its sensor.
     #[error(
         "{source_name}: {signal} is cut off at {}, for {longest:.2} s at most and {share:.1} % of the time; the sensor's range is too small for this recording",
         pressure_text(*value)
@@ -147,7 +147,7 @@ pub enum CheckError {
         source_name: String,
         /// Contract name of the signal.
         signal: String,
-        /// Where it is cut off, Pa.
+        /// Clipping value, Pa.
         value: f64,
         /// Longest time at that value, s.
         longest: f64,
@@ -168,7 +168,7 @@ pub enum CheckError {
         /// Unexplained flow with the pressures exchanged, %.
         swapped: f64,
     },
-    /// Two sensors that read the same to the last digit.
+    /// Two sensors whose readings are identical to the last digit.
     #[error("{source_name}: {} and {} are the same signal, reading for reading; check the map or the wiring", signals[0], signals[1])]
     SameSignal {
         /// The recording.
@@ -176,7 +176,7 @@ pub enum CheckError {
         /// Contract names of the two.
         signals: [String; 2],
     },
-    /// The recording has no cylinder of the machine.
+    /// The recording is invalid or lacks a cylinder of the machine.
     #[error(transparent)]
     Recording(#[from] excavator_model::recording::RecordingError),
 }
@@ -196,7 +196,7 @@ pub const OVERRULABLE: [&str; 10] = [
 ];
 
 impl CheckError {
-    /// The name by which it can be overruled; none where there is nothing to go on with.
+    /// The name under which the refusal can be overruled; `None` if the recording cannot be used at all.
     pub fn name(&self) -> Option<&'static str> {
         Some(match self {
             CheckError::TooShort { .. } => "too-short",

@@ -1,4 +1,4 @@
-//! Is a recording fit for use with a model? Asked before any number is computed.
+//! Checks whether a recording can be used with a model, before any number is computed.
 
 mod check;
 mod clipped;

@@ -1,4 +1,4 @@
-//! What is odd in a recording, but no reason to refuse it.
+//! Oddities in a recording that are no reason to refuse it.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use super::check::usual_size;
 use super::opening::{largest, open_one_way};
 use super::runs::range;
 
-/// Something odd in a recording, in one line that says what to do.
+/// Something odd in a recording, in one line that states what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Remark {
-    /// A valve opens further than the model says it can.
+    /// A valve opens further than its full command in the model.
     #[error(
         "{signal} reaches {reached:.2} {unit}, {times:.2} times the full command of {machine}: one of the two is wrong, and effects that \
          depend on it come out wrong"
@@ -21,16 +21,16 @@ pub enum Remark {
     OpensTooFar {
         /// Contract name of the signal.
         signal: String,
-        /// Its usual largest size, in the unit.
+        /// Its usual largest magnitude, in the unit.
         reached: f64,
-        /// The unit of the valve's input, for people.
+        /// The unit of the valve's input, as displayed.
         unit: &'static str,
-        /// That over what the model says.
+        /// Ratio to the full command of the model.
         times: f64,
         /// The machine.
         machine: String,
     },
-    /// A spool does not go where it is told.
+    /// A spool does not follow its command.
     #[error(
         "{cylinder}: the spool does not follow its command (correlation {correlation:.2} at best): check sign, clock and topic of \
          orifice_command; only orifice_area is used for the flows"
@@ -38,10 +38,10 @@ pub enum Remark {
     CommandNotFollowed {
         /// The cylinder.
         cylinder: String,
-        /// Correlation of opening and command at the delay that suits them best.
+        /// Correlation of opening and command at the best delay.
         correlation: f64,
     },
-    /// Single readings that no sensor of this machine can mean.
+    /// Single readings that are impossible for this machine.
     #[error(
         "{signal}: {count} of {samples} readings are beyond anything possible, up to {worst:.3e} {unit}; leave them out (NaN, or BAG@FROM..TO)"
     )]
@@ -52,12 +52,12 @@ pub enum Remark {
         count: usize,
         /// Readings.
         samples: usize,
-        /// The one of largest size.
+        /// The reading of largest magnitude.
         worst: f64,
         /// SI unit.
         unit: &'static str,
     },
-    /// A piston stands at one place, away from its ends, though its valve is open.
+    /// A piston rests at one place, away from its ends, although its valve is open.
     #[error(
         "{cylinder} is pressed against something at {position:+.1} mm from mid-stroke for {share:.0} % of the time; the stroke in {machine} \
          ends at {end:+.1} mm. If that is its stop, correct the stroke or the sensor's zero; else leave it out (--where)"
@@ -82,7 +82,7 @@ pub enum Remark {
         /// The cylinder.
         cylinder: String,
     },
-    /// A cylinder that the model does not have moves.
+    /// A cylinder that is not in the model moves.
     #[error(
         "cylinder {cylinder} moves by {range:.3} m but is not in {machine}; it draws oil and moves the links that it carries; use a model that \
          includes it, or record while it is at rest"
@@ -97,22 +97,22 @@ pub enum Remark {
     },
 }
 
-/// What a valve may open beyond what the model says before it is worth a word: sensors have gains of their own.
+/// Factor over the model's full command above which an opening is reported: sensors have gain errors of their own.
 const OPENS_TOO_FAR: f64 = 1.1;
 
-/// Delays of a spool behind its command that are tried, s.
+/// Delays between command and spool that are tried, s.
 const DELAYS: [f64; 7] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5];
 
-/// Correlation with a command that is followed: a dead band, a slow valve and a stop leave 0.8 and more.
+/// Correlation above which a command counts as followed. A dead band, a slow valve and a stop leave 0.8 and more.
 const FOLLOWS: f64 = 0.5;
 
-/// Largest hydraulic pressure a sensor can mean, Pa.
+/// Largest pressure that a hydraulic sensor can plausibly report, Pa.
 const LARGEST_PRESSURE: f64 = 1e8;
 
-/// A cylinder that moves by less than this part of a metre, or of its noise, rests.
+/// Smallest travel, m, that counts as motion; it must also exceed 20 times the noise.
 const LEAST_TRAVEL: f64 = 0.01;
 
-/// All that is odd in `recording`, which has passed [`super::check`].
+/// Returns all oddities in `recording`, which has passed [`super::check`].
 pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
     let mut found = Vec::new();
     let machine = &model.machine;
@@ -158,17 +158,17 @@ pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
     found
 }
 
-/// Share of the stroke within which a piston stands at one place, and within which it is at its end.
+/// Shares of the stroke within which a piston counts as resting at one place, and as being at its end.
 const ONE_PLACE: f64 = 0.002;
 const AT_THE_END: f64 = 0.02;
 
-/// Share of the recording that a piston must be pressed for to be told.
+/// Share of the recording for which a piston must be pressed before that is reported.
 const LEAST_SHARE: f64 = 0.05;
 
-/// Samples over which a piston must not move to stand.
+/// Samples over which a piston must not move to count as resting.
 const AFTER: usize = 20;
 
-/// Where a piston stands away from its ends while its valve is open, at whichever of such places it is longest.
+/// Where a piston rests away from its ends while its valve is open; of several places, the one with the longest time.
 fn pressed(model: &Model, cylinder: &Cylinder, displacement: &[f64], opening: &[f64]) -> Option<Remark> {
     let (largest, place) = (largest(opening), ONE_PLACE * cylinder.usual_travel());
     let mut places: BTreeMap<(i64, bool), usize> = BTreeMap::new();
@@ -197,8 +197,8 @@ fn spikes(signal: String, values: &[f64], unit: &'static str, limit: f64) -> Opt
     Some(Remark::Spikes { signal, count: beyond().count(), samples: values.len(), worst, unit })
 }
 
-/// Largest correlation of `follower` with an earlier `leader`, zero where that never moves; `None` where the follower rests or too
-/// little is known.
+/// Largest correlation of `follower` with an earlier `leader`, zero if the leader never moves; `None` if the follower rests or
+/// too few readings are available.
 fn following(time: &[f64], leader: &[f64], follower: &[f64]) -> Option<f64> {
     let (low, high) = range(follower);
     if high - low <= 20.0 * noise_level(follower) {
@@ -217,7 +217,7 @@ fn following(time: &[f64], leader: &[f64], follower: &[f64]) -> Option<f64> {
     DELAYS.into_iter().filter_map(at_delay).max_by(f64::total_cmp)
 }
 
-/// Fewest readings that a correlation is taken of.
+/// Fewest readings for a correlation.
 const FEWEST_PAIRS: usize = 100;
 
 fn correlation(pairs: &[(f64, f64)]) -> Option<f64> {

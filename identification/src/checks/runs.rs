@@ -1,4 +1,4 @@
-//! Stretches of a signal in which it has one and the same value.
+//! Finds runs of identical values in a signal.
 
 /// Consecutive samples with exactly the same value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,7 +18,7 @@ impl Run {
     }
 }
 
-/// All runs of a signal, in order; samples that are not measured belong to none.
+/// All runs of a signal, in order; unmeasured samples belong to none.
 pub(super) fn runs(signal: &[f64]) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (index, &value) in signal.iter().enumerate().filter(|(_, value)| value.is_finite()) {
@@ -30,13 +30,13 @@ pub(super) fn runs(signal: &[f64]) -> Vec<Run> {
     runs
 }
 
-/// Smallest and largest value that is measured; infinite, the wrong way round, where there is none.
+/// Smallest and largest measured value; (infinity, -infinity) if there is none.
 pub(super) fn range(signal: &[f64]) -> (f64, f64) {
     let finite = signal.iter().filter(|value| value.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
 }
 
-/// Largest minus smallest value; zero where nothing is measured.
+/// Largest minus smallest value; zero if nothing is measured.
 pub(super) fn spread(signal: &[f64]) -> f64 {
     let (low, high) = range(signal);
     (high - low).max(0.0)

@@ -1,10 +1,10 @@
-//! Readings that two recordings have in common.
+//! Finds readings that two recordings share.
 
 use std::collections::HashSet;
 
 use excavator_model::recording::Recording;
 
-/// Readings that recordings which should be apart have in common.
+/// Readings shared by recordings that should be independent.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
     "{} % of the readings of {validation} are also in {identification}; fitted data cannot serve as evidence; give another recording, or another part of \
@@ -13,16 +13,16 @@ use excavator_model::recording::Recording;
 pub struct SharedReadings {
     /// The recording that is fitted.
     pub identification: String,
-    /// The recording that should judge the fit.
+    /// The recording that should validate the fit.
     pub validation: String,
-    /// Readings of the latter that are in the former too, %.
+    /// Share of its readings that are also in the fitted recording, %.
     pub share: f64,
 }
 
-/// Share of the readings, %, that is worth a word: what rests behind a coarse converter reads the same now and then.
+/// Share of the readings, %, above which sharing is reported: a resting signal behind a coarse converter repeats values at times.
 const SOME: f64 = 5.0;
 
-/// Whether readings of the recordings that judge are in those that are fitted.
+/// Finds readings of the validation recordings that also occur in the fitted ones.
 pub fn shared_readings(identification: &[&Recording], validation: &[&Recording]) -> Vec<SharedReadings> {
     let fitted: Vec<(&str, HashSet<Vec<u64>>)> =
         identification.iter().map(|recording| (recording.source.as_str(), readings(recording).collect())).collect();
@@ -41,8 +41,8 @@ pub fn shared_readings(identification: &[&Recording], validation: &[&Recording])
         .collect()
 }
 
-/// All that was measured at each moment while anything moved, to the last bit: noise makes every moment its own. A moment at which
-/// everything reads as it did before says nothing.
+/// All measured values at each moment of motion, bit for bit: noise makes every moment unique. A moment at which every reading
+/// repeats the previous one is skipped.
 fn readings(recording: &Recording) -> impl Iterator<Item = Vec<u64>> {
     let signals: Vec<&[f64]> = recording
         .cylinders

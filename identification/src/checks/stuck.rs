@@ -1,4 +1,4 @@
-//! Sensors that show one value while the machine works.
+//! Finds sensors that read one value while the machine works.
 
 use excavator_model::recording::{Recording, is_measured, noise_level, resolution};
 
@@ -6,27 +6,27 @@ use super::CheckError;
 use super::opening::{largest, open_one_way};
 use super::runs::{Run, range, runs, spread};
 
-/// Shortest time that is told, s: a message that comes late repeats a value for less.
+/// Shortest time that is reported, s: a late message repeats a value for less.
 const SHORTEST: f64 = 1.0;
 
-/// Share of its range that another signal moves in a time in which something happens.
+/// Share of its range that another signal must move for a time to count as eventful.
 const EVENTFUL: f64 = 0.1;
 
-/// Pressures below this, Pa, may stand still truly: a chamber that is open to the tank, seen by a sensor that knows no
-/// pressure below zero.
+/// Pressure, Pa, below which a constant reading may be real: a chamber open to the tank, with a sensor that reads no pressure
+/// below zero.
 const NEAR_TANK: f64 = 2e5;
 
-/// Share of a piston's range at each end in which it may stand still truly, at a stop.
+/// Share of a piston's range at each end in which a constant reading may be real, at a stop.
 const NEAR_THE_END: f64 = 0.05;
 
-/// Share of a signal's range from which on a converter's step is coarse: whether the sensor lives cannot be told from its noise,
-/// which is smaller than a step.
+/// Step of the converter, as a share of the signal's range, above which it is coarse. The noise is then smaller than a step and
+/// does not show whether the sensor works.
 const COARSE: f64 = 5e-3;
 
-/// Noise of a sensor, in steps of its converter, from which on a second without any is a second without the sensor.
+/// Noise of a sensor, in converter steps, above which a second without noise means that the sensor is dead.
 const ALIVE: f64 = 2.0;
 
-/// When and where a sensor is stuck.
+/// When a sensor is stuck, and at which value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stretch {
     begin: f64,
@@ -35,7 +35,7 @@ pub(super) struct Stretch {
 }
 
 impl Stretch {
-    /// What to tell.
+    /// The error to report.
     pub fn error(self, recording: &Recording, signal: String, unit: &'static str) -> CheckError {
         let Stretch { begin, end, value } = self;
         CheckError::Stuck { source_name: recording.source.clone(), signal, value, unit, begin, end }
@@ -46,7 +46,7 @@ impl Stretch {
     }
 }
 
-/// The longest stretch in which a pressure keeps one value although all signals in `witnesses` that are measured move.
+/// The longest stretch in which a pressure keeps one value although all measured signals in `witnesses` move.
 pub(super) fn stuck_pressure(time: &[f64], signal: &[f64], witnesses: &[&[f64]], time_scale: f64) -> Option<Stretch> {
     if resolution(signal) > COARSE * spread(signal) {
         return None;
@@ -54,8 +54,8 @@ pub(super) fn stuck_pressure(time: &[f64], signal: &[f64], witnesses: &[&[f64]],
     longest(time, signal, time_scale, |run| run.value.abs() >= NEAR_TANK && all_move(witnesses, run))
 }
 
-/// The longest stretch in which a piston seems to stand still although both pressures change, and either its valve is open one way
-/// all the time and the piston is away from its ends, or its valve moves and the sensor has noise everywhere else.
+/// The longest stretch in which a piston seems to rest although both pressures change. In addition, either its valve is open one
+/// way all the time and the piston is away from its ends, or its valve moves and the sensor has noise everywhere else.
 pub(super) fn stuck_position(
     time: &[f64],
     signal: &[f64],
@@ -75,7 +75,7 @@ pub(super) fn stuck_position(
     })
 }
 
-/// The whole recording, where a force keeps one value while the piston moves.
+/// The whole recording, if a force keeps one value while the piston moves.
 pub(super) fn never_changes(time: &[f64], force: &[f64], displacement: &[f64], time_scale: f64) -> Option<Stretch> {
     let (Some(&begin), Some(&end), Some(&value)) = (time.first(), time.last(), force.iter().find(|f| f.is_finite()))
     else {
@@ -93,7 +93,7 @@ fn longest(time: &[f64], signal: &[f64], time_scale: f64, is_stuck: impl Fn(&Run
         .map(|run| Stretch::of(run, time))
 }
 
-/// Whether there is a signal that is measured, and all that are move during the run.
+/// Whether at least one signal is measured, and all measured ones move during the run.
 fn all_move(witnesses: &[&[f64]], run: &Run) -> bool {
     let mut measured = witnesses.iter().filter(|signal| is_measured(signal)).peekable();
     measured.peek().is_some()
@@ -133,7 +133,7 @@ mod tests {
         assert_eq!((found.begin, found.end, found.value), (3.0, 4.99, held));
         cap[300..500].fill(0.0);
         assert_eq!(stuck_pressure(&time, &cap, &[&rod], 1.0), None);
-        // Nothing happens: a machine at rest.
+        // A machine at rest: nothing happens.
         cap[300..500].fill(held);
         let resting = vec![1e6; 1000];
         assert_eq!(stuck_pressure(&time, &cap, &[&resting], 1.0), None);
@@ -151,7 +151,7 @@ mod tests {
         assert_eq!(stuck_position(&time, &position, &open, &witnesses, 1.0).unwrap().value, 0.37);
         let closed = vec![0.0; 1000];
         assert_eq!(stuck_position(&time, &position, &closed, &witnesses, 1.0), None);
-        // A valve that goes both ways may leave a piston where it is, but not its sensor without noise.
+        // A valve that opens both ways may leave a piston in place, but its sensor still has noise.
         let both_ways: Vec<f64> = time.iter().map(|t| 1e-5 * (3.0 * t).sin()).collect();
         assert_eq!(stuck_position(&time, &position, &both_ways, &witnesses, 1.0), None);
         for (index, value) in position.iter_mut().enumerate() {

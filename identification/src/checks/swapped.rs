@@ -1,28 +1,28 @@
-//! Chamber pressures that stand for each other.
+//! Detects swapped chamber pressures.
 //!
-//! What a piston displaces has gone through its valve: `A |v| = C |u| sqrt(dp)` on both sides and in both directions
-//! (\[A\] Eq. 3), but for leakage and the oil's compression. With one gain per side fitted, the right pressures leave
-//! little of it unexplained; swapped ones put the load's side where it is not.
+//! The oil that a piston displaces has passed its valve: `A |v| = C |u| sqrt(dp)` on both sides and in both directions (\[A\] Eq.
+//! 3), except for leakage and compression of the oil. With one fitted gain per side, the right pressures leave little of the flow
+//! unexplained; swapped ones put the load on the wrong side.
 
 use excavator_model::machine::Chambers;
 use excavator_model::recording::{CylinderSignals, Recording, is_measured};
 
 use super::opening::{largest, open_one_way};
 
-/// Time over which flows are averaged, s: longer than oil needs to be compressed, shorter than a stroke.
+/// Time over which flows are averaged, s: longer than the compression of oil takes, shorter than a stroke.
 const WINDOW: f64 = 0.1;
 
-/// Fewest windows that say something.
+/// Fewest windows for a result.
 const FEWEST: usize = 20;
 
-/// The given pressures must leave so many times more unexplained. What machines have that this knows not (check valves, a
-/// pump line that is not measured at the valve) hits both alike.
+/// Factor by which the given pressures must leave more unexplained than the swapped ones. Effects that this check ignores (check
+/// valves, a pump line that is not measured at the valve) affect both alike.
 const CLEARLY: f64 = 4.0;
 
-/// And at least this share: where the given ones explain most of it, nothing is wrong.
+/// The given pressures must also leave at least this share: if they explain most of the flow, nothing is wrong.
 const MUCH: f64 = 0.1;
 
-/// Squares of the piston's flow that are not explained, as a share.
+/// Unexplained squares of the piston's flow, as a share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Shares {
     /// With the pressures as they are.
@@ -31,7 +31,7 @@ pub(super) struct Shares {
     pub swapped: f64,
 }
 
-/// The shares, where they say that the two pressures are swapped.
+/// The shares, if they show that the two pressures are swapped.
 pub(super) fn swapped_chambers(
     recording: &Recording,
     signals: &CylinderSignals,
@@ -83,7 +83,7 @@ fn shares(
                 cap += root(if extending { pump - at_cap } else { at_cap - tank });
                 rod += root(if extending { at_rod - tank } else { pump - at_rod });
             }
-            // The way the valve lets it; a load that moves the piston the other way is not explained by it.
+            // In the direction that the valve allows. Motion driven the other way by the load is not explained by the valve.
             let along = if open.first().is_some_and(|&area| area > 0.0) { velocity } else { -velocity };
             sides[0].add(chambers.cap_area * along, cap);
             sides[1].add(chambers.rod_area * along, rod);
@@ -106,7 +106,7 @@ struct Side {
 }
 
 impl Side {
-    /// A window's flow (m³/s) and opening times square root of pressure drop (m² sqrt(Pa)).
+    /// Adds a window's flow (m³/s) and opening times square root of pressure drop (m² sqrt(Pa)).
     fn add(&mut self, flow: f64, root: f64) {
         if flow.is_finite() && root.is_finite() {
             self.flow += flow * flow;
@@ -115,7 +115,7 @@ impl Side {
         }
     }
 
-    /// Squares that no gain explains; a gain below zero is none.
+    /// Squares that no gain explains; negative gains are excluded.
     fn unexplained(&self) -> f64 {
         if self.root > 0.0 { self.flow - self.product.max(0.0).powi(2) / self.root } else { self.flow }
     }

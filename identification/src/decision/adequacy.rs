@@ -1,9 +1,9 @@
-//! Whether what the given model leaves needs an explanation.
+//! Whether the error of the given model needs an explanation.
 
 use super::statistic::{error_ratio_shares, log_error_ratio, log_error_ratio_beyond_inputs, relative_error};
 use super::{Policy, Reason, Scores};
 
-/// Why the given model is adequate; or, where it is not, what is to be said of that.
+/// Whether the given model is adequate, with the reasons.
 pub(super) struct Adequacy {
     /// Whether nothing that matters is missing.
     pub is_adequate: bool,

@@ -1,4 +1,4 @@
-//! How each hypothesis stands against the given model and against the hypotheses with fewer effects.
+//! Compares each hypothesis with the given model and with the hypotheses that have fewer effects.
 
 use super::resampling::{Resampled, Resampling, mean};
 use super::scores::{Bound, EffectScore, Hypothesis, Scores};
@@ -9,13 +9,13 @@ use super::{Policy, Standing};
 pub(super) struct Assessed<'a> {
     /// The hypothesis.
     pub hypothesis: &'a Hypothesis,
-    /// Mean of its block costs, and in resampled recordings.
+    /// Mean of its block costs, for the recordings and for each resampling.
     pub resampled: Resampled,
-    /// Log error ratio on the validation recordings, beyond what the readings of the inputs leave.
+    /// Log error ratio on the validation recordings, beyond the error that the input readings cause.
     pub validation: f64,
     /// The same on the identification recordings.
     pub identification: f64,
-    /// Whether each of its effects is needed, shows, and has a sensible size.
+    /// Whether each of its effects is needed, significant, and of sensible size.
     pub is_admissible: bool,
 }
 
@@ -54,8 +54,8 @@ fn is_admissible(all: &[Assessed<'_>], number: usize, policy: &Policy, given_is_
         })
 }
 
-/// Whether `more` explains what `less` does not: by at least this much on the validation recordings, half as much on the others, where
-/// parameters were fitted, and by so many standard errors on all together.
+/// Whether `more` explains what `less` does not. The improvement must reach `least` on the validation recordings, half of it on
+/// the identification recordings, and `least_significance` standard errors on all together.
 fn improves(less: &Assessed<'_>, more: &Assessed<'_>, least: f64, least_significance: f64) -> bool {
     let (_, significance) = less.resampled.improvement(&more.resampled);
     less.improvement(more) >= least
@@ -63,18 +63,18 @@ fn improves(less: &Assessed<'_>, more: &Assessed<'_>, least: f64, least_signific
         && significance >= least_significance
 }
 
-/// Whether an effect acts as it says, in these recordings and by this much.
+/// Whether an effect acts as described in these recordings and has a plausible size.
 fn is_sensible(effect: &EffectScore) -> bool {
     let at = |bound: Bound| effect.parameters.iter().filter(|one| one.at_bound == Some(bound)).count();
     let fitted = effect.parameters.iter().filter(|one| one.at_bound.is_some() || one.margin_95.is_some()).count();
-    // Some of several coefficients may be nothing; none may be more than is plausible.
+    // Some of several coefficients may be zero, but none may exceed its plausible bound.
     let is_at_its_bounds = at(Bound::Upper) > 0 || fitted > 0 && at(Bound::Lower) == fitted;
     effect.is_practically_significant && effect.is_seen_from_both_sides && !is_at_its_bounds
 }
 
 impl Assessed<'_> {
-    /// By how much `other` is better on the validation recordings. A transient effect is fitted to each recording and predicts none: of
-    /// that the smaller improvement of both kinds of recordings counts.
+    /// By how much `other` is better on the validation recordings. A transient effect is fitted to each recording and predicts no
+    /// other one, so the smaller improvement of the two kinds of recordings counts.
     pub fn improvement(&self, other: &Assessed<'_>) -> f64 {
         let (validation, identification) =
             (self.validation - other.validation, self.identification - other.identification);
@@ -82,14 +82,14 @@ impl Assessed<'_> {
         if is_transient { validation.min(identification) } else { validation }
     }
 
-    /// Whether the recordings determine at least one parameter of its effects. A payload whose mass they do not show, on an incline that
-    /// they do not show either, is a constant force.
+    /// Whether the recordings determine at least one parameter of its effects. For example, a payload of undetermined mass on an
+    /// undetermined incline is just a constant force.
     pub fn is_determined(&self) -> bool {
         let parameters = self.hypothesis.effects.iter().flat_map(|effect| &effect.parameters);
         parameters.into_iter().any(|one| one.margin_95.is_some_and(|margin| margin < one.value.abs()))
     }
 
-    /// Its standing against the given model.
+    /// Its comparison with the given model.
     pub fn standing(&self, given: &Assessed<'_>) -> Standing {
         Standing {
             log_error_ratio: self.validation,

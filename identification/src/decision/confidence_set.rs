@@ -1,11 +1,12 @@
-//! The model confidence set (Hansen, Lunde and Nason 2011): the hypotheses that the recordings cannot tell from the best one.
+//! The model confidence set (Hansen, Lunde and Nason 2011): the hypotheses that the recordings cannot distinguish from the best
+//! one.
 
 use super::resampling::{DRAWS, Resampled, spread};
 
-/// The p-value of each hypothesis: the least chance of error at which it leaves the set. The last one to stay has 1.
+/// The p-value of each hypothesis: the smallest error probability at which it leaves the set. The last one to stay has 1.
 ///
-/// As long as the remaining hypotheses differ by more than chance makes them, the worst one goes. How far each is from the mean of all, in
-/// its own standard errors, is compared with the same of resampled recordings (the statistic T_max of the paper).
+/// As long as the remaining hypotheses differ by more than chance, the worst one is removed. The distance of each from the mean
+/// of all, in its own standard errors, is compared with that in resampled recordings (the statistic T_max of the paper).
 pub(super) fn set_p_values(hypotheses: &[&Resampled]) -> Vec<f64> {
     let mut remaining: Vec<usize> = (0..hypotheses.len()).collect();
     let mut p_values = vec![1.0; hypotheses.len()];
@@ -18,14 +19,14 @@ pub(super) fn set_p_values(hypotheses: &[&Resampled]) -> Vec<f64> {
     p_values
 }
 
-/// The position of the worst among the remaining, and the chance that it is as bad by chance.
+/// The position of the worst remaining hypothesis, and the probability that chance makes one so bad.
 fn worst(hypotheses: &[&Resampled], remaining: &[usize]) -> (usize, f64) {
     let count = remaining.len() as f64;
     let mean: f64 = remaining.iter().map(|&number| hypotheses[number].mean).sum::<f64>() / count;
     let means: Vec<f64> = (0..DRAWS)
         .map(|draw| remaining.iter().map(|&number| hypotheses[number].draws[draw]).sum::<f64>() / count)
         .collect();
-    // Of each: its distance from the mean, and by how much that is off in each draw, in standard errors.
+    // For each: its distance from the mean, and the deviation from that distance in each draw, in standard errors.
     let distances: Vec<(f64, Vec<f64>)> = remaining
         .iter()
         .map(|&number| {

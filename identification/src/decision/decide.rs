@@ -6,12 +6,14 @@ use super::confidence_set::set_p_values;
 use super::resampling::DRAWS;
 use super::{Kind, Policy, Reason, Scores, Standing, Verdict};
 
-/// Decides what the given model is missing.
+/// Decides which effect the given model lacks.
 ///
-/// 1. What the given model leaves on the validation recordings is noise, too small to act on, or within the input readings: adequate.
-/// 2. Hypotheses are admissible where each of their effects is needed, shows and has a sensible size.
-/// 3. The model confidence set of these holds what cannot be told from the best one; of that those with the fewest effects stay.
-/// 4. The first of them explains the recordings where it leaves little. A structural effect in the set forbids an attribution.
+/// 1. The given model is adequate if its error on the validation recordings is noise, too small to act on, or within the input
+///    readings.
+/// 2. A hypothesis is admissible if each of its effects is needed, significant and of sensible size.
+/// 3. The model confidence set holds the admissible hypotheses that cannot be distinguished from the best one; of these, the ones
+///    with the fewest effects stay.
+/// 4. The first of them explains the recordings if it leaves little error. A structural effect in the set forbids an attribution.
 ///
 /// ```
 /// use excavator_identification::decision::scores::{Block, FORMAT, Hypothesis, InstrumentScale, Misfit, Side};
@@ -84,7 +86,7 @@ pub fn decide(scores: &Scores, policy: &Policy) -> Verdict {
     Verdict { kind, best, set, reasons, standings }
 }
 
-/// Whether hypothesis `number` leaves too little for another effect to be attributed: that would have to go below the sensors' noise.
+/// Whether hypothesis `number` leaves too little for another effect to be attributed, which would have to be below sensor noise.
 pub fn leaves_nothing(scores: &Scores, number: usize, policy: &Policy) -> bool {
     let hypothesis = &scores.hypotheses[number];
     let sides = [(&scores.identification, &hypothesis.identification), (&scores.validation, &hypothesis.validation)];
@@ -108,8 +110,8 @@ fn standings(assessed: &[Assessed<'_>]) -> Vec<Standing> {
     standings
 }
 
-/// Admissible hypotheses that cannot be told from the best one: by chance, or because their distance is less than what the best one leaves
-/// unexplained; best first.
+/// Admissible hypotheses that cannot be distinguished from the best one, best first: the difference may be chance, or it is less
+/// than a share of the error that the best one leaves.
 fn confidence_set(assessed: &[Assessed<'_>], standings: &[Standing], policy: &Policy) -> Vec<usize> {
     let admissible = (0..assessed.len()).filter(|&number| assessed[number].is_admissible);
     let mut ranked: Vec<usize> = admissible.collect();
@@ -124,7 +126,7 @@ fn confidence_set(assessed: &[Assessed<'_>], standings: &[Standing], policy: &Po
     ranked
 }
 
-/// Of the hypotheses in `set` that are `wanted`, those with the fewest effects; those that the recordings determine first.
+/// Of the hypotheses in `set` that are `wanted`, those with the fewest effects, the determined ones first.
 fn with_fewest_effects(assessed: &[Assessed<'_>], set: &[usize], wanted: impl Fn(&Assessed<'_>) -> bool) -> Vec<usize> {
     let mut wanted: Vec<usize> = set.iter().copied().filter(|&number| wanted(&assessed[number])).collect();
     let fewest = wanted.iter().map(|&number| assessed[number].hypothesis.effects.len()).min();
@@ -140,7 +142,7 @@ fn best_candidate(assessed: &[Assessed<'_>]) -> Option<usize> {
     candidates.min_by(|&a, &b| assessed[a].resampled.mean.total_cmp(&assessed[b].resampled.mean))
 }
 
-/// A structural effect in the set.
+/// The reason for a structural effect in the set.
 fn structural_reason(assessed: &[Assessed<'_>], set: &[usize], is_preferred: bool) -> Option<Reason> {
     let hypothesis = set.iter().copied().find(|&number| assessed[number].hypothesis.is_structural())?;
     Some(Reason::StructuralAlternative { hypothesis, is_preferred })

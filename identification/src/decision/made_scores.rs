@@ -1,4 +1,4 @@
-//! Scores made by hand, for tests of the rules.
+//! Synthetic scores for tests of the rules.
 
 use super::scores::{
     Block, Bound, EffectScore, FORMAT, Hypothesis, InstrumentScale, Misfit, ParameterScore, Role, Scores, Side,
@@ -7,7 +7,7 @@ use super::scores::{
 /// Blocks of each kind of recordings.
 pub const BLOCKS: usize = 40;
 
-/// Scores of one instrument whose signal is 100 times its noise; the given model has this log error ratio.
+/// Scores of one instrument whose signal is 100 times its noise, with this log error ratio for the given model.
 pub fn scores(given: f64) -> Scores {
     let side = Side {
         sample_interval_s: 2e-3,
@@ -45,7 +45,7 @@ pub fn hypothesis(effects: &[&str], log_error_ratio: f64) -> Hypothesis {
     }
 }
 
-/// Errors that scatter by a few per cent from block to block around this log error ratio.
+/// Errors that scatter by a few per cent between blocks around this log error ratio.
 pub fn misfit(log_error_ratio: f64, seed: u64) -> Misfit {
     let ratio = |block: usize| {
         let scatter = 0.05 * ((block as u64 * 37 + seed * 11) % 13) as f64 / 6.0 - 0.05;

@@ -1,4 +1,4 @@
-//! What the scores of a search say: a verdict with its reasons. Pure functions; no model is fitted here.
+//! Derives a verdict with its reasons from the scores of a search. Pure functions; no model is fitted here.
 
 mod adequacy;
 mod assessment;

@@ -3,32 +3,36 @@
 /// The numbers of a verdict. Log error ratios are those of [`super::statistic`]: 0 is sensor noise alone, 0.7 twice its variance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Policy {
-    /// Up to this log error ratio what a model leaves counts as noise. 0.2 is 1.2 times the noise variance. Larger: weak effects are
-    /// called noise. Smaller: a machine whose friction or servo differs a little from the equations is called unexplained.
+    /// Log error ratio up to which the error of a model counts as noise. 0.2 is 1.2 times the noise variance. Larger: weak
+    /// effects are taken for noise. Smaller: a machine whose friction or servo differs a little from the equations counts as
+    /// unexplained.
     pub noise_margin: f64,
-    /// Error beyond the noise, over the signal's variance, that nobody would act on: a hundredth of each signal's own size. Larger: effects
-    /// of quiet machines go unseen. Smaller: very good sensors make every model inadequate.
+    /// Error beyond the noise, over the signal's variance, that is too small to act on: a hundredth of each signal's own size.
+    /// Larger: effects of quiet machines are missed. Smaller: very good sensors make every model inadequate.
     pub small_error: f64,
-    /// Up to this log error ratio an error may be called small. An error of several times the noise has a cause that could be found.
+    /// Log error ratio up to which an error may count as small. An error of several times the noise has a cause that could be
+    /// found.
     pub small_error_ceiling: f64,
-    /// Above this error over the signal's variance nothing is called noise, and no coarse input excuses it: a tenth of each signal's
-    /// own size is seen by anybody who looks at the plots.
+    /// Error over the signal's variance above which nothing counts as noise and no coarse input is an excuse: a tenth of each
+    /// signal's own size is obvious in the plots.
     pub largest_error: f64,
-    /// Fall of the log error ratio on the validation recordings that an effect must bring to be attributed. Smaller: small
-    /// imperfections, which every model has, get names.
+    /// Decrease of the log error ratio on the validation recordings that an attributed effect must bring. Smaller: small
+    /// imperfections, which every model has, are attributed.
     pub least_improvement: f64,
-    /// The same where the model is adequate without it. Machines have imperfections that no simulator has.
+    /// The same if the model is adequate without the effect. Real machines have imperfections that no simulator has.
     pub least_improvement_when_adequate: f64,
-    /// Standard errors by which an improvement must differ from zero, from stretch to stretch of the recordings. 3 keeps the chance of
-    /// one false name among 30 candidates near 4 %, were it not for the least improvement.
+    /// Standard errors, from the scatter between stretches of the recordings, by which an improvement must differ from zero.
+    /// Without the least improvement, 3 alone would keep the chance of one false attribution among 30 candidates near 4 %.
     pub least_significance: f64,
-    /// Chance with which the best hypothesis may be left out of the model confidence set. Larger: fewer ties, more wrong names.
+    /// Probability with which the best hypothesis may be left out of the model confidence set. Larger: fewer ties, more wrong
+    /// attributions.
     pub set_error: f64,
-    /// What an attributed effect may leave: a log error ratio, or that share of what it explains. Several effects imitate more than one can,
-    /// so each of n leaves an nth. Larger: effects outside the catalogue get the name of the one that resembles them most.
+    /// Error that an attributed effect may leave: a log error ratio, or a share of what it explains. Several effects can imitate
+    /// more than one, so each hypothesis with n effects may leave an nth. Larger: effects outside the catalogue are attributed to
+    /// the one that resembles them most.
     pub largest_remainder: f64,
-    /// A lead over another hypothesis that is less than this share of what the best one leaves is none: an error of unknown origin that is larger
-    /// than a lead may as well have made it.
+    /// A lead over another hypothesis below this share of the error that the best one leaves does not count: an error of unknown
+    /// origin that exceeds the lead may have caused it.
     pub doubtful_share: f64,
 }
 

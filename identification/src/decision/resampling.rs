@@ -1,17 +1,17 @@
 //! Circular block bootstrap (Politis and Romano 1992) of the two kinds of recordings.
 //!
-//! Errors of one moment resemble those of the next, so neighbouring half-second blocks are drawn together.
+//! Errors of neighbouring moments are correlated, so neighbouring half-second blocks are drawn together.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Draws; the standard error of a share is 0.02 at most.
+/// Number of draws; the standard error of a share is 0.02 at most.
 pub(super) const DRAWS: usize = 500;
 
-/// Half-second blocks that are drawn together.
+/// Number of half-second blocks drawn together.
 const TOGETHER: usize = 4;
 
-/// Seed, so that a verdict is the same each time.
+/// Fixed seed, so that a verdict is reproducible.
 const SEED: u64 = 1;
 
 /// How often each block of each kind of recordings was drawn, for each draw.
@@ -19,7 +19,7 @@ pub(super) struct Resampling {
     kinds: Vec<Vec<Vec<f64>>>,
 }
 
-/// The mean cost of a hypothesis, and in each draw. Every kind of recordings counts the same.
+/// The mean cost of a hypothesis, overall and in each draw. Both kinds of recordings have the same weight.
 #[derive(Debug, Clone)]
 pub(super) struct Resampled {
     pub mean: f64,
@@ -27,14 +27,14 @@ pub(super) struct Resampled {
 }
 
 impl Resampling {
-    /// For kinds of recordings with so many blocks.
+    /// For kinds of recordings with these numbers of blocks.
     pub fn new(blocks: &[usize]) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
         let mut draws = |blocks: usize| (0..DRAWS).map(|_| counts(blocks, &mut random)).collect();
         Resampling { kinds: blocks.iter().map(|&blocks| draws(blocks)).collect() }
     }
 
-    /// Means of one hypothesis, from the costs of its blocks, kind after kind.
+    /// Means of one hypothesis from the costs of its blocks, one list per kind of recordings.
     pub fn of(&self, costs: &[Vec<f64>]) -> Resampled {
         let each = || self.kinds.iter().zip(costs);
         let share = 1.0 / self.kinds.len().max(1) as f64;
@@ -48,7 +48,7 @@ impl Resampling {
 }
 
 impl Resampled {
-    /// By how much `other` is better, and that in its own standard errors; 0 standard errors where both are the same.
+    /// By how much `other` is better, also in standard errors of that difference; 0 standard errors if both are equal.
     pub fn improvement(&self, other: &Resampled) -> (f64, f64) {
         let difference = self.mean - other.mean;
         let spread = spread(&self.draws.iter().zip(&other.draws).map(|(a, b)| a - b).collect::<Vec<_>>());
@@ -62,7 +62,8 @@ pub(super) fn spread(values: &[f64]) -> f64 {
     (values.iter().map(|value| (value - middle).powi(2)).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-/// By how much a second hypothesis is better than a first, from their costs on the same blocks, and that in its own standard errors.
+/// By how much a second hypothesis is better than a first, from their costs on the same blocks, also in standard errors of that
+/// difference.
 pub fn improvement_on_blocks(first: Vec<f64>, second: Vec<f64>) -> (f64, f64) {
     let resampling = Resampling::new(&[first.len().min(second.len())]);
     resampling.of(&[first]).improvement(&resampling.of(&[second]))
@@ -88,7 +89,7 @@ fn weighed(counts: &[f64], costs: &[f64]) -> f64 {
     if count > 0.0 { sum / count } else { 0.0 }
 }
 
-/// Mean of some values; 0 of none.
+/// Mean of some values; 0 for an empty slice.
 pub(super) fn mean(values: &[f64]) -> f64 {
     if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 }
 }

@@ -1,8 +1,8 @@
-//! What a verdict is decided from: plain data, without models or recordings.
+//! The input of a verdict: plain data, without models or recordings.
 
 use serde::{Deserialize, Serialize};
 
-/// Version of the stored form; a reader refuses another one.
+/// Version of the stored form; a reader rejects any other.
 pub const FORMAT: u32 = 1;
 
 /// The scores of all hypotheses of one search.
@@ -28,8 +28,8 @@ pub struct Side {
     pub sample_interval_s: f64,
     /// The instruments that were compared.
     pub instruments: Vec<InstrumentScale>,
-    /// Error variance that the readings of the inputs alone leave, over the variance of the instrument's noise, for each instrument: no model
-    /// can be better. Empty where it was not asked for.
+    /// Error variance that the readings of the inputs alone leave, over the variance of the instrument's noise, for each
+    /// instrument: no model can be better. Empty where it was not asked for.
     pub input_floor: Vec<f64>,
     /// Blocks of half a second, in order.
     pub blocks: Vec<Block>,
@@ -143,7 +143,7 @@ pub enum Bound {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScoresError {
-    /// Not the expected JSON.
+    /// The text is not the expected JSON.
     #[error("not the scores of a diagnosis: {0}")]
     Json(#[from] serde_json::Error),
     /// Written by another version.
@@ -152,7 +152,7 @@ pub enum ScoresError {
         /// The format of the file.
         found: u32,
     },
-    /// A hypothesis has another number of blocks or instruments than its recordings.
+    /// The number of blocks or instruments differs between a hypothesis and its recordings.
     #[error(
         "hypothesis {hypothesis} has {found} error ratios on the {side} recordings, which have {expected}: the file is damaged"
     )]
@@ -161,18 +161,18 @@ pub enum ScoresError {
         hypothesis: usize,
         /// `identification` or `validation`.
         side: &'static str,
-        /// Ratios that it has.
+        /// Ratios found.
         found: usize,
         /// Blocks times instruments.
         expected: usize,
     },
-    /// Not even the given model.
+    /// There is no hypothesis, not even the given model.
     #[error("scores without any hypothesis: run the diagnosis again")]
     Empty,
 }
 
 impl Scores {
-    /// Reads what `diagnose --scores` wrote.
+    /// Reads the output of `diagnose --scores`.
     ///
     /// # Errors
     /// [`ScoresError`].
@@ -189,7 +189,7 @@ impl Scores {
         scores.checked()
     }
 
-    /// The same, where every hypothesis has as many error ratios as its recordings have blocks and instruments.
+    /// Checks that every hypothesis has as many error ratios as its recordings have blocks and instruments.
     ///
     /// # Errors
     /// [`ScoresError`].
@@ -224,7 +224,7 @@ impl Scores {
 }
 
 impl Hypothesis {
-    /// Whether both add the same effects at the same places, in whatever order.
+    /// Whether both add the same effects at the same places, in any order.
     pub fn adds_the_same(&self, other: &Hypothesis) -> bool {
         self.effects.len() == other.effects.len() && self.effects.iter().all(|effect| other.has(effect))
     }
@@ -234,7 +234,7 @@ impl Hypothesis {
         self.effects.iter().any(|own| own.is_same(effect))
     }
 
-    /// Whether it adds all that `other` adds, and more.
+    /// Whether it adds all effects of `other`, and more.
     pub fn extends(&self, other: &Hypothesis) -> bool {
         self.effects.len() > other.effects.len() && other.effects.iter().all(|effect| self.has(effect))
     }
@@ -251,7 +251,7 @@ impl Hypothesis {
 }
 
 impl EffectScore {
-    /// Whether both are the same effect at the same place, whatever their parameters.
+    /// Whether both are the same effect at the same place; parameters do not matter.
     pub fn is_same(&self, other: &EffectScore) -> bool {
         self.effect == other.effect && self.place == other.place
     }

@@ -1,17 +1,17 @@
 //! The one statistic of a verdict: the log error ratio.
 //!
-//! The errors of a model are sensor noise and, where physics is missing, something more, whose size changes from moment to moment. So
-//! each block of half a second has an error variance of its own, not below that of the noise. With normal errors of that variance, twice
-//! the negative log-likelihood per reading, beyond that of noise alone, is
+//! The errors of a model are sensor noise and, where physics is missing, an additional error that changes with time. So each
+//! block of half a second has an error variance of its own, not below that of the noise. With normal errors of that variance,
+//! twice the negative log-likelihood per reading, beyond that of noise alone, is
 //!
 //! ```text
 //! c(r) = ln r      for r > 1
 //! c(r) = r - 1     for r <= 1,     r = mean squared error of the block / noise variance
 //! ```
 //!
-//! The log error ratio is its mean over the readings of an instrument, then over instruments: 0 is noise alone, 0.7 twice the noise
-//! variance in every block. One bad moment in twenty adds a twentieth of its logarithm, so a stop that is hit does not spoil a
-//! model, and an effect that acts in one moment of twenty is still seen.
+//! The log error ratio is its mean over the readings of an instrument, then over instruments: 0 is noise alone, 0.7 twice the
+//! noise variance in every block. One bad moment in twenty adds a twentieth of its logarithm. Hitting a stop once therefore does
+//! not spoil a model, and an effect that acts in one moment of twenty is still visible.
 
 use super::scores::{Block, Hypothesis, Misfit, Scores, Side};
 
@@ -25,12 +25,12 @@ pub fn log_error_ratio(side: &Side, misfit: &Misfit) -> f64 {
     mean(per_instrument(side, misfit, |_, ratio| block_cost(ratio)))
 }
 
-/// The same against sensor noise and what the readings of the inputs leave, which no model can be better than.
+/// The same relative to sensor noise plus the error that the input readings cause, which no model can avoid.
 pub fn log_error_ratio_beyond_inputs(side: &Side, misfit: &Misfit) -> f64 {
     mean(per_instrument(side, misfit, |number, ratio| block_cost(ratio / unavoidable(side, number))))
 }
 
-/// Error variance that no model is better than, over the noise variance.
+/// Unavoidable error variance, over the noise variance.
 fn unavoidable(side: &Side, instrument: usize) -> f64 {
     1.0 + side.input_floor.get(instrument).copied().unwrap_or(0.0)
 }
@@ -41,8 +41,8 @@ pub fn error_ratio_shares(side: &Side, misfit: &Misfit, factor: f64) -> f64 {
     misfit.error_ratios.iter().filter(is_off).count() as f64 / side.blocks.len().max(1) as f64
 }
 
-/// Mean squared error beyond the noise, over the signal's own variance, mean over instruments: what part of what a machine does a
-/// model gets wrong.
+/// Mean squared error beyond the noise, over the signal's own variance, mean over instruments: the share of the machine's
+/// behaviour that a model gets wrong.
 pub fn relative_error(side: &Side, misfit: &Misfit) -> f64 {
     let of_variance = side.instruments.iter().map(|scale| (scale.noise / scale.spread).powi(2)).collect::<Vec<_>>();
     let ratios = per_instrument(side, misfit, |_, ratio| ratio).zip(seen(side));
@@ -61,10 +61,10 @@ pub fn block_costs(scores: &Scores, hypothesis: &Hypothesis) -> [Vec<f64>; 2] {
     ]
 }
 
-/// The same of one kind of recordings: mean over the instruments, each by its share of readings in the block, so that the mean over
-/// blocks is the log error ratio beyond the input readings.
+/// The same for one kind of recordings: mean over the instruments, each weighted by its share of readings in the block, so that
+/// the mean over blocks is the log error ratio beyond the input readings.
 pub fn block_costs_of(side: &Side, misfit: &Misfit) -> Vec<f64> {
-    // Each instrument counts as much as the others, however often it is read.
+    // Each instrument has the same weight, however often it is read.
     let totals: Vec<f64> = (0..side.instruments.len()).map(|number| readings(&side.blocks, number)).collect();
     let instruments = totals.iter().filter(|total| **total > 0.0).count();
     let scale = side.blocks.len() as f64 / instruments.max(1) as f64;

@@ -1,4 +1,4 @@
-//! Every branch of the decision, on scores made by hand.
+//! Every branch of the decision, on synthetic scores.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use super::made_scores::{BLOCKS, hypothesis, misfit, parameter, scores};
@@ -239,7 +239,7 @@ fn damaged_scores_are_refused_in_one_line() {
     assert!(Scores::from_json("{").is_err());
 }
 
-/// A number that can change a verdict stands in the policy, where its meaning is told.
+/// A number that can change a verdict belongs in the policy, where its meaning is documented.
 #[test]
 fn numbers_stand_in_the_policy() {
     let files = [
@@ -250,7 +250,7 @@ fn numbers_stand_in_the_policy() {
         ("resampling", include_str!("resampling.rs")),
         ("statistic", include_str!("statistic.rs")),
     ];
-    // How often and how the bootstrap draws, which changes a p-value by its standard error; and what is told of bad moments.
+    // The numerical settings of the bootstrap, which change a p-value by its standard error, and the threshold for bad moments.
     let numerical = ["DRAWS", "TOGETHER", "SEED", "OFF"];
     for (file, text) in files {
         for line in

@@ -48,8 +48,8 @@ pub struct Verdict {
 pub struct Standing {
     /// Its log error ratio on the validation recordings.
     pub log_error_ratio: f64,
-    /// By how much that is less than the given model's; of a transient effect, which predicts no other recording, the smaller one of both kinds
-    /// of recordings.
+    /// By how much that is less than the given model's; of a transient effect, which predicts no other recording, the smaller one
+    /// of both kinds of recordings.
     pub improvement: f64,
     /// By how much the log error ratio on the identification recordings is less than the given model's.
     pub identification_improvement: f64,
@@ -151,7 +151,7 @@ impl Verdict {
         self.reasons.iter().any(|reason| matches!(reason, Reason::TooCoarse { .. }))
     }
 
-    /// The hypothesis whose effects a refinement adds: the best one, where no structural alternative stands beside it.
+    /// The hypothesis whose effects a refinement adds: the best one, unless there is a structural alternative.
     pub fn supported(&self) -> usize {
         if self.structural_alternative().is_some() { 0 } else { self.best }
     }

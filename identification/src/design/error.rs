@@ -1,4 +1,4 @@
-//! Why there is no design.
+//! Why a design fails.
 
 use excavator_model::ModelError;
 use excavator_model::SignalError;
@@ -11,7 +11,7 @@ use crate::fit::FitError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DesignError {
-    /// One rival has nobody to be told from.
+    /// A single rival: there is nothing to separate it from.
     #[error("{rival} alone has nothing to be told from; name a second effect, or \"none\", or a --parameter")]
     Alone {
         /// The only rival.
@@ -23,7 +23,7 @@ pub enum DesignError {
         /// The rival.
         rival: String,
     },
-    /// Nothing can be commanded.
+    /// No cylinder has a valve that can be commanded.
     #[error("{machine} has no valve that could be commanded; its force is measured")]
     NoValve {
         /// The machine.
@@ -51,7 +51,7 @@ pub enum DesignError {
         /// Names of the unknown parameters.
         known: String,
     },
-    /// The parameter is not identified.
+    /// The parameter is a known constant.
     #[error("{name} is a known constant of the model; nothing is to be found out about it")]
     KnownParameter {
         /// The parameter.
@@ -62,7 +62,7 @@ pub enum DesignError {
     OutsideLimits {
         /// Number of manoeuvres tried.
         tried: usize,
-        /// What was wrong with the last.
+        /// The limit that the last one violates.
         violation: Violation,
     },
     /// An effect does not fit the model.
@@ -71,7 +71,7 @@ pub enum DesignError {
     /// A rival cannot be fitted.
     #[error(transparent)]
     Fit(#[from] FitError),
-    /// A rival has no input or no state at rest.
+    /// A rival lacks an input or a state at rest.
     #[error(transparent)]
     Signal(#[from] SignalError),
     /// A rival cannot be simulated.

@@ -1,13 +1,13 @@
-//! What a manoeuvre must not leave.
+//! Limits of a manoeuvre, and their violations.
 
 use excavator_model::display::pressure_text;
 use excavator_model::machine::Machine;
 
-/// Limits of a manoeuvre. There is no lowest pressure: a chamber that is pulled faster than the valve fills it touches the
-/// vapour pressure in ordinary work, and the models have make-up flow for it.
+/// Limits of a manoeuvre. There is no lower pressure limit: in ordinary work a chamber that is pulled faster than the valve fills
+/// it reaches the vapour pressure, and the models include make-up flow for that case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Share of the stroke that is kept free at each end. Rivals, and the machine even more, differ in how far they drift.
+    /// Share of the stroke kept free at each end. Rivals drift differently, and the machine even more so.
     pub stroke_margin: f64,
     /// Highest pressure, Pa (gauge).
     pub highest_pressure: f64,
@@ -19,7 +19,7 @@ impl Default for Limits {
     }
 }
 
-/// Largest and smallest values along a simulation.
+/// Largest and smallest values during a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Extremes {
     /// Piston displacement of each cylinder, m.
@@ -28,7 +28,7 @@ pub(super) struct Extremes {
     pub highest_pressure: f64,
 }
 
-/// A limit that was left.
+/// Why a manoeuvre is outside the limits.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Violation {
@@ -42,7 +42,7 @@ pub enum Violation {
         /// Limit, m.
         limit: f64,
     },
-    /// A pressure too high.
+    /// A pressure is too high.
     #[error("a pressure comes to {}; the limit is {}", pressure_text(*found), pressure_text(*limit))]
     Pressure {
         /// Pressure, Pa.
@@ -50,7 +50,7 @@ pub enum Violation {
         /// Limit, Pa.
         limit: f64,
     },
-    /// A place that the cylinder does not get to.
+    /// The cylinder does not reach a place in time.
     #[error("the {cylinder} cylinder does not come from {from:.3} m to {to:.3} m within {within} s")]
     Unreachable {
         /// The cylinder.
@@ -89,7 +89,7 @@ impl Limits {
         stroke * (0.5 - self.stroke_margin)
     }
 
-    /// Whether a simulation stayed inside.
+    /// Checks that a simulation stayed inside the limits.
     ///
     /// # Errors
     /// The first [`Violation`].

@@ -3,16 +3,16 @@
 use excavator_model::machine::Machine;
 use excavator_model::simulation::Segment;
 
-/// Something to do with one cylinder, while all valves else are closed.
+/// A manoeuvre of one cylinder, with all other valves closed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Manoeuvre {
-    /// What it is, for people.
+    /// Description for display.
     pub name: String,
-    /// What it shows.
+    /// Effects that it makes visible.
     pub shows: &'static str,
     /// Index of the cylinder.
     pub cylinder: usize,
-    /// Where it begins, as a share of the way from mid-stroke (0) to the end of the allowed stroke (-1, 1).
+    /// Where it begins, as a share of the distance from mid-stroke (0) to the end of the allowed stroke (-1, 1).
     pub place: f64,
     /// The commands, in order.
     pub segments: Vec<Segment>,
@@ -25,19 +25,19 @@ impl Manoeuvre {
     }
 }
 
-/// Time at rest before each manoeuvre, s: pressures settle, and the start is the same for all.
+/// Time at rest before each manoeuvre, s. Pressures settle, and all manoeuvres start from the same state.
 const BEFORE: f64 = 0.5;
 
-/// Every manoeuvre of the library for every cylinder that has a valve and that `wanted` names. Amplitudes are shares of the
-/// valve's largest opening and never above it.
+/// Every manoeuvre of the library for every cylinder in `wanted` that has a valve. Amplitudes are shares of the valve's largest
+/// opening and never exceed it.
 ///
-/// What is in it, and why:
-/// - *closed valve* at three places: whatever still moves or drifts is leakage, load, or the instrument itself;
+/// Contents and purpose:
+/// - *closed valve* at three places: any remaining motion or drift is leakage, load, or the instrument itself;
 /// - *slow ramps* through closed: flow against opening near zero, on the way up and on the way down (overlap, play);
-/// - *small trapezoids* about closed, and *waits at closed after a stroke from either side*: play leaves the valve open by a
-///   part of its width, of a sign that depends on the side; overlap does not;
+/// - *small trapezoids* about closed, and *waits at closed after a stroke from either side*: play leaves the valve open by a part
+///   of its width, with a sign that depends on the side; overlap does not;
 /// - *steps* and *small reversals about an open valve*: play acts at any mean opening, overlap only about zero;
-/// - *creeps*: friction at low speed, and an open centre that is hardly closed;
+/// - *creeps*: friction at low speed, and an open centre that is barely closed;
 /// - *sines, sweeps, trapezoids* of several sizes and frequencies: inertia, lags, losses with the square of the speed;
 /// - *pushes* towards the ends of the allowed stroke and at full opening: cushions, high pump pressure, relief.
 pub fn library(machine: &Machine, wanted: &[usize]) -> Vec<Manoeuvre> {
@@ -51,7 +51,7 @@ pub fn library(machine: &Machine, wanted: &[usize]) -> Vec<Manoeuvre> {
         .collect()
 }
 
-/// The manoeuvre that keeps the base parameters identifiable from the profile alone: a moderate sine.
+/// A moderate sine, which keeps the base parameters identifiable from the profile alone.
 pub(super) fn general(machine: &Machine, cylinder: usize) -> Option<Manoeuvre> {
     let full = machine.cylinders.get(cylinder)?.chambers?.full_command();
     let sine = Segment::Sine { duration: 6.0, amplitude: 0.5 * full, frequency: 0.5 };
@@ -76,7 +76,7 @@ fn triangle(duration: f64, amplitude: f64) -> Segment {
     trapezoid(duration, amplitude, duration / 2.0)
 }
 
-/// A trapezoid one way and the same back, each with a pause at closed behind it.
+/// A trapezoid in one direction and the same back, each followed by a pause at closed.
 fn there_and_back(duration: f64, amplitude: f64, ramp: f64, pause: f64) -> Vec<Segment> {
     vec![trapezoid(duration, amplitude, ramp), closed(pause), trapezoid(duration, -amplitude, ramp), closed(pause)]
 }
@@ -117,7 +117,7 @@ fn of_cylinder(cylinder: usize, full: f64) -> Vec<Manoeuvre> {
     for share in [0.35, 0.7, -0.35, -0.7] {
         let a = share * full;
         let ways = (0..4).flat_map(|_| [hold(0.25, a), hold(0.25, 0.7 * a)]).collect();
-        // Begun on the far side, so that the way that is made stays inside.
+        // Starts on the far side, so that the travel stays inside the limits.
         let place = -0.6 * share.signum();
         add(format!("reversals about an opening of {}", percent(0.85 * share)), "play away from closed", place, ways);
     }

@@ -1,11 +1,11 @@
-//! Which manoeuvre would separate tied effects, or show a parameter that a recording does not show.
+//! Designs manoeuvres that separate tied effects, or that determine a parameter which a recording leaves undetermined.
 //!
-//! Rivals are models that explain the recordings equally well. A library of manoeuvres is simulated with every rival; those
-//! that leave the machine's limits are dropped. What is left is judged by what one rival would still miss of another after
-//! its own parameters have been fitted again (the T-criterion of Atkinson and Fedorov, Biometrika 62 (1975) 57, by one
-//! linearised step), or by the standard error of the parameter asked for (the Ds-criterion with one parameter of interest).
-//! The best manoeuvres are joined greedily, with moves between their places, into one profile. A trial run with noisy
-//! sensors and real fits then states what to expect, by the rules of a diagnosis.
+//! Rivals are models that explain the recordings equally well. A library of manoeuvres is simulated with every rival, and
+//! manoeuvres that leave the machine's limits are dropped. The rest is ranked by the error that one rival still leaves on
+//! another's data after a refit of its own parameters (the T-criterion of Atkinson and Fedorov, Biometrika 62 (1975) 57, by one
+//! linearised step), or by the standard error of the parameter asked for (the Ds-criterion with one parameter of interest). The
+//! best manoeuvres are joined greedily, with moves between their places, into one profile. A trial run with noisy sensors and
+//! real fits then states what to expect, by the rules of a diagnosis.
 
 mod error;
 mod limits;

@@ -1,4 +1,4 @@
-//! A profile that shows a parameter.
+//! Designs a profile that determines a parameter.
 
 use excavator_model::Model;
 use excavator_model::effects::{Text, nearest};
@@ -15,7 +15,7 @@ use super::trial_run::record;
 use super::{DesignError, DesignSettings, Plan, Rival, library};
 use crate::fit::{FitSettings, LinearRefit, fit, scales};
 
-/// A proposed profile and how well it would show a parameter.
+/// A proposed profile and how well it would determine a parameter.
 #[derive(Debug, Clone)]
 pub struct ParameterDesign {
     /// Contract name of the parameter.
@@ -30,13 +30,13 @@ pub struct ParameterDesign {
     pub sine_error: f64,
     /// Standard error from the profile, from sensor noise alone.
     pub expected_error: f64,
-    /// Standard error that a fit reports of a trial run with noisy sensors.
+    /// Standard error that the fit to a trial run with noisy sensors reports.
     pub trial_run_error: f64,
     /// Value that this fit finds.
     pub trial_run_value: f64,
-    /// Whether the parameter is expected to be told from zero: its standard error is below half of it.
+    /// Whether the parameter is expected to differ significantly from zero: its standard error is below half of it.
     pub determined: bool,
-    /// What is to be done.
+    /// The proposed manoeuvres.
     pub plan: Plan,
     /// The same as commands, one profile per cylinder with a valve.
     pub profiles: Vec<Profile>,
@@ -44,11 +44,11 @@ pub struct ParameterDesign {
     pub manoeuvres: (usize, usize),
 }
 
-/// A standard error above this share of the parameter leaves it open.
+/// Share of the parameter above which its standard error leaves it undetermined.
 const LARGEST_SHARE: f64 = 0.5;
 
-/// Proposes a profile that shows the parameter with this contract name (`arm.inertia`). Every parameter is taken to be known
-/// to its own size beforehand, so that a direction that nothing shows has a finite standard error: that size.
+/// Proposes a profile that determines the parameter with this contract name (`arm.inertia`). Every parameter has a prior standard
+/// error equal to its own size. A direction that no data determines therefore has a finite standard error: that size.
 ///
 /// # Errors
 /// [`DesignError`].
@@ -91,7 +91,7 @@ pub fn determine(
     let score = |chosen: &[usize]| -> f64 {
         let mut sum = DMatrix::zeros(count, count);
         chosen.iter().for_each(|&index| sum += &parts[index]);
-        // Zero for no manoeuvre at all, as the joining expects.
+        // Zero for an empty choice, as `join` requires.
         -relative_error(sum, position).ln()
     };
     progress("joining manoeuvres", 0.5);
@@ -141,7 +141,7 @@ fn linear(
     LinearRefit::new(model, recording, &fit, &noise).ok()
 }
 
-/// Standard error of one parameter in units of its scale, each parameter known to one scale beforehand.
+/// Standard error of one parameter in units of its scale, with a prior standard error of one scale for each parameter.
 fn relative_error(mut information: DMatrix<f64>, position: usize) -> f64 {
     for index in 0..information.nrows() {
         information[(index, index)] += 1.0;
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_sum_alone_leaves_each_of_its_parts_open() {
-        // Only x0 + x1 is seen, very well: either may still be off by 1/sqrt(2) of its size.
+        // Only x0 + x1 is observed, very accurately: either may still be off by 1/sqrt(2) of its size.
         let row = nalgebra::RowDVector::from_vec(vec![1.0, 1.0]);
         let seen = row.transpose() * &row * 1e12;
         assert!((relative_error(seen, 0) - 0.5f64.sqrt()).abs() < 1e-3);

@@ -1,4 +1,4 @@
-//! Manoeuvres one after the other, with the ways between their places.
+//! A sequence of manoeuvres with transfers between their places.
 
 use excavator_model::machine::Machine;
 use excavator_model::simulation::{Profile, Segment};
@@ -7,12 +7,12 @@ use super::ride::Rider;
 use super::transfer::{NoWay, transfer};
 use super::{DesignError, Limits, Manoeuvre, Violation};
 
-/// A sequence of manoeuvres that stays inside the limits with every rival.
+/// A sequence of manoeuvres that stays inside the limits for every rival.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// Names of the manoeuvres with the time at which each begins, s.
     pub chosen: Vec<(String, f64)>,
-    /// Commands with the cylinder that they are for, in order; all other valves are closed meanwhile.
+    /// Commands, each with its cylinder, in order; all other valves are closed meanwhile.
     pub moves: Vec<(usize, Segment)>,
     /// Length, s.
     pub duration: f64,
@@ -20,23 +20,23 @@ pub struct Plan {
     pub(super) states: Vec<Vec<f64>>,
 }
 
-/// Why a manoeuvre is not appended.
+/// Why a manoeuvre cannot be appended.
 #[derive(Debug, Clone)]
 pub(super) enum Refusal {
     Limit(Violation),
     TooLong,
 }
 
-/// Samples per second of simulations that only have to stay inside limits.
+/// Samples per second of simulations that only check limits.
 pub(super) const RATE: f64 = 200.0;
 /// Time at rest at the end of a profile, s.
 const AFTER: f64 = 0.5;
 
 impl Plan {
-    /// Nothing yet: every rival at rest at mid-stroke.
+    /// An empty plan: every rival at rest at mid-stroke.
     ///
     /// # Errors
-    /// [`DesignError::Signal`] when a rival cannot be there.
+    /// [`DesignError::Signal`] if a rival has no such state.
     pub(super) fn empty(riders: &[Rider<'_>]) -> Result<Self, DesignError> {
         let states = riders
             .iter()
@@ -45,7 +45,7 @@ impl Plan {
         Ok(Plan { chosen: Vec::new(), moves: Vec::new(), duration: 0.0, states })
     }
 
-    /// The plan with one more manoeuvre, if it is over by `latest` s and stays inside the limits. Ways are found with the
+    /// The plan with one more manoeuvre, if it ends by `latest` s and stays inside the limits. Transfers are computed with the
     /// first rival.
     ///
     /// # Errors
@@ -78,7 +78,7 @@ impl Plan {
         self.appended(cylinder, &segments, Some((name, begins)), riders, limits)
     }
 
-    /// The plan with the way of every cylinder back to mid-stroke, so that it can be run again, and a rest.
+    /// The plan with a transfer of every cylinder back to mid-stroke and a rest, so that it can be run again.
     ///
     /// # Errors
     /// As [`Plan::with`].

@@ -1,4 +1,4 @@
-//! One model under commands.
+//! Runs one model under commands.
 
 use excavator_model::Model;
 use excavator_model::SignalError;
@@ -12,20 +12,20 @@ use excavator_model::simulation::{
 use super::DesignError;
 use super::limits::Extremes;
 
-/// A model with what it takes to run it from one state to another.
+/// A model prepared to run from one state to another.
 pub(super) struct Rider<'m> {
     pub system: System<'m>,
     parameters: Vec<f64>,
 }
 
-/// What came of a run.
+/// Result of a run.
 #[derive(Debug, Clone)]
 pub(super) struct Ride {
-    /// What the instruments report, without noise.
+    /// Noise-free readings of the instruments.
     pub recording: Recording,
     /// State at the last sample, in the order of the model's layout.
     pub end: Vec<f64>,
-    /// How far it went, in truth and not as reported.
+    /// Extremes of the true states, not of the readings.
     pub extremes: Extremes,
 }
 
@@ -34,22 +34,22 @@ impl<'m> Rider<'m> {
         Rider { system: System::new(model), parameters: model.parameter_values() }
     }
 
-    /// State at rest with closed valves and these piston displacements, m.
+    /// State at rest with closed valves at these piston displacements, m.
     ///
     /// # Errors
-    /// [`SignalError::NoInitialState`] where the linkage cannot reach a displacement.
+    /// [`SignalError::NoInitialState`] if the linkage cannot reach a displacement.
     pub fn at_rest(&self, displacements: &[f64]) -> Result<Vec<f64>, SignalError> {
         let recording = self.commanded(&[], 0.0, 0.01, 2);
         let signals = InputSignals::from_recording(self.system.model(), &recording)?;
         reachable_rest_state(&self.system, displacements, &signals.at_start())
     }
 
-    /// Piston displacement of a cylinder at a state, m.
+    /// Piston displacement of a cylinder in a state, m.
     pub fn displacement(&self, cylinder: usize, state: &[f64]) -> f64 {
         Channel::Displacement(cylinder).value(&self.system, state)
     }
 
-    /// Runs one cylinder's segments from `state`, that of time `from` s, with all other valves closed.
+    /// Runs one cylinder's segments from `state` at time `from` s, with all other valves closed.
     ///
     /// # Errors
     /// [`DesignError::Simulation`], [`DesignError::Signal`].
@@ -65,7 +65,7 @@ impl<'m> Rider<'m> {
         self.run_profiles(&[Profile { cylinder: name, segments: segments.to_vec() }], state, from, rate)
     }
 
-    /// Runs profiles of several cylinders from `state`, that of time `from` s, sampled `rate` times per second.
+    /// Runs profiles of several cylinders from `state` at time `from` s, sampled `rate` times per second.
     ///
     /// # Errors
     /// [`DesignError::Simulation`], [`DesignError::Signal`].
@@ -110,7 +110,7 @@ impl<'m> Rider<'m> {
         }
     }
 
-    /// A recording of commands and supply alone, on a clock from `from` s.
+    /// A recording that contains only commands and supply, on a clock from `from` s.
     fn commanded(&self, profiles: &[Profile], from: f64, interval: f64, samples: usize) -> Recording {
         let machine = &self.system.model().machine;
         let names: Vec<&str> = machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();

@@ -1,4 +1,4 @@
-//! Models that are to be separated.
+//! Rivals: models that are to be separated.
 
 use excavator_model::Model;
 use excavator_model::effects::{AnyEffect, Site};
@@ -6,23 +6,23 @@ use excavator_model::effects::{AnyEffect, Site};
 use super::DesignError;
 use crate::search::Addition;
 
-/// One explanation: the model with one more effect, or as it is.
+/// One explanation: the model with one more effect, or unchanged.
 #[derive(Debug, Clone)]
 pub struct Rival {
     /// `EFFECT@PLACE`, or `none`.
     pub name: String,
-    /// The effect and its place; `None` for the model as it is.
+    /// The effect and its place; `None` for the unchanged model.
     pub addition: Option<Addition>,
-    /// The model with it.
+    /// The model including the effect.
     pub model: Model,
 }
 
-/// What a rival is called that adds nothing.
+/// Name of the rival that adds nothing.
 const NONE: &str = "none";
 
 impl Rival {
-    /// The rivals that a person names: each `EFFECT` at every place where it can act, `EFFECT@PLACE` at one, `none` for the
-    /// model as it is. Effects have their typical size.
+    /// The rivals that a user names: each `EFFECT` at every place where it can act, `EFFECT@PLACE` at one, `none` for the
+    /// unchanged model. Effects have their typical size.
     ///
     /// # Errors
     /// [`DesignError::Model`], [`DesignError::Twice`].
@@ -59,7 +59,7 @@ impl Rival {
         Ok(Rival { name: addition.name(model), addition: Some(addition), model: extended })
     }
 
-    /// Sets parameters by their contract names, as far as the rival has them as unknowns.
+    /// Sets parameters by their contract names, if they are unknowns of the rival.
     pub fn set(&mut self, values: &[(String, f64)]) {
         let names = self.model.parameter_names();
         for (parameter, name) in self.model.parameters_mut().zip(&names) {
@@ -71,7 +71,7 @@ impl Rival {
         }
     }
 
-    /// The model without the addition, its parameters as they are.
+    /// The model without the addition, with the current parameters.
     pub(super) fn base(&self) -> Model {
         let mut base = self.model.clone();
         if self.addition.is_some() {
@@ -81,7 +81,7 @@ impl Rival {
     }
 }
 
-/// Cylinders that manoeuvres may use: those where a rival's effect sits; all where one sits elsewhere.
+/// Cylinders that manoeuvres may use: those with a rival's effect, or all if an effect is elsewhere.
 pub(super) fn cylinders(model: &Model, sites: &[Option<Site>]) -> Vec<usize> {
     let all: Vec<usize> = (0..model.machine.cylinders.len()).collect();
     let mut wanted = Vec::new();

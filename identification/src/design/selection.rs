@@ -1,4 +1,4 @@
-//! Which manoeuvres, in which order.
+//! Selects manoeuvres and their order.
 
 use rayon::prelude::*;
 
@@ -8,19 +8,19 @@ use super::plan::{Plan, RATE, Refusal};
 use super::ride::Rider;
 use super::{DesignError, DesignSettings, Manoeuvre, Violation};
 
-/// A manoeuvre that every rival survives inside the limits.
+/// A manoeuvre that stays inside the limits for every rival.
 pub(super) struct Screened {
     pub manoeuvre: Manoeuvre,
-    /// What each rival's instruments report, from rest at the manoeuvre's place, without noise.
+    /// Noise-free readings of each rival's instruments, from rest at the manoeuvre's place.
     pub recordings: Vec<Recording>,
 }
 
-/// Times that one manoeuvre may be in a profile: the best is worth repeating, but what is expected of it rests on the
-/// rivals' present parameters, and other manoeuvres hedge that.
+/// How often one manoeuvre may be in a profile. Repeating the best is useful, but its expected benefit depends on the rivals'
+/// current parameters, and other manoeuvres hedge against errors in them.
 const MOST_REPEATS: usize = 2;
-/// Guess of the way to a manoeuvre, s.
+/// Estimated time of a transfer to a manoeuvre, s.
 const WAY: f64 = 1.0;
-/// Time that is kept for the way back to mid-stroke, s.
+/// Time reserved for the transfer back to mid-stroke, s.
 const WAY_BACK: f64 = 4.0;
 /// Shortest profile, s, that has room for a manoeuvre for the base parameters.
 const ROOM_FOR_GENERAL: f64 = 30.0;
@@ -28,7 +28,7 @@ const ROOM_FOR_GENERAL: f64 = 30.0;
 /// Runs every manoeuvre with every rival, from rest at its place.
 ///
 /// # Errors
-/// [`DesignError::OutsideLimits`] when none is left.
+/// [`DesignError::OutsideLimits`] if none remains.
 pub(super) fn screen(
     manoeuvres: Vec<Manoeuvre>,
     riders: &[Rider<'_>],
@@ -68,12 +68,12 @@ fn survive(manoeuvre: Manoeuvre, riders: &[Rider<'_>], settings: &DesignSettings
     Ok(Screened { manoeuvre, recordings })
 }
 
-/// Joins manoeuvres into a plan of at most the duration asked for: always the one that raises `score` most per second among
-/// those that stay inside the limits from where the rivals are then. `score` is given the indices of the manoeuvres in the
-/// plan; `general` is the index of the one that shows the base parameters.
+/// Joins manoeuvres into a plan of at most the duration asked for. Each step adds the one that raises `score` most per second
+/// among those that stay inside the limits from the rivals' current states. `score` takes the indices of the manoeuvres in the
+/// plan; `general` is the index of the one that determines the base parameters.
 ///
 /// # Errors
-/// [`DesignError::OutsideLimits`] when nothing can be joined.
+/// [`DesignError::OutsideLimits`] if no manoeuvre can be joined.
 pub(super) fn join(
     screened: &[Screened],
     general: Option<usize>,
@@ -109,7 +109,7 @@ pub(super) fn join(
                 break;
             }
             match plan.with(&screened[index].manoeuvre, riders, limits, settings.duration - WAY_BACK)? {
-                // What cannot be brought back cannot be run again.
+                // A plan that cannot return to its start cannot be run again.
                 Ok(next) => match next.brought_back(cylinders, riders, limits)? {
                     Ok(_) => {
                         longer = Some((next, index));

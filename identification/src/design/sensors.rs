@@ -1,4 +1,4 @@
-//! What a recording of the proposed manoeuvre would hold.
+//! Sensors of a recording of the proposed manoeuvre.
 
 use excavator_model::equations::{Channel, Layout};
 use excavator_model::machine::{Machine, Supply};
@@ -39,12 +39,12 @@ impl Sensors {
         Sensors { noise, spool: SPOOL }
     }
 
-    /// Noise of a signal; `None` where nothing measures it.
+    /// Noise of a signal; `None` if it is not measured.
     pub fn of(&self, name: &str) -> Option<f64> {
         self.noise.iter().find(|(own, _)| own == name).map(|(_, noise)| *noise)
     }
 
-    /// Takes away the outputs that nothing measures.
+    /// Removes the outputs that are not measured.
     pub(super) fn hide_unmeasured(&self, machine: &Machine, layout: &Layout, recording: &mut Recording) {
         for channel in Channel::all(layout) {
             if self.of(&channel.name(machine)).is_none()

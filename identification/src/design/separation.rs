@@ -1,4 +1,4 @@
-//! A profile under which rivals cannot all are not separated.
+//! Designs a profile that separates rivals.
 
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -14,35 +14,35 @@ use super::{DesignError, DesignSettings, Plan, Rival, TrialRun, library};
 use crate::decision::Policy;
 use crate::fit::{FitError, FitSettings, LinearRefit, evaluate, fit};
 
-/// What is expected of a pair of rivals under the proposed profile. The worse of the two directions (either may be the
-/// truth) counts everywhere.
+/// Expected separation of a pair of rivals under the proposed profile. Either rival may be the truth; every number is the worse
+/// of the two directions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairSeparation {
     /// Name of one rival.
     pub first: String,
     /// Name of the other.
     pub second: String,
-    /// Difference of their losses on moderate sines that both were fitted to; `None` where rivals came with fitted values.
+    /// Difference of their losses on moderate sines to which both were fitted; `None` if the rivals came with fitted values.
     pub improvement_before: Option<f64>,
-    /// Distance in standard deviations of sensor noise after a linearised refit: root of the sum over all readings of the
-    /// squared difference that is left.
+    /// Distance in standard deviations of sensor noise after a linearised refit: root of the sum over all readings of the squared
+    /// remaining difference.
     pub distance: f64,
-    /// Improvement that goes with it, without noise on the spools.
+    /// Improvement that corresponds to this distance, without noise on the spools.
     pub linear_improvement: f64,
     /// Improvement of the truth in the trial run.
     pub expected_improvement: f64,
     /// The same in standard errors.
     pub expected_significance: f64,
-    /// Whether a diagnosis would no longer call them tied.
+    /// Whether a diagnosis would no longer report them as tied.
     pub separated: bool,
 }
 
-/// A proposed profile and what to expect of it.
+/// A proposed profile and its expected result.
 #[derive(Debug, Clone)]
 pub struct SeparationDesign {
-    /// The rivals, with the parameters that they were compared with.
+    /// The rivals, with the parameters used in the comparison.
     pub rivals: Vec<Rival>,
-    /// What is to be done.
+    /// The proposed manoeuvres.
     pub plan: Plan,
     /// The same as commands, one profile per cylinder with a valve.
     pub profiles: Vec<Profile>,
@@ -60,15 +60,15 @@ impl SeparationDesign {
         self.pairs.iter().all(|pair| pair.separated)
     }
 
-    /// Whether any pair is.
+    /// Whether at least one pair is expected to be separated.
     pub fn any_separated(&self) -> bool {
         self.pairs.iter().any(|pair| pair.separated)
     }
 }
 
-/// Proposes a profile that tells `rivals` apart. `fitted`: whether they carry the values of a fit to recordings on which they
-/// are tied; otherwise the others are first fitted to the first one's motion under moderate sines, so that no difference
-/// counts that a fit takes away. `progress` is told what is being done, with the fraction done.
+/// Proposes a profile that separates `rivals`. `fitted` means that they have the values of a fit to recordings on which they are
+/// tied. Otherwise the others are first fitted to the first one's motion under moderate sines, so that differences which a refit
+/// removes do not count. `progress` receives the current step and the fraction done.
 ///
 /// # Errors
 /// [`DesignError`].
@@ -152,16 +152,16 @@ fn directions(count: usize) -> Vec<(usize, usize)> {
 /// Steps of the fit to all manoeuvres.
 const COMPROMISE_STEPS: usize = 4;
 
-/// A model fitted to all manoeuvres of a truth at once, from where one linearised step to any choice of them is short. Where
-/// it cannot be fitted it stays as it is.
+/// A model fitted to all manoeuvres of a truth at once. From there one linearised step suffices for any choice of manoeuvres. If
+/// the fit fails, the model is returned unchanged.
 fn compromise(model: &Model, truth: usize, screened: &[Screened], settings: &DesignSettings) -> Model {
     let recordings: Vec<&Recording> = screened.iter().filter_map(|one| one.recordings.get(truth)).collect();
     let few = FitSettings { sample_rate: f64::INFINITY, maximum_steps: COMPROMISE_STEPS, ..settings.fit };
     fit(model, &recordings, &few).map_or_else(|_| model.clone(), |found| found.model)
 }
 
-/// For every ordered pair the refit of its model to the truth's recording; `None` where it cannot be simulated. `models` come
-/// in the order of the directions.
+/// For every ordered pair the refit of its model to the truth's recording; `None` if it cannot be simulated. `models` are in the
+/// order of `directions`.
 fn refits(models: &[Model], recordings: &[Recording], settings: &DesignSettings) -> Vec<Option<LinearRefit>> {
     let all = FitSettings { sample_rate: f64::INFINITY, ..settings.fit };
     directions(recordings.len())
@@ -176,7 +176,7 @@ fn refits(models: &[Model], recordings: &[Recording], settings: &DesignSettings)
         .collect()
 }
 
-/// What a rival's instruments would report without noise, at the rate of a fit.
+/// Noise-free readings of a rival's instruments, at the sample rate of the plan.
 pub(super) fn noise_free(
     rival: &Rival,
     profiles: &[Profile],
@@ -190,7 +190,7 @@ pub(super) fn noise_free(
     Ok(ride.recording)
 }
 
-/// Expectations of every unordered pair.
+/// Expected separation of every unordered pair.
 fn judged(
     rivals: &[Rival],
     before: &[Option<f64>],
@@ -212,7 +212,7 @@ fn judged(
                     distance = distance.min(left.distance());
                     linear_improvement = linear_improvement.min(left.gain());
                 }
-                // Rehearsals come in the order of the directions.
+                // Trial runs are in the order of `directions`.
                 improvement = improvement.min(trial_runs[number].improvement);
                 significance = significance.min(trial_runs[number].significance);
             }
@@ -231,7 +231,7 @@ fn judged(
     pairs
 }
 
-/// Fits all rivals but the first to the first one's motion under moderate sines. Also gives, row by row, the difference of
+/// Fits all rivals but the first to the first one's motion under moderate sines. Also returns, row by row, the difference between
 /// any two rivals' losses there.
 fn made_alike(
     mut rivals: Vec<Rival>,
@@ -253,7 +253,7 @@ fn made_alike(
     Ok((rivals, differences))
 }
 
-/// The kind of recording that leaves effects tied: two sines of moderate size for each cylinder.
+/// A recording of the kind that leaves effects tied: two sines of moderate size for each cylinder.
 pub(super) fn moderate_sines(model: &Model, cylinders: &[usize]) -> Vec<Profile> {
     let mut plan: Vec<(usize, Segment)> = Vec::new();
     for &cylinder in cylinders {
@@ -284,7 +284,7 @@ mod tests {
         DesignSettings::usual(&built_in("zx30u-arm").unwrap().machine)
     }
 
-    /// What a refit of the second rival to the first one's noise-free motion under moderate sines leaves.
+    /// Remainder after a refit of the second rival to the first one's noise-free motion under moderate sines.
     fn left(rivals: &[Rival]) -> crate::fit::Remainder {
         let profiles = moderate_sines(&rivals[0].model, &[0]);
         let recordings: Vec<Recording> =
@@ -301,7 +301,7 @@ mod tests {
         let mut rivals = named(&["none"]);
         rivals.push(rivals[0].clone());
         let same = left(&rivals).distance();
-        // A little more inertia and friction: far from the other model as it is, and within its span.
+        // A little more inertia and friction: far from the other model, but a refit can remove the difference.
         let names = ["arm.inertia", "arm.coulomb_friction"];
         let changed: Vec<(String, f64)> =
             names.iter().map(|name| ((*name).to_string(), 1.01 * rivals[0].model.value_of(name).unwrap())).collect();
@@ -309,7 +309,7 @@ mod tests {
         let refitted = left(&rivals).distance();
         assert!(same < 20.0, "{same}");
         assert!(refitted < 40.0, "{refitted}");
-        // The same change where nothing may be fitted again.
+        // The same change, with all parameters fixed.
         rivals[1].model.parameters_mut().for_each(|parameter| parameter.known = true);
         let held = left(&rivals).distance();
         assert!(held > 5.0 * refitted, "{held} {refitted}");
@@ -319,7 +319,7 @@ mod tests {
     fn what_a_refit_cannot_take_away_counts() {
         let rivals = named(&["valve_dead_zone@arm", "none"]);
         let left = left(&rivals);
-        // Ten times what a refit leaves of parameters that it may fit again.
+        // Ten times the remainder of a refit with free parameters.
         assert!(left.distance() > 400.0, "{}", left.distance());
         assert!(left.gain() > 1.0, "{}", left.gain());
         assert!(left.log_likelihood_ratio() > 0.0);

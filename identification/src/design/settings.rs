@@ -1,4 +1,4 @@
-//! How a design is made.
+//! Settings of a design.
 
 use excavator_model::machine::Machine;
 
@@ -10,17 +10,17 @@ use crate::fit::FitSettings;
 pub struct DesignSettings {
     /// Longest profile, s.
     pub duration: f64,
-    /// What must not be left.
+    /// Limits of the manoeuvres.
     pub limits: Limits,
     /// What the instruments measure, and their noise.
     pub sensors: Sensors,
     /// Fits of the trial run.
     pub fit: FitSettings,
-    /// Draws the noise of the trial run.
+    /// Seed for the noise of the trial run.
     pub seed: u64,
 }
 
-/// Shortest profile, s: one manoeuvre with the way to it and back.
+/// Shortest profile, s: one manoeuvre with the transfers to it and back.
 const SHORTEST: f64 = 15.0;
 /// Longest profile, s.
 const LONGEST: f64 = 600.0;

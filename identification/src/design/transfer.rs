@@ -1,29 +1,29 @@
-//! From where a piston is to where the next manoeuvre begins.
+//! Moves a piston to the place where the next manoeuvre begins.
 
 use excavator_model::simulation::Segment;
 
 use super::ride::Rider;
 use super::{DesignError, Violation};
 
-/// Opening on the way, share of the largest.
+/// Opening during the transfer, share of the largest.
 const OPENING: f64 = 0.9;
 /// Time for opening and for closing, s.
 const RAMP: f64 = 0.2;
-/// Longest way, s.
+/// Longest transfer, s.
 const LONGEST: f64 = 8.0;
-/// What is near enough, share of the stroke.
+/// Tolerance of the target, share of the stroke.
 const NEAR: f64 = 0.02;
-/// Halvings of the time: 8 s / 2^9 is 16 ms.
+/// Number of bisections of the time: 8 s / 2^9 is 16 ms.
 const HALVINGS: usize = 9;
 
-/// Why there is no way.
+/// Why a transfer is impossible.
 pub(super) enum NoWay {
     Violation(Violation),
     Error(DesignError),
 }
 
-/// A stroke that brings a cylinder from `state` to `target` (m); empty where it is there already. Displacement grows with the
-/// time that a valve stays open, so the time is found by halving.
+/// A stroke that brings a cylinder from `state` to `target` (m); empty if it is already there. Displacement grows with the time
+/// that a valve stays open, so bisection finds that time.
 pub(super) fn transfer(
     rider: &Rider<'_>,
     cylinder: usize,
@@ -48,7 +48,7 @@ pub(super) fn transfer(
     let (mut low, mut high) = (0.0, LONGEST);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        // A run that cannot be simulated has gone too far.
+        // A run that cannot be simulated counts as too far.
         let gone = match goes(middle) {
             Ok(gone) => gone,
             Err(DesignError::Simulation(_)) => f64::INFINITY,
@@ -64,6 +64,6 @@ pub(super) fn transfer(
             within: LONGEST,
         }));
     }
-    // A whole number of samples, so that all that follows stays on the clock.
+    // A whole number of samples, so that everything after it stays on the clock.
     Ok(stroke((high * rate).round().max(1.0) / rate))
 }

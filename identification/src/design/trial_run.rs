@@ -1,4 +1,5 @@
-//! The profile run by each rival in turn with noisy sensors, and all rivals fitted to it, as a diagnosis would.
+//! Trial runs: each rival in turn generates the recordings with noisy sensors, and all rivals are fitted to them, as in a
+//! diagnosis.
 
 use excavator_model::recording::Recording;
 use excavator_model::simulation::Profile;
@@ -11,26 +12,26 @@ use crate::decision::{block_costs_of, improvement_on_blocks};
 use crate::fit::{Fit, FitError, evaluate, fit};
 use crate::search::{AdditionError, fit_addition, misfit, side};
 
-/// What a trial run says when one rival is the truth and another is held against it.
+/// Result of a trial run in which one rival is the truth and another is compared with it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialRun {
-    /// Name of the rival that made the recordings.
+    /// Name of the rival that generated the recordings.
     pub truth: String,
     /// Name of the rival that was fitted to them.
     pub other: String,
-    /// By how much less the log error ratio of the truth is on the recording that was not fitted.
+    /// By how much the log error ratio of the truth is lower on the recording that was not fitted.
     pub improvement: f64,
-    /// That in its own standard errors, from stretch to stretch.
+    /// The improvement in its own standard errors, from the scatter between stretches.
     pub significance: f64,
 }
 
-/// Samples per second of the recordings, as usual recorders have.
+/// Samples per second of the recordings, as with usual recorders.
 const RATE: f64 = 500.0;
 
-/// Two recordings of a rival under the profiles, from rest at mid-stroke, that differ in their noise.
+/// Two recordings of a rival under the profiles, from rest at mid-stroke, with independent noise.
 ///
 /// # Errors
-/// [`DesignError`] when it cannot be simulated.
+/// [`DesignError`] if the rival cannot be simulated.
 pub(super) fn record(
     rival: &Rival,
     profiles: &[Profile],
@@ -53,10 +54,10 @@ pub(super) fn record(
     Ok([noisy(), noisy()])
 }
 
-/// Fits a rival to a recording, from its own values and from the starts that a diagnosis tries; the better one counts.
+/// Fits a rival to a recording from its own values and from the starts of a diagnosis, and returns the better fit.
 ///
 /// # Errors
-/// [`FitError`] when neither can be fitted.
+/// [`FitError`] if both fits fail.
 pub(super) fn best_fit(rival: &Rival, recording: &Recording, settings: &DesignSettings) -> Result<Fit, FitError> {
     let own = fit(&rival.model, &[recording], &settings.fit);
     let Some(addition) = &rival.addition else { return own };
@@ -69,7 +70,7 @@ pub(super) fn best_fit(rival: &Rival, recording: &Recording, settings: &DesignSe
     }
 }
 
-/// Every rival as the truth in turn, against every other.
+/// Runs trials with every rival as the truth in turn, against every other.
 ///
 /// # Errors
 /// [`DesignError`].

@@ -1,4 +1,4 @@
-//! The hypotheses of a diagnosis as people read them: one effect after the other.
+//! Presents the hypotheses of a diagnosis as a list of effects.
 
 use excavator_model::{ModelEffect, site_name};
 
@@ -6,12 +6,12 @@ use super::Diagnosis;
 use crate::decision::Standing;
 use crate::search::{Addition, Trial};
 
-/// What an effect is in a verdict.
+/// Role of an effect in a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// The first effect of the favoured hypothesis, or a further one.
     Selected,
-    /// It stands in a hypothesis that cannot be told from the favoured one.
+    /// It belongs to a hypothesis that cannot be distinguished from the favoured one.
     Tied,
     /// It improves the given model, but less.
     Improves,
@@ -24,17 +24,17 @@ pub enum Part {
 pub struct Candidate<'a> {
     /// The effect and its place.
     pub addition: &'a Addition,
-    /// The fit that it is a part of.
+    /// The fit that includes it.
     pub trial: &'a Trial,
-    /// The fit that this is compared with.
+    /// The fit that `trial` is compared with.
     pub before: &'a Trial,
-    /// How the hypothesis of its fit stands against the given model.
+    /// How the hypothesis of its fit compares with the given model.
     pub standing: Standing,
-    /// By how much the log error ratio falls from one to the other.
+    /// Decrease of the log error ratio from `before` to `trial`.
     pub improvement: f64,
     /// Mean NMSE of both on the validation recordings, as in [`Diagnosis::errors`]: before, with it.
     pub errors: [f64; 2],
-    /// What it is in the verdict.
+    /// Its role in the verdict.
     pub part: Part,
     /// Whether it shares the first place with others.
     pub is_tied_with_first: bool,
@@ -51,7 +51,7 @@ impl<'a> Candidate<'a> {
         site_name(&self.trial.fit.model.machine, self.addition.site)
     }
 
-    /// What it is in the verdict, in a word or two.
+    /// Its role in the verdict, in a word or two.
     pub fn result(&self) -> &'static str {
         match self.part {
             _ if self.is_tied_with_first => "tied",
@@ -75,12 +75,12 @@ impl Diagnosis {
         &self.trials[0]
     }
 
-    /// The favoured hypothesis; the given model where there is none.
+    /// The favoured hypothesis; the given model if there is none.
     pub fn best(&self) -> &Trial {
         &self.trials[self.verdict.best]
     }
 
-    /// The hypothesis whose effects a refinement adds; the given model where there is none.
+    /// The hypothesis whose effects a refinement adds; the given model if there is none.
     pub fn supported(&self) -> &Trial {
         &self.trials[self.verdict.supported()]
     }
@@ -90,7 +90,7 @@ impl Diagnosis {
         self.errors.get(self.number(trial)).copied().unwrap_or(f64::NAN)
     }
 
-    /// Numbers of the trials that people see.
+    /// Numbers of the trials that are shown to users.
     pub(super) fn shown(&self) -> Vec<usize> {
         let paths = [self.verdict.best, self.verdict.supported()].into_iter().flat_map(|number| self.path(number));
         let singles = self.trials.iter().filter(|trial| trial.additions.len() == 1);
@@ -102,13 +102,13 @@ impl Diagnosis {
         shown
     }
 
-    /// Number of effects that were tried; none where the given model leaves nothing but noise.
+    /// Number of effects that were tried; none if the given model leaves only noise.
     pub fn tried(&self) -> usize {
         let singles = self.trials.iter().filter(|trial| trial.additions.len() == 1).count();
         singles + self.unpromising.len() + self.failed.len()
     }
 
-    /// From the first effect to the hypothesis `number`, each with one effect more than the one before.
+    /// The trials from the first effect to hypothesis `number`, each with one more effect than the previous one.
     pub fn path(&self, number: usize) -> Vec<&Trial> {
         let mut path = Vec::new();
         let mut next = Some(number).filter(|&number| number != 0);
@@ -141,8 +141,8 @@ impl Diagnosis {
         .collect()
     }
 
-    /// Effects that stand in the place of another one in hypotheses that cannot be told from the favoured one, with the effect that they stand
-    /// for. An alternative without a counterpart stands for the first.
+    /// Effects that replace another one in hypotheses which cannot be distinguished from the favoured one, each with the effect
+    /// that it replaces. An alternative without a counterpart replaces the first effect.
     pub fn alternatives(&self) -> Vec<(Candidate<'_>, &Addition)> {
         let best = self.best();
         let order: Vec<&Addition> = self.selected_of(self.verdict.best).iter().map(|one| one.addition).collect();
@@ -162,8 +162,8 @@ impl Diagnosis {
         found
     }
 
-    /// Everything with evidence: the selected effects, those tied with the first of them, and others that improve the given model, best
-    /// first.
+    /// All effects with evidence: the selected effects, those tied with the first of them, and others that improve the given
+    /// model, best first.
     pub fn candidates(&self) -> Vec<Candidate<'_>> {
         let mut listed: Vec<Candidate<'_>> = self.selected_of(self.verdict.best);
         let first = listed.first().map(|first| first.addition);
@@ -185,7 +185,7 @@ impl Diagnosis {
         listed
     }
 
-    /// Effects that were fitted to the end alone and have no evidence, the best first.
+    /// Effects that were fully fitted, alone, and have no evidence, the best first.
     pub fn rejected(&self) -> Vec<Candidate<'_>> {
         let listed = self.candidates();
         let others = self.singles().into_iter().filter(|one| one.part == Part::NoEvidence);

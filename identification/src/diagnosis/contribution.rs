@@ -1,11 +1,11 @@
-//! An effect as the data show it: what its equation lacks without it, against the variable that it depends on.
+//! Shows an effect in the data: the residual of its equation without the effect, against the variable that it depends on.
 //!
-//! A component-and-residual plot (Larsen and McCleary 1972): the effect is taken out of the fitted model and nothing is
-//! fitted again, so that what is left shows the effect itself, and not what other parameters have taken up of it. Where the
-//! effect is right the points lie on its line; where another one is missing they have a shape of their own.
+//! A component-and-residual plot (Larsen and McCleary 1972): the effect is removed from the fitted model without a refit. The
+//! residual then shows the effect itself, and other parameters cannot absorb any of it. If the effect is right, the points lie on
+//! its line; if a different one is missing, they have another shape.
 //!
-//! A textbook draws friction as the whole force against speed, and what a valve does as the opening that flow sees against the
-//! opening that was commanded. Where the model has the nominal law, the picture is that of the textbook.
+//! Textbooks plot friction as the whole force against speed, and valve effects as effective opening against commanded opening. If
+//! the model has the nominal law, the plot follows the textbook.
 
 use std::collections::BTreeMap;
 
@@ -17,62 +17,64 @@ use super::residual_points::{Bin, Key, Point, VARIABLES, Variable, bins, points,
 use crate::regression::{EquationKind, RegressionError};
 use crate::search::{Addition, Trial};
 
-/// An effect in the equation and along the variable in which it shows most clearly.
+/// An effect in the equation and along the variable where it is most visible.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contribution {
     /// `arm.motion`, `arm.cap_continuity`, ...
     pub equation: String,
-    /// The variable that what the effect does follows most closely.
+    /// The variable that the effect follows most closely.
     pub variable: &'static str,
-    /// What is drawn.
+    /// The plotted quantity.
     pub drawn: Drawn,
-    /// Unit of that: N m, N for a load without joint, m³/s, or m² for an opening.
+    /// Unit of the plotted quantity: N m, N for a load without joint, m³/s, or m² for an opening.
     pub unit: &'static str,
-    /// Share of what the effect does, squared, that a curve over the variable explains.
+    /// Share of the effect's square that a curve over the variable explains.
     pub share: f64,
-    /// Along the variable, SI units.
+    /// Bins along the variable, SI units.
     pub bins: Vec<ContributionBin>,
 }
 
-/// How a textbook draws an effect.
+/// How a textbook plots an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Drawn {
-    /// What the equation lacks, and what the effect gives.
+    /// Residual of the equation, and the effect.
     Residual,
-    /// All friction, with the nominal one.
+    /// Total friction, with the nominal one.
     Friction,
-    /// The opening that the flow sees, with the nominal one, which is the command.
+    /// The effective opening, with the nominal one, which is the command.
     Opening,
 }
 
-/// Neighbours along the variable.
+/// Neighbouring points along the variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContributionBin {
     /// Mean of the variable.
     pub at: f64,
-    /// What the model gives without the effect; 0 for [`Drawn::Residual`].
+    /// Contribution of the nominal effects; 0 for [`Drawn::Residual`].
     pub nominal: f64,
-    /// What the equation lacks without the effect, on average.
+    /// Mean residual without the effect.
     pub lacking: f64,
-    /// Standard error of that.
+    /// Standard error of that mean.
     pub standard_error: f64,
-    /// What the fitted effect gives, on average.
+    /// Mean contribution of the fitted effect.
     pub effect: f64,
 }
 
-/// Least share of what an effect does that a curve must explain to be worth a picture.
+/// Smallest share of an effect that a curve must explain for a useful plot.
 const LEAST_SHARE: f64 = 0.2;
 
-/// Least flow by opening, as a share of the largest, at which a flow tells an opening: none flows where there is no pressure drop.
+/// Smallest flow per opening, as a share of the largest, at which a flow determines an opening: without a pressure drop there is
+/// no flow.
 const LEAST_SLOPE: f64 = 0.05;
 
-/// Fewest openings that make a picture.
+/// Fewest openings for a plot.
 const LEAST_BINS: usize = 8;
 
-/// How an addition to the fitted model of `trial` shows on the validation recordings. `None` where no equation is changed by it, or by nothing that one variable tells.
+/// Shows an addition to the fitted model of `trial` on the validation recordings. `None` if it changes no equation, or if no
+/// single variable explains its change.
 ///
 /// # Errors
-/// [`RegressionError`] when the recordings lack inputs.
+/// [`RegressionError`] if the recordings lack inputs.
 pub fn contribution(
     trial: &Trial,
     addition: &Addition,
@@ -108,7 +110,7 @@ fn residuals(model: &Model, recordings: &[&Recording]) -> Result<BTreeMap<Key, f
     Ok(points(model, recordings)?.into_iter().map(|point| (point.key(), point.residual)).collect())
 }
 
-/// What a textbook draws of an effect that shows like this.
+/// How a textbook plots such an effect.
 fn textbook(kind: EquationKind, shown: &Contribution, addition: &Addition) -> Drawn {
     match (kind, shown.variable) {
         (EquationKind::Motion(_), "speed") => Drawn::Friction,
@@ -119,7 +121,7 @@ fn textbook(kind: EquationKind, shown: &Contribution, addition: &Addition) -> Dr
     }
 }
 
-/// Effects of the nominal model that the picture shows together with the effect.
+/// Effects of the nominal model that the plot includes.
 fn nominal_effects(drawn: Drawn) -> &'static [&'static str] {
     match drawn {
         Drawn::Residual => &[],
@@ -137,7 +139,7 @@ fn site_of(kind: EquationKind) -> Option<Site> {
     }
 }
 
-/// The picture with what the nominal effects give; `bare` are the residuals without them.
+/// The plot with the contribution of the nominal effects; `bare` are the residuals without them.
 fn with_nominal(
     kind: EquationKind,
     shown: Contribution,
@@ -161,7 +163,7 @@ fn with_nominal(
             Contribution { bins: bins.collect(), drawn, ..shown }
         }
         Drawn::Opening => {
-            // Flow by opening, by least squares in each bin: what turns a flow into an opening.
+            // Flow per opening, by least squares in each bin; it converts a flow to an opening.
             let (Some(product), Some(square)) =
                 (along(&|point| nominal(point) * point.opening), along(&|point| point.opening.powi(2)))
             else {
@@ -185,8 +187,8 @@ fn with_nominal(
     }
 }
 
-/// The equation in which the effect does most, in units of noise; for what shifts an opening one of a chamber, where the flow
-/// through each edge stands alone.
+/// The equation in which the effect is largest, in units of noise. For an effect that shifts an opening it is a chamber's
+/// equation, because there the flow of each edge appears alone.
 fn clearest_equation(pairs: &[(Point, f64)], addition: &Addition) -> Option<EquationKind> {
     let mut sums: BTreeMap<EquationKind, f64> = BTreeMap::new();
     for (point, effect) in pairs.iter().filter(|(point, _)| point.residual != 0.0) {
@@ -200,13 +202,13 @@ fn clearest_equation(pairs: &[(Point, f64)], addition: &Addition) -> Option<Equa
     chamber.or(sums.first().map(|(kind, _)| *kind))
 }
 
-/// Whether the effect acts on what the valve lets through, and not on an instrument.
+/// Whether the effect acts on the valve's opening, and not on an instrument.
 fn shifts_an_opening(addition: &Addition) -> bool {
     !addition.physics.has_power() && addition.physics.card().acts_on != ActsOn::Instruments
 }
 
-/// Along the variable that explains most of what the effect does, or along the command where the effect shifts an opening and
-/// the command explains enough.
+/// Bins along the variable that explains most of the effect, or along the command if the effect shifts an opening and the command
+/// explains enough.
 fn along_its_variable(
     kind: EquationKind,
     pairs: &[(Point, f64)],

@@ -1,4 +1,4 @@
-//! From recordings to a verdict.
+//! Diagnoses a model from recordings and returns a verdict.
 
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -16,24 +16,25 @@ use crate::validation::mean_error;
 pub struct Diagnosis {
     /// The verdict on the scores.
     pub verdict: Verdict,
-    /// What it was decided from.
+    /// The scores behind the verdict.
     pub scores: Scores,
     /// The fits behind the scores, one for each hypothesis.
     pub trials: Vec<Trial>,
-    /// Additions to the given model that were not worth a fit to the end, with what its beginning brought or promised, best first.
+    /// Additions to the given model whose fit was not completed, with the improvement that its first steps brought or promised,
+    /// best first.
     pub unpromising: Vec<Unpromising>,
     /// Additions that could not be fitted, with the reason.
     pub failed: Vec<(String, AdditionError)>,
     /// Where the residual of the given model is, on the validation recordings.
     pub map: Vec<Share>,
-    /// What is left where nothing explains it.
+    /// The remaining residual, if no effect explains it.
     pub unexplained: Option<Unexplained>,
-    /// Mean NMSE of the model of each trial on the validation recordings, simulated from their starts: what a comparison of that
-    /// model shows. `NaN` for trials that are not shown and where a simulation failed.
+    /// Mean NMSE of each trial's model on the validation recordings, simulated from their starts, as in a comparison of that
+    /// model. `NaN` for trials that are not shown and if a simulation failed.
     pub errors: Vec<f64>,
 }
 
-/// Why there is no verdict.
+/// Why a diagnosis fails.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DiagnosisError {
@@ -48,17 +49,17 @@ pub enum DiagnosisError {
     NoValidation,
 }
 
-/// How a diagnosis is made.
+/// Settings of a diagnosis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DiagnosisSettings {
     /// How much is tried.
     pub effort: Effort,
-    /// How it is judged.
+    /// Rules of the verdict.
     pub policy: Policy,
 }
 
-/// Finds out what `model` is missing. Parameters are fitted to `identification`, evidence comes from `validation`.
-/// `progress` is told what is being done, in words, with the fraction done.
+/// Finds the effect that `model` is missing. Parameters are fitted to `identification`; evidence comes from `validation`.
+/// `progress` receives the current step as text and the fraction done.
 ///
 /// ```no_run
 /// use excavator_identification::prelude::*;
@@ -95,10 +96,10 @@ pub fn diagnose(
     diagnosis_of(pool, verdict, validation)
 }
 
-/// What a search and the verdict on it say about a model.
+/// Combines a search and its verdict into a diagnosis.
 ///
 /// # Errors
-/// [`DiagnosisError::Regression`] when the recordings lack inputs.
+/// [`DiagnosisError::Regression`] if the recordings lack inputs.
 pub(crate) fn diagnosis_of(
     pool: Pool<'_>,
     verdict: Verdict,

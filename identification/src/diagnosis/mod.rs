@@ -1,4 +1,4 @@
-//! Which physical effect is missing: a search, the verdict on its scores, and where the model fails.
+//! Finds the missing physical effect: a search, the verdict on its scores, and where the model fails.
 
 mod candidates;
 mod contribution;

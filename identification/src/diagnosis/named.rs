@@ -1,4 +1,4 @@
-//! What effects that somebody named do for a model.
+//! Judges effects that a user named.
 
 use excavator_model::recording::Recording;
 
@@ -6,22 +6,23 @@ use crate::decision::{Kind, Policy, decide};
 use crate::fit::{Fit, FitSettings};
 use crate::search::{Addition, AdditionError, score_named};
 
-/// What is to be thought of effects that were added because somebody named them.
+/// Verdict on effects that a user named.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedVerdict {
-    /// `MissingEffect` where they explain what the model was missing, `Adequate` where it was missing nothing, `Unexplained`
-    /// where something is missing still.
+    /// `MissingEffect` if they explain what the model was missing, `Adequate` if it was missing nothing, `Unexplained` if
+    /// something is still missing.
     pub kind: Kind,
-    /// Fall of the log error ratio on the validation recordings that they bring together.
+    /// Decrease of the log error ratio on the validation recordings that they bring together.
     pub improvement: f64,
-    /// Whether that is more than chance and the small errors that every model has.
+    /// Whether the improvement exceeds chance and the small errors that every model has.
     pub helps: bool,
 }
 
-/// Judges effects that were added to `given` one after the other, each with the fit that ends with it, by the rules of a diagnosis.
+/// Judges effects that were added to `given` one after the other, each with the fit that includes it, by the rules of a
+/// diagnosis.
 ///
 /// # Errors
-/// [`AdditionError`] when a model cannot be evaluated on the validation recordings.
+/// [`AdditionError`] if a model cannot be evaluated on the validation recordings.
 pub(crate) fn judge_named(
     given: &Fit,
     added: &[(Addition, Fit)],

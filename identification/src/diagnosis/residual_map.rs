@@ -1,4 +1,4 @@
-//! Where a model fails: in which equation, in which regime, along which variable.
+//! Locates where a model fails: in which equation, in which regime, along which variable.
 
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -11,7 +11,7 @@ use crate::regression::{EquationKind, RegressionError};
 pub struct Share {
     /// `arm.motion`, `arm.cap_continuity`, ...
     pub equation: String,
-    /// In words: "valve closed", "to cap side, fast", ...
+    /// Description: "valve closed", "to cap side, fast", ...
     pub regime: &'static str,
     /// Fraction of the squared residual (in units of noise) of all equations.
     pub share_of_residual: f64,
@@ -43,7 +43,7 @@ const SLOW: f64 = 0.2;
 /// Shares of the residual by equation and regime, largest first.
 ///
 /// # Errors
-/// [`RegressionError`] when the recordings lack inputs.
+/// [`RegressionError`] if the recordings lack inputs.
 pub fn residual_map(model: &Model, recordings: &[&Recording]) -> Result<Vec<Share>, RegressionError> {
     let points = points(model, recordings)?;
     let largest = |of: fn(&Point) -> f64| points.iter().map(|point| of(point).abs()).fold(0.0, f64::max);
@@ -90,10 +90,10 @@ pub fn residual_map(model: &Model, recordings: &[&Recording]) -> Result<Vec<Shar
     Ok(shares)
 }
 
-/// The curve over one variable that explains most of the residual of the equation that fails most.
+/// The curve over one variable that explains most of the residual in the equation with the largest residual.
 ///
 /// # Errors
-/// [`RegressionError`] when the recordings lack inputs.
+/// [`RegressionError`] if the recordings lack inputs.
 pub fn unexplained(model: &Model, recordings: &[&Recording]) -> Result<Option<Unexplained>, RegressionError> {
     let points = points(model, recordings)?;
     let mut kinds: Vec<EquationKind> = points.iter().map(|point| point.kind).collect();

@@ -1,4 +1,4 @@
-//! Residuals of a model with the state around them, and curves over it.
+//! Residuals of a model with the states at which they occur, and binned curves over these.
 
 use excavator_model::Model;
 use excavator_model::machine::Mechanism;
@@ -7,12 +7,12 @@ use excavator_model::simulation::{InputSignals, undistorted};
 
 use crate::regression::{EquationKind, RegressionError, WeakFormSettings, observe, weak_residuals};
 
-/// One weak residual with the state around it.
+/// One weak residual with the state at which it occurs.
 pub(super) struct Point {
     pub kind: EquationKind,
     /// Number of the recording, and of the sample in the middle of the window.
     pub place: (usize, usize),
-    /// In units of what sensor noise explains.
+    /// In units of the sensor noise.
     pub weighed: f64,
     /// Mean over the window, in the equation's unit.
     pub residual: f64,
@@ -25,20 +25,20 @@ pub(super) struct Point {
     pub time: f64,
 }
 
-/// Equation, recording and sample: what two models' residuals have in common.
+/// Equation, recording and sample: identifies the same residual in two models.
 pub(super) type Key = (EquationKind, (usize, usize));
 
 impl Point {
-    /// Where it is.
+    /// Identifies the residual.
     pub fn key(&self) -> Key {
         (self.kind, self.place)
     }
 }
 
-/// Something that a residual may depend on.
+/// A quantity that a residual may depend on.
 pub(super) type Variable = fn(&Point) -> f64;
 
-/// What a residual is looked at against.
+/// Variables that residuals are plotted against.
 pub(super) const VARIABLES: [(&str, Variable); 7] = [
     ("command", |p| p.opening),
     ("speed", |p| p.velocity),
@@ -58,12 +58,12 @@ pub(super) fn unit_of(kind: EquationKind, model: &Model) -> &'static str {
     }
 }
 
-/// All weak residuals of `model` along the recordings.
+/// All weak residuals of `model` for the recordings.
 ///
 /// # Errors
-/// [`RegressionError`] when the recordings lack inputs.
+/// [`RegressionError`] if the recordings lack inputs.
 pub(super) fn points(model: &Model, recordings: &[&Recording]) -> Result<Vec<Point>, RegressionError> {
-    // No guard: where a model fails near standstill is part of the answer.
+    // No velocity guard: failures near standstill must be visible.
     let settings = WeakFormSettings { velocity_guard: 0.0, ..WeakFormSettings::default() };
     let mut points = Vec::new();
     for (number, recording) in recordings.iter().enumerate() {
@@ -102,14 +102,14 @@ fn busiest(inputs: &InputSignals, sample: usize, cylinders: usize) -> usize {
 /// Bins of a curve over a variable, each with the same number of points.
 pub(super) const BINS: usize = 24;
 
-/// Points that are neighbours along a variable.
+/// Neighbouring points along a variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bin {
     /// Mean of the variable.
     pub at: f64,
     /// Number of points.
     pub count: f64,
-    /// Mean of what is looked at.
+    /// Mean of the binned values.
     pub mean: f64,
     /// Its variance inside the bin.
     pub variance: f64,
@@ -124,8 +124,7 @@ impl Bin {
     }
 }
 
-/// Bins of `(variable, value)` pairs; `None` for too few, or a variable that stands still, whose bins would be bins of
-/// time.
+/// Bins of `(variable, value)` pairs; `None` if there are too few pairs, or if the variable is constant, which would bin by time.
 pub(super) fn bins(mut pairs: Vec<(f64, f64)>) -> Option<Vec<Bin>> {
     pairs.retain(|pair| pair.0.is_finite());
     if pairs.len() < 4 * BINS {
@@ -150,7 +149,7 @@ pub(super) fn bins(mut pairs: Vec<(f64, f64)>) -> Option<Vec<Bin>> {
     Some((0..BINS).map(bin).collect())
 }
 
-/// Share of the squared values that the means of the bins explain, beyond what the means of noise would.
+/// Share of the squared values that the bin means explain, beyond the share expected from noise.
 pub(super) fn share_explained(bins: &[Bin]) -> f64 {
     let total: f64 = bins.iter().map(|bin| bin.count * bin.mean_square).sum();
     let explained: f64 = bins.iter().map(|bin| bin.count * bin.mean * bin.mean - bin.variance).sum();

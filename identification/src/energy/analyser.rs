@@ -1,4 +1,4 @@
-//! A recording of any length, block by block.
+//! Analyses a recording of any length, block by block.
 
 use std::collections::VecDeque;
 
@@ -18,14 +18,14 @@ use super::windows::{Window, windows};
 use super::{Books, EnergyError, EnergySettings, Place, Totals, Traces};
 use crate::validation::dominant_frequency;
 
-/// Blocks that are worked off at the same time.
+/// Number of blocks that are processed in parallel.
 const AT_ONCE: usize = 4;
-/// Time from the start in which the frequency of the excitation is searched, s.
+/// Time from the start that is searched for the excitation frequency, s.
 const SEARCHED: f64 = 40.0;
-/// Windows that are kept for a plot; of more, every other one.
+/// Number of windows kept for a plot; beyond it, every other one is dropped.
 const MOST_WINDOWS: usize = 40_000;
 
-/// Takes a recording block by block; see [`analyse`] for one that is in memory.
+/// Takes a recording block by block; see [`analyse`] for a recording in memory.
 #[derive(Debug)]
 pub struct Analyser<'m> {
     model: &'m Model,
@@ -36,7 +36,7 @@ pub struct Analyser<'m> {
     samples: usize,
     last_time: f64,
     gaps: usize,
-    /// What has come and is still needed; its clock is that of the whole recording.
+    /// Received samples that are still needed; the clock is that of the whole recording.
     buffer: Recording,
     /// Number of the buffer's first sample.
     first_sample: usize,
@@ -45,7 +45,7 @@ pub struct Analyser<'m> {
     blocks: usize,
     stride: usize,
     head: Option<Recording>,
-    /// Frequency at which the head is excited most, Hz.
+    /// Dominant excitation frequency of the head, Hz.
     frequency: Option<f64>,
     waiting: VecDeque<Block>,
     places: Vec<Place>,
@@ -67,7 +67,7 @@ struct Done {
 }
 
 impl<'m> Analyser<'m> {
-    /// An analyser that has seen nothing.
+    /// An analyser without data.
     pub fn new(model: &'m Model, settings: EnergySettings) -> Self {
         let settings = settings.for_size(&model.machine.size());
         let places = Place::all(model);
@@ -101,11 +101,11 @@ impl<'m> Analyser<'m> {
         }
     }
 
-    /// Takes the next block; its stamps go on from those before. Samples that do not come after those before are left
-    /// out.
+    /// Adds the next block, whose timestamps continue the previous ones. Samples that are not later than the previous ones are
+    /// skipped.
     ///
     /// # Errors
-    /// [`EnergyError::Signal`] and [`EnergyError::NotMeasured`] when it does not measure what the model needs.
+    /// [`EnergyError::Signal`] and [`EnergyError::NotMeasured`] if the block lacks a signal that the model needs.
     pub fn push(&mut self, block: &Recording) -> Result<(), EnergyError> {
         if self.start_nanoseconds.is_none() {
             self.source.clone_from(&block.source);
@@ -135,10 +135,11 @@ impl<'m> Analyser<'m> {
         if self.waiting.len() >= AT_ONCE { self.work() } else { Ok(()) }
     }
 
-    /// Everything that was found.
+    /// Finishes and returns the analysis.
     ///
     /// # Errors
-    /// As [`Analyser::push`], and [`EnergyError::TooShort`] or [`EnergyError::TooSlow`] for a recording in which there is nothing to take a slope of.
+    /// As [`Analyser::push`], and [`EnergyError::TooShort`] or [`EnergyError::TooSlow`] if the recording does not allow a slope
+    /// to be computed.
     pub fn finish(mut self) -> Result<EnergyAnalysis, EnergyError> {
         self.begin();
         self.cut_blocks(true);
@@ -173,7 +174,7 @@ impl<'m> Analyser<'m> {
         })
     }
 
-    /// Signals without which no energy is known.
+    /// Checks for the signals that the energy needs.
     fn check(&self, block: &Recording) -> Result<(), EnergyError> {
         let missing = |signal: String| EnergyError::NotMeasured { source_name: block.source.clone(), signal };
         for cylinder in &self.model.machine.cylinders {
@@ -195,19 +196,19 @@ impl<'m> Analyser<'m> {
         Ok(())
     }
 
-    /// What a block needs beyond its own time on each side, s.
+    /// Extra time that a block needs on each side, s.
     fn margin(&self) -> f64 {
         self.settings.window_half_width + self.settings.motion_half_width + self.settings.half_width
     }
 
-    /// What the head of the recording tells of all of it.
+    /// Derives from the head what the whole recording needs: stride, excitation frequency and cycle.
     fn begin(&mut self) {
         if self.head.is_some() || self.buffer.is_empty() {
             return;
         }
         let end = self.buffer.time.partition_point(|&t| t <= self.settings.head);
         let head = slice(&self.buffer, 0..end.max(1));
-        // Two entries per half width carry everything that parabolas of that width let pass.
+        // Two entries per half width preserve everything that parabolas of that width pass.
         let per_half_width = self.settings.half_width / head.sample_interval();
         self.stride = (per_half_width / 2.5 + 1e-6).floor().max(1.0) as usize;
         let (period, frequency) = excitation(self.model, &head);
@@ -216,7 +217,7 @@ impl<'m> Analyser<'m> {
         self.head = Some(head);
     }
 
-    /// Cuts what has come into blocks; at the end all of it.
+    /// Cuts the received samples into blocks; with `all`, also the remainder.
     fn cut_blocks(&mut self, all: bool) {
         let margin = self.margin();
         loop {
@@ -227,7 +228,7 @@ impl<'m> Analyser<'m> {
                 }
                 end = self.last_time + margin;
             }
-            // Nothing between this and the block of the next sample: a clock that was set forward leaves years without one.
+            // Skips empty blocks up to the next sample: a clock that was set forward may leave a gap of years.
             let next = self.buffer.time.get(self.buffer.time.partition_point(|&t| t < self.cut - margin));
             let empty = next.map_or(0.0, |next| ((next - margin - self.cut) / self.settings.block).floor());
             if empty > 1.0 {
@@ -322,7 +323,7 @@ impl<'m> Analyser<'m> {
         }
     }
 
-    /// Simulates the head; the reason where that is not possible.
+    /// Simulates the head; returns the reason if that fails.
     fn simulate_head(&mut self) -> Option<String> {
         let head = self.head.as_ref()?;
         let simulated = match simulate(self.model, head) {
@@ -348,7 +349,7 @@ impl<'m> Analyser<'m> {
     }
 }
 
-/// Analyses a recording that is in memory.
+/// Analyses a recording in memory.
 ///
 /// # Errors
 /// As [`Analyser::push`] and [`Analyser::finish`].
@@ -358,7 +359,7 @@ pub fn analyse(model: &Model, recording: &Recording, settings: EnergySettings) -
     analyser.finish()
 }
 
-/// Period (s) of the valve that moves most, or of the force, and the frequency (Hz) at which it is strongest.
+/// Period (s) of the valve that moves most, or of the force, and its dominant frequency (Hz).
 fn excitation(model: &Model, head: &Recording) -> (Option<f64>, Option<f64>) {
     let Ok(signals) = InputSignals::from_recording(model, head) else { return (None, None) };
     let size = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
@@ -368,9 +369,9 @@ fn excitation(model: &Model, head: &Recording) -> (Option<f64>, Option<f64>) {
     } else {
         head.cylinders.first().map(|cylinder| cylinder.rod_force.as_slice())
     };
-    // Frequencies are those of a machine of the reference size.
+    // The frequency search assumes a machine of the reference size.
     let unit = model.machine.size().time();
-    // The search takes the square of the time that it looks at.
+    // The time of the search is quadratic in the length of its data.
     let end = head.time.partition_point(|&t| t <= SEARCHED * unit);
     let time: Vec<f64> = head.time[..end].iter().map(|time| time / unit).collect();
     let frequency = strongest.and_then(|values| Some(dominant_frequency(&time, &values[..end])? / unit));
@@ -378,7 +379,7 @@ fn excitation(model: &Model, head: &Recording) -> (Option<f64>, Option<f64>) {
     (found, frequency)
 }
 
-/// Samples of a range; times of a block start at zero.
+/// Samples of a range; the times of a block start at zero.
 fn slice(recording: &Recording, range: std::ops::Range<usize>) -> Recording {
     let part = |column: &[f64]| column[range.clone()].to_vec();
     let cylinders = recording.cylinders.iter().map(|cylinder| {
@@ -401,7 +402,7 @@ fn slice(recording: &Recording, range: std::ops::Range<usize>) -> Recording {
     }
 }
 
-/// Adds samples at the end; cylinders that one of the two does not have are not measured there.
+/// Appends samples; a cylinder that only one of the two has is unmeasured in the other.
 fn append(buffer: &mut Recording, block: Recording) {
     if buffer.cylinders.is_empty() && buffer.is_empty() {
         *buffer = block;

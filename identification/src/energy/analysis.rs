@@ -1,4 +1,4 @@
-//! What an analysis found.
+//! Results of an energy analysis.
 
 use excavator_model::Model;
 
@@ -17,8 +17,8 @@ pub struct Cycle {
     pub deviation: Totals,
 }
 
-/// By how many degrees one rate of the Hamiltonian lags behind another at the frequency of the excitation; \[A\] wants
-/// less than 90. `None` where one of them has no component there.
+/// Phase lag, in degrees, of one rate of the Hamiltonian behind another at the excitation frequency; \[A\] requires less than 90.
+/// `None` if one of them has no component there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhaseDelays {
     /// Frequency, Hz.
@@ -32,25 +32,25 @@ pub struct PhaseDelays {
 }
 
 impl PhaseDelays {
-    /// The largest by size, degrees.
+    /// The largest magnitude, degrees.
     pub fn largest(&self) -> Option<f64> {
         let all = [self.analytical, self.numerical, self.numerical_behind_analytical];
         all.into_iter().flatten().map(f64::abs).max_by(f64::total_cmp)
     }
 }
 
-/// What is missing in one window.
+/// Missing power in one window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WindowPoint {
     /// Centre of the window, s.
     pub time: f64,
-    /// Power that is stored at each place without the model saying from where, W.
+    /// Power stored at each place without a source in the model, W.
     pub residuals: Vec<f64>,
-    /// Half width of the band within which it is explained, W.
+    /// Half width of the band within which the residual is explained, W.
     pub bands: Vec<f64>,
 }
 
-/// Share of one valve section in the balance of the pump line, J.
+/// Energies of one valve section in the balance of the pump line, J.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
     /// Name of its cylinder.
@@ -72,7 +72,7 @@ pub struct PumpLine {
     pub sections: Vec<Section>,
     /// Gain of the line's own energy.
     pub stored: f64,
-    /// Gained without the model saying from where; negative: it went missing.
+    /// Gained without a source in the model; negative: lost.
     pub residual: f64,
 }
 
@@ -85,26 +85,26 @@ pub struct EnergyAnalysis {
     pub samples: usize,
     /// Time from the first to the last of them, s.
     pub duration: f64,
-    /// Gaps that were left out.
+    /// Gaps that were skipped.
     pub gaps: usize,
     /// Energies over the recording.
     pub totals: Totals,
-    /// Energies per cycle, where the command repeats.
+    /// Energies per cycle, if the command repeats.
     pub cycle: Option<Cycle>,
-    /// The ledger place by place.
+    /// The ledger of each place.
     pub places: Vec<PlaceJudgement>,
-    /// The same over time; thinned in recordings of many hours.
+    /// Missing power over time; thinned in recordings of many hours.
     pub windows: Vec<WindowPoint>,
-    /// Everything over time for the head of the recording.
+    /// Traces over time for the head of the recording.
     pub traces: Traces,
     /// Why there are no numerical results.
     pub simulation_failed: Option<String>,
-    /// Whether parameters of the model carry standard errors; without, their part of the bands is zero.
+    /// Whether parameters of the model have standard errors; without them, their part of the bands is zero.
     pub parameters_have_errors: bool,
 }
 
 impl EnergyAnalysis {
-    /// The balance of the pump line; `None` for machines whose supply is not part of the model.
+    /// The balance of the pump line; `None` if the supply is not part of the model.
     pub fn pump_line(&self, model: &Model) -> Option<PumpLine> {
         if !matches!(model.machine.supply, excavator_model::machine::Supply::PumpLine(_)) {
             return None;

@@ -1,4 +1,4 @@
-//! A stretch of a recording, and the books of what was measured in it.
+//! A stretch of a recording, and the books of its measured state.
 
 use excavator_model::SignalError;
 use excavator_model::energy::Accountant;
@@ -10,11 +10,11 @@ use excavator_model::simulation::{InputSignals, undistorted};
 use super::smoothing::Parabola;
 use super::{Books, EnergySettings};
 
-/// A stretch without gaps. Its entries are those samples whose number in the recording is a multiple of `stride`, so that
-/// neighbouring blocks that overlap have the same.
+/// A stretch without gaps. Its entries are the samples whose number in the recording is a multiple of `stride`, so that
+/// overlapping neighbouring blocks have the same entries.
 #[derive(Debug, Clone)]
 pub(super) struct Block {
-    /// The samples, with what the windows at the ends need.
+    /// The samples, including those that the windows at the ends need.
     pub recording: Recording,
     /// Time of the first sample since the start of the recording, s.
     pub start: f64,
@@ -22,12 +22,12 @@ pub(super) struct Block {
     pub first_sample: usize,
     /// Samples per entry.
     pub stride: usize,
-    /// Part that counts, s since the start of the recording.
+    /// Part that the block accounts for, s since the start of the recording.
     pub own: (f64, f64),
-    /// Whether valve openings may come from the spool sensor alone. The estimate that also listens to the command is a
-    /// little sharper and takes longer than everything else together.
+    /// Whether valve openings may come from the spool sensor alone. The estimate that also uses the command is slightly more
+    /// accurate but takes longer than the rest of the analysis.
     pub quick: bool,
-    /// Whether the effect of noise is found out by repeats.
+    /// Whether the effect of noise is estimated with repeats.
     pub with_noise: bool,
 }
 
@@ -39,9 +39,9 @@ impl Block {
     }
 }
 
-/// What was measured in a block: states and inputs at its entries. Positions and pressures are by parabolas through their samples, valves
-/// by the estimate that drives simulations too. Entries whose windows are cut off by the ends or touch a sample that was not measured are
-/// not there.
+/// The measured states and inputs of a block at its entries. Positions and pressures come from parabolas through their samples,
+/// valves from the estimate that also drives simulations. Entries are skipped if their windows are cut off by the ends or contain
+/// an unmeasured sample.
 pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySettings) -> Result<Entries, SignalError> {
     let model = system.model();
     let layout = system.layout();
@@ -88,7 +88,7 @@ pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySett
         match (layout.pump, model.machine.supply) {
             (Some(pump), _) => state[pump] = pressure.value(&recording.pump_pressure),
             (None, Supply::PressureSource(_)) => {
-                // Where it is not measured the machine's constant is there already.
+                // If it is not measured, the machine's constant is already set.
                 let measured = pressure.value(&recording.pump_pressure);
                 if measured.is_finite() {
                     inputs.supply_pressure = measured;
@@ -103,12 +103,12 @@ pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySett
     Ok(entries)
 }
 
-/// States, but for what effects remember, with their inputs.
+/// States, except the memory states of effects, with their inputs.
 pub(super) struct Entries {
     signals: InputSignals,
     /// Number of each sample, its time since the start of the recording (s), and the supply's pressure (Pa).
     samples: Vec<(usize, f64, f64)>,
-    /// The states, one after the other.
+    /// The states, concatenated.
     states: Vec<f64>,
     states_each: usize,
 }
@@ -124,7 +124,7 @@ impl Entries {
     }
 }
 
-/// The books of some entries, in order.
+/// The books of a set of entries, in order.
 pub(super) fn books_of(system: &System<'_>, parameters: &[f64], entries: &Entries) -> Books {
     let model = system.model();
     let (mut books, mut laws) = (Books::new(model, entries.samples.len()), LawStates::new(system));
@@ -147,7 +147,7 @@ pub(super) fn books_of(system: &System<'_>, parameters: &[f64], entries: &Entrie
     books
 }
 
-/// The books of what was measured in a block.
+/// The books of the measured states of a block.
 pub(super) fn measured_books(
     system: &System<'_>,
     parameters: &[f64],
@@ -157,7 +157,7 @@ pub(super) fn measured_books(
     Ok(books_of(system, parameters, &measured(system, block, settings)?))
 }
 
-/// The books of a simulation on the clock of a block: its states as they are.
+/// The books of a simulation on the clock of a block, from its states without smoothing.
 pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Recording) -> Result<Books, SignalError> {
     let model = system.model();
     let layout = system.layout();

@@ -1,4 +1,4 @@
-//! Energies and powers along a recording, as columns.
+//! Energies and powers of a recording, as columns.
 
 use excavator_model::Model;
 use excavator_model::effects::{ActsOn, Site, Text};
@@ -30,14 +30,14 @@ pub struct CylinderBooks {
     pub rod_force_power: Vec<f64>,
 }
 
-/// Powers of one effect of the model, W; positive where it gives energy to what it acts on.
+/// Powers of one effect of the model, W; positive if the effect supplies energy to what it acts on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectBooks {
     /// Name in the catalogue.
     pub effect: Text,
-    /// Where it sits.
+    /// Place of the effect.
     pub site: Site,
-    /// What it belongs to.
+    /// What the effect acts on.
     pub acts_on: ActsOn,
     /// Whether it has power of its own, [`excavator_model::energy::EffectPower::has_power`].
     pub has_power: bool,
@@ -67,7 +67,7 @@ pub struct Books {
 }
 
 impl Books {
-    /// No entries yet, with room for so many.
+    /// Empty books with this capacity.
     pub(super) fn new(model: &Model, room: usize) -> Self {
         let column = || Vec::with_capacity(room);
         let effects = model.effects.iter().map(|effect| EffectBooks {
@@ -100,7 +100,7 @@ impl Books {
         }
     }
 
-    /// Enters one ledger with the state that it belongs to.
+    /// Appends one ledger with its state.
     pub(super) fn enter(
         &mut self,
         model: &Model,
@@ -147,7 +147,7 @@ impl Books {
         self.time.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no entries.
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
     }
@@ -162,7 +162,7 @@ impl Books {
         }
     }
 
-    /// Power into a place as the model has it, W: its rate of storage where nothing is missing.
+    /// Power into a place according to the model, W: its rate of storage if nothing is missing.
     pub fn power_into(&self, place: Place, entry: usize) -> f64 {
         match place {
             Place::Motion => {
@@ -184,7 +184,7 @@ impl Books {
         }
     }
 
-    /// Size of the power that flows through a place, W: the greater of what goes in and what comes out.
+    /// Magnitude of the power through a place, W: the larger of inflow and outflow.
     pub fn flow_through(&self, place: Place, entry: usize) -> f64 {
         let effects = |part: fn(&EffectBooks) -> &Vec<f64>| {
             self.effects.iter().map(|effect| part(effect)[entry].abs()).sum::<f64>()
@@ -221,8 +221,8 @@ impl Books {
         valve.map(|effect| effect.into_cylinders(entry)).sum::<f64>() + self.cylinders[cylinder].rod_force_power[entry]
     }
 
-    /// Power that all other effects give to a cylinder, W: the dissipation of \[A\] Eq. 11, negative but for effects that
-    /// give energy back.
+    /// Power that all other effects supply to a cylinder, W: the dissipation of \[A\] Eq. 11, negative except for effects that
+    /// return energy.
     pub fn dissipation(&self, cylinder: usize, entry: usize) -> f64 {
         let others = self.at_cylinder(cylinder).filter(|effect| effect.acts_on != ActsOn::Valve);
         others.map(|effect| effect.into_cylinders(entry)).sum()
@@ -239,7 +239,7 @@ impl EffectBooks {
         self.mechanical[entry] + self.cap[entry] + self.rod[entry]
     }
 
-    /// Power into links, chambers and pump line, W: minus what it dissipates.
+    /// Power into links, chambers and pump line, W: the negative of the dissipated power.
     pub fn total(&self, entry: usize) -> f64 {
         self.into_cylinders(entry) + self.pump_line[entry]
     }

@@ -1,19 +1,19 @@
-//! The period of the work, and energies per period.
+//! The period of the work cycle, and energies per period.
 
 use excavator_model::Model;
 
 use super::analysis::Cycle;
 use super::{Books, Totals};
 
-/// Least correlation of the command with itself one period later.
+/// Smallest correlation of the command with itself one period later that counts as repetition.
 const LEAST_CORRELATION: f64 = 0.9;
-/// Fewest periods that a mean is taken over.
+/// Fewest periods for a mean.
 const FEWEST_CYCLES: f64 = 3.0;
 
-/// Period (s) of a signal that is strongest about `frequency` (Hz); `None` where it does not repeat.
+/// Period (s) of a signal whose dominant frequency is about `frequency` (Hz); `None` if it does not repeat.
 pub(super) fn period(time: &[f64], signal: &[f64], frequency: f64) -> Option<f64> {
     let duration = time.last()? - time.first()?;
-    // The spectrum knows the frequency to about half of one over the duration that it saw; correlation knows it better.
+    // The spectrum resolves the frequency to about half of the reciprocal of its duration; correlation is more accurate.
     let (best, correlation) = (-40..=40)
         .map(|step| frequency * (1.0 + f64::from(step) * 1e-3))
         .filter(|frequency| *frequency > 0.0)
@@ -41,7 +41,7 @@ fn repetition(time: &[f64], signal: &[f64], lag: f64) -> f64 {
     product / (now * then).sqrt().max(f64::MIN_POSITIVE)
 }
 
-/// Adds up energies cycle by cycle.
+/// Sums energies cycle by cycle.
 #[derive(Debug)]
 pub(super) struct Cycles {
     period: f64,
@@ -52,7 +52,7 @@ pub(super) struct Cycles {
     squares: Vec<f64>,
 }
 
-/// A cycle of which more than this part is in gaps is left out.
+/// Share of a cycle in gaps above which the cycle is skipped.
 const LARGEST_GAP: f64 = 0.05;
 
 impl Cycles {
@@ -63,7 +63,7 @@ impl Cycles {
         Cycles { period, model_totals, current: None, count: 0, mean: vec![0.0; numbers], squares: vec![0.0; numbers] }
     }
 
-    /// Adds the time between an entry and the next.
+    /// Adds the time between an entry and the next one.
     pub fn add(&mut self, books: &Books, entry: usize) {
         let number = (books.time[entry] / self.period).floor() as i64;
         if self.current.as_ref().is_none_or(|(current, _)| *current != number) {

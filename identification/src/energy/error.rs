@@ -1,4 +1,4 @@
-//! Why there is no analysis.
+//! Why an energy analysis fails.
 
 use excavator_model::SignalError;
 
@@ -6,10 +6,10 @@ use excavator_model::SignalError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnergyError {
-    /// The recording does not give what the model needs.
+    /// The recording lacks a signal that the model needs.
     #[error(transparent)]
     Signal(#[from] SignalError),
-    /// A signal without which no energy is known is not measured.
+    /// A signal that the energy needs is not measured.
     #[error("{source_name} does not measure {signal}, without which the energy is unknown; record it, or give a map")]
     NotMeasured {
         /// The recording.
@@ -17,7 +17,7 @@ pub enum EnergyError {
         /// Contract name.
         signal: String,
     },
-    /// Nothing long enough to take a slope of.
+    /// No stretch is long enough for a slope.
     #[error("{source_name} has {samples} samples in {duration:.3} s and no stretch of {needed:.2} s without a gap")]
     TooShort {
         /// The recording.
@@ -47,12 +47,12 @@ pub enum EnergyError {
     },
 }
 
-/// Samples on each side within the half width of a slope that it takes.
+/// Samples that a slope needs on each side within its half width.
 const SAMPLES_PER_SIDE: f64 = 2.0;
 
 impl EnergyError {
-    /// Why `samples` of a recording of `duration` s whose usual interval is `interval` s gave nothing to take slopes over `half_width` of,
-    /// which needs stretches of `needed` s.
+    /// The error for `samples` of a recording of `duration` s, with a usual interval of `interval` s, that allow no slopes over
+    /// `half_width`; those need stretches of `needed` s.
     pub(super) fn of_nothing(
         source_name: String,
         (samples, duration): (usize, f64),
@@ -60,7 +60,7 @@ impl EnergyError {
         half_width: f64,
         needed: f64,
     ) -> Self {
-        // A tenth for clocks that are not even.
+        // A tenth of tolerance for uneven clocks.
         if SAMPLES_PER_SIDE * interval > 1.1 * half_width {
             EnergyError::TooSlow {
                 source_name,

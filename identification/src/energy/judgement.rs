@@ -1,4 +1,4 @@
-//! Does the ledger close, place by place?
+//! Judges place by place whether the ledger closes.
 
 use std::collections::VecDeque;
 
@@ -6,38 +6,38 @@ use super::noise::WindowNoise;
 use super::windows::Window;
 use super::{EnergySettings, Place, Regime};
 
-/// What is missing at a place under one condition.
+/// Missing power at a place under one condition.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegimeJudgement {
     /// The condition.
     pub regime: Regime,
-    /// Windows in which it was met.
+    /// Windows under this condition.
     pub windows: usize,
-    /// Mean power that is stored without the model saying from where, W; negative: it goes missing. Zero for no windows.
+    /// Mean power that is stored without a source in the model, W; negative: lost. Zero if there are no windows.
     pub mean: f64,
-    /// Largest of the windows' powers by size, with its sign, W.
+    /// The window power of largest magnitude, with its sign, W.
     pub peak: f64,
-    /// Root mean square of the windows' powers, W. A fit moves a missing effect's mean to zero, not its size.
+    /// Root mean square of the windows' powers, W. A fit moves the mean of a missing effect to zero, but not its size.
     pub size: f64,
-    /// The same without the worst event, W: the stretch as long as a window in which most is missing.
+    /// The same without the worst event, W: the stretch of one window's length with the most missing power.
     pub size_elsewhere: f64,
     /// Standard deviation of a window's power from sensor noise, W.
     pub noise: f64,
-    /// Standard deviation from the parameters' standard errors, where the model has them, and from the time between two
-    /// samples of a valve's opening, W.
+    /// Standard deviation from the parameters' standard errors, if the model has them, and from the unknown time between two
+    /// samples at which a valve opens, W.
     pub parameters: f64,
-    /// Most that the parabolas through the measurements have cut off, root mean square, W.
+    /// Upper estimate of what the parabolas through the measurements cut off, root mean square, W.
     pub rounding: f64,
-    /// Mean power that flows through the place, W.
+    /// Mean power through the place, W.
     pub flow: f64,
-    /// Largest size that noise, parameters, rounding and tolerance explain, W; infinite where windows are too few to judge.
+    /// Largest size that noise, parameters, rounding and tolerance explain, W; infinite if there are too few windows to judge.
     pub band: f64,
 }
 
 impl RegimeJudgement {
-    /// Whether noise, the parameters' errors, rounding and the tolerance explain what is missing. What is missing in one
-    /// event only does not count: where a pressure comes close to that of the tank, noise has rare large effects that
-    /// no standard deviation tells of, and physics that the model lacks shows whenever the condition is met.
+    /// Whether noise, the parameters' errors, rounding and the tolerance explain the missing power. Power that is missing in a
+    /// single event does not count: near tank pressure noise has rare large effects that no standard deviation describes, while
+    /// missing physics appears whenever the condition is met.
     pub fn is_explained(&self) -> bool {
         self.size.min(self.size_elsewhere) <= self.band
     }
@@ -50,7 +50,7 @@ pub struct PlaceJudgement {
     pub place: Place,
     /// One entry per [`Regime`], in that order.
     pub regimes: Vec<RegimeJudgement>,
-    /// Share of the windows that are outside their own band.
+    /// Share of the windows outside their own band.
     pub share_outside: f64,
 }
 
@@ -60,19 +60,19 @@ impl PlaceJudgement {
         self.regimes.iter().all(RegimeJudgement::is_explained)
     }
 
-    /// The condition under which most is missing, relative to its band; `None` where all is explained.
+    /// The condition with the most missing power relative to its band; `None` if all is explained.
     pub fn worst(&self) -> Option<&RegimeJudgement> {
         let outside = self.regimes.iter().filter(|regime| !regime.is_explained());
         outside.max_by(|a, b| (a.size / a.band).total_cmp(&(b.size / b.band)))
     }
 }
 
-/// Fewest windows that a condition is judged by. Windows overlap, so this is worth half as many: noise alone exceeds
-/// twice its standard deviation over six in one of two thousand cases.
+/// Fewest windows for judging a condition. Windows overlap, so this is worth half as many: noise alone exceeds twice its standard
+/// deviation over six in one of two thousand cases.
 const FEWEST: usize = 12;
 
-/// Where little power flows, the tolerance is that of this share of what flows through the place when most does: slopes of
-/// signals are no sharper for a condition in which nothing happens.
+/// Share of the largest mean flow of a place's conditions that sets the minimum of the tolerance. Signal slopes do not become
+/// more accurate under a condition in which little power flows.
 const QUIET: f64 = 0.5;
 
 /// Sums over windows.
@@ -96,19 +96,19 @@ struct Sum {
     parameter_variance: f64,
     rounding_squares: f64,
     flow: f64,
-    /// Time and square of the last windows, as far back as an event is long.
+    /// Times and squares of the latest windows within the length of an event.
     recent: VecDeque<(f64, f64)>,
     worst_event: Event,
 }
 
-/// Windows within the length of one.
+/// Windows within one event length.
 #[derive(Debug, Clone, Copy, Default)]
 struct Event {
     windows: usize,
     squares: f64,
 }
 
-/// What explains a window's power, W or W².
+/// Contributions that explain a window's power, W or W².
 #[derive(Debug, Clone, Copy, Default)]
 struct Explained {
     variance: f64,
@@ -120,14 +120,14 @@ struct Explained {
 /// A window with its errors.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Judged {
-    /// Residual of each place with what noise adds to it on average taken off, W.
+    /// Residual of each place, less its mean shift by noise, W.
     pub residuals: Vec<f64>,
     /// Half width of its band, W.
     pub bands: Vec<f64>,
 }
 
 impl Judge {
-    /// `places` with the cylinder whose doings make their regimes.
+    /// `places`, each with the cylinder whose motion determines the regime.
     pub fn new(places: Vec<(Place, Option<usize>)>, settings: EnergySettings) -> Self {
         let count = places.len();
         Judge {
@@ -140,7 +140,7 @@ impl Judge {
         }
     }
 
-    /// Takes over the noise of a block for windows that come without.
+    /// Stores the noise of a block for windows without their own.
     pub fn learn(&mut self, noises: &[WindowNoise]) {
         let Some(first) = noises.first() else { return };
         let count = noises.len() as f64;
@@ -166,13 +166,13 @@ impl Judge {
         self.windows += 1;
         for (index, &(_, cylinder)) in self.places.iter().enumerate() {
             let residual = window.residuals[index] - noise.map_or(0.0, |noise| noise.bias[index]);
-            // The mean of the repeats that was taken off has noise of its own.
+            // The subtracted mean of the repeats has noise of its own.
             let variance = noise.map_or(0.0, |noise| noise.variance[index] * (1.0 + 1.0 / draws));
             let parameters = noise.map_or(&[][..], |noise| &noise.parameters[index]);
             let parameter_variance: f64 = parameters.iter().map(|change| change * change).sum();
             let rounding = noise.map_or(0.0, |noise| noise.rounding[index]);
             let explained = Explained { variance, parameter_variance, rounding, flow: window.flows[index] };
-            // A single window of thousands must be further out than the root mean square of many.
+            // A single window among thousands needs a wider band than the root mean square of many.
             let band = 2.0 * band(&self.settings, explained);
             self.outside[index] += usize::from(residual.abs() > band);
             for (regime, sum) in Regime::ALL.iter().zip(&mut self.sums[index]) {
@@ -210,7 +210,7 @@ impl Judge {
     }
 }
 
-/// Size that is explained, W: standard deviations that are each as wide as they may be, rounding and the tolerance.
+/// Size that is explained, W: standard deviations times their allowed factors, rounding and tolerance.
 fn band(settings: &EnergySettings, explained: Explained) -> f64 {
     let noise = settings.significance.powi(2) * explained.variance;
     let parameters = settings.parameter_significance.powi(2) * explained.parameter_variance;
@@ -245,7 +245,7 @@ impl Sum {
         self.flow / self.windows.max(1) as f64
     }
 
-    /// `least_flow`: the tolerance is that of so much power at least.
+    /// `least_flow`: minimum of the power to which the tolerance applies.
     fn judge(&self, regime: Regime, least_flow: f64, settings: &EnergySettings) -> RegimeJudgement {
         let count = self.windows.max(1) as f64;
         let (variance, parameter_variance) = (self.variance / count, self.parameter_variance / count);

@@ -4,30 +4,30 @@ use excavator_model::Model;
 
 use super::{EnergyAnalysis, Place, PlaceJudgement, Regime, RegimeJudgement};
 
-/// Power that goes missing, or appears, at one equation of a model.
+/// Power that is lost, or appears, at one equation of a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MissingPower {
     /// Cylinder; `None` for the pump line, or where several joints share an equation.
     pub cylinder: Option<String>,
     /// Name of the equation: `arm.cap_continuity`.
     pub equation: String,
-    /// The condition under which it is clearest.
+    /// The condition under which it is most significant.
     pub regime: Regime,
-    /// Mean power, W; negative: it goes missing, positive: it appears.
+    /// Mean power, W; negative: lost, positive: appears without a source.
     pub mean: f64,
-    /// Root mean square of the power, W: a fit hides a missing effect's mean, not its size.
+    /// Root mean square of the power, W: a fit hides the mean of a missing effect, but not its size.
     pub size: f64,
-    /// Largest power by size in one window, W; negative: it goes missing.
+    /// The power of largest magnitude in one window, W; negative: lost.
     pub peak: f64,
     /// Size that noise, the parameters' errors and the tolerance explain, W.
     pub band: f64,
     /// The size as a share of the power that flows through the place.
     pub share_of_flow: f64,
-    /// All of it in one sentence.
+    /// Summary in one sentence.
     pub sentence: String,
 }
 
-/// Where power is missing beyond what noise explains, most significant first; empty where the ledger closes.
+/// The places with more missing power than noise explains, most significant first; empty if the ledger closes.
 pub fn missing_power(model: &Model, analysis: &EnergyAnalysis) -> Vec<MissingPower> {
     let mut found: Vec<(f64, MissingPower)> = analysis
         .places

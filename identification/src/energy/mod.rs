@@ -1,14 +1,14 @@
-//! Where the energy of a recording went, and whether the model's ledger closes (\[A\] Section 5, Eq. 9-12).
+//! Computes where the energy of a recording went, and whether the model's ledger closes (\[A\] Section 5, Eq. 9-12).
 //!
-//! The same effect code that drives the simulation is evaluated on what was measured. Three rates of the Hamiltonian are
-//! compared as in \[A\] Figure 10: *experimental* (slope of the energy stored in the measured state), *analytical* (supply
-//! and dissipation of Eq. 10-12 at the measured state) and *numerical* (the same at the simulated state).
+//! The effect code that drives the simulation is also evaluated on the measured state. Three rates of the Hamiltonian are
+//! compared as in \[A\] Figure 10: *experimental* (slope of the energy stored in the measured state), *analytical* (supply and
+//! dissipation of Eq. 10-12 at the measured state) and *numerical* (the same at the simulated state).
 //!
-//! Beyond \[A\], the ledger is kept at every place where the model has an equation ([`Place`]): in the motion of the links,
-//! in each chamber, and in the pump line. What is missing there is weighed against the noise of the sensors and the
-//! standard errors of the model's parameters, window by window, so that a ledger that does not close names the equation.
+//! Beyond \[A\], the ledger is kept at every place where the model has an equation ([`Place`]): in the motion of the links, in
+//! each chamber, and in the pump line. The missing power there is compared with sensor noise and with the standard errors of the
+//! model's parameters, window by window. A ledger that does not close therefore identifies the equation.
 //!
-//! Recordings come in blocks of any length ([`Analyser::push`]); memory does not grow with them.
+//! Recordings come in blocks of any length ([`Analyser::push`]); memory does not grow with the length of the recording.
 
 mod analyser;
 mod analysis;

@@ -1,4 +1,4 @@
-//! What sensor noise and inexact parameters do to the ledger.
+//! Effects of sensor noise and parameter errors on the ledger.
 
 use excavator_model::SignalError;
 use excavator_model::equations::System;
@@ -15,18 +15,18 @@ use super::{Books, EnergySettings, Place};
 /// Errors of the residuals of one window, one entry per place.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct WindowNoise {
-    /// Mean that noise adds, W.
+    /// Mean shift by noise, W.
     pub bias: Vec<f64>,
-    /// Variance that noise adds, W².
+    /// Variance due to noise, W².
     pub variance: Vec<f64>,
-    /// Changes of the residual by what is the same in all windows, W: by one standard error of each parameter that has
-    /// one, and by valves that open half a sample later.
+    /// Changes of the residual by errors that are common to all windows, W: one standard error of each parameter that has one,
+    /// and a shift of the valve openings by half a sample.
     pub parameters: Vec<Vec<f64>>,
-    /// Most that the parabolas have cut off, W.
+    /// Upper estimate of what the parabolas cut off, W.
     pub rounding: Vec<f64>,
 }
 
-/// A block with its noise.
+/// The noise analysis of a block.
 #[derive(Debug, Clone)]
 pub(super) struct NoiseStudy {
     /// The books with noise added, one per repeat.
@@ -35,17 +35,17 @@ pub(super) struct NoiseStudy {
     pub windows: Vec<WindowNoise>,
 }
 
-/// Windows over which a variance is averaged, to each side: repeats alone would leave it a fifth uncertain, and windows
-/// further away belong to another part of a stroke.
+/// Windows on each side over which a variance is averaged. Repeats alone would leave it a fifth uncertain, and windows further
+/// away belong to another part of a stroke.
 const POOLED: usize = 2;
 
-/// Factor of the half widths by which the rounding of parabolas is found out.
+/// Factor on the half widths for estimating the rounding of the parabolas.
 const WIDER: f64 = 1.4;
 
-/// Repeats the books of a block with as much noise added as each sensor has (its level is taken from the signal's second
-/// differences). The repeats' residuals scatter as the noise scatters the residual itself; and as much as their mean is
-/// off, noise has moved the residual already (simulation and extrapolation, Cook and Stefanski 1994): squares, sizes and
-/// square roots of noisy signals do not average out. Parameters are moved by one standard error each.
+/// Repeats the books of a block with added noise of each sensor's own level, estimated from the signal's second differences. The
+/// repeats' residuals scatter as noise scatters the residual itself, and the shift of their mean equals the shift that noise has
+/// already caused (simulation and extrapolation, Cook and Stefanski 1994): squares, magnitudes and square roots of noisy signals
+/// do not average out. Parameters are shifted by one standard error each.
 pub(super) fn study_noise(
     system: &System<'_>,
     block: &Block,
@@ -83,8 +83,8 @@ pub(super) fn study_noise(
             residuals_of(&books_of(system, &values, entries))
         })
         .collect();
-    // A valve's step makes a kink in a pressure, and what a parabola cuts off a kink grows in proportion to its width: the
-    // whole of it is what wider ones change, divided by how much wider they are.
+    // A valve step causes a kink in a pressure. What a parabola cuts off a kink is proportional to its width, so the total is the
+    // change caused by wider parabolas, divided by the relative increase of the width.
     let wider = EnergySettings {
         half_width: WIDER * settings.half_width,
         motion_half_width: WIDER * settings.motion_half_width,
@@ -99,7 +99,7 @@ pub(super) fn study_noise(
     let difference = |draw: &[Vec<f64>], window: usize, place: usize| {
         Some(draw.get(window)?.get(place)? - base.get(window)?.residuals.get(place)?)
     };
-    // What wider parabolas change, squared, less what they change of noise, which the repeats' scatter has already.
+    // Squared change by wider parabolas, less the part due to noise, which the repeats' scatter already includes.
     let rounded_off = |window: usize, place: usize| {
         let change = difference(&wide, window, place).unwrap_or(0.0);
         let of_noise = drawn
@@ -138,8 +138,8 @@ pub(super) fn study_noise(
     Ok(NoiseStudy { windows: pooled.collect(), draws })
 }
 
-/// The recording with valves that open half a sample later. A valve that is set in steps holds its opening from one sample
-/// on, or up to it: nobody can tell from the samples, and the line between them is half a sample off either way.
+/// The recording with valve openings shifted by half a sample. A valve that is set in steps holds its opening from one sample on,
+/// or up to it. The samples do not show which, and interpolation is half a sample off either way.
 fn with_later_openings(recording: &Recording) -> Recording {
     let mut later = recording.clone();
     for cylinder in &mut later.cylinders {
@@ -151,7 +151,7 @@ fn with_later_openings(recording: &Recording) -> Recording {
     later
 }
 
-/// The recording with white noise of each sensor's own level added. Commands have none.
+/// The recording with added white noise of each sensor's own level. Commands have no noise.
 fn with_more_noise(recording: &Recording, random: &mut ChaCha8Rng) -> Recording {
     let mut noisy = recording.clone();
     let mut add = |signal: &mut Vec<f64>| {

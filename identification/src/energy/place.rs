@@ -1,15 +1,15 @@
-//! Where a ledger is kept: one place for each equation of the model.
+//! Places of the ledger: one for each equation of the model.
 
 use excavator_model::Model;
 use excavator_model::machine::Supply;
 
-/// A place where energy is stored and through which it flows.
+/// A place that stores energy and through which energy flows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Place {
-    /// Links and loads: kinetic and potential energy against the work of pressures, friction and weights. With several
-    /// joints it is all of them together, since links pass energy on to each other.
+    /// Links and loads: kinetic and potential energy against the work of pressures, friction and weights. Several joints share
+    /// one place, because links pass energy on to each other.
     Motion,
-    /// Oil of a cylinder's cap side, \[A\] Eq. 2: what flows in against what the piston takes.
+    /// Oil of a cylinder's cap side, \[A\] Eq. 2: inflow against the displacement of the piston.
     CapContinuity(usize),
     /// Oil of a cylinder's rod side.
     RodContinuity(usize),

@@ -1,4 +1,4 @@
-//! What a cylinder is doing.
+//! Regimes: conditions of a cylinder under which the ledger is judged.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ impl Regime {
         Regime::ClosingStroke,
     ];
 
-    /// In words, after a comma.
+    /// Text that follows a comma.
     pub fn words(self) -> &'static str {
         match self {
             Regime::Always => "over the whole recording",
@@ -58,22 +58,22 @@ impl Regime {
     }
 }
 
-/// Means over one window by which its regimes are told.
+/// Means over one window that determine its regimes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Situation {
     /// Piston velocity, m/s.
     pub velocity: f64,
-    /// Size of the opening as a share of the largest one.
+    /// Magnitude of the opening as a share of the largest one.
     pub opening: f64,
     /// Its rate, 1/s.
     pub opening_rate: f64,
 }
 
-/// Slower than this a piston rests, m/s.
+/// Speed below which a piston counts as resting, m/s.
 const RESTING: f64 = 5e-3;
 /// Share of the largest opening below which a valve counts as closed.
 const CLOSED: f64 = 0.05;
-/// Rate of the opening above which it is a stroke of the valve, 1/s.
+/// Rate of the opening above which the valve is in a stroke, 1/s.
 const STROKE: f64 = 0.2;
 
 impl Situation {

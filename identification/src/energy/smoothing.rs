@@ -1,12 +1,12 @@
-//! Value and slope of several noisy signals on one uneven clock.
+//! Value and slope of several noisy signals on a common uneven clock.
 
 /// Weights that give value and slope, at one time, of the least-squares parabola through the samples around it.
 #[derive(Debug, Default)]
 pub(crate) struct Parabola {
     first: usize,
-    /// Half width that the weights are for, s.
+    /// Half width of the current weights, s.
     half_width: f64,
-    /// Times of the samples that the weights are for, from the centre, as parts of the half width.
+    /// Times of the samples of the current weights, relative to the centre, as shares of the half width.
     places: Vec<f64>,
     value: Vec<f64>,
     slope: Vec<f64>,
@@ -14,15 +14,15 @@ pub(crate) struct Parabola {
 
 /// Fewest samples: three coefficients, one more to average.
 const FEWEST: usize = 4;
-/// Rounding of times, s: it must not decide whether a window is symmetric.
+/// Tolerance of times, s: rounding must not decide whether a window is symmetric.
 const ROUNDING: f64 = 1e-7;
-/// Weights are kept for samples that are nowhere further than this from those before, as part of the half width: on an even
-/// clock places differ by rounding only.
+/// Weights are reused if no sample is further than this from its previous place, as a share of the half width: on an even clock
+/// places differ by rounding only.
 const SAME_PLACE: f64 = 1e-9;
 
 impl Parabola {
-    /// The parabola at sample `centre` through the samples within `half_width` of it. `false` where there are too few of
-    /// them or the window is cut off on one side; then there are no weights.
+    /// Sets the parabola at sample `centre` through the samples within `half_width` of it. Returns `false`, without weights, if
+    /// there are too few samples or the window is cut off on one side.
     pub fn set(&mut self, time: &[f64], centre: usize, half_width: f64) -> bool {
         let (at, reach) = (time[centre], half_width + ROUNDING);
         let first = centre - time[..centre].iter().rev().take_while(|&&t| at - t <= reach).count();
@@ -47,7 +47,7 @@ impl Parabola {
         !self.value.is_empty()
     }
 
-    /// Weights for the places; none where they do not determine a parabola.
+    /// Computes the weights for the places; none if they do not determine a parabola.
     fn weigh(&mut self) {
         self.value.clear();
         self.slope.clear();
@@ -78,14 +78,14 @@ impl Parabola {
         }
     }
 
-    /// Value of a signal; `NaN` where one of its samples is.
+    /// Value of a signal; `NaN` if one of its samples is.
     pub fn value(&self, signal: &[f64]) -> f64 {
         dot(&self.value, &signal[self.first..])
     }
 
     /// Slope of a signal.
     pub fn slope(&self, signal: &[f64]) -> f64 {
-        // The weights add up to zero; taking off the first sample keeps rounding small.
+        // The weights add up to zero; subtracting the first sample keeps rounding errors small.
         let origin = signal[self.first];
         self.slope.iter().zip(&signal[self.first..]).map(|(weight, sample)| weight * (sample - origin)).sum()
     }

@@ -5,7 +5,7 @@ use excavator_model::effects::{ActsOn, Site, Text};
 
 use super::Books;
 
-/// What one cylinder and its joint took in and gave away, J.
+/// Energies that one cylinder and its joint received and gave away, J.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CylinderTotals {
     /// Supplied through the valve, or by the measured force on the rod.
@@ -29,16 +29,16 @@ impl CylinderTotals {
     }
 }
 
-/// Energy of one effect, J; positive where it gave energy.
+/// Energy of one effect, J; positive if the effect supplied energy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectTotal {
     /// Name in the catalogue.
     pub effect: Text,
-    /// Where it sits.
+    /// Place of the effect.
     pub site: Site,
-    /// What it belongs to.
+    /// What the effect acts on.
     pub acts_on: ActsOn,
-    /// Whether it has power of its own; that of what only stores is in the gains of storage.
+    /// Whether it has power of its own; the energy of effects that only store is in the gains of storage.
     pub has_power: bool,
     /// Given to links and chambers.
     pub into_cylinders: f64,
@@ -49,7 +49,7 @@ pub struct EffectTotal {
 /// Energies over a stretch of time, by cylinder and by effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Totals {
-    /// Time that was accounted for, s; gaps are not.
+    /// Accounted time, s; gaps are excluded.
     pub duration: f64,
     /// One entry per cylinder.
     pub cylinders: Vec<CylinderTotals>,
@@ -62,7 +62,7 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// Nothing yet.
+    /// Zero totals.
     pub(super) fn new(model: &Model) -> Self {
         let effects = model.effects.iter().map(|effect| EffectTotal {
             effect: effect.name_text(),
@@ -81,7 +81,7 @@ impl Totals {
         }
     }
 
-    /// Adds the time between an entry and the next: powers by the trapezoidal rule, storage by its difference.
+    /// Adds the time between an entry and the next one: powers by the trapezoidal rule, storage by its difference.
     pub(super) fn add(&mut self, books: &Books, entry: usize) {
         let (one, two) = (entry, entry + 1);
         let step = books.time[two] - books.time[one];
@@ -120,13 +120,13 @@ impl Totals {
         self.effects.iter().filter(own).map(|effect| effect.into_cylinders).sum()
     }
 
-    /// What a cylinder gained without the model saying from where, J; negative: it went missing.
+    /// Energy that a cylinder gained without a source in the model, J; negative: lost.
     pub fn residual(&self, cylinder: usize) -> f64 {
         let own = &self.cylinders[cylinder];
         own.stored() - own.supplied - self.dissipation(cylinder)
     }
 
-    /// What the pump line gained without the model saying from where, J.
+    /// Energy that the pump line gained without a source in the model, J.
     pub fn pump_residual(&self) -> f64 {
         let drawn: f64 = self.effects.iter().map(|effect| effect.into_pump_line).sum();
         self.pump_line - self.pump - drawn

@@ -1,4 +1,4 @@
-//! Energies and powers over time, for the head of a recording.
+//! Energies and powers over time for the head of a recording.
 
 use excavator_model::Model;
 use excavator_model::effects::{ActsOn, Site, Text};
@@ -24,7 +24,7 @@ pub struct TermTrace {
     pub effect: Text,
     /// At the measured state.
     pub analytical: Vec<f64>,
-    /// At the simulated state; `NaN` where there is none.
+    /// At the simulated state; `NaN` if there is none.
     pub numerical: Vec<f64>,
 }
 
@@ -33,7 +33,7 @@ pub struct TermTrace {
 pub struct CylinderTraces {
     /// Name of the cylinder, or of the machine for all of them.
     pub name: String,
-    /// Which cylinders are in here.
+    /// The cylinders that are included.
     pub members: Vec<usize>,
     /// Time, s.
     pub time: Vec<f64>,
@@ -53,7 +53,7 @@ pub struct CylinderTraces {
     pub experimental: Band,
     /// Supply and dissipation of Eq. 10-12 at the measured state, W.
     pub analytical: Band,
-    /// The same at the simulated state, W; `NaN` where there is none.
+    /// The same at the simulated state, W; `NaN` if there is none.
     pub numerical: Vec<f64>,
     /// Supply at the measured state, W.
     pub supply: Band,
@@ -65,14 +65,14 @@ pub struct CylinderTraces {
     pub numerical_dissipation: Vec<f64>,
     /// The dissipation by effect.
     pub terms: Vec<TermTrace>,
-    /// Lags between the three rates, where the excitation has a frequency.
+    /// Lags between the three rates, if the excitation has a frequency.
     pub phase: Option<PhaseDelays>,
 }
 
-/// Everything over time.
+/// All traces over time.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Traces {
-    /// One entry per cylinder, after one for all together where there are several.
+    /// One entry per cylinder, preceded by one for all together if there are several.
     pub cylinders: Vec<CylinderTraces>,
 }
 
@@ -91,14 +91,14 @@ impl Traces {
         Traces { cylinders }
     }
 
-    /// Adds entries of `books` in the part of time that is the block's own; `draws` are the same with noise added.
+    /// Adds the entries of `books` within the block's own time; `draws` are the same books with added noise.
     pub(super) fn add(&mut self, books: &Books, draws: &[Books], own: (f64, f64), settings: &EnergySettings) {
         for trace in &mut self.cylinders {
             trace.add(books, draws, own, settings);
         }
     }
 
-    /// Adds what the simulation says at the times that there are.
+    /// Adds the simulated values at the existing times.
     pub(super) fn add_simulation(&mut self, books: &Books) {
         for trace in &mut self.cylinders {
             trace.add_simulation(books);
@@ -113,7 +113,7 @@ impl Traces {
     }
 }
 
-/// What is derived from books.
+/// Quantities derived from books.
 struct Derived {
     hamiltonian: Vec<f64>,
     rate: Vec<f64>,
@@ -215,7 +215,7 @@ impl CylinderTraces {
     }
 
     fn add_simulation(&mut self, books: &Books) {
-        /// Stamps of the same sample differ by rounding only, s.
+        /// Largest difference of timestamps of the same sample, due to rounding, s.
         const SAME: f64 = 1e-6;
         let entries: Vec<Option<usize>> = self
             .time

@@ -1,24 +1,24 @@
-//! The ledger's residual, window by window, without taking a derivative.
+//! Computes the ledger's residual window by window, without differentiation.
 
 use excavator_model::Model;
 
 use super::regime::Situation;
 use super::{Books, EnergySettings, Place};
 
-/// What is missing in one window.
+/// Missing power in one window.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Window {
     /// Centre, s.
     pub time: f64,
-    /// Mean power that is stored at each place without the model saying from where, W; negative: it goes missing.
+    /// Mean power stored at each place without a source in the model, W; negative: lost.
     pub residuals: Vec<f64>,
     /// Mean power through each place, W.
     pub flows: Vec<f64>,
-    /// What each cylinder does.
+    /// Motion and opening of each cylinder.
     pub situations: Vec<Situation>,
 }
 
-/// What the books say of one place, entry by entry. Every entry is in several windows.
+/// Columns of one place, entry by entry, computed once because every entry is in several windows.
 struct Columns {
     /// Energy stored, J.
     stored: Vec<f64>,
@@ -41,13 +41,13 @@ impl Columns {
 
 /// Fewest entries of a window.
 const FEWEST: usize = 20;
-/// A pause between entries of more than this part of the window's half width leaves the window out.
+/// Longest pause between entries, as a share of the window's half width; a window with a longer one is skipped.
 const LONGEST_PAUSE: f64 = 0.15;
 
-/// Windows centred at multiples of a quarter of their length in `own`.
+/// Windows whose centres are in `own`, at multiples of a quarter of their length.
 ///
 /// With a test function `phi` that is zero at the window's ends, `int phi (dE/dt - P) dt = -int (phi' E + phi P) dt`: the
-/// derivative moves from the noisy energy to the test function (weak form). Divided by `int phi` it is a mean power.
+/// derivative moves from the noisy energy to the test function (weak form). Division by `int phi` gives a mean power.
 pub(super) fn windows(
     model: &Model,
     books: &Books,
@@ -84,7 +84,7 @@ fn window(
     if time.len() < FEWEST || !whole || paused {
         return None;
     }
-    // Trapezoidal rule on the clock as it is, with phi = (1 - s²)² and its derivative.
+    // Trapezoidal rule on the actual clock, with phi = (1 - s²)² and its derivative.
     let weights: Vec<(f64, f64)> = (0..time.len())
         .map(|k| {
             let before = if k > 0 { time[k] - time[k - 1] } else { 0.0 };
@@ -99,7 +99,7 @@ fn window(
     let mean = |of: &dyn Fn(usize) -> f64| {
         weights.iter().enumerate().map(|(k, weight)| weight.0 * of(range.start + k)).sum::<f64>() / area
     };
-    // The derivative of a mean under the window; the constant part, which no derivative has, is taken off first.
+    // Mean derivative over the window. The constant part has no derivative and is subtracted first.
     let rate = |of: &dyn Fn(usize) -> f64| {
         let level = of(range.start);
         -weights.iter().enumerate().map(|(k, weight)| weight.1 * (of(range.start + k) - level)).sum::<f64>() / area

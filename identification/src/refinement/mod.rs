@@ -1,4 +1,4 @@
-//! Add an effect, refit, measure again, stop.
+//! Adds effects to a model step by step, with a refit and a comparison after each.
 
 mod refine;
 

@@ -1,4 +1,4 @@
-//! From a model that is missing something to one that is not.
+//! Refines a model until it is no longer missing an effect.
 
 use excavator_model::recording::Recording;
 use excavator_model::simulation::RunError;
@@ -11,19 +11,19 @@ use crate::proposal::propose;
 use crate::search::{Addition, AdditionError, fit_addition, fit_given};
 use crate::validation::{Comparison, compare};
 
-/// What is to be added.
+/// Effects to add.
 #[derive(Debug, Clone)]
 pub enum Additions {
-    /// Whatever the diagnosis finds, one after the other.
+    /// The effects that the diagnosis finds, one after the other.
     Auto,
-    /// The same; where nothing of the catalogue explains the recordings, a proposed law.
+    /// The same; if no effect of the catalogue explains the recordings, also a proposed law.
     AutoWithLaws,
     /// These effects, one after the other.
     Named(Vec<Addition>),
 }
 
 impl Additions {
-    /// What a person names: each `EFFECT` at every place where it can act, `EFFECT@PLACE` at one.
+    /// The effects that a user names: each `EFFECT` at every place where it can act, `EFFECT@PLACE` at one.
     ///
     /// ```
     /// use excavator_identification::prelude::*;
@@ -55,7 +55,7 @@ impl Additions {
 /// The model after one addition.
 #[derive(Debug, Clone)]
 pub struct Step {
-    /// What was added, `effect@place`; `None` for the model as it was given, refitted.
+    /// The added effect, `effect@place`; `None` for the given model, refitted.
     pub added: Option<String>,
     /// The model, fitted to the identification recordings.
     pub fit: Fit,
@@ -70,18 +70,18 @@ impl Step {
     }
 }
 
-/// A refined model and how it came about.
+/// A refined model and its steps.
 #[derive(Debug, Clone)]
 pub struct Refinement {
-    /// The model as it was given.
+    /// The given model.
     pub given_model: Model,
-    /// It with its own numbers, on the validation recordings, where it can be simulated.
+    /// Comparisons of the given model, with its own parameters, on the validation recordings; empty if it cannot be simulated.
     pub given: Vec<Comparison>,
-    /// Step 0 is before anything is added.
+    /// The steps; step 0 is the given model, refitted.
     pub steps: Vec<Step>,
     /// The final model, its history extended.
     pub model: Model,
-    /// Why this was added.
+    /// Why these effects were added.
     pub reason: Reason,
 }
 
@@ -90,7 +90,7 @@ pub struct Refinement {
 pub enum Reason {
     /// A diagnosis found them.
     Found(Box<Diagnosis>),
-    /// Somebody named them; what is to be thought of that.
+    /// A user named them; the verdict on them.
     Named(NamedVerdict),
 }
 
@@ -117,11 +117,11 @@ impl Refinement {
     }
 }
 
-/// Why there is no refined model.
+/// Why a refinement fails.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefineError {
-    /// No diagnosis.
+    /// The diagnosis failed.
     #[error(transparent)]
     Diagnosis(#[from] DiagnosisError),
     /// An effect does not fit the model.
@@ -133,10 +133,11 @@ pub enum RefineError {
     /// A simulation failed.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// An effect is named at the same place once more.
+    /// An effect is named twice at the same place.
     #[error("cannot add {0} twice")]
     Twice(String),
-    /// A search ended farther from the recordings than it began: it says nothing of the effect.
+    /// The fit with an effect has a larger loss than the one without it, so the search failed and its result shows nothing about
+    /// the effect.
     #[error(
         "{added} was not added: no fit with it comes as near to the identification recordings as the model without it (loss {after:.3}, without {before:.3}). Give the effect better start values in the model file, or recordings that show it"
     )]
@@ -159,7 +160,8 @@ impl From<AdditionError> for RefineError {
     }
 }
 
-/// Refines `model`. `when` (ISO 8601) goes into the model's history; `progress` is told what is being done.
+/// Refines `model`. `when` (ISO 8601) is written to the model's history; `progress` receives the current step and the fraction
+/// done.
 ///
 /// ```no_run
 /// use excavator_identification::prelude::*;
@@ -200,7 +202,7 @@ pub fn refine(
     with_fits(model, fits, reason, identification, validation, settings, when)
 }
 
-/// The refinement that a diagnosis of `model` on these recordings leads to, without another search.
+/// The refinement that follows from a diagnosis of `model` on these recordings, without another search.
 ///
 /// # Errors
 /// [`RefineError`].
@@ -260,15 +262,15 @@ fn with_fits(
     Ok(Refinement { given_model: model.clone(), given, steps, model: final_model, reason })
 }
 
-/// Fits of a model, each with what was added last.
+/// Fits of a model, each with the name of the last addition.
 type Fits = Vec<(Option<String>, Fit)>;
 
-/// The way of a diagnosis from the given model to the hypothesis that it supports.
+/// The fits on the path of a diagnosis from the given model to the supported hypothesis.
 fn found(model: &Model, diagnosis: Diagnosis) -> (Fits, Reason) {
     let mut fits = vec![(None, diagnosis.given().fit.clone())];
     let selected = diagnosis.selected();
     for (number, candidate) in selected.iter().enumerate() {
-        // Of several effects that came together only the last has a model of its own.
+        // If several effects were added together, only the last has a model of its own.
         let next = selected.get(number + 1);
         if next.is_none_or(|next| !std::ptr::eq(next.trial, candidate.trial)) {
             fits.push((Some(candidate.addition.name(model)), candidate.trial.fit.clone()));
@@ -277,7 +279,7 @@ fn found(model: &Model, diagnosis: Diagnosis) -> (Fits, Reason) {
     (fits, Reason::Found(Box::new(diagnosis)))
 }
 
-/// What is said of a diagnosis is said of the models of the steps, which are those of its trials without what is superfluous in them.
+/// Replaces the errors of the diagnosis by those of the steps, whose models are its trials without superfluous parts.
 fn with_errors_of(diagnosis: &mut Diagnosis, steps: &[Step]) {
     let ends = [(0, steps.first()), (diagnosis.verdict.supported(), steps.last())];
     for (number, step) in ends {
@@ -287,7 +289,7 @@ fn with_errors_of(diagnosis: &mut Diagnosis, steps: &[Step]) {
     }
 }
 
-/// Named effects, one after the other.
+/// Adds named effects, one after the other.
 fn as_named(
     model: &Model,
     named: &[Addition],
@@ -316,10 +318,10 @@ fn as_named(
     Ok((fits, Reason::Named(verdict)))
 }
 
-/// Rise of the loss by which two fits of one optimum may differ: neither is at it to the last digit.
+/// Difference in loss that is allowed between two fits of the same optimum: neither reaches it exactly.
 const LARGEST_RISE: f64 = 0.01;
 
-/// Words for a model's history: the step, and the nuisances that show since the model `before`.
+/// Text for a model's history: the step, and the nuisances that are significant since the model `before`.
 fn what_was_done(before: &Model, step: &Step) -> String {
     let nuisances: Vec<String> = nuisances_shown(before, &step.fit.model)
         .map(|effect| addition_name(effect.name(), site_name(&before.machine, effect.site)))
