@@ -94,8 +94,8 @@ pub(super) fn study_noise(
     let wide = widened(block)?;
     let noisy_wide =
         noisy[..noisy.len().div_ceil(4)].par_iter().map(widened).collect::<Result<Vec<_>, SignalError>>()?;
-    let later = Block { recording: with_later_openings(&block.recording), ..block.clone() };
-    moved.push(residuals_of(&measured_books(system, &parameters, &later, settings)?));
+    let shifted = Block { recording: with_shifted_openings(&block.recording), ..block.clone() };
+    moved.push(residuals_of(&measured_books(system, &parameters, &shifted, settings)?));
     let difference = |draw: &[Vec<f64>], window: usize, place: usize| {
         Some(draw.get(window)?.get(place)? - base.get(window)?.residuals.get(place)?)
     };
@@ -140,15 +140,15 @@ pub(super) fn study_noise(
 
 /// The recording with valve openings shifted by half a sample. A valve that is set in steps holds its opening from one sample on,
 /// or up to it. The samples do not show which, and interpolation is half a sample off either way.
-fn with_later_openings(recording: &Recording) -> Recording {
-    let mut later = recording.clone();
-    for cylinder in &mut later.cylinders {
+fn with_shifted_openings(recording: &Recording) -> Recording {
+    let mut shifted = recording.clone();
+    for cylinder in &mut shifted.cylinders {
         let before = cylinder.orifice_area.clone();
         for (opening, pair) in cylinder.orifice_area.iter_mut().zip(before.windows(2)) {
             *opening = 0.5 * (pair[0] + pair[1]);
         }
     }
-    later
+    shifted
 }
 
 /// The recording with added white noise of each sensor's own level. Commands have no noise.
