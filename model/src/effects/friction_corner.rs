@@ -11,7 +11,7 @@ use crate::machine::Machine;
 ///
 /// Besides the speed of the transition ([`super::friction_reversal`]), the friction curve has a shape. Seals that stretch and
 /// then slip all at once give a sharp corner; seals that slip one after the other approach their level late. The hyperbolic
-/// tangent of the equations is a choice. With a straight corner, pressure-dependent friction leaves a loss of 0.4 despite the
+/// tangent of the equations is a choice. With a straight corner, pressure-dependent friction has a loss of 0.4 even with the
 /// right effect.
 pub struct FrictionCorner;
 
