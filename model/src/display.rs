@@ -1,11 +1,11 @@
-//! The unit in which pressures are shown to people.
+//! The unit in which pressures are displayed.
 //!
-//! Like a locale, it is a choice of the person and holds for the whole process: numbers inside are in Pa whatever it is, and so are
-//! those in JSON, model files and bags.
+//! Like a locale, it is a user setting for the whole process. It affects display only: internal values, JSON, model files and
+//! bags are always in Pa.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A unit for pressures that people read off gauges.
+/// A display unit for pressures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PressureUnit {
     /// MPa, the default: SI, and in the data sheets of most machines.
@@ -45,7 +45,7 @@ impl PressureUnit {
     }
 }
 
-/// A pressure in Pa with three significant digits in the unit of this process, and the unit behind it.
+/// Formats a pressure in Pa with three significant digits and the display unit of this process.
 pub fn pressure_text(pascal: f64) -> String {
     let unit = PressureUnit::shown();
     let value = unit.factor() * pascal;

@@ -1,24 +1,24 @@
-//! What can be wrong with a model, and between a model and a recording.
+//! Errors in changes to a model, and mismatches between a model and a recording.
 
 use crate::effects::UnknownEffect;
 
-/// What can be wrong with a change to a model.
+/// An error in a change to a model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
-    /// No such effect in the catalogue.
+    /// The catalogue has no such effect.
     #[error(transparent)]
     UnknownEffect(#[from] UnknownEffect),
-    /// The effect cannot sit there.
+    /// The effect cannot act there.
     #[error("effect {effect} cannot be added at \"{site}\" of {machine}: {reason}")]
     WrongSite {
         /// Effect name.
         effect: String,
-        /// Where it was to go.
+        /// The requested place.
         site: String,
         /// The machine.
         machine: String,
-        /// Why not.
+        /// The reason.
         reason: String,
     },
     /// The model already has this effect there.
@@ -33,11 +33,11 @@ pub enum ModelError {
     },
 }
 
-/// What can be wrong between a model and a recording.
+/// A mismatch between a model and a recording.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SignalError {
-    /// A signal that the model needs as input is nowhere in the recording.
+    /// The recording lacks a signal that the model needs as input.
     #[error("{source_name} does not measure {signal}, which {machine} needs as an input")]
     MissingInput {
         /// The recording.
@@ -47,17 +47,17 @@ pub enum SignalError {
         /// The machine.
         machine: String,
     },
-    /// The recording has no cylinder of a name that the machine has.
+    /// The recording lacks a cylinder of the machine.
     #[error(transparent)]
     Recording(#[from] crate::recording::RecordingError),
-    /// The initial state cannot be found.
+    /// The initial state cannot be determined.
     #[error("{source_name} has no initial value of {signal}: {reason}")]
     NoInitialState {
         /// The recording.
         source_name: String,
         /// The signal.
         signal: String,
-        /// Why not.
+        /// The reason.
         reason: String,
     },
 }

@@ -1,12 +1,12 @@
-//! What a hydraulic arm is and does: machines, physical effects, simulation and energy.
+//! Models of hydraulic machines: geometry, physical effects, simulation and energy.
 //!
-//! The one idea: **a [`Model`] is a [`machine::Machine`] plus a list of physical effects.** One effect is one file in
-//! [`effects`], written once for any [`scalar::Scalar`], and everything else is derived from it: what it adds in
-//! simulation, its regressor, its power in the energy balance, and how it shows in data.
+//! The one idea: **a [`Model`] is a [`machine::Machine`] plus a list of physical effects.** Each effect is one file in
+//! [`effects`], written once for any [`scalar::Scalar`]. Everything else is derived from it: its contribution to the
+//! simulation, its regressor, its power in the energy balance, and its signature in data.
 //!
 //! Equations are those of \[A\] Arai, Sakai, Tatsuoka, Zhang, Energies 14 (2021) 6210 and \[B\] "Accurate Dynamic Modelling
-//! of Hydraulic Servomechanisms"; `docs/physics.md` lists where the code departs from print, and why. SI units
-//! everywhere, pressures are gauge. This crate reads no files, knows no ROS and does no statistics.
+//! of Hydraulic Servomechanisms"; `docs/physics.md` lists where the code departs from print, and why. Units are SI, and
+//! pressures are gauge. This crate reads no files, does not depend on ROS and does no statistics.
 
 pub mod check;
 pub mod display;

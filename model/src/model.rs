@@ -14,9 +14,9 @@ pub struct Model {
     pub machine: Machine,
     /// The effects, in the order in which valve effects are applied to the spool.
     pub effects: Vec<ModelEffect>,
-    /// What was done to the model, oldest first.
+    /// Changes made to the model, oldest first.
     pub history: Vec<HistoryEntry>,
-    /// The effects that it may have.
+    /// The effects available to the model.
     pub catalogue: Catalogue,
 }
 
@@ -44,10 +44,10 @@ pub struct Parameter {
     pub known: bool,
     /// Standard error of an identified value, in the card's unit.
     pub standard_error: Option<f64>,
-    /// Half width of its 95 % interval, in the card's unit: more than 1.96 standard errors where these are badly known
+    /// Half width of its 95 % interval, in the card's unit: more than 1.96 standard errors where these are poorly known
     /// themselves.
     pub margin_95: Option<f64>,
-    /// Where the value comes from, for people.
+    /// Where the value comes from, as text for the user.
     pub source: String,
 }
 
@@ -89,7 +89,7 @@ impl ModelEffect {
             .iter()
             .map(|card| {
                 let card = card.for_place(machine, site);
-                // What acts in a window of time only where somebody looks for one acts always until then.
+                // An effect with an optional time window acts always, until a search gives it a window.
                 let always = match card.start {
                     effects::Start::Known(value) => Some(value),
                     _ if card.start.is_a_time() => physics.value_where_left_out(&card.name),
@@ -120,12 +120,12 @@ impl ModelEffect {
         &self.physics.card().name
     }
 
-    /// The same, as results keep it.
+    /// Name in the catalogue, as stored in results.
     pub fn name_text(&self) -> Text {
         self.physics.card().name.clone()
     }
 
-    /// What says when it begins and how long it lasts, s, for an effect that can act in a window of time.
+    /// Parameters for begin and duration, s, of an effect that can act in a window of time.
     pub fn window(&self) -> Option<(&Parameter, &Parameter)> {
         let time = |start| self.parameters.iter().find(|parameter| parameter.card.start == start);
         Some((time(effects::Start::WorstStretchBegin)?, time(effects::Start::WorstStretchDuration)?))
@@ -139,19 +139,19 @@ impl ModelEffect {
             .all(|time| self.physics.value_where_left_out(&time.card.name) == Some(time.value))
     }
 
-    /// Whether it is large enough to say anything about a machine.
+    /// Whether the effect is large enough to matter in practice.
     pub fn is_practically_significant(&self) -> bool {
         self.physics.is_practically_significant(&self.size, &self.values())
     }
 
-    /// What a report says of it, for a nuisance.
+    /// Finding for the report, for a nuisance effect.
     pub fn finding(&self) -> Option<Finding> {
         let parameters: Vec<_> =
             self.parameters.iter().map(|parameter| (parameter.value, &*parameter.card.unit)).collect();
         self.physics.finding(&parameters)
     }
 
-    /// The corner of its law that others can round, at its parameter values.
+    /// The corner of its law, at its parameter values, that other effects can round.
     pub fn corner(&self) -> Option<Corner> {
         self.physics.corner(&self.values())
     }
@@ -160,7 +160,7 @@ impl ModelEffect {
         self.parameters.iter().map(|parameter| parameter.value).collect()
     }
 
-    /// Whether this is the effect of that name at that site.
+    /// Whether this is the effect with this name at this site.
     pub fn is(&self, name: &str, site: Site) -> bool {
         self.name() == name && self.site == site
     }
@@ -184,7 +184,7 @@ pub fn site_name(machine: &Machine, site: Site) -> &str {
     }
 }
 
-/// The site of this name, as [`site_name`] writes it; `None` where the machine has no such place.
+/// The site with this name, as [`site_name`] writes it; `None` if the machine has no such place.
 pub fn site_named(machine: &Machine, name: &str) -> Option<Site> {
     match name {
         PUMP => Some(Site::PumpLine),
@@ -213,7 +213,7 @@ fn why_not_by_card(physics: &dyn Effect, machine: &Machine, site: Site) -> Optio
             let drive = cylinder.chambers.map(|chambers| chambers.drive);
             match (card.needs, drive) {
                 (Needs::Nothing, _) => None,
-                // They are measured where the motion is imposed.
+                // An imposed motion comes with measured pressures.
                 (Needs::Pressures, None) if cylinder.imposed_motion.is_some() => None,
                 (_, None) => Some("it acts on oil, and this cylinder has no chambers"),
                 (Needs::Valve, Some(Drive::Pump { .. })) => Some("it acts on a valve, and a pump drives this cylinder"),
@@ -254,8 +254,8 @@ impl Model {
         self.effects.iter_mut().flat_map(|effect| effect.parameters.iter_mut())
     }
 
-    /// Contract names of all parameters (`arm.inertia`, `pump.bulk_modulus`, ...), in the same order. Where formulas of one place use
-    /// the same word, it stands behind the name of its effect: `arm.load_damping.k`.
+    /// Contract names of all parameters (`arm.inertia`, `pump.bulk_modulus`, ...), in the same order. Where two formulas at one
+    /// place use the same parameter name, the name of the effect precedes it: `arm.load_damping.k`.
     pub fn parameter_names(&self) -> Vec<String> {
         let plain = |(effect, parameter): (usize, &Parameter)| {
             format!("{}.{}", site_name(&self.machine, self.effects[effect].site), parameter.card.name)
@@ -274,7 +274,7 @@ impl Model {
         self.parameters().zip(&names).map(unique).collect()
     }
 
-    /// Indices, in the order of [`Model::parameters`], of those that identification may change.
+    /// Indices, in the order of [`Model::parameters`], of the parameters that identification may change.
     pub fn unknown_parameters(&self) -> Vec<usize> {
         self.parameters().enumerate().filter(|(_, (_, parameter))| !parameter.known).map(|(index, _)| index).collect()
     }
@@ -297,7 +297,7 @@ impl Model {
         self.effect(effect, site).is_some()
     }
 
-    /// The effect of this name at this site, where the model has it.
+    /// The effect with this name at this site, if the model has it.
     pub fn effect(&self, name: &str, site: Site) -> Option<&ModelEffect> {
         self.effects.iter().find(|present| present.is(name, site))
     }
@@ -307,10 +307,11 @@ impl Model {
         self.effects.iter().any(|effect| effect.site == site && effect.corner() == Some(corner))
     }
 
-    /// Sites of the machine where `physics` can act and is not yet: cylinders in order, the pump line, the whole machine.
+    /// Sites where `physics` can act but is not present yet: cylinders in order, the pump line, the whole machine.
     ///
-    /// An effect that acts everywhere at once is at every place. So the whole machine is free only where the effect is at no place, and
-    /// no place is free where it is on the whole machine. A machine with one place is that place, and is not offered twice.
+    /// An effect on the whole machine is present at every place. So the whole machine is free only if no place has the effect,
+    /// and no place is free if the whole machine has it. On a machine with only one place, the whole machine is not offered as
+    /// well.
     pub fn free_sites(&self, physics: &AnyEffect) -> Vec<Site> {
         let name = &physics.card().name;
         if self.has(name, Site::Machine) {
@@ -352,11 +353,11 @@ impl Model {
         Ok(model)
     }
 
-    /// Sites named by a person: `EFFECT` (at each place where it can act), `EFFECT@CYLINDER`, `EFFECT@pump`, or `EFFECT@machine` (one
-    /// effect on all instruments).
+    /// Sites from user input: `EFFECT` (at each place where it can act), `EFFECT@CYLINDER`, `EFFECT@pump`, or `EFFECT@machine`
+    /// (one effect on all instruments).
     ///
     /// # Errors
-    /// [`ModelError`] when effect or site do not exist or do not fit.
+    /// [`ModelError`] if the effect or the site does not exist, or the effect cannot act there.
     pub fn parse_addition(&self, text: &str) -> Result<Vec<(AnyEffect, Site)>, ModelError> {
         let (name, place) = text.split_once('@').map_or((text, None), |(name, place)| (name, Some(place)));
         let physics = self.catalogue.find(name)?;
@@ -367,7 +368,7 @@ impl Model {
             reason,
         };
         let Some(place) = place else {
-            // Each place by itself covers the whole machine already.
+            // The sites of the single places already cover the whole machine.
             let mut sites = self.free_sites(&physics);
             sites.retain(|site| *site != Site::Machine);
             if sites.is_empty() {

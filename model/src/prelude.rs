@@ -1,7 +1,7 @@
-//! What most programs need: `use excavator_model::prelude::*;`.
+//! The types most programs need: `use excavator_model::prelude::*;`.
 //!
-//! Errors are not among it: each step has its own, and `Box<dyn Error>` takes them all. Nor is what only the card of an effect needs,
-//! which is in [`effects`](crate::effects).
+//! Error types are not included: each step has its own, and `Box<dyn Error>` covers them all. Types that only the card of an
+//! effect needs are not included either; they are in [`effects`](crate::effects).
 
 pub use crate::document::built_in;
 pub use crate::effects::{Catalogue, Physics, Site};

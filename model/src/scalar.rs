@@ -18,7 +18,7 @@ pub trait Scalar: DualNum<Primitive = f64> + Copy {
 
 impl<T: DualNum<Primitive = f64> + Copy> Scalar for T {}
 
-/// How many derivative directions one [`Dual`] carries. Eight, because the states of one cylinder with its joint, its
+/// Number of derivative directions in one [`Dual`]. Eight, because the states of one cylinder with its joint, its
 /// pump line and time (six) fit into one pass, and because eight doubles are a whole number of vector registers on
 /// every processor; more directions take several passes.
 pub const DIRECTIONS: usize = 8;

@@ -1,21 +1,21 @@
-//! The robot description of a machine: what RViz and robot_state_publisher draw, as URDF.
+//! The robot description of a machine as URDF, for RViz and robot_state_publisher.
 //!
-//! x forwards, z up. A link hangs straight down at angle zero and rises forwards: joints turn about -y. A joint has the name of its
-//! cylinder with `_joint` behind it, as `joint_states` has it. Distances between joints are the model's where it knows them. Where it
-//! does not (the last link, both links of a machine whose dynamics need no lengths), a link is as long as the longer arm of the linkage
-//! that drives it, and its width is drawn to look right; nothing is computed from either.
+//! x points forwards, z up. At angle zero a link hangs straight down; a positive angle raises it forwards, so joints turn about
+//! -y. A joint's name is its cylinder's name plus `_joint`, as in `joint_states`. Distances between joints come from the model if
+//! it has them. Otherwise (the last link, both links of a machine whose dynamics need no lengths) a link is as long as the longer
+//! arm of the linkage that drives it. Link widths are for display only; no computation uses them.
 
 use std::fmt::Write;
 
 use crate::machine::{Cylinder, Linkage, Machine, Mechanism, Supply};
 
-/// Pressure that limits of forces are computed from, Pa: what relief valves of mobile machines are set to.
+/// Pressure for the force limits, Pa: a usual relief valve setting of mobile machines.
 const RELIEF_PRESSURE: f64 = 25e6;
-/// Largest joint rate where no pump says how fast a machine is, rad/s or m/s.
+/// Largest joint rate if no pump flow limits it, rad/s or m/s.
 const USUAL_RATE: f64 = 1.0;
-/// Length of a link whose machine has no lengths at all, m.
+/// Length of a link whose machine defines no lengths, m.
 const NO_LENGTH: f64 = 1.0;
-/// Width of a link, of its length.
+/// Width of a link as a fraction of its length.
 const SLENDERNESS: f64 = 0.1;
 /// Height of the first joint above the ground, m.
 const JOINT_HEIGHT: f64 = 0.7;
@@ -47,7 +47,7 @@ struct Writer<'m> {
 }
 
 impl Writer<'_> {
-    /// One link that turns, on a link that is held.
+    /// One moving link on a fixed link.
     fn held_link(&mut self, base_angle: f64) {
         let Some(cylinder) = self.machine.cylinders.first() else { return };
         let held = match cylinder.linkage {
@@ -65,7 +65,7 @@ impl Writer<'_> {
         self.hanging(&cylinder.name, "orange", drawn_length(&cylinder.linkage));
     }
 
-    /// Links one after the other; a swing first where there is one.
+    /// Links in series, after the swing if there is one.
     fn chain(&mut self) {
         let machine = self.machine;
         let chain = machine.mechanism.chain();
@@ -86,7 +86,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Every load on an axis of its own, beside each other.
+    /// Every load on its own axis, side by side.
     fn beside_each_other(&mut self, kind: &str, axis: &str, size: [f64; 3]) {
         for (number, cylinder) in self.machine.cylinders.iter().enumerate() {
             self.joint(number, kind, "base_link", [0.5, number as f64, JOINT_HEIGHT], axis);
@@ -110,7 +110,7 @@ impl Writer<'_> {
         );
     }
 
-    /// The joint of a cylinder, between a link and that of its own name.
+    /// The joint of a cylinder, between the parent link and the link named after the cylinder.
     fn joint(&mut self, number: usize, kind: &str, parent: &str, origin: [f64; 3], axis: &str) {
         let cylinder = &self.machine.cylinders[number];
         let (name, parent) = (escaped(&cylinder.name), escaped(parent));
@@ -123,7 +123,7 @@ impl Writer<'_> {
         );
     }
 
-    /// How far a joint reaches, the force of its cylinder at the longest lever, and its speed at the shortest with all of the pump's flow.
+    /// Joint limits: range, force of the cylinder at the longest lever, and speed at the shortest lever with the full pump flow.
     fn limit(&self, cylinder: &Cylinder, has_ends: bool) -> String {
         let [retracted, extended] = cylinder.ends;
         let joints = [retracted, 0.0, extended].map(|displacement| cylinder.linkage.joint(displacement));

@@ -1,4 +1,4 @@
-//! Is a model that can be read one that can be right? What a wrong unit or a slip of the pen does to it.
+//! Plausibility checks: finds wrong units and typing errors in a model that parses.
 
 mod oddity;
 mod oscillation;

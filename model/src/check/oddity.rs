@@ -1,15 +1,15 @@
-//! Numbers of a model that can be read, but hardly be true.
+//! Implausible numbers in a model that parses.
 
 use super::{Trial, oscillations, trial};
 use crate::display::pressure_text;
 use crate::machine::{Chambers, CommandUnit, Cylinder, Linkage};
 use crate::{Model, ModelEffect, Parameter};
 
-/// What is odd about a model.
+/// An implausibility in a model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Oddity {
-    /// A parameter is where no machine has it.
+    /// A parameter is outside the range of real machines.
     #[error("{parameter} = {} {unit}: a plausible value lies between {} and {}", shown(*value), shown(*least), shown(*most))]
     Parameter {
         /// Its name with its place: `arm.mass`.
@@ -33,7 +33,7 @@ pub enum Oddity {
         /// Area of the rod side, m².
         rod: f64,
     },
-    /// A dead volume that dwarfs what the piston sweeps.
+    /// A dead volume is far larger than the swept volume.
     #[error("{cylinder}: {side}_dead_volume {volume:e} m3 is {times:.0} times what the piston sweeps; is it in m3?")]
     DeadVolume {
         /// The cylinder.
@@ -45,7 +45,7 @@ pub enum Oddity {
         /// Its ratio to the swept volume.
         times: f64,
     },
-    /// A valve that opens wider than the piston it feeds.
+    /// A valve opening is larger than the piston area.
     #[error("{cylinder}: maximum_orifice_area {area:e} m2 is larger than the piston's {piston:e} m2; is it in m2?")]
     Orifice {
         /// The cylinder.
@@ -65,7 +65,7 @@ pub enum Oddity {
         /// The least lever, m.
         lever: f64,
     },
-    /// A fully open valve moves the piston faster or slower than any.
+    /// With a fully open valve the piston moves implausibly fast or slowly.
     #[error(
         "{cylinder}: with its valve fully open it moves at {speed:.1e} {unit}; check its largest input and the flow gains"
     )]
@@ -77,7 +77,7 @@ pub enum Oddity {
         /// Its unit.
         unit: &'static str,
     },
-    /// Pressures that burst hoses.
+    /// The pressure exceeds the burst pressure of hoses.
     #[error(
         "{cylinder}: with its valve fully open its pressure reaches {}; check areas, mass and supply", pressure_text(*pressure)
     )]
@@ -92,10 +92,10 @@ pub enum Oddity {
     NoSimulation {
         /// The cylinder.
         cylinder: String,
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// Rest at mid-stroke is no rest: an oscillation grows.
+    /// The rest state at mid-stroke is unstable: an oscillation grows.
     #[error(
         "at rest with closed valves an oscillation of {frequency:.1} Hz grows; a friction or a gain has a wrong sign"
     )]
@@ -105,28 +105,28 @@ pub enum Oddity {
     },
 }
 
-/// A rod area may exceed the cap area by this share: both sides of a symmetric cylinder are measured.
+/// The rod area may exceed the cap area by this factor: both sides of a symmetric cylinder are measured.
 const SYMMETRIC: f64 = 1.02;
-/// Largest ratio of a dead volume to the volume that the piston sweeps: a short cylinder at the end of a long hose has ten.
+/// Largest ratio of dead volume to swept volume: a short cylinder at the end of a long hose has a ratio of ten.
 const DEAD_VOLUMES: f64 = 100.0;
-/// A lever below this share of its largest is near a dead centre.
+/// Below this fraction of the largest lever, a lever is near a dead centre.
 const NEAR_DEAD_CENTRE: f64 = 0.02;
-/// Speeds of pistons under an open valve, m/s: a creeping press, and a seismic damper thrown by an accumulator.
+/// Plausible piston speeds with an open valve, m/s: from a creeping press to a seismic damper driven by an accumulator.
 const SPEEDS: [f64; 2] = [1e-4, 10.0];
 
-/// Speed of a motor's shaft that is as usual as 1 m/s is for a piston, rad/s.
+/// Motor shaft speed that corresponds to a piston speed of 1 m/s, rad/s.
 const MOTOR_SPEED_UNIT: f64 = 100.0;
-/// Largest pressure of an open valve, Pa: a burst test.
+/// Largest pressure with an open valve, Pa: that of a burst test.
 const PRESSURE: f64 = 1.5e8;
-/// A growth that rounding could not bring about.
+/// Damping ratio below which an oscillation grows; rounding errors stay above it.
 const GROWS: f64 = -1e-3;
 
-/// A number as people write it: with a power of ten only where it saves zeros.
+/// Formats a number, with a power of ten only where it saves zeros.
 fn shown(value: f64) -> String {
     if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
-/// What is odd about `model`; empty where nothing is.
+/// All implausibilities of `model`; empty if there are none.
 pub fn oddities(model: &Model) -> Vec<Oddity> {
     let mut found: Vec<Oddity> = Vec::new();
     let parameters = model.effects.iter().flat_map(|effect| effect.parameters.iter().map(move |one| (effect, one)));
@@ -151,7 +151,8 @@ pub fn oddities(model: &Model) -> Vec<Oddity> {
     found
 }
 
-/// A parameter's oddity: identified values count as much as given ones, searches of unknown ones only begin at theirs.
+/// Checks one parameter. Identified and given values are checked alike; for unknown parameters the value is only a search's
+/// start.
 fn implausible(model: &Model, effect: &ModelEffect, parameter: &Parameter, name: &str) -> Option<Oddity> {
     let card = &parameter.card;
     let plausible = effect.physics.plausible(&model.machine, effect.site, &card.name);
@@ -175,7 +176,7 @@ fn chambers_of(cylinder: &Cylinder, chambers: &Chambers) -> Vec<Oddity> {
             rod: chambers.rod_area,
         });
     }
-    // A voltage is no area, nor is what a motor takes in a turn.
+    // A voltage is not an area, and neither is a motor's displacement.
     let is_area = chambers.drive.command_unit() == CommandUnit::SquareMetre && !cylinder.is_motor();
     if is_area && chambers.full_command() > chambers.cap_area {
         found.push(Oddity::Orifice {
@@ -195,8 +196,8 @@ fn chambers_of(cylinder: &Cylinder, chambers: &Chambers) -> Vec<Oddity> {
     found
 }
 
-/// Whether the lever vanishes between the ends of the stroke. It is the sine of the joint over the length, so its least value is at
-/// an end, or the ends lie on both sides of a dead centre.
+/// Whether the lever vanishes within the stroke. The lever is the sine of the joint angle over the length, so either its least
+/// value is at an end, or the ends lie on both sides of a dead centre.
 fn dead_centre(cylinder: &Cylinder) -> Option<Oddity> {
     if !matches!(cylinder.linkage, Linkage::Triangle { .. }) {
         return None;

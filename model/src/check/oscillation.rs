@@ -1,21 +1,21 @@
-//! How a machine at rest oscillates: oil columns against links.
+//! Small oscillations of a machine at rest: oil columns against link inertia.
 
 use crate::Model;
 use crate::equations::{Inputs, System};
 use crate::machine::Supply;
 use crate::simulation::{Linearisation, reachable_rest_state};
 
-/// An oscillation of small motions.
+/// An oscillation of small amplitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Oscillation {
     /// Natural frequency, Hz.
     pub frequency: f64,
-    /// Damping ratio; negative where it grows.
+    /// Damping ratio; negative if the oscillation grows.
     pub damping: f64,
 }
 
-/// The oscillations about rest at mid-stroke with all valves closed, slowest first; empty where nothing oscillates or the machine
+/// The oscillations about rest at mid-stroke with all valves closed, slowest first. Empty if nothing oscillates or the machine
 /// cannot rest there.
 pub fn oscillations(model: &Model) -> Vec<Oscillation> {
     let system = System::new(model);

@@ -1,4 +1,4 @@
-//! What a machine does when a valve is thrown open.
+//! Simulated response of a machine to a fully opened valve.
 
 use crate::Model;
 use crate::equations::{Inputs, System};
@@ -6,10 +6,10 @@ use crate::machine::Supply;
 use crate::recording::Recording;
 use crate::simulation::{InputSignals, Profile, RunError, Segment, Tolerances, reachable_rest_state, simulate_from};
 
-/// A cylinder's answer to its valve, thrown fully open at mid-stroke.
+/// Response of a cylinder to its valve, stepped fully open at mid-stroke.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trial {
-    /// How long the valve stood open each way, s.
+    /// How long the valve was open in each direction, s.
     pub duration: f64,
     /// Largest speed while it retracts and while it extends, m/s.
     pub speeds: [f64; 2],
@@ -17,17 +17,17 @@ pub struct Trial {
     pub pressures: [f64; 2],
 }
 
-/// How long the valve is held open, s: the first that leaves the piston within its stroke. The longest is long for an excavator, the
-/// shortest for a servo valve on a cylinder of a few millimetres.
+/// Candidate opening times of the valve, s: the first that keeps the piston within its stroke is used. The longest is long for an
+/// excavator, the shortest suits a servo valve on a cylinder of a few millimetres.
 const DURATIONS: [f64; 4] = [1.0, 0.2, 0.04, 0.008];
 
-/// Samples of a trial.
+/// Samples per trial.
 const SAMPLES: usize = 200;
 
-/// Throws a cylinder's valve open both ways, all others closed. `None` for a cylinder without a valve.
+/// Opens a cylinder's valve fully in both directions, with all others closed. `None` for a cylinder without a valve.
 ///
 /// # Errors
-/// [`RunError`] when the machine cannot rest at mid-stroke or its simulation cannot go on.
+/// [`RunError`] if the machine cannot rest at mid-stroke or the simulation fails.
 pub fn trial(model: &Model, cylinder: usize) -> Result<Option<Trial>, RunError> {
     let Some(chambers) = model.machine.cylinders.get(cylinder).and_then(|one| one.chambers) else { return Ok(None) };
     let half_stroke = model.machine.cylinders[cylinder].stroke / 2.0;
@@ -68,7 +68,7 @@ fn summary(cylinder: usize, duration: f64, runs: [&Recording; 2]) -> Trial {
     Trial { duration, speeds: runs.map(fastest), pressures }
 }
 
-/// The machine at rest at mid-stroke, then one valve at `area` m² for `duration` s.
+/// Starts at rest at mid-stroke, then holds one valve at `area` m² for `duration` s.
 fn thrown_open(model: &Model, cylinder: usize, area: f64, duration: f64) -> Result<Recording, RunError> {
     let names: Vec<&str> = model.machine.cylinders.iter().map(|one| one.name.as_str()).collect();
     let time: Vec<f64> = (0..=SAMPLES).map(|sample| duration * sample as f64 / SAMPLES as f64).collect();

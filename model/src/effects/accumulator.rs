@@ -74,12 +74,12 @@ impl Physics for Accumulator {
 /// Ambient pressure, Pa absolute.
 const AMBIENT: f64 = 101_325.0;
 
-/// Polytropic index n of nitrogen that is compressed faster than heat leaves it.
+/// Polytropic index n of nitrogen that is compressed too fast for heat exchange.
 const POLYTROPIC_INDEX: f64 = 1.4;
 
-/// How sharply the gas begins to give at the pre-charge: half of it there, 96 % at one and a half times the pre-charge. A sharper corner
-/// is no bladder's, and the energy stored is an integral over it.
+/// Sharpness of the onset of the gas compliance at the pre-charge: half of it there, 96 % at one and a half times the pre-charge.
+/// A real bladder has no sharper corner, and the stored energy is an integral over it.
 const ONSET: f64 = 8.0;
 
-/// Lowest absolute pressure of the oil, Pa: vapour pressure bounds it in the machine, this bounds it in a search.
+/// Lowest absolute pressure of the oil, Pa: real oil is limited by its vapour pressure; this limit is for searches.
 const VACUUM: f64 = 1.0e3;

@@ -8,8 +8,8 @@ use crate::machine::Machine;
 
 /// Friction that differs by direction.
 ///
-/// The level of retraction is that of `coulomb_friction`. Each direction has its level on one and the same curve of speed, so
-/// that a piston that creeps feels as much of its level as it does of `coulomb_friction`.
+/// The level of retraction is that of `coulomb_friction`. Each direction scales the same curve of speed, so a creeping piston
+/// gets the same fraction of its level as with `coulomb_friction`.
 pub struct AsymmetricFriction;
 
 static CARD: Card = Card {

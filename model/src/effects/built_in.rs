@@ -1,4 +1,4 @@
-//! The effects that the program knows.
+//! The built-in effects.
 
 use std::sync::Arc;
 

@@ -6,8 +6,8 @@ use crate::machine::Machine;
 
 /// A bypass that starts to close late.
 ///
-/// One overlap for all sections of the valve block: its spools are cut alike, and what each of them does to the pressure of
-/// one line cannot be told apart anyway where they do not move alone.
+/// One overlap for all sections of the valve block: its spools are cut alike, and their contributions to the pressure of
+/// one line cannot be separated anyway unless they move alone.
 pub struct BypassOverlap;
 
 static CARD: Card = Card {

@@ -1,14 +1,14 @@
-//! What is said about an effect: the fourth face.
+//! The card of an effect: its description and its parameters.
 
 use std::borrow::Cow;
 
 use super::Prior;
 use crate::machine::{Growth, Machine, Size};
 
-/// A text of a card: that of a built-in effect is part of the program, that of a formula is its own.
+/// A text of a card: static for built-in effects, owned for formulas.
 pub type Text = Cow<'static, str>;
 
-/// A text that is part of the program.
+/// A static text.
 pub const fn text(text: &'static str) -> Text {
     Cow::Borrowed(text)
 }
@@ -22,63 +22,64 @@ pub enum ActsOn {
     Valve,
     /// The pump line: one instance per machine.
     PumpLine,
-    /// Cylinders with chambers and the pump line alike.
+    /// Cylinders with chambers and the pump line.
     CylinderOrPumpLine,
-    /// Instruments: those of a cylinder, that of the pump line, or all of the machine at once.
+    /// Instruments: those of a cylinder, that of the pump line, or all instruments of the machine at once.
     Instruments,
 }
 
-/// What an effect needs of the cylinder at which it acts, beyond a piston that moves. A pump line has all of it.
+/// Requirements of an effect on the cylinder where it acts, besides a moving piston. A pump line meets all of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
-    /// Nothing: a cylinder that is driven by a measured force can have it.
+    /// Nothing: a cylinder driven by a measured force can have it.
     Nothing,
     /// Pressures, but no flows: chambers, or an imposed motion with measured pressures.
     Pressures,
-    /// Oil that flows: chambers.
+    /// Oil flow: chambers.
     Oil,
     /// Chambers that a valve section feeds.
     Valve,
-    /// Chambers that a pump of their own feeds.
+    /// Chambers fed by their own pump.
     Pump,
 }
 
-/// Where one instance of an effect sits.
+/// Where one instance of an effect acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Site {
     /// At the cylinder (or joint) with this index.
     Cylinder(usize),
     /// At the pump line.
     PumpLine,
-    /// Everywhere at once: one effect with one set of parameters for all cylinders and the pump line.
+    /// The whole machine: one effect with one set of parameters for all cylinders and the pump line.
     Machine,
 }
 
-/// A corner in a law, which the equations round and an effect of family [`Family::Rounding`] rounds otherwise.
+/// A corner in a law that the equations round, and whose rounding an effect of family [`Family::Rounding`] changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Corner {
     /// The sign of the velocity in the friction of a piston.
     Friction,
-    /// The root of the pressure drop in the flow through the valve's edges.
+    /// The root law of the flow through the valve's edges.
     OrificeFlow,
     /// The contact of the piston with the ends of the cylinder.
     EndStop,
 }
 
-/// Whether the nominal model of \[A\] has the effect.
+/// The role of an effect in models and in a diagnosis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
     /// Part of the nominal model of \[A\] or of the frame every simulation needs.
     Base,
-    /// How recordings are made, not how the machine works: a nuisance, estimated with every model and never attributed.
+    /// A property of the recordings, not of the machine: a nuisance, estimated with every model and never attributed.
     Recording,
-    /// How widely the equations round a corner, or where a stop is, which nobody measures: a nuisance, estimated with every model and never attributed.
+    /// The width of a corner in the equations, or the position of a stop, which is not measured: a nuisance, estimated with every
+    /// model and never attributed.
     Rounding,
-    /// How a machine is built, which its data sheet says: added by hand, never a candidate.
+    /// A design feature from the machine's data sheet: added by hand, never a candidate.
     Construction,
-    /// A loss that the nominal model of \[A\] has, and a candidate where another model leaves it out.
+    /// A loss that the nominal model of \[A\] has, and a candidate if another model lacks it.
     Loss,
-    /// A candidate for what a nominal model may be missing.
+    /// A candidate for physics missing from a nominal model.
     Candidate,
 }
 
@@ -100,18 +101,18 @@ pub enum Kind {
     Shape,
 }
 
-/// Where a search for a parameter begins.
+/// Where a search for a parameter starts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Start {
     /// At each of these values in turn; the best fit wins.
     At(Cow<'static, [f64]>),
-    /// At these quantiles of the measured pump pressure: a threshold can only show inside the range that was visited.
+    /// At these quantiles of the measured pump pressure: a threshold has a visible effect only inside the measured range.
     PumpPressureQuantiles(Cow<'static, [f64]>),
-    /// Nowhere: a constant of a law, which has this value.
+    /// No search: a constant of a law, with this value.
     Known(f64),
-    /// At the beginning (s) of the stretches of time in which the equation of motion fails most.
+    /// At the beginning (s) of the intervals with the largest residual of the equation of motion.
     WorstStretchBegin,
-    /// At the length (s) of those stretches.
+    /// At the length (s) of those intervals.
     WorstStretchDuration,
 }
 
@@ -126,7 +127,7 @@ impl Start {
         Start::PumpPressureQuantiles(Cow::Borrowed(quantiles))
     }
 
-    /// Whether the parameter says when something happens in a recording, s.
+    /// Whether the parameter is a time in a recording, s.
     pub fn is_a_time(&self) -> bool {
         matches!(self, Start::WorstStretchBegin | Start::WorstStretchDuration)
     }
@@ -141,12 +142,12 @@ pub struct ParameterCard {
     pub symbol: Text,
     /// SI unit, "-" for a pure number.
     pub unit: Text,
-    /// What it means.
+    /// Its meaning.
     pub meaning: Text,
     /// How it enters the rows.
     pub kind: Kind,
-    /// How it grows from machine to machine. On the card of an effect, minimum, maximum, typical value and starts are those of the
-    /// machine of [`Size::REFERENCE`]; on that of a model's parameter, those of the model's machine.
+    /// How it scales with machine size. On the card of an effect, minimum, maximum, typical value and starts refer to the machine
+    /// of [`Size::REFERENCE`]; on the card of a model's parameter, to the model's machine.
     pub growth: Growth,
     /// Least physically possible value.
     pub minimum: f64,
@@ -154,14 +155,14 @@ pub struct ParameterCard {
     pub maximum: f64,
     /// Order of magnitude; scales searches.
     pub typical: f64,
-    /// Where a search begins.
+    /// Where a search starts.
     pub start: Start,
-    /// What is known of a nuisance parameter before a recording is read; `None` for a property of the machine.
+    /// Prior of a nuisance parameter, before a recording is read; `None` for a property of the machine.
     pub prior: Option<Prior>,
 }
 
 impl ParameterCard {
-    /// The same for a place of a machine: its size and its units.
+    /// The same card for a place of a machine: scaled to its size, in its units.
     #[must_use]
     pub fn for_place(&self, machine: &Machine, site: Site) -> ParameterCard {
         let mut card = self.for_size(&machine.size_at(site));
@@ -173,7 +174,7 @@ impl ParameterCard {
         card
     }
 
-    /// The same for a machine of another size.
+    /// The same card for a machine of another size.
     fn for_size(&self, size: &Size) -> ParameterCard {
         let factor = size.factor(self.growth);
         let start = match &self.start {
@@ -187,14 +188,14 @@ impl ParameterCard {
     }
 }
 
-/// What is said about an effect.
+/// Description of an effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Card {
     /// Name in model files, reports, messages and JSON.
     pub name: Text,
     /// Where it acts.
     pub acts_on: ActsOn,
-    /// What a cylinder must have for it.
+    /// What a cylinder must have.
     pub needs: Needs,
     /// Base or candidate.
     pub family: Family,

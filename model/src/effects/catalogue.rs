@@ -1,26 +1,26 @@
-//! The effects that a model may have.
+//! The effects available to a model.
 
 use std::sync::{Arc, LazyLock};
 
 use super::{Effect, built_in, nearest};
 
-/// An effect that several models share.
+/// An effect, shared by several models.
 pub type AnyEffect = Arc<dyn Effect>;
 
-/// The effects that a model may have: those of the program, and those of its user. A copy costs next to nothing.
+/// The effects available to a model: built-in effects and user effects. Copies are cheap.
 #[derive(Debug, Clone)]
 pub struct Catalogue {
     effects: Arc<[AnyEffect]>,
 }
 
-/// An effect name that the catalogue does not have.
+/// An effect name that is not in the catalogue.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown effect \"{name}\"{}; `excavator effects` lists all", did_you_mean(suggestion))]
 #[non_exhaustive]
 pub struct UnknownEffect {
-    /// The name asked for.
+    /// The requested name.
     pub name: String,
-    /// The nearest name in the catalogue, if one is near.
+    /// The nearest name in the catalogue, if there is one.
     pub suggestion: Option<String>,
 }
 
@@ -28,7 +28,7 @@ fn did_you_mean(suggestion: &Option<String>) -> String {
     suggestion.as_ref().map_or(String::new(), |name| format!(" (did you mean \"{name}\"?)"))
 }
 
-/// Two effects of one name.
+/// Two effects with the same name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("there are two effects named \"{name}\"; give yours another name")]
 #[non_exhaustive]
@@ -38,21 +38,21 @@ pub struct TwiceInCatalogue {
 }
 
 impl Catalogue {
-    /// The effects of the program.
+    /// The built-in effects.
     pub fn built_in() -> Catalogue {
         static BUILT_IN: LazyLock<Catalogue> = LazyLock::new(|| Catalogue { effects: built_in::built_in().into() });
         BUILT_IN.clone()
     }
 
-    /// Of these effects alone.
+    /// Only these effects.
     pub fn of(effects: Vec<AnyEffect>) -> Catalogue {
         Catalogue { effects: effects.into() }
     }
 
-    /// The same catalogue with more effects, behind those that it has.
+    /// The same catalogue with more effects, appended in order.
     ///
     /// # Errors
-    /// [`TwiceInCatalogue`] when a name is there already, or twice among the new ones.
+    /// [`TwiceInCatalogue`] if a name already exists, or occurs twice among the new effects.
     pub fn with(&self, more: impl IntoIterator<Item = AnyEffect>) -> Result<Catalogue, TwiceInCatalogue> {
         let mut names: std::collections::HashSet<String> =
             self.iter().map(|effect| effect.card().name.to_string()).collect();
@@ -72,10 +72,10 @@ impl Catalogue {
         self.effects.iter()
     }
 
-    /// The effect of this name.
+    /// The effect with this name.
     ///
     /// # Errors
-    /// [`UnknownEffect`] with the nearest name that exists.
+    /// [`UnknownEffect`] with the nearest existing name.
     pub fn find(&self, name: &str) -> Result<AnyEffect, UnknownEffect> {
         self.iter().find(|effect| effect.card().name == name).cloned().ok_or_else(|| UnknownEffect {
             name: name.to_string(),

@@ -1,10 +1,10 @@
-//! Oil boils instead of stretching.
+//! Cavitation: oil boils instead of stretching.
 
 use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
-/// Oil boils instead of stretching.
+/// Cavitation: oil boils instead of stretching.
 pub struct Cavitation;
 
 static CARD: Card = Card {
@@ -63,12 +63,12 @@ impl Physics for Cavitation {
     }
 }
 
-/// Half width of the rounding of the corner where make-up flow sets in, Pa: far less than the noise of a pressure sensor. With a
-/// corner the flow of a small chamber jumps between two time constants a million apart, and a simulation crawls along it in
-/// steps of 10 ns.
+/// Half width of the rounding of the corner where make-up flow starts, Pa: far less than the noise of a pressure sensor. With a
+/// sharp corner the flow into a small chamber switches between two time constants a factor of a million apart, and a simulation
+/// would need steps of 10 ns there.
 const ROUNDING: f64 = 100.0;
 
-/// Flow into each chamber whose pressure is below `limit` (Pa), `gain` (m3/(s Pa)) times what it lacks.
+/// Flow into each chamber whose pressure is below `limit` (Pa): `gain` (m3/(s Pa)) times the pressure deficit.
 pub(super) fn fill_below<T: Scalar>(limit: T, gain: T, site: Site, now: &Situation<T>, rows: &mut Rows<T>) {
     let Site::Cylinder(cylinder) = site else { return };
     let piston = &now.pistons[cylinder];
@@ -76,7 +76,7 @@ pub(super) fn fill_below<T: Scalar>(limit: T, gain: T, site: Site, now: &Situati
     rows.rod_flow[cylinder] += lack(limit - piston.rod_pressure) * gain;
 }
 
-/// The positive part with its corner rounded by a parabola; exact from one `ROUNDING` on either side.
+/// The positive part with its corner rounded by a parabola; exact beyond one `ROUNDING` on either side.
 fn lack<T: Scalar>(pressure: T) -> T {
     let (early, late) = ((pressure + ROUNDING).positive_part(), (pressure - ROUNDING).positive_part());
     (early * early - late * late) / (4.0 * ROUNDING)

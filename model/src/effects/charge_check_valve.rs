@@ -5,7 +5,7 @@ use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, R
 use crate::equations::Situation;
 use crate::machine::Machine;
 
-/// Check valves through which the charge line fills a chamber that is below its pressure.
+/// Check valves from the charge line, which fill a chamber whose pressure is below the charge pressure.
 pub struct ChargeCheckValve;
 
 static CARD: Card = Card {

@@ -1,4 +1,4 @@
-//! The piston meets the ends of the cylinder.
+//! Stops at the ends of the stroke.
 
 use super::{
     ActsOn, Card, Corner, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text,
@@ -6,7 +6,7 @@ use super::{
 use crate::equations::Situation;
 use crate::machine::{Cylinder, Machine};
 
-/// The piston meets the ends of the cylinder.
+/// Contact of the piston with the ends of the cylinder.
 pub struct EndStop;
 
 static CARD: Card = Card {
@@ -57,7 +57,7 @@ static PARAMETERS: &[ParameterCard] = &[
     },
 ];
 
-/// Why an effect of the ends of a stroke cannot act at `site`: a motor turns on for ever.
+/// Why an effect at the ends of the stroke cannot act at `site`: a motor has no ends.
 pub(super) fn no_end(machine: &Machine, site: Site) -> Option<String> {
     match site {
         Site::Cylinder(index) if machine.cylinders.get(index).is_some_and(Cylinder::is_motor) => {
@@ -67,7 +67,8 @@ pub(super) fn no_end(machine: &Machine, site: Site) -> Option<String> {
     }
 }
 
-/// Depth over which a viscous damping of the contact sets in, m, on a machine of the reference size: a jump would stall a simulation.
+/// Depth over which the viscous damping of the contact increases, m, on a machine of the reference size: a jump would stall a
+/// simulation.
 const ONSET: f64 = 2e-5;
 
 impl Physics for EndStop {

@@ -1,4 +1,4 @@
-//! Where the end stops really are, and how they give way.
+//! True position, stiffness and damping of the end stops.
 
 use super::{
     ActsOn, Card, Corner, Family, Finding, Growth, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar,
@@ -7,10 +7,10 @@ use super::{
 use crate::equations::{EndStopCorrection as Correction, Situation};
 use crate::machine::Machine;
 
-/// Where the end stops really are, and how they give way.
+/// True position, stiffness and damping of the end stops.
 ///
-/// Nobody measures the stiffness of a stop, and a stroke on a data sheet ends a few millimetres from where a piston does. A piston that
-/// is pressed against a stop stands where the stop is: an error there is large, and says nothing of the machine.
+/// Nobody measures the stiffness of a stop, and the stroke on a data sheet differs from the real one by a few millimetres. A
+/// piston pressed against a stop rests at the stop's true position, so an error there is large but is not a fault of the machine.
 pub struct EndStopCorrection;
 
 static CARD: Card = Card {
@@ -28,16 +28,16 @@ static CARD: Card = Card {
     energy: text("None of its own: it changes what the end stop stores and dissipates."),
 };
 
-/// A stiffness that somebody guessed is right within a factor of four, two times out of three, and within sixty nearly always.
+/// A guessed stiffness is right within a factor of four in two cases out of three, and within sixty nearly always.
 const STIFFNESS: Prior = Prior { spread: Spread::Fixed(4.0), scale: PriorScale::Logarithmic, range: [-3.0, 3.0] };
 
-/// The same for a damping, of which less is known.
+/// The same for a damping, which is less well known.
 const DAMPING: Prior = Prior { spread: Spread::Fixed(4.0), scale: PriorScale::Logarithmic, range: [-4.0, 4.0] };
 
-/// A rubber or an oil film brakes whatever the depth: up to a force of 10 kN at 0.1 m/s, that of the arm's pump.
+/// Rubber or an oil film brakes at any depth: up to a force of 10 kN at 0.1 m/s, the speed of the arm at full pump flow.
 const VISCOUS: Prior = Prior { spread: Spread::Fixed(1e5), scale: PriorScale::Linear, range: [0.0, 10.0] };
 
-/// An end is where the data sheet says within 3 mm of a stroke of 0.6 m; with ten times as much the stroke is wrong.
+/// An end is within 3 mm of the data sheet for a stroke of 0.6 m; with ten times as much, the stroke is wrong.
 const SHIFT: Prior = Prior { spread: Spread::Fixed(3e-3), scale: PriorScale::Linear, range: [-10.0, 10.0] };
 
 const fn factor(name: &'static str, symbol: &'static str, meaning: &'static str, prior: Prior) -> ParameterCard {

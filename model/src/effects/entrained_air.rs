@@ -57,10 +57,11 @@ impl Physics for EntrainedAir {
 /// Ambient pressure p0, Pa absolute.
 const AMBIENT: f64 = 101_325.0;
 
-/// Lowest absolute pressure of the bubbles, Pa: vapour pressure bounds it in the machine, this bounds it in a search.
+/// Lowest absolute pressure of the bubbles, Pa: real bubbles are limited by vapour pressure; this limit is for
+/// searches.
 const VACUUM: f64 = 1.0e3;
 
-/// Polytropic index n of the bubbles: 1.4, because they are compressed faster than heat leaves them.
+/// Polytropic index n of the bubbles: 1.4, because they are compressed too fast for heat exchange.
 const POLYTROPIC_INDEX: f64 = 1.4;
 const EXPONENT: f64 = 1.0 / POLYTROPIC_INDEX;
 /// `ln(p0^(1/n))`.

@@ -1,14 +1,14 @@
-//! Something outside pushes for a while.
+//! A temporary external force.
 
 use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::equations::smooth::window;
 use crate::machine::{Machine, Mechanism};
 
-/// Something outside pushes for a while.
+/// A temporary external force.
 ///
-/// A torque on the joint, because nobody knows where on the link it touches. Time comes with the inputs, so the window
-/// belongs to one recording.
+/// It is a torque on the joint, because the point of contact on the link is unknown. Time comes with the inputs, so
+/// the window belongs to one recording.
 pub struct ExternalContact;
 
 static CARD: Card = Card {

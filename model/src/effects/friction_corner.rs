@@ -1,4 +1,4 @@
-//! How sharp a corner friction turns.
+//! Sharpness of the friction corner.
 
 use super::{
     ActsOn, Card, Corner, Family, Finding, Growth, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar,
@@ -7,11 +7,12 @@ use super::{
 use crate::equations::Situation;
 use crate::machine::Machine;
 
-/// How sharp a corner friction turns where the piston begins to move and ends.
+/// Sharpness of the friction curve where the velocity changes sign.
 ///
-/// Beside the speed over which it turns round ([`super::friction_reversal`]) a friction has a shape: seals that stretch and then slip all
-/// at once turn a sharp corner, those that let go one by one arrive late. The hyperbolic tangent of the equations is a choice. With a
-/// corner cut straight, friction that pressure raises leaves a loss of 0.4 beside the right effect.
+/// Besides the speed of the transition ([`super::friction_reversal`]), the friction curve has a shape. Seals that stretch and
+/// then slip all at once give a sharp corner; seals that slip one after the other approach their level late. The hyperbolic
+/// tangent of the equations is a choice. With a straight corner, pressure-dependent friction has a loss of 0.4 even with the
+/// right effect.
 pub struct FrictionCorner;
 
 static CARD: Card = Card {
@@ -29,8 +30,8 @@ static CARD: Card = Card {
     energy: text("None of its own: it rounds what other effects dissipate."),
 };
 
-/// Shapes reach from softer than `x / sqrt(1 + x^2)`, at minus one, to nearly straight, at four: one standard deviation. Below minus two it
-/// would be a friction that grows at working speeds. From about twelve, three deviations, no recording tells how straight.
+/// Shapes reach from softer than `x / sqrt(1 + x^2)`, at minus one, to nearly straight, at four: one standard deviation. Below
+/// minus two, friction would grow at working speeds. Above about twelve, three deviations, no recording can resolve the shape.
 const PRIOR: Prior = Prior { spread: Spread::Fixed(4.0), scale: PriorScale::Linear, range: [-0.5, 5.0] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {

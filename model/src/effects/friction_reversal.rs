@@ -1,4 +1,4 @@
-//! How sharply friction turns round.
+//! Speed over which friction changes sign.
 
 use super::prior::for_people;
 use super::{
@@ -9,11 +9,12 @@ use crate::equations::Situation;
 use crate::equations::smooth::SLIP_SPEED;
 use crate::machine::Machine;
 
-/// How sharply friction turns round where the piston does.
+/// Speed over which friction changes sign at a reversal of the piston.
 ///
-/// No friction jumps: seals stretch, asperities bend, and a simulator that jumped would not end. The equations round the jump over
-/// 1 mm/s, which is a choice and no property of a machine. Where a machine (or another simulator) rounds it otherwise, every reversal
-/// leaves an error that looks like a little Stribeck friction, and Coulomb friction comes out wrong by several percent.
+/// Real friction does not jump: seals stretch, asperities bend, and a simulation with a jump would stall. The equations round the
+/// jump over 1 mm/s, which is a choice and not a property of a machine. If a machine (or another simulator) rounds it
+/// differently, every reversal leaves an error that looks like weak Stribeck friction, and Coulomb friction is off by several
+/// percent.
 pub struct FrictionReversal;
 
 static CARD: Card = Card {
@@ -31,9 +32,9 @@ static CARD: Card = Card {
     energy: text("None of its own: it rounds what other effects dissipate."),
 };
 
-/// Velocity reversals over 0.2 mm/s to 6 mm/s are rounded and no more: each end is about one and a half standard deviations of a
-/// factor of 3 away from 1 mm/s. Sharper ones no recording shows. Seals at their slowest have 6 mm/s; from there on it is a friction
-/// with a shape of its own.
+/// A transition over 0.2 mm/s to 6 mm/s counts as rounding: each end is about one and a half standard deviations of a factor of 3
+/// away from 1 mm/s. A recording cannot resolve sharper ones. The slowest seals reach 6 mm/s; above that, the friction has a
+/// shape of its own.
 const PRIOR: Prior = Prior { spread: Spread::Fixed(3.0), scale: PriorScale::Logarithmic, range: [-1.46, 1.63] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {

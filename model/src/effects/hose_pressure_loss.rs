@@ -6,10 +6,11 @@ use crate::machine::Machine;
 
 /// Pressure loss between valve and chamber.
 ///
-/// A hose in series with a metering edge: the edge is left with what the hose leaves of the pressure drop. For turbulent flow
-/// both grow with its square, so they join into one edge, and pressures between them need no state. It is the second
-/// form of \[B\] Eq. 17-18; the first, [`super::hose_loss`], is a force on the piston, which is the same loss only where
-/// chamber pressures are measured at the valve. Flow that `valve_directional_gain` adds to an edge is not throttled with it.
+/// A hose in series with a metering edge: the edge gets the pressure drop that remains after the hose. For turbulent flow
+/// both drops grow with the square of the flow, so they combine into one edge, and the pressures between them need no state.
+/// It is the second form of \[B\] Eq. 17-18. The first, [`super::hose_loss`], is a force on the piston, which is the same
+/// loss only if chamber pressures are measured at the valve. Flow that `valve_directional_gain` adds to an edge is not
+/// throttled by the hose.
 pub struct HosePressureLoss;
 
 static CARD: Card = Card {

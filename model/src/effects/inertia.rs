@@ -71,7 +71,8 @@ static FIRST_OF_TWO: &[ParameterCard] = &[
     },
 ];
 
-/// What joint `k` of a chain of n links turns, J_k = A_k + ... + A_n: the links' own inertias with all later masses at their ends.
+/// Inertia about joint `k` of a chain of n links, J_k = A_k + ... + A_n: the links' own inertias with all later masses at their
+/// ends.
 const CHAIN_INERTIA: ParameterCard = ParameterCard {
     name: text("inertia"),
     symbol: text("J"),
@@ -90,8 +91,8 @@ const CHAIN_INERTIA: ParameterCard = ParameterCard {
 
 static FIRST_OF_CHAIN: &[ParameterCard] = &[CHAIN_INERTIA];
 
-/// `coupling_moment` is the same number as `gravity_moment` where links are rigid. It is a parameter of its own, as \[A\] keeps
-/// R12 apart from W2: that both come out alike is a check of an identification.
+/// For rigid links `coupling_moment` equals `gravity_moment`. It is a separate parameter, as \[A\] keeps R12 apart from W2: if
+/// both come out equal, that confirms an identification.
 static LATER_OF_CHAIN: &[ParameterCard] = &[
     CHAIN_INERTIA,
     ParameterCard {

@@ -6,9 +6,9 @@ use crate::machine::{Machine, Mechanism};
 
 /// A spring at the joint.
 ///
-/// Anybody sees whether a machine has one. It is no candidate of a diagnosis: a little of it looks like gravity at another angle, which is
-/// a displacement sensor that is off. But what it explains better than a candidate does not get that candidate's name. Add it by
-/// hand, as `joint_spring@arm`, and compare.
+/// Whether a machine has a spring is visible. So it is not a candidate of a diagnosis: a weak spring looks like gravity at
+/// another angle, which is an offset of the displacement sensor. But if it explains data better than a candidate, that candidate
+/// is not named. Add it by hand, as `joint_spring@arm`, and compare.
 pub struct JointSpring;
 
 static CARD: Card = Card {
@@ -104,7 +104,7 @@ impl Physics for JointSpring {
     }
 }
 
-/// Joint coordinate from where it is at mid-stroke, rad or m.
+/// Joint coordinate relative to its value at mid-stroke, rad or m.
 fn from_middle<T: Scalar>(cylinder: usize, now: &Situation<T>) -> T {
     now.pistons[cylinder].joint - now.machine.cylinders[cylinder].linkage.joint(0.0)
 }

@@ -6,8 +6,8 @@ use crate::machine::Machine;
 
 /// Check valve between pump line and metering edge.
 ///
-/// The share is a parameter, not a switch, so that the flow back can be found by a fit; the slope of the flow law jumps at
-/// zero pressure drop, the flow itself does not.
+/// The share is a parameter, not a switch, so that a fit can identify the backflow. The slope of the flow law jumps at
+/// zero pressure drop; the flow itself does not.
 pub struct LoadCheckValve;
 
 static CARD: Card = Card {

@@ -4,7 +4,7 @@ use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, R
 use crate::equations::Situation;
 use crate::machine::Machine;
 
-/// A variable pump with a load-sensing regulator. The `flow` of the supply is the most that it gives.
+/// A variable pump with a load-sensing regulator. The `flow` of the supply is its largest flow.
 pub struct LoadSensingPump;
 
 static CARD: Card = Card {
@@ -117,18 +117,18 @@ impl Physics for LoadSensingPump {
         rows: &mut Rows<T>,
     ) {
         let wanted = ((states[0] - now.pump_pressure) * parameters[2]).positive_part();
-        // The equations give the line all of the supply's flow.
+        // The equations already add the full supply flow to the line.
         rows.pump_flow -= (-wanted + now.pump_flow).positive_part();
     }
 }
 
-/// Pressure that the regulator aims at, Pa.
+/// Target pressure of the regulator, Pa.
 fn wanted_pressure<T: Scalar>(parameters: &[T], now: &Situation<T>) -> T {
     let above_load = highest_load(now) + parameters[0];
     above_load - (above_load - parameters[1]).positive_part()
 }
 
-/// Highest pressure at a metering edge that the pump feeds, Pa; that of the tank where no valve is open.
+/// Highest pressure at a metering edge that the pump feeds, Pa; the tank pressure if no valve is open.
 fn highest_load<T: Scalar>(now: &Situation<T>) -> T {
     let sections = now.pistons.iter().zip(&now.machine.cylinders).filter_map(|(piston, cylinder)| {
         let full = cylinder.chambers.as_ref()?.full_command();
@@ -140,5 +140,5 @@ fn highest_load<T: Scalar>(now: &Situation<T>) -> T {
     highest + now.tank_pressure
 }
 
-/// Share of the full opening at which a section tells the pump its load.
+/// Fraction of the full opening at which a section reports its load to the pump.
 const CONNECTED: f64 = 0.01;

@@ -1,4 +1,4 @@
-//! Valves that let oil from the tank line into a chamber that is drawn empty.
+//! Make-up valves: oil from the tank line fills a chamber whose pressure drops too low.
 
 use super::cavitation::fill_below;
 use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};

@@ -1,13 +1,13 @@
 //! The effect catalogue: one physical effect per file.
 //!
-//! Every effect has four faces, all from one formula written once for any [`Scalar`]:
+//! Every effect has four parts, all from one formula written once for any [`Scalar`]:
 //! 1. *simulation*: what it adds to the [`Rows`] of the equations of motion ([`Physics::contribute`]);
 //! 2. *regressor*: the derivative of those rows with respect to its parameters, by dual numbers;
 //! 3. *power*: its forces times velocities and its flows times pressures ([`crate::energy`]);
-//! 4. *how it shows*: its [`Card`], in words a machine engineer understands, with the experiment that shows it best.
+//! 4. *how it shows*: its [`Card`], in the terms of a machine engineer, with the experiment that shows it best.
 //!
-//! To add one to the program: write a file with a unit struct and its [`Physics`], and add a line to `built_in.rs`. One of your own needs no
-//! Rust ([`crate::formula`]), or a [`Physics`] in your own crate that [`Catalogue::with`] adds.
+//! To add a built-in effect, write a file with a unit struct and its [`Physics`], and add a line to `built_in.rs`. A user effect
+//! needs no Rust ([`crate::formula`]), or is a [`Physics`] in another crate, added with [`Catalogue::with`].
 
 mod built_in;
 mod card;
@@ -75,7 +75,7 @@ pub use prior::{Finding, Prior, PriorScale, RecordingScales, Spread};
 use crate::equations::Rows;
 use crate::scalar::Scalar;
 
-/// The candidate nearest in spelling to `name`, if it is near enough to be what was meant.
+/// The candidate nearest in spelling to `name`, if it is near enough to be a likely typo.
 pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     candidates
         .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))

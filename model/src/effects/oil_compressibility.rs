@@ -1,11 +1,11 @@
-//! Compressibility of the oil, with the walls and hoses around it.
+//! Compressibility of the oil and compliance of walls and hoses.
 
 use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 use crate::machine::Supply;
 
-/// Compressibility of the oil, with the walls and hoses around it.
+/// Compressibility of the oil and compliance of walls and hoses.
 pub struct OilCompressibility;
 
 static CARD: Card = Card {
@@ -44,7 +44,7 @@ impl Physics for OilCompressibility {
         PARAMETERS
     }
 
-    /// Hoses full of foam, and water in a block of steel.
+    /// From hoses full of foam to water in a block of steel.
     fn plausible(&self, _machine: &Machine, _site: Site, _parameter: &str) -> Option<[f64; 2]> {
         Some([5e7, 4e9])
     }

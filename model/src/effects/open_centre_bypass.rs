@@ -57,13 +57,13 @@ impl Physics for OpenCentreBypass {
     }
 }
 
-/// Section usum of the bypass in m²: the sections of all valves in series.
+/// Bypass area usum in m²: the areas of all valves in series.
 pub(super) fn bypass_section<T: Scalar>(now: &Situation<T>) -> T {
     let mut inverse_squares = T::from(0.0);
     for (cylinder, piston) in now.pistons.iter().enumerate() {
         let Some(chambers) = now.chambers(cylinder) else { continue };
         let left = -piston.bypass_closing + chambers.full_command();
-        // A spool at or past its end shuts the whole bypass; the sum would be infinite.
+        // A spool at or beyond its end closes the whole bypass; the sum would be infinite.
         if left.value() <= CLOSED_SHARE * chambers.full_command() {
             return T::from(0.0);
         }
@@ -72,5 +72,5 @@ pub(super) fn bypass_section<T: Scalar>(now: &Situation<T>) -> T {
     inverse_squares.sqrt().recip()
 }
 
-/// Share of the largest opening under which a bypass section counts as shut: a thousandth of a per cent.
+/// Fraction of the largest opening below which a bypass section counts as closed: a thousandth of a per cent.
 const CLOSED_SHARE: f64 = 1e-5;

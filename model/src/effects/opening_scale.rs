@@ -1,13 +1,13 @@
-//! A full opening that is not what was assumed.
+//! A full opening that differs from the assumed one.
 
 use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::{Machine, Size};
 
-/// A full opening that is not what was assumed.
+/// A full opening that differs from the assumed one.
 ///
-/// Where a command is known in volts or per cent only, its scale is a guess. Flow gains take up the factor; what remains
-/// of it is the opening at which the bypass is closed.
+/// If a command is known only in volts or per cent, its scale is a guess. The flow gains absorb the factor; what remains is the
+/// opening at which the bypass is closed.
 pub struct OpeningScale;
 
 static CARD: Card = Card {
@@ -41,7 +41,7 @@ static PARAMETERS: &[ParameterCard] = &[ParameterCard {
     prior: None,
 }];
 
-/// Relative error of the full scale that good spool sensors have. A linkage worn by 1.6 mm looks like a scale that is 0.7 % off.
+/// Relative full-scale error of good spool sensors. A linkage worn by 1.6 mm looks like a scale error of 0.7 %.
 const ACCURACY: f64 = 0.01;
 
 impl Physics for OpeningScale {

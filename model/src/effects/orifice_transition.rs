@@ -1,4 +1,4 @@
-//! Where the flow through an orifice begins to be turbulent.
+//! Transition from laminar to turbulent flow in an orifice.
 
 use super::{
     ActsOn, Card, Corner, Family, Finding, Growth, Kind, Needs, ParameterCard, Physics, Prior, PriorScale, Scalar,
@@ -8,11 +8,12 @@ use crate::equations::Situation;
 use crate::equations::smooth::LAMINAR_PRESSURE;
 use crate::machine::Machine;
 
-/// Where the flow through the valve's orifices begins to be turbulent.
+/// Transition from laminar to turbulent flow in the valve's orifices.
 ///
-/// The root law has an infinite slope at zero, no orifice has: at a small pressure drop the flow is laminar and goes with the drop
-/// itself. The equations round the root over 2 kPa. Where narrow slots and cold oil (or another simulator) do so over tens of
-/// kilopascals, a chamber that is nearly at tank pressure or nearly at pump pressure fills slower than the root says.
+/// The root law has an infinite slope at zero; a real orifice does not. At a small pressure drop the flow is laminar and
+/// proportional to the drop. The equations round the root over 2 kPa. If the transition takes tens of kilopascals, as with narrow
+/// slots and cold oil (or in another simulator), a chamber near tank pressure or near pump pressure fills more slowly than the
+/// root law predicts.
 pub struct OrificeTransition;
 
 static CARD: Card = Card {
@@ -32,8 +33,8 @@ static CARD: Card = Card {
     energy: text("None of its own: it rounds the metering loss."),
 };
 
-/// Metering slots turn turbulent between 0.2 kPa and 300 kPa: a slot of 0.1 mm in cold oil reaches the upper end. That is one standard
-/// deviation of a factor of 8 below 2 kPa and two and a half above.
+/// The transition of metering slots is between 0.2 kPa and 300 kPa: a slot of 0.1 mm in cold oil reaches the upper end. With a
+/// factor of 8 per standard deviation, that is one deviation below 2 kPa and two and a half above.
 const PRIOR: Prior = Prior { spread: Spread::Fixed(8.0), scale: PriorScale::Logarithmic, range: [-1.1, 2.4] };
 
 static PARAMETERS: &[ParameterCard] = &[ParameterCard {

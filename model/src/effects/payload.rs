@@ -1,4 +1,4 @@
-//! A mass that the link carries.
+//! A payload on the link.
 
 use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text};
 use crate::equations::Situation;
@@ -6,11 +6,11 @@ use crate::equations::planar_chain::{absolute_angle, add_first_moment, add_inert
 use crate::equations::smooth::window;
 use crate::machine::{Chain, Machine, Mechanism};
 
-/// A mass that the link carries.
+/// A payload on the link.
 ///
-/// Machines do not know the distance of their tips, only that of their pins, so it is a parameter: known where somebody
-/// has measured it. A load that is there all the time hides in the inertia and the gravity of its link, where these are
-/// unknown; one that is picked up or put down does not. Picked up or put down it takes its energy along.
+/// The machine description has the distances of the pins but not of the tip, so the payload's distance is a parameter,
+/// known if it was measured. A permanent load cannot be separated from the inertia and gravity of its link if these are
+/// unknown. A load that is picked up or put down can, and it takes its energy along.
 pub struct Payload;
 
 static CARD: Card = Card {
@@ -90,7 +90,7 @@ const DURATION: ParameterCard = ParameterCard {
     prior: None,
 };
 
-/// A time before every recording, s; later than that by more than a window takes to open.
+/// A time before every recording, s, by more than the opening time of a window.
 const BEFORE: f64 = -1.0;
 
 /// Longer than any recording, s.
@@ -167,7 +167,7 @@ impl Physics for Payload {
         }
     }
 
-    /// `-m g` times the height that the mass loses, zero with all links level.
+    /// `-m g` times the height below the level position of all links.
     fn potential<T: Scalar>(&self, site: Site, parameters: &[T], now: &Situation<T>) -> Option<T> {
         let Site::Cylinder(cylinder) = site else { return None };
         let weight = carried(parameters, now) * now.machine.gravity;
@@ -216,7 +216,7 @@ impl Physics for Payload {
     }
 }
 
-/// The mass that is carried at this instant.
+/// The mass carried at this instant.
 fn carried<T: Scalar>(parameters: &[T], now: &Situation<T>) -> T {
     match parameters {
         [mass, .., begin, duration] => *mass * window(now.time, *begin, *duration, now.time_scale),
@@ -224,7 +224,7 @@ fn carried<T: Scalar>(parameters: &[T], now: &Situation<T>) -> T {
     }
 }
 
-/// A mass on link `link` of a chain, at `distance` from its joint; each link before has it at its end.
+/// A mass on link `link` of a chain, at `distance` from its joint; each previous link has it at its end.
 fn on_a_chain<T: Scalar>(link: usize, mass: T, distance: T, chain: Chain<'_>, now: &Situation<T>, rows: &mut Rows<T>) {
     for carrier in chain.first..=link {
         let reach = if carrier == link { distance } else { T::from(chain.length(carrier)) };

@@ -1,7 +1,7 @@
 //! The interface between an effect and the equations.
 //!
-//! To add a hook: write it with its default in [`Physics`], and its signature in the list of `hooks!`. Everything else follows from
-//! the list.
+//! To add a hook, write it with its default in [`Physics`], and add its signature to the list of `hooks!`. The list generates
+//! everything else.
 
 use super::{Card, Corner, Finding, ParameterCard, Rows, Scalar, Site};
 use crate::equations::{Instruments, Situation};
@@ -11,7 +11,7 @@ use crate::scalar::Dual;
 
 /// One physical effect, written once for any number type.
 ///
-/// An effect of one's own needs its card, its parameters, and what it adds to the equations:
+/// A user effect needs its card, its parameters, and its contribution to the equations:
 ///
 /// ```
 /// use std::sync::Arc;
@@ -75,70 +75,72 @@ use crate::scalar::Dual;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Physics: Send + Sync {
-    /// What is said about it.
+    /// Its description.
     fn card(&self) -> &Card;
 
     /// Its parameters at `site` of `machine`, in the order in which [`Physics::contribute`] gets them.
     fn parameters(&self, machine: &Machine, site: Site) -> &[ParameterCard];
 
-    /// Value of a parameter that a model file leaves out, where that may be: files that are older than the parameter.
+    /// Default value of a parameter that a model file may omit: for files older than the parameter.
     fn value_where_left_out(&self, _parameter: &str) -> Option<f64> {
         None
     }
 
-    /// Range in which a parameter of a real machine lies, where the limits of a search are wider than that.
+    /// Plausible range of a parameter of a real machine, if it is narrower than the limits of a search.
     fn plausible(&self, _machine: &Machine, _site: Site, _parameter: &str) -> Option<[f64; 2]> {
         None
     }
 
-    /// Whether the maximum of a parameter is a size that machines have, as a check valve is tight, and not the end of what is plausible.
+    /// Whether real machines reach the maximum of a parameter (a check valve can be tight), so that it is not a mere limit of
+    /// plausibility.
     fn has_natural_maximum(&self, _parameter: &str) -> bool {
         false
     }
 
-    /// Whether an effect of this size says anything about a machine. One that is within the accuracy of good instruments, or whose
-    /// shape lies where nothing moves, is no answer to what is missing, however well it takes up an error. `size` is that of its place.
+    /// Whether an effect of this size matters. An effect within the accuracy of good instruments, or whose shape lies where
+    /// nothing moves, is not an answer to missing physics, however well it absorbs an error. `size` is that of its place.
     fn is_practically_significant(&self, _size: &Size, _parameters: &[f64]) -> bool {
         true
     }
 
-    /// Whether it has power of its own, by what it contributes to the rows. What shifts an opening, rounds another effect or acts on an
-    /// instrument has none, and no line in an energy balance.
+    /// Whether its contribution to the rows has power. Effects that shift an opening, round another effect or act on an
+    /// instrument have none, and no line in an energy balance.
     fn has_power(&self) -> bool {
         true
     }
 
-    /// Whether its flows into the chambers are paid for by a shaft of its own, and not by the supply.
+    /// Whether the power of its flows into the chambers comes from its own shaft, not from the supply.
     fn takes_power_from_a_shaft(&self) -> bool {
         false
     }
 
-    /// Whether what it adds to a compliance does not depend on pressure, so that the energy stored there is known without integrating.
+    /// Whether its compliance does not depend on pressure, so that the stored energy needs no integration.
     fn has_constant_compliance(&self) -> bool {
         false
     }
 
-    /// What it rounds, for an effect that only rounds the corner of another effect's law.
+    /// The corner it rounds, for an effect that only rounds another effect's law.
     fn rounds(&self) -> Option<Corner> {
         None
     }
 
-    /// The corner that its law has with these parameters, for others to round.
+    /// The corner of its law with these parameters, for other effects to round.
     fn corner(&self, _parameters: &[f64]) -> Option<Corner> {
         None
     }
 
-    /// What a report says of a nuisance effect with these parameters in these units; `None` for what a verdict names.
+    /// The finding in a report for a nuisance effect with these parameters in these units; `None` for effects that a verdict
+    /// names.
     fn finding(&self, _parameters: &[(f64, &str)]) -> Option<Finding> {
         None
     }
 
-    /// The text of a law that was read from a formula.
+    /// The text of a law read from a formula.
     fn formula(&self) -> Option<&FormulaText> {
         None
     }
 
-    /// Why it cannot act at `site` of `machine`, beyond what its card says.
+    /// Why it cannot act at `site` of `machine`, besides the requirements of its card.
     fn why_not(&self, _machine: &Machine, _site: Site) -> Option<String> {
         None
     }
@@ -148,59 +150,60 @@ pub trait Physics: Send + Sync {
         0
     }
 
-    /// Whether its states are its own memory, of which [`Physics::begin`] and [`Physics::remember`] know. Others are spools, as openings,
-    /// of which [`Physics::spool`] knows.
+    /// Whether its states are its own memory, handled by [`Physics::begin`] and [`Physics::remember`]. Other states are spools,
+    /// as openings, handled by [`Physics::spool`].
     fn has_memory(&self) -> bool {
         false
     }
 
-    /// Order of magnitude of a state, in its unit: that of a spool's opening, m², on a machine of the reference size.
+    /// Order of magnitude of a state, in its unit; for a spool its opening, m², on a machine of the reference size.
     fn state_scale(&self, _state: usize) -> f64 {
         1e-4
     }
 
-    /// Whether its law needs the metering flows, so that it has to wait for those of the valve.
+    /// Whether its law needs the metering flows, so that it is evaluated after the valve's effects.
     fn reads_metering_flows(&self) -> bool {
         false
     }
 
-    /// Whether it changes what other effects see: through [`Physics::spool`], [`Physics::opening`] or [`Physics::adjust`], which are
-    /// asked of such effects only. The parameters of all others act on their own rows alone, which makes their derivatives cheap.
+    /// Whether it changes what other effects see through [`Physics::spool`], [`Physics::opening`] or [`Physics::adjust`], which
+    /// are called for such effects only. The parameters of all others affect only their own rows, which makes their derivatives
+    /// cheap.
     fn adjusts_others(&self) -> bool {
         false
     }
 
-    /// Where the metering edges and where the bypass's really are (m²), given where the input says the spool is; `states` are the
-    /// effect's own, whose rates go to `rates`. `size` is that of the valve's cylinder.
+    /// True positions of the metering edges and of the bypass (m²), given the spool position of the input; `states` are the
+    /// effect's own, and their rates are written to `rates`. `size` is that of the valve's cylinder.
     fn spool<T: Scalar>(&self, _size: &Size, _parameters: &[T], _states: &[T], _rates: &mut [T], spool: T) -> [T; 2] {
         [spool, spool]
     }
 
-    /// Whether the effect looks at how the input changes, by [`Physics::read`].
+    /// Whether the effect reads the rate of the input, by [`Physics::read`].
     fn reads_course(&self) -> bool {
         false
     }
 
-    /// The opening (m²) that the input means, given what it says and how fast that changes before and after this instant
-    /// (m²/s). Asked of effects with [`Physics::reads_course`] only, before any [`Physics::spool`].
+    /// The true opening (m²) of the input, given its reading and the reading's rates before and after this instant (m²/s). Called
+    /// only for effects with [`Physics::reads_course`], before any [`Physics::spool`].
     fn read<T: Scalar>(&self, _parameters: &[T], reading: T, _course: [T; 2]) -> T {
         reading
     }
 
-    /// The area open to flow (m²), given the area that the effects before it left open.
+    /// The area open to flow (m²), given the area after the previous effects.
     fn opening<T: Scalar>(&self, _site: Site, _parameters: &[T], opening: T, _now: &Situation<T>) -> T {
         opening
     }
 
-    /// Adjusts what other effects see, after all openings are known: the closing of the bypass, the share of flow back to the pump, how
-    /// a corner is rounded.
+    /// Adjusts what other effects see, after all openings are known: the closing of the bypass, the share of backflow to the
+    /// pump, the rounding of a corner.
     fn adjust<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &mut Situation<T>) {}
 
-    /// Adds to what instruments make of what they measure, for an effect that acts on them and not on the machine.
+    /// Adds to the distortions of instruments, for an effect that acts on them and not on the machine.
     fn distort<T: Scalar>(&self, _site: Site, _parameters: &[T], _instruments: &mut Instruments<T>) {}
 
-    /// Potential energy in J that the effect stores by posture, for an effect whose whole torque follows from it;
-    /// `None` for all others. What an effect adds to the mass matrix needs no such word: it stores kinetic energy.
+    /// Potential energy in J that the effect stores as a function of position, if its whole torque follows from it; `None` for
+    /// all other effects. Contributions to the mass matrix do not need it: they store kinetic energy.
     fn potential<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>) -> Option<T> {
         None
     }
@@ -220,7 +223,7 @@ pub trait Physics: Send + Sync {
         self.contribute(site, parameters, now, rows);
     }
 
-    /// Rates of its memory into `rates`.
+    /// Writes the rates of its memory to `rates`.
     fn remember<T: Scalar>(
         &self,
         _site: Site,
@@ -231,12 +234,12 @@ pub trait Physics: Send + Sync {
     ) {
     }
 
-    /// Sets its memory to where it begins.
+    /// Sets its memory to the initial value.
     fn begin<T: Scalar>(&self, _site: Site, _parameters: &[T], _now: &Situation<T>, _states: &mut [T]) {}
 }
 
-/// The traits through which a model uses unlike effects, from the list of the hooks of [`Physics`]: those that are the same for every
-/// number type, and those in a number type `T`.
+/// The traits through which a model uses effects of different types, generated from the hooks of [`Physics`]: those that are the
+/// same for every number type, and those in a number type `T`.
 macro_rules! hooks {
     (
         same for every number type {
@@ -246,8 +249,8 @@ macro_rules! hooks {
             $(fn $hook:ident($($name:ident: $type:ty),*) $(-> $result:ty)?;)*
         }
     ) => {
-        /// [`Physics`] as a model holds it: one list of unlike effects, for the number types that the program uses.
-        /// Implemented for every `Physics`; not to be implemented by hand.
+        /// [`Physics`] as a trait object, for the number types of the program. Implemented for every `Physics`; not to be
+        /// implemented by hand.
         #[allow(missing_docs)]
         pub trait Effect: Hooks<f64> + Hooks<Dual> + Send + Sync {
             $(fn $plain(&self, $($plain_name: $plain_type),*) $(-> $plain_result)?;)*
@@ -312,7 +315,7 @@ hooks! {
 }
 
 impl dyn Effect + '_ {
-    /// Whether it changes nothing but what instruments report.
+    /// Whether it changes only what instruments report.
     pub fn is_an_instruments(&self) -> bool {
         !(self.has_power() || self.has_memory() || self.adjusts_others() || self.reads_course())
     }
@@ -324,7 +327,7 @@ impl std::fmt::Debug for dyn Effect {
     }
 }
 
-/// A number type that effects can be evaluated with.
+/// A number type for the evaluation of effects.
 pub trait Number: Scalar {
     /// The hooks of an effect in this number type: `T::hooks(effect).contribute(...)`.
     fn hooks(effect: &dyn Effect) -> &dyn Hooks<Self>;

@@ -6,9 +6,9 @@ use crate::machine::Machine;
 
 /// Pressure compensator in front of the metering edges.
 ///
-/// Whether a section has one is on its data sheet, and its margin is the setting of a spring. It is no candidate of a diagnosis: a
-/// margin among the pressure drops of a recording is a knee that takes up what a bent gain, a relief valve or a leaking pump
-/// leave, and one above them changes nothing. Add it by hand, as `pressure_compensation@arm`, and compare.
+/// The data sheet shows whether a section has one, and its margin is the setting of a spring. It is not a candidate of a
+/// diagnosis: a margin within the pressure drops of a recording is a knee that absorbs the errors of a nonlinear gain, a relief
+/// valve or a leaking pump, and a margin above them has no effect. Add it by hand, as `pressure_compensation@arm`, and compare.
 pub struct PressureCompensation;
 
 static CARD: Card = Card {

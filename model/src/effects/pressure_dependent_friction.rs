@@ -1,4 +1,4 @@
-//! Friction of seals that pressure pushes against the wall.
+//! Friction of seals that pressure presses against the wall.
 
 use super::{
     ActsOn, Card, Corner, Family, Growth, Kind, Needs, ParameterCard, Physics, Rows, Scalar, Site, Start, text,
@@ -6,7 +6,7 @@ use super::{
 use crate::equations::Situation;
 use crate::machine::Machine;
 
-/// Friction of seals that pressure pushes against the wall.
+/// Friction of seals that pressure presses against the wall.
 pub struct PressureDependentFriction;
 
 static CARD: Card = Card {

@@ -6,7 +6,7 @@ use crate::machine::Machine;
 
 /// Pressure sensors that do not read zero at ambient pressure.
 ///
-/// A shape, not a linear coefficient: equations that are fed with the measured pressure see it under a root.
+/// A shape, not a linear coefficient: equations that take the measured pressure as input have it under a root.
 pub struct PressureSensorOffset;
 
 static CARD: Card = Card {

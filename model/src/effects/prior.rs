@@ -1,23 +1,23 @@
-//! What is known of a nuisance parameter before a recording is read.
+//! Priors of nuisance parameters, before a recording is read.
 
 use crate::display::pressure_text;
 
-/// A normal distribution of a nuisance parameter about the value at which its effect changes nothing: its first start value.
+/// A normal distribution of a nuisance parameter about the value at which its effect has no influence: its first start value.
 ///
-/// A nuisance parameter says how a recording was made or how the equations round a corner. It is estimated with every model, and what
-/// is known of it beforehand keeps it from standing in for a property of the machine.
+/// A nuisance parameter describes the recording or the rounding of a corner in the equations. It is estimated with every model.
+/// The prior keeps it from replacing a property of the machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prior {
     /// One standard deviation.
     pub spread: Spread,
-    /// On which scale the distribution is normal.
+    /// Scale on which the distribution is normal.
     pub scale: PriorScale,
-    /// How many standard deviations below (negative) and above the centre a value may be. What is farther off is no nuisance: it has a
-    /// cause that a diagnosis should look for.
+    /// Permitted deviation from the centre in standard deviations, below (negative) and above. A larger deviation is not a
+    /// nuisance: it has a cause that a diagnosis should find.
     pub range: [f64; 2],
 }
 
-/// What a report says of a nuisance effect whose estimate shows.
+/// Report text for a nuisance effect with a significant estimate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// A sentence without its full stop, for one place and for several.
@@ -26,7 +26,7 @@ pub struct Finding {
     pub value: String,
 }
 
-/// On which scale a [`Prior`] is normal.
+/// Scale on which a [`Prior`] is normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PriorScale {
     /// The parameter itself; the spread is in its unit.
@@ -40,31 +40,31 @@ pub enum PriorScale {
 pub enum Spread {
     /// The same for every recording: in the parameter's unit, or a factor on the logarithmic scale.
     Fixed(f64),
-    /// A part of the longest sample interval, and at least so many seconds.
+    /// A fraction of the longest sample interval, but at least this many seconds.
     OfSampleInterval {
-        /// Part of the sample interval, a pure number.
+        /// Fraction of the sample interval, a pure number.
         part: f64,
         /// Least spread, s.
         at_least_s: f64,
     },
-    /// A part of the largest opening that the recordings show at the effect's site.
+    /// A fraction of the largest opening in the recordings at the effect's site.
     OfLargestOpening {
-        /// Part of the opening, a pure number.
+        /// Fraction of the opening, a pure number.
         part: f64,
     },
 }
 
-/// What spreads are taken from, as the recordings of a fit have it.
+/// Scales of a fit's recordings, for the spreads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordingScales {
     /// Longest sample interval of the recordings, s.
     pub sample_interval_s: f64,
-    /// Largest opening at the effect's site, without its sign, m².
+    /// Largest absolute opening at the effect's site, m².
     pub largest_opening_m2: f64,
 }
 
 impl Prior {
-    /// The same for a parameter that is `factor` times larger.
+    /// The same for a parameter scaled by `factor`.
     pub(super) fn grown(self, factor: f64) -> Self {
         match (self.spread, self.scale) {
             (Spread::Fixed(spread), PriorScale::Linear) => Prior { spread: Spread::Fixed(spread * factor), ..self },
@@ -90,8 +90,8 @@ impl Prior {
         })
     }
 
-    /// How many standard deviations `value` is above `centre`, the value at which the effect changes nothing. On the logarithmic
-    /// scale both are above zero.
+    /// Distance of `value` above `centre`, the value at which the effect has no influence, in standard deviations. On the
+    /// logarithmic scale both are above zero.
     pub fn standardised(&self, value: f64, centre: f64, scales: &RecordingScales) -> f64 {
         let deviation = self.standard_deviation(scales);
         match self.scale {
@@ -101,7 +101,7 @@ impl Prior {
     }
 }
 
-/// A value of this SI unit in a unit for people.
+/// Formats a value in SI units for display.
 pub(super) fn for_people(value: f64, unit: &str) -> String {
     match unit {
         "m/s" => format!("{:.1} mm/s", 1e3 * value),

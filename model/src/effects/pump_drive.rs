@@ -4,7 +4,7 @@ use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, R
 use crate::equations::Situation;
 use crate::machine::Machine;
 
-/// A pump between both chambers of a cylinder or motor: what it draws from one it gives to the other.
+/// A pump between both chambers of a cylinder or motor: it moves oil from one to the other.
 pub struct PumpDrive;
 
 static CARD: Card = Card {

@@ -6,7 +6,7 @@ use crate::machine::Machine;
 
 /// Instruments that report late.
 ///
-/// A pure delay, kept out of the state: [`crate::simulation::Observer`] looks back along the trajectory.
+/// A pure delay without states: [`crate::simulation::Observer`] looks back along the trajectory.
 pub struct SensorDelay;
 
 static CARD: Card = Card {
@@ -85,7 +85,7 @@ impl Physics for SensorDelay {
         match site {
             Site::Cylinder(index) if machine.cylinders.get(index).is_some_and(|c| c.chambers.is_some()) => CYLINDER,
             Site::Machine if machine.has_chambers() => MACHINE,
-            // Without chambers there are no pressures that could be late, and no pump line either.
+            // Without chambers there are no pressure signals to delay, and no pump line either.
             Site::Cylinder(_) | Site::Machine => LOAD,
             Site::PumpLine => PUMP_LINE,
         }
@@ -111,7 +111,8 @@ impl Physics for SensorDelay {
     }
 }
 
-/// Delays what the instruments of one cylinder report; parameters are the delay of the position and, with chambers, of the pressures.
+/// Delays the reports of one cylinder's instruments; parameters are the delay of the position and, with chambers, of the
+/// pressures.
 fn delay_cylinder<T: Scalar>(cylinder: usize, parameters: &[T], instruments: &mut Instruments<T>) {
     for channel in [Channel::JointAngle(cylinder), Channel::Displacement(cylinder), Channel::Velocity(cylinder)] {
         instruments.of_mut(channel).delay += parameters[0];

@@ -5,7 +5,8 @@ use crate::equations::Situation;
 use crate::equations::smooth::rounded_step;
 use crate::machine::Machine;
 
-/// A shuttle, or pilot-operated check valves: the side at lower pressure is open to the charge line, both ways, so that a cylinder of unequal areas can run in a closed circuit.
+/// A shuttle valve, or pilot-operated check valves: the side at lower pressure is open to the charge line, in both directions, so
+/// that a cylinder of unequal areas can run in a closed circuit.
 pub struct ShuttleValve;
 
 static CARD: Card = Card {
@@ -79,8 +80,8 @@ impl Physics for ShuttleValve {
     }
 }
 
-/// Half width of the ramp on which the valve opens, as a share of the pressure at which it is half open: its spring is a third longer when
-/// it is fully open than when it begins to move.
+/// Half width of the ramp over which the valve opens, as a fraction of the pressure at which it is half open: its spring is a
+/// third longer when the valve is fully open than when it begins to move.
 const RAMP: f64 = 0.45;
 
 /// Half width of the ramp of a valve without a spring, Pa.

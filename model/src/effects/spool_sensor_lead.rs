@@ -8,14 +8,14 @@ use crate::machine::Machine;
 
 /// A spool sensor that is read earlier than the other instruments, by less than a sample.
 ///
-/// Samples of one stamp are not of one instant: converters take turns, controllers compute an output at the end of a cycle
-/// and report it at its beginning, a command that is held between two samples acts half an interval later than straight
-/// lines through its samples. Half a millisecond is nothing for an arm and much for a bulk modulus: a chamber fills in two
-/// to ten milliseconds.
+/// Samples with the same timestamp are not simultaneous: converters sample in sequence, and controllers compute an output at the
+/// end of a cycle and report it at its beginning. A command that is held between two samples acts half an interval later than
+/// linear interpolation of its samples. Half a millisecond is nothing for an arm, but matters for a bulk modulus: a chamber fills
+/// in two to ten milliseconds.
 ///
-/// The rate at a sample is the mean of the rates before and after it, as of a smooth curve. Where the two differ much the
-/// input jumps, and the rate is that of the side on which the true value lies: no lead of up to a sample interval then
-/// makes the opening larger than its samples, and the oil that passes is that of the jump at its right time.
+/// The rate at a sample is the mean of the rates before and after it, as for a smooth curve. If the two differ much, the input
+/// jumps, and the rate is that of the side on which the true value lies. Then no lead of up to a sample interval makes the
+/// opening larger than its samples, and the oil volume is that of the jump at its right time.
 pub struct SpoolSensorLead;
 
 static CARD: Card = Card {
@@ -37,10 +37,10 @@ static CARD: Card = Card {
     energy: text("None: it acts on the instrument."),
 };
 
-/// An opening that is held between samples acts half a sample interval late, and converters take turns within one. So a third of the
-/// interval is one standard deviation, and two thirds are as far ahead as a sensor may be. Where recordings are fast a controller's
-/// cycle of a millisecond is the longer time: 1.3 ms are two deviations of 0.65 ms. A spool sensor with a filter is late by up to 5 ms,
-/// which are eight.
+/// An opening held between samples acts half a sample interval late, and converters sample in sequence within one interval. So a
+/// third of the interval is one standard deviation, and a sensor may lead by two thirds. In fast recordings a controller's cycle
+/// of a millisecond is longer: 1.3 ms are two deviations of 0.65 ms. A spool sensor with a filter lags by up to 5 ms, which is
+/// eight deviations.
 const PRIOR: Prior = Prior {
     spread: Spread::OfSampleInterval { part: 1.0 / 3.0, at_least_s: 6.5e-4 },
     scale: PriorScale::Linear,

@@ -7,10 +7,11 @@ use super::{
 };
 use crate::machine::Machine;
 
-/// A spool sensor that does not read zero where the valve closes, by a part of its noise or of its converter's step.
+/// A spool sensor that does not read zero where the valve closes, by a fraction of its noise or of its converter's step.
 ///
-/// No reading shows it; the oil does. Where two nearly closed edges share a pump's flow, or a nearly open valve leaves a bypass
-/// next to nothing, a thousandth of the opening is more pressure than a pressure sensor's noise, and looks like a dead zone.
+/// No reading shows it, but the pressures do. Where two nearly closed edges share a pump's flow, or a nearly open valve almost
+/// closes the bypass, a thousandth of the opening changes the pressure by more than a sensor's noise, and looks like a dead
+/// zone.
 pub struct SpoolSensorOffset;
 
 static CARD: Card = Card {
@@ -28,7 +29,7 @@ static CARD: Card = Card {
     energy: text("None: it acts on the instrument."),
 };
 
-/// An ordinary position transducer is good to 0.5 % of the largest opening, which are two standard deviations.
+/// An ordinary position transducer is accurate to 0.5 % of the largest opening, which is two standard deviations.
 const PRIOR: Prior =
     Prior { spread: Spread::OfLargestOpening { part: 2.5e-3 }, scale: PriorScale::Linear, range: [-2.0, 2.0] };
 

@@ -51,8 +51,9 @@ static PARAMETERS: &[ParameterCard] = &[
     },
 ];
 
-/// Stribeck speed in m/s below which the curve is that of how sharply friction turns round, which below 1 mm/s is the model's own choice: a
-/// machine that turns otherwise and hides nothing came out at 1.0 mm/s. Seals have 5 to 20 mm/s.
+/// Lowest significant Stribeck speed in m/s. Below it the curve cannot be separated from the rounding of friction at reversals,
+/// for which the model assumes 1 mm/s: a fault-free machine with another rounding gave an estimate of 1.0 mm/s. Seals have 5 to
+/// 20 mm/s.
 const SLOWEST: f64 = 3e-3;
 
 impl Physics for StribeckFriction {

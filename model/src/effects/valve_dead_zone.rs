@@ -58,7 +58,7 @@ impl Physics for ValveDeadZone {
         PARAMETERS
     }
 
-    /// A valve that never leaves its dead zone lets no oil through.
+    /// A valve that never leaves its dead zone passes no oil.
     fn plausible(&self, machine: &Machine, site: Site, _parameter: &str) -> Option<[f64; 2]> {
         let Site::Cylinder(cylinder) = site else { return None };
         let chambers = machine.cylinders.get(cylinder)?.chambers?;

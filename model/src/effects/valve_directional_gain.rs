@@ -6,8 +6,8 @@ use crate::machine::Machine;
 
 /// A valve that meters differently in the two directions.
 ///
-/// Written as a change that is added to the gains of `orifice_flow`, not as gains of its own: rows stay linear in it, and
-/// zero is the nominal model, so that a search can start there.
+/// A change added to the gains of `orifice_flow`, not separate gains: the rows stay linear in it, and zero is the nominal
+/// model, so a search can start there.
 pub struct ValveDirectionalGain;
 
 static CARD: Card = Card {

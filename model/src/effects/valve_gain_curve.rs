@@ -1,13 +1,13 @@
-//! An area law that bends.
+//! A nonlinear area law.
 
 use super::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Physics, Scalar, Site, Start, text};
 use crate::equations::Situation;
 use crate::machine::Machine;
 
-/// An area law that bends.
+/// A nonlinear area law.
 ///
 /// Two terms: a slot that widens (c1) and the corners of notches (c2). The flow gains of `orifice_flow` are then those of
-/// a valve that has just opened.
+/// a valve that is just beginning to open.
 pub struct ValveGainCurve;
 
 static CARD: Card = Card {

@@ -5,16 +5,17 @@ use crate::machine::{Machine, Size, Supply};
 
 /// Play between spool and opening.
 ///
-/// The ideal play moves its output only while its input pushes: `dz = du` at an edge, a law in the input's rate, which a
-/// sampled input does not have. Here the edge pulls the memory z along like a lag of [`FOLLOW_TIME`], and the output is the
-/// memory as far as the edges let it be: at an edge exactly the ideal play's, inside the memory. What is left of the lag is where
-/// the memory stands after a reversal, behind the ideal play by `T |du/dt|` a millisecond before it: where the spool turned
-/// round within a few milliseconds, nothing where it slowed down first. The right-hand side is continuous (Lipschitz), so
-/// sensitivities need no jump condition, and a linearly implicit step takes an edge like any other stiff lag.
+/// The ideal play moves its output only while its input pushes: `dz = du` at an edge. This law needs the input's rate, which a
+/// sampled input does not have. Here the edge moves the memory z like a lag of [`FOLLOW_TIME`], and the output is the memory
+/// limited by the edges: at an edge it equals the ideal play, between the edges it is the memory. The lag remains visible only
+/// after a reversal: the memory is behind the ideal play by the distance `T |du/dt|` of the last millisecond before it. That
+/// matters where the spool reversed within a few milliseconds, and vanishes where it slowed down first. The right-hand side is
+/// continuous (Lipschitz), so sensitivities need no jump condition, and a linearly implicit step handles an edge like any other
+/// stiff lag.
 ///
-/// Where the play is decides who has it. Between the sensor and the spool, all lands of the spool have it, that of the
-/// bypass too. In the metering edges' own pilot stage the bypass has none: it follows what the sensor says. A share
-/// says how much of it the bypass has, for a pump's pressure shows the one as clearly as the other.
+/// The location of the play decides what it affects. Between the sensor and the spool, it affects all lands of the spool,
+/// including the bypass. In the pilot stage of the metering edges, it does not affect the bypass, which follows the sensor. A
+/// share parameter sets the fraction for the bypass, because the pump pressure shows both cases equally clearly.
 pub struct ValveHysteresis;
 
 static CARD: Card = Card {
@@ -108,6 +109,6 @@ impl Physics for ValveHysteresis {
     }
 }
 
-/// Time T in which the memory reaches an edge that pulls it, s: the sample interval of a fast recorder, under which no
-/// difference to the ideal play can be seen.
+/// Time T in which the memory reaches an edge that moves it, s: the sample interval of a fast recorder, below which no difference
+/// from the ideal play is visible.
 const FOLLOW_TIME: f64 = 1.0e-3;

@@ -5,10 +5,10 @@ use crate::machine::{Machine, Size};
 
 /// Lag of the spool.
 ///
-/// Written with the time by which everything comes late and a share that says how: 0 is a lag of first order, 1/4 two equal
-/// lags one after the other, 1/2 a pure delay as far as slow signals can tell, more a spool that overshoots (damping ratio
-/// `1/(2 sqrt r)`). Two numbers that a recording shows independently; first order and delay in series would be two that share
-/// what it shows. Both states are openings that rest where the input rests.
+/// The parameters are the total delay and a share r that sets its shape: 0 is a first-order lag, 1/4 two equal lags in
+/// series, 1/2 a pure delay as far as slow signals can show, and more an overshooting spool (damping ratio `1/(2 sqrt r)`). A
+/// recording determines these two numbers independently; a first-order time constant and a delay in series would be
+/// correlated. Both states are openings that settle at the input.
 pub struct ValveLag;
 
 static CARD: Card = Card {
@@ -93,5 +93,5 @@ impl Physics for ValveLag {
     }
 }
 
-/// Time T of the second lag where it is of first order, s: faster than any recording shows, and no division by zero.
+/// Time T of the second lag for a first-order lag, s: shorter than any recording can resolve, and avoids a division by zero.
 const FASTEST: f64 = 2e-4;

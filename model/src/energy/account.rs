@@ -1,4 +1,4 @@
-//! From a state to its ledger.
+//! Computes the energy ledger of a state.
 
 use super::oil::stored_beside;
 use super::{CylinderStorage, EffectPower, Ledger, OilEnergy};
@@ -28,15 +28,15 @@ pub fn ledger<'m, T: Number>(system: &System<'m>, parameters: &[T], state: &[T],
     Accountant::new(system).ledger(parameters, state, inputs)
 }
 
-/// Writes ledgers of one model, with memory that is reused.
+/// Computes ledgers of one model and reuses memory between calls.
 #[derive(Debug)]
 pub struct Accountant<'m, 's, T> {
     system: &'s System<'m>,
     workspace: Workspace<'m, T>,
     rates: Vec<T>,
-    /// What all effects add to the rows.
+    /// Contributions of all effects to the rows.
     totals: Rows<T>,
-    /// What each effect alone adds to them.
+    /// Contribution of each effect alone.
     alone: Vec<Rows<T>>,
 }
 
@@ -55,7 +55,7 @@ impl<'m, 's, T: Number> Accountant<'m, 's, T> {
 
     /// Storage and powers at one instant: parameters in the model's order, state in the order of its layout.
     pub fn ledger(&mut self, parameters: &[T], state: &[T], inputs: &Inputs<T>) -> Ledger<T> {
-        // The rates are evaluated for the situation, which may hold flows of the valve, and for the mass matrix.
+        // The rates are evaluated for the situation, which may include metering flows, and for the mass matrix.
         self.system.rates(&mut self.workspace, parameters, state, inputs, &mut self.rates);
         std::mem::swap(&mut self.totals, &mut self.workspace.rows);
         for (number, alone) in self.alone.iter_mut().enumerate() {
@@ -101,7 +101,7 @@ struct Account<'m, 'a, T> {
     parameters: &'a [T],
     state: &'a [T],
     workspace: &'a mut Workspace<'m, T>,
-    /// What each effect alone adds to the rows.
+    /// Contribution of each effect alone to the rows.
     alone: &'a [Rows<T>],
 }
 
@@ -128,7 +128,7 @@ impl<T: Number> Account<'_, '_, T> {
                 let oil = self.oil(Oil::PumpLine, supply_pressure, T::from(line.volume));
                 (oil.stored * line.volume + self.stored_in_accumulators(supply_pressure, line.volume), oil.potential)
             }
-            // A pressure given from outside has no volume that could store anything.
+            // A supply pressure given from outside has no volume and stores nothing.
             Supply::PressureSource(_) => (zero, supply_pressure),
             Supply::None => (zero, zero),
         };
@@ -153,13 +153,13 @@ impl<T: Number> Account<'_, '_, T> {
         Ledger { cylinders, pump_line, effects, pump_power, rod_force_power, expansion_loss }
     }
 
-    /// What effect `number` alone adds to the rows, in a situation that has been changed.
+    /// Contribution of effect `number` alone to the rows, in a changed situation.
     fn contribute_alone(&mut self, number: usize) {
         self.workspace.rows.clear();
         self.system.contribute_one(number, self.workspace, self.parameters, self.state);
     }
 
-    /// Kinetic and potential energy of each joint, \[A\] Eq. 9, from rows that all effects have added to.
+    /// Kinetic and potential energy of each joint, \[A\] Eq. 9, from rows with the contributions of all effects.
     fn mechanical_storage(&self) -> Vec<CylinderStorage<T>> {
         let zero = T::from(0.0);
         let Workspace { situation, rows, .. } = &*self.workspace;
@@ -175,7 +175,7 @@ impl<T: Number> Account<'_, '_, T> {
         storage
     }
 
-    /// Energy of one volume of oil, from the compliances of all effects at the pressures below its own.
+    /// Energy of one volume of oil, from the compliances of all effects, integrated up to its pressure.
     fn oil(&mut self, oil: Oil, pressure: T, volume: T) -> OilEnergy<T> {
         let stiffens = |number: &usize| oil.compliance(&self.alone[*number]).value() != 0.0;
         let springs: Vec<usize> = (0..self.alone.len()).filter(stiffens).collect();
@@ -198,7 +198,7 @@ impl<T: Number> Account<'_, '_, T> {
         energy
     }
 
-    /// Energy of the gas behind oil of the pump line, which has this volume (m³).
+    /// Energy of the gas in accumulators on a pump line of this oil volume (m³).
     fn stored_in_accumulators(&mut self, pressure: T, volume: f64) -> T {
         let has_gas = |number: &usize| self.alone[*number].accumulator_compliance.value() != 0.0;
         let accumulators: Vec<usize> = (0..self.alone.len()).filter(has_gas).collect();
@@ -230,7 +230,7 @@ impl<T: Number> Account<'_, '_, T> {
                 let (first, last) = self.system.parameter_ranges()[number];
                 let (situation, rows) = (&self.workspace.situation, &self.alone[number]);
                 let parameters = &self.parameters[first..last];
-                // The torque of what has mass is its Coriolis torque, whose power is the change of the mass matrix.
+                // The torque of an effect with mass is its Coriolis torque, whose power is the change of the mass matrix.
                 let has_mass = rows.mass.iter().any(|entry| entry.value() != 0.0);
                 let has_weight = T::hooks(&*effect.physics).potential(effect.site, parameters, situation).is_some();
                 let has_spring = rows.cap_compliance.iter().chain(&rows.rod_compliance).any(|c| c.value() != 0.0)
@@ -267,8 +267,8 @@ impl<T: Number> Account<'_, '_, T> {
             .collect()
     }
 
-    /// Power of a mass that is picked up or put down, W: the rate at which the energy that effect `number` stores changes with
-    /// everything at rest but time.
+    /// Power of a mass that is picked up or put down, W: the rate of the energy that effect `number` stores, with everything
+    /// constant except time.
     fn brought_along(&mut self, number: usize) -> T {
         let now = self.workspace.situation.time;
         let instant = INSTANT * self.system.model().machine.size().time();
@@ -289,8 +289,7 @@ impl<T: Number> Account<'_, '_, T> {
     }
 }
 
-/// Step of the differences that a change with time is taken from, s: a thousandth of a window's edge, so that what they leave
-/// is a millionth of a millionth.
+/// Step of the finite differences in time, s: a thousandth of a window's edge, so that their error is about 1e-12.
 const INSTANT: f64 = 3e-5;
 
 /// Kinetic energy of each joint, \[A\] Eq. 9, J.

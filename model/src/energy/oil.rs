@@ -1,4 +1,4 @@
-//! What pressure means for energy when oil is compressible.
+//! Energy of compressible oil as a function of pressure.
 
 use crate::scalar::Scalar;
 
@@ -12,18 +12,18 @@ use crate::scalar::Scalar;
 pub struct OilEnergy<T> {
     /// Energy h stored per volume, J/m³.
     pub stored: T,
-    /// Energy e carried into the chamber per volume of flow, J/m³ (equal to the pressure for stiff oil).
+    /// Energy e carried into the chamber per volume of flow, J/m³ (equals the pressure for stiff oil).
     pub potential: T,
 }
 
-/// Below this `|c p|` the series of `exp(x) - 1 - x` is summed, because the difference would cancel.
+/// Below this `|c p|` the code sums the series of `exp(x) - 1 - x`, because the closed form suffers from cancellation.
 const SERIES_BELOW: f64 = 0.1;
 
 /// Terms of that series; the first one left out is below 1e-17 of the first.
 const SERIES_TERMS: i32 = 13;
 
 impl<T: Scalar> OilEnergy<T> {
-    /// At `pressure` (Pa), for a compressibility (1/Pa) that is the same at all pressures: \[A\] Eq. 9.
+    /// At `pressure` (Pa), for a compressibility (1/Pa) that does not depend on pressure: \[A\] Eq. 9.
     pub fn of_constant(compressibility: T, pressure: T) -> Self {
         let strain = compressibility * pressure;
         // (exp(x) - 1 - x) / (x²/2), which is 1 for stiff oil.
@@ -37,8 +37,8 @@ impl<T: Scalar> OilEnergy<T> {
 
     /// At `pressure` (Pa), for a compressibility (1/Pa) that depends on pressure.
     ///
-    /// Solves `dh/dp = c (p + h)` from zero, which unlike `e - p` does not cancel, by panels of Gauss quadrature of
-    /// sixth order over the logarithm of the absolute pressure, in which gas laws are smooth.
+    /// Integrates `dh/dp = c (p + h)` from zero, which avoids the cancellation of `e - p`. It uses panels of sixth-order Gauss
+    /// quadrature over the logarithm of the absolute pressure, in which gas laws are smooth.
     pub fn of_varying(mut compressibility: impl FnMut(T) -> T, pressure: T) -> Self {
         let zero = T::from(0.0);
         let lowest = T::from(-GAS_LAW_DOWN_TO * AMBIENT);
@@ -61,13 +61,13 @@ impl<T: Scalar> OilEnergy<T> {
     }
 }
 
-/// Energy (J) that a line stores beside its oil, in what takes up oil without compressing it: the integral of `e C dp` from zero to
-/// `pressure` (Pa), where `at` gives C (m³/Pa) and e (J/m³) at a pressure.
+/// Energy (J) that a line stores in a compliance other than its oil: the integral of `e C dp` from zero to `pressure` (Pa), where
+/// `at` returns C (m³/Pa) and e (J/m³) at a pressure.
 pub fn stored_beside<T: Scalar>(mut at: impl FnMut(T) -> (T, T), pressure: T) -> T {
     let lowest = T::from(-GAS_LAW_DOWN_TO * AMBIENT);
     let within = if pressure.value() > lowest.value() { pressure } else { lowest };
     let height = (within / AMBIENT).ln_1p();
-    // The corner at a pre-charge is sharper than a gas law.
+    // The corner at the pre-charge pressure is sharper than a gas law.
     let panels = (2.0 * height.value().abs() / PANEL).ceil().max(1.0) as usize;
     let width = height / panels as f64;
     let nodes = gauss_nodes();
@@ -92,17 +92,17 @@ const GAUSS_WEIGHTS: [f64; 3] = [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0];
 /// Ambient pressure, Pa absolute.
 const AMBIENT: f64 = 101_325.0;
 
-/// Down to this part of a vacuum the logarithm of the absolute pressure is the variable; below, where no oil gets, the
-/// pressure itself.
+/// Down to this fraction of a vacuum the integration variable is the logarithm of the absolute pressure. Below it, where no oil
+/// gets, it is the pressure itself.
 const GAS_LAW_DOWN_TO: f64 = 0.99;
 
 /// Longest panel, in units of the logarithm: its error is below 1e-12 of the result.
 const PANEL: f64 = 0.05;
 
-/// Carries `stored` from `from` to `to`, where `at` gives pressure and c(p) dp/dy at a value of the variable y.
+/// Integrates `stored` from `from` to `to`, where `at` returns pressure and c(p) dp/dy at a value of the variable y.
 fn integrate<T: Scalar>(from: T, to: T, stored: T, mut at: impl FnMut(T) -> (T, T)) -> T {
     let root = 15.0_f64.sqrt();
-    // Integrals up to each node of the Gauss method with three stages.
+    // Integrals up to each node of the three-stage Gauss method.
     let (nodes, weights) = (gauss_nodes(), GAUSS_WEIGHTS);
     let partial = [
         [5.0 / 36.0, 2.0 / 9.0 - root / 15.0, 5.0 / 36.0 - root / 30.0],
@@ -131,7 +131,7 @@ fn integrate<T: Scalar>(from: T, to: T, stored: T, mut at: impl FnMut(T) -> (T, 
 mod tests {
     use super::OilEnergy;
 
-    /// The quadrature knows nothing of exponentials; at a constant compressibility it must find the closed form.
+    /// The quadrature does not use exponentials; at a constant compressibility it must match the closed form.
     #[test]
     fn quadrature_agrees_with_the_closed_form() {
         for modulus in [6.5e7, 9.6e8_f64] {
@@ -144,7 +144,7 @@ mod tests {
         }
     }
 
-    /// Series and closed form of `exp(x) - 1 - x` meet where the code changes over.
+    /// Series and closed form of `exp(x) - 1 - x` agree where the code switches between them.
     #[test]
     fn series_meets_the_exponential() {
         let (below, above): (f64, f64) = (0.1 - 1e-12, 0.1 + 1e-12);
@@ -155,7 +155,7 @@ mod tests {
         }
     }
 
-    /// `e` by its own differential equation with a gas law, in a hundred thousand small steps of the classical
+    /// Compares with `e` from its own differential equation with a gas law, in a hundred thousand small steps of the classical
     /// Runge-Kutta method.
     #[test]
     fn bubbles_are_integrated_exactly() {

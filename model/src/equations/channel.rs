@@ -1,4 +1,4 @@
-//! What instruments can measure of a machine.
+//! Output channels of a model that instruments can measure.
 
 use super::{Layout, System};
 use crate::effects::Number;
@@ -6,7 +6,7 @@ use crate::machine::Machine;
 use crate::recording::{CylinderSignals, Recording};
 use crate::scalar::{constant, derivative, variable};
 
-/// One output of a model that an instrument can measure. Cylinders are given by their index.
+/// One measurable output of a model. Cylinders are given by their index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Channel {
     /// Joint coordinate, rad (m for a linear load).
@@ -57,7 +57,7 @@ impl Channel {
         }
     }
 
-    /// The signal of a recording that reports this channel; `None` where the recording does not have the cylinder.
+    /// The signal of a recording that reports this channel; `None` if the recording lacks the cylinder.
     pub fn signal_mut<'r>(self, machine: &Machine, recording: &'r mut Recording) -> Option<&'r mut Vec<f64>> {
         let (cylinder, signal): (usize, fn(&mut CylinderSignals) -> &mut Vec<f64>) = match self {
             Channel::JointAngle(cylinder) => (cylinder, |signals| &mut signals.joint_angle),
@@ -72,7 +72,7 @@ impl Channel {
         recording.cylinders.iter_mut().find(|signals| signals.name == *name).map(signal)
     }
 
-    /// The true value at a state (in the order of the layout); `NaN` where the model has no such state.
+    /// The true value at a state (in the order of the layout); `NaN` if the model has no such state.
     pub fn value<T: Number>(self, system: &System<'_>, state: &[T]) -> T {
         let layout = system.layout();
         let linkage = |cylinder: usize| &system.model().machine.cylinders[cylinder].linkage;
@@ -88,7 +88,8 @@ impl Channel {
         }
     }
 
-    /// Derivative of the true value by the state: pairs of state index and factor, the second factor often zero.
+    /// Derivative of the true value with respect to the state: pairs of state index and factor, the second factor
+    /// often zero.
     pub fn gradient(self, system: &System<'_>, state: &[f64]) -> [(usize, f64); 2] {
         let layout = system.layout();
         let single = |index: Option<usize>| index.map_or([(0, 0.0); 2], |index| [(index, 1.0), (index, 0.0)]);

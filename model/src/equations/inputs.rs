@@ -1,4 +1,4 @@
-//! What the model is given from outside at one instant.
+//! External inputs of the model at one instant.
 
 use crate::scalar::{Dual, Scalar, constant};
 
@@ -18,7 +18,7 @@ pub struct ImposedState<T> {
 }
 
 impl<T> ImposedState<T> {
-    /// What `of` makes of each.
+    /// Applies `of` to each number.
     pub fn each<U>(&self, of: impl Fn(&T) -> U) -> ImposedState<U> {
         ImposedState {
             joint: of(&self.joint),
@@ -33,17 +33,18 @@ impl<T> ImposedState<T> {
 /// Inputs of the model at one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inputs<T> {
-    /// Time since the first sample of the recording, s; for what is active in a part of it only.
+    /// Time since the first sample of the recording, s; for effects that act in a part of it only.
     pub time: T,
     /// Spool opening per cylinder: measured orifice area, or the commanded one where no spool sensor exists, m².
     pub orifice_area: Vec<T>,
-    /// How fast that opening changes before this instant and after it, m²/s, per cylinder: they differ at a sample, where
-    /// the input bends. Zero unless an effect of the model asks for it ([`crate::effects::Physics::reads_course`]).
+    /// Rate of change of that opening before and after this instant, m²/s, per cylinder. The two differ at a sample,
+    /// where the input has a kink. Zero unless an effect of the model needs it
+    /// ([`crate::effects::Physics::reads_course`]).
     pub orifice_course: Vec<[T; 2]>,
-    /// Force that drives the piston, per cylinder, N; used only by cylinders without chambers. Measured on the rod, and
-    /// where the motion is imposed with the force of the measured pressures.
+    /// Force that drives the piston, per cylinder, N; used only by cylinders without chambers. It is measured on the rod;
+    /// for an imposed motion it includes the force of the measured pressures.
     pub rod_force: Vec<T>,
-    /// What is imposed on each cylinder; used only where the motion is.
+    /// Imposed state of each cylinder; used only for imposed motions.
     pub imposed: Vec<ImposedState<T>>,
     /// Supply pressure in Pa; used only where the pump line is not a state.
     pub supply_pressure: T,
@@ -78,7 +79,7 @@ impl<T: Scalar> Inputs<T> {
         }
     }
 
-    /// Takes over the values of `other`, which has as many cylinders, without allocating.
+    /// Copies the values of `other`, which has the same number of cylinders, without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.time = other.time;
         self.orifice_area.copy_from_slice(&other.orifice_area);
@@ -92,7 +93,7 @@ impl<T: Scalar> Inputs<T> {
 }
 
 impl Inputs<Dual> {
-    /// Takes over plain inputs as constants, without allocating.
+    /// Copies plain inputs as constants, without allocating.
     pub fn lift_from(&mut self, plain: &Inputs<f64>) {
         self.time = constant(plain.time);
         for (slot, &value) in self.orifice_area.iter_mut().zip(&plain.orifice_area) {

@@ -1,29 +1,29 @@
-//! What instruments make of what they measure, as sums that effects add to.
+//! Distortions of measurements by instruments, as sums that effects add to.
 
 use super::Channel;
 use crate::scalar::Scalar;
 
 /// What one instrument reports of a true value x: `x(t - delay) + offset`.
 ///
-/// Offset and delay act on the report alone; no force or flow feels them. That is why they are not states: a delay in
-/// the equations of motion would cost several states per signal and hold only for slow signals.
+/// Offset and delay affect the report alone, not forces or flows. So they are not states: a delay in the equations of
+/// motion would cost several states per signal and would be accurate for slow signals only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Distortion<T> {
     /// Added to the true value, in the channel's unit.
     pub offset: T,
-    /// How late the instrument reports, s.
+    /// Delay of the report, s.
     pub delay: T,
 }
 
 impl<T: Scalar> Distortion<T> {
-    /// An instrument that reports what is.
+    /// An ideal instrument.
     pub fn none() -> Self {
         Distortion { offset: T::from(0.0), delay: T::from(0.0) }
     }
 
-    /// The true value as a function of the parameters, for equations that are fed with measurements: `corrected` is the
-    /// true value at the present parameters ([`crate::simulation::undistorted`]) and `slope` its time derivative. The
-    /// value is `corrected`; its derivatives are `-d(offset) + slope d(delay)`.
+    /// The true value as a function of the parameters, for equations that take measurements as inputs: `corrected` is
+    /// the true value at the present parameters ([`crate::simulation::undistorted`]) and `slope` its time derivative.
+    /// The result has the value `corrected` and the derivatives `-d(offset) + slope d(delay)`.
     pub fn truth(&self, corrected: f64, slope: f64) -> T {
         (self.offset - self.offset.value()) * -1.0 + (self.delay - self.delay.value()) * slope + corrected
     }
@@ -38,7 +38,7 @@ pub struct Instruments<T> {
 }
 
 impl<T: Scalar> Instruments<T> {
-    /// Instruments of `cylinders` cylinders that report what is.
+    /// Ideal instruments of `cylinders` cylinders.
     pub fn true_ones(cylinders: usize) -> Self {
         Instruments { cylinders: vec![[Distortion::none(); 6]; cylinders], pump_pressure: Distortion::none() }
     }
@@ -48,7 +48,7 @@ impl<T: Scalar> Instruments<T> {
         self.cylinders.len()
     }
 
-    /// What the instrument of a channel does.
+    /// Distortion of the instrument of a channel.
     pub fn of(&self, channel: Channel) -> Distortion<T> {
         match place(channel) {
             Some((cylinder, signal)) => self.cylinders[cylinder][signal],
@@ -56,7 +56,7 @@ impl<T: Scalar> Instruments<T> {
         }
     }
 
-    /// The same, for an effect to add to.
+    /// Mutable access to the same, for an effect to add to.
     pub fn of_mut(&mut self, channel: Channel) -> &mut Distortion<T> {
         match place(channel) {
             Some((cylinder, signal)) => &mut self.cylinders[cylinder][signal],
@@ -64,7 +64,7 @@ impl<T: Scalar> Instruments<T> {
         }
     }
 
-    /// Whether every instrument reports what is.
+    /// Whether every instrument is ideal.
     pub fn are_true(&self) -> bool {
         let mut all = self.cylinders.iter().flatten().chain([&self.pump_pressure]);
         all.all(|distortion| distortion.offset.value() == 0.0 && distortion.delay.value() == 0.0)

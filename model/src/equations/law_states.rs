@@ -1,32 +1,32 @@
-//! States of laws with memory beside measured signals.
+//! Estimates states of laws with memory from measured signals.
 //!
-//! A bristle that bends is measured by nobody. Where all else is known, its state follows from its rate.
+//! No sensor measures the bending of a bristle. If all other states are known, its state follows from its rate.
 
 use super::{Inputs, System, Workspace};
 
-/// States of laws, carried from sample to sample.
+/// States of laws, propagated from sample to sample.
 #[derive(Debug, Clone)]
 pub struct LawStates<'m> {
     workspace: Workspace<'m, f64>,
-    /// When they were last known, s, and what they were.
+    /// Time of the last known states, s, and their values.
     known: Option<(f64, Vec<f64>)>,
 }
 
-/// A gap after which memory begins anew, s: longer than that of any seal.
+/// Length of a gap after which memory restarts, s: longer than the memory of any seal.
 const GAP: f64 = 0.5;
 
-/// Part of a state's order of magnitude by which it is moved to see how its rate depends on it.
+/// Step of the finite difference of a state's rate, as a fraction of the state's order of magnitude.
 const NUDGE: f64 = 1e-4;
 
 impl<'m> LawStates<'m> {
-    /// Nothing known yet.
+    /// No states known yet.
     pub fn new(system: &System<'m>) -> Self {
         LawStates { workspace: system.workspace(), known: None }
     }
 
-    /// Sets the effects' own states in `state`, whose other entries are measured at `time` (s): spools as
-    /// [`System::set_effect_states`] does, states of laws by one step from the last call (Rosenbrock-Euler, which is stable however
-    /// fast a law forgets). `parameters` are the model's; times go forward, and where they do not, laws begin anew.
+    /// Sets the effects' own states in `state`, whose other entries are measured at `time` (s). Spools are set as by
+    /// [`System::set_effect_states`]. States of laws take one step from the last call (Rosenbrock-Euler, which is stable for any
+    /// rate of decay). `parameters` are the model's. If time does not increase, laws restart.
     pub fn follow(
         &mut self,
         system: &System<'m>,
@@ -58,7 +58,7 @@ impl<'m> LawStates<'m> {
                     state[index] = here + nudge;
                     let slope = (self.rates(system, parameters, inputs, state)[index] - rates[index]) / nudge;
                     state[index] = here;
-                    // A law that runs away would make the step infinite.
+                    // An unstable law would make the step infinite.
                     here + step * rates[index] / (1.0 - step * slope.min(0.0))
                 })
                 .collect();
@@ -67,7 +67,7 @@ impl<'m> LawStates<'m> {
             }
         }
         let values: Vec<f64> = own.iter().map(|(index, _)| state[*index]).collect();
-        // What was not measured leaves memory as it was.
+        // Missing measurements leave the memory unchanged.
         if values.iter().all(|value| value.is_finite()) {
             self.known = Some((time, values));
         }

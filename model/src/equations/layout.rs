@@ -1,4 +1,4 @@
-//! Where each state stands in the state vector.
+//! Positions of the states in the state vector.
 
 use crate::Model;
 use crate::machine::Supply;
@@ -15,7 +15,7 @@ pub struct Layout {
     pub pump: Option<usize>,
     /// Index of the first cylinder's rod force, where motions are imposed.
     pub rod_forces: Option<usize>,
-    /// First state of each effect of the model, in the model's order, and how many it has.
+    /// First state of each effect and its number of states, in the model's order of effects.
     pub effect_states: Vec<(usize, usize)>,
     /// Number of states.
     pub len: usize,
@@ -65,7 +65,7 @@ impl Layout {
         self.chambers.then_some(2 * self.joints + 2 * cylinder + 1)
     }
 
-    /// A state for people: where pistons are and how pressures stand.
+    /// Formats a state for messages: piston positions, pressures and rod forces.
     pub fn told(&self, model: &Model, state: &[f64]) -> String {
         let at = |index: Option<usize>| index.and_then(|index| state.get(index)).copied();
         let bar =

@@ -1,7 +1,7 @@
-//! Derivatives of the rates by parameters that reach no further than their effect's own rows.
+//! Derivatives of the rates with respect to parameters that affect only their own effect's rows.
 //!
-//! Most effects add to the rows of the equations and leave what others see as it is. What such a parameter changes follows from its effect
-//! alone, with all else held: a fraction of an evaluation of the whole model.
+//! Most effects add to the rows of the equations and do not change what other effects see. The derivative with respect to such a
+//! parameter needs its own effect only, with everything else constant: a fraction of an evaluation of the whole model.
 
 use nalgebra::DMatrix;
 
@@ -9,19 +9,19 @@ use super::{System, Workspace};
 use crate::effects::ActsOn;
 use crate::scalar::{DIRECTIONS, Dual, constant, derivative, variable};
 
-/// How far a parameter reaches.
+/// What a parameter affects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reach {
-    /// Not to the rates: it is an instrument's.
+    /// Instruments only, not the rates.
     Instruments,
-    /// To what its effect adds to the rows, and to its effect's memory.
+    /// The rows and the memory of its own effect.
     OwnRows,
-    /// To what other effects see.
+    /// What other effects see.
     Others,
 }
 
 impl System<'_> {
-    /// How far the parameter with this index reaches.
+    /// What the parameter with this index affects.
     pub fn reach(&self, parameter: usize) -> Reach {
         let Some(owner) = self.owner(parameter) else { return Reach::Others };
         let effect = &self.model().effects[owner].physics;
@@ -37,11 +37,11 @@ impl System<'_> {
     }
 }
 
-/// Memory for the derivatives by some parameters of [`Reach::OwnRows`].
+/// Memory for the derivatives with respect to some parameters of [`Reach::OwnRows`].
 #[derive(Debug, Clone)]
 pub struct OwnRows<'m> {
     passes: Vec<Pass>,
-    /// The model with all held but the parameters of the present pass.
+    /// The model with everything constant except the parameters of the present pass.
     held: Workspace<'m, Dual>,
     parameters: Vec<Dual>,
     state: Vec<Dual>,
@@ -51,14 +51,14 @@ pub struct OwnRows<'m> {
 /// Parameters whose derivatives fit into one dual number.
 #[derive(Debug, Clone)]
 struct Pass {
-    /// Index in the model, and column of the result.
+    /// Index in the model, and column in the result.
     parameters: Vec<(usize, usize)>,
     /// Their effects.
     effects: Vec<usize>,
 }
 
 impl<'m> OwnRows<'m> {
-    /// For parameters given by their index in the model and the column that they have in the result.
+    /// For parameters given by their index in the model and their column in the result.
     pub fn new(system: &System<'m>, wanted: &[(usize, usize)]) -> Self {
         let passes = wanted.chunks(DIRECTIONS).map(|parameters| {
             let mut effects: Vec<usize> =
@@ -76,8 +76,8 @@ impl<'m> OwnRows<'m> {
         }
     }
 
-    /// Writes the derivatives into their columns of `by_parameter`. `now` is the workspace of an evaluation of the rates at these
-    /// parameters and this state; its derivatives do not matter.
+    /// Writes the derivatives to their columns of `by_parameter`. `now` is the workspace of an evaluation of the rates at these
+    /// parameters and this state; its derivatives are ignored.
     pub fn evaluate(
         &mut self,
         system: &System<'m>,

@@ -1,16 +1,16 @@
-//! Links in a vertical plane, one after the other: what one link adds to mass matrix and torques.
+//! Links in series in a vertical plane: contributions of one link to the mass matrix and the torques.
 //!
-//! Newton-Euler from each link back to the base. With `phi_i = q_1 + ... + q_i` and lengths l_i known, the base parameters of
-//! n links are, link by link, two: a moment of inertia `A_i = I_i + m_i lg_i^2 + l_i^2 (m_{i+1} + ... + m_n)` about its joint
-//! and a first moment `h_i = m_i lg_i + l_i (m_{i+1} + ... + m_n)`, all later links taken as masses at its end. What two links
-//! share is `h_j l_i cos(phi_j - phi_i)`; no other parameter enters the motion. \[A\] Eq. 1 is the case n = 2 with `J1 = A_1 + A_2`,
-//! `J2 = A_2`, `R12 = l_1 h_2`, `W1 = h_1`, `W2 = h_2`.
+//! Newton-Euler from each link back to the base. With `phi_i = q_1 + ... + q_i` and known lengths l_i, each of the n links has
+//! two base parameters: a moment of inertia `A_i = I_i + m_i lg_i^2 + l_i^2 (m_{i+1} + ... + m_n)` about its joint and a first
+//! moment `h_i = m_i lg_i + l_i (m_{i+1} + ... + m_n)`, with all later links as masses at its end. The coupling of two links is
+//! `h_j l_i cos(phi_j - phi_i)`; no other parameter enters the motion. \[A\] Eq. 1 is the case n = 2 with `J1 = A_1 + A_2`, `J2 =
+//! A_2`, `R12 = l_1 h_2`, `W1 = h_1`, `W2 = h_2`.
 //!
-//! Where the plane itself swings about an upright axis, the links add to the inertia about it. With the masses on the lines from joint
-//! to joint, the same parameters say how much: `A_i sin(phi_i)^2 + 2 h_i sin(phi_i) (d + l_1 sin(phi_1) + ... + l_{i-1} sin(phi_{i-1}))`,
-//! d from the axis to the first joint.
+//! If the plane itself swings about a vertical axis, the links add to the inertia about it. With the masses on the lines from
+//! joint to joint, the same parameters determine it: `A_i sin(phi_i)^2 + 2 h_i sin(phi_i) (d + l_1 sin(phi_1) + ... + l_{i-1}
+//! sin(phi_{i-1}))`, with d the distance from the axis to the first joint.
 //!
-//! Links are numbered as their joints are, so that the swing, where there is one, is number 0.
+//! Links are numbered like their joints, so the swing, if there is one, is number 0.
 
 use super::{Rows, Situation};
 use crate::machine::{Chain, Swing};
@@ -30,8 +30,8 @@ pub fn add_inertia<T: Scalar>(link: usize, inertia: T, chain: Chain<'_>, now: &S
     }
 }
 
-/// Adds a moment of inertia (kg m²) of all links from `link` on about their joint `link`, as J1 and J2 of \[A\] Eq. 1: the
-/// entries of the mass matrix that joint `link` begins. The link before has that much less.
+/// Adds a moment of inertia (kg m²) of all links from `link` on about their joint `link`, as J1 and J2 of \[A\] Eq. 1: to the
+/// entries of the mass matrix from joint `link` on. The previous link has that much less.
 pub fn add_composite_inertia<T: Scalar>(
     link: usize,
     inertia: T,
@@ -66,12 +66,12 @@ pub fn add_composite_inertia<T: Scalar>(
     }
 }
 
-/// Adds what the first moment (kg m) of link `link` does through the joints before it: couplings in the mass matrix, and
+/// Adds the effect of the first moment (kg m) of link `link` through the previous joints: couplings in the mass matrix, and
 /// Coriolis and centrifugal torques.
 ///
-/// From the link back to the base: at link i the angle `phi_j - phi_i` and the rate of link i follow from those one link on.
-/// A mass element of link j is carried along by `l_i`, so that joints r up to i feel `h_j l_i cos(phi_j - phi_i)` with every
-/// joint up to j, and `h_j l_i sin(phi_j - phi_i)` times squared rates.
+/// It works from the link back to the base: at link i the angle `phi_j - phi_i` and the rate of link i follow from the values of
+/// the next link. A mass element of link j moves with `l_i`, so joints r up to i have the coupling `h_j l_i cos(phi_j - phi_i)`
+/// with every joint up to j, and the torque `h_j l_i sin(phi_j - phi_i)` times squared rates.
 pub fn add_first_moment<T: Scalar>(link: usize, moment: T, chain: Chain<'_>, now: &Situation<T>, rows: &mut Rows<T>) {
     let mut own_rate = T::from(0.0);
     for piston in &now.pistons[chain.first..=link] {
@@ -103,7 +103,8 @@ pub fn add_first_moment<T: Scalar>(link: usize, moment: T, chain: Chain<'_>, now
     }
 }
 
-/// What a first moment adds to the inertia about the swing: `2 h sin(phi) R`, R how far its joint is from the axis.
+/// Contribution of a first moment to the inertia about the swing: `2 h sin(phi) R`, with R the distance of its joint from the
+/// axis.
 fn add_swinging_moment<T: Scalar>(
     link: usize,
     moment: T,
@@ -130,8 +131,8 @@ fn add_swinging_moment<T: Scalar>(
     add_swinging(moment, sine * radius * 2.0, turns, chain, now, rows);
 }
 
-/// Adds `amount` times `shape` to the inertia about the swing, whose derivative by joint j is `amount` times `slope(j)`, with the
-/// torques that follow from the kinetic energy: Coriolis on the swing, centrifugal on the links.
+/// Adds `amount` times `shape` to the inertia about the swing, whose derivative with respect to joint j is `amount` times
+/// `slope(j)`. Also adds the resulting torques: Coriolis on the swing, centrifugal on the links.
 fn add_swinging<T: Scalar>(
     amount: T,
     shape: T,

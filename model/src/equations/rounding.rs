@@ -1,10 +1,10 @@
-//! How widely the corners of the physics are rounded.
+//! Widths over which the corners of the physics are rounded.
 
 use super::smooth::{LAMINAR_PRESSURE, SLIP_SPEED, orifice_root, rounded_sign, sign_with_corner};
 use crate::machine::Size;
 use crate::scalar::Scalar;
 
-/// Widths and shapes of the corners at one cylinder. Effects that round otherwise than the equations set them.
+/// Widths and shapes of the corners at one cylinder. Effects of the rounding family override the equations' defaults.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rounding<T> {
     /// Regularisation velocity of friction, m/s.
@@ -13,25 +13,25 @@ pub struct Rounding<T> {
     pub corner_sharpness: Option<T>,
     /// Pressure drop below which the flow of the valve's edges is laminar, Pa.
     pub transition_pressure: T,
-    /// How the end stops differ from what the model file says of them; `None` where they do not.
+    /// Deviations of the end stops from the model file; `None` for no deviations.
     pub end_stop: Option<EndStopCorrection<T>>,
 }
 
-/// How real end stops differ from those of a model file.
+/// Deviations of real end stops from those of a model file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndStopCorrection<T> {
-    /// Factor of the stiffness.
+    /// Factor on the stiffness.
     pub stiffness: T,
-    /// Factor of the damping.
+    /// Factor on the damping.
     pub damping: T,
-    /// Damping that does not grow with the depth, N s/m.
+    /// Damping that does not depend on the depth, N s/m.
     pub viscous_damping: T,
-    /// How much farther than half the stroke the piston moves: out, in, m.
+    /// Piston travel beyond half the stroke: out, in, m.
     pub shifts: [T; 2],
 }
 
 impl<T> EndStopCorrection<T> {
-    /// What `of` makes of each number.
+    /// Applies `of` to each number.
     pub fn each<U>(&self, of: impl Fn(&T) -> U) -> EndStopCorrection<U> {
         EndStopCorrection {
             stiffness: of(&self.stiffness),
@@ -43,7 +43,7 @@ impl<T> EndStopCorrection<T> {
 }
 
 impl<T> Rounding<T> {
-    /// What `of` makes of each number.
+    /// Applies `of` to each number.
     pub fn each<U>(&self, of: impl Fn(&T) -> U) -> Rounding<U> {
         Rounding {
             reversal_speed: of(&self.reversal_speed),
@@ -55,7 +55,7 @@ impl<T> Rounding<T> {
 }
 
 impl<T: Scalar> Rounding<T> {
-    /// The convention of the equations for a piston of this size, where no effect rounds otherwise.
+    /// Default rounding of the equations for a piston of this size.
     pub fn of_the_equations(size: &Size) -> Self {
         Rounding {
             reversal_speed: T::from(SLIP_SPEED * size.sliding),

@@ -3,8 +3,8 @@
 use super::Situation;
 use crate::scalar::{Dual, Scalar};
 
-/// Sums of what effects add. Pressure forces `A+ p+ - A- p-` and the oil displaced by the piston `A v` belong to the
-/// machine itself and are not in here.
+/// Sums of the effects' contributions. Pressure forces `A+ p+ - A- p-` and the oil displaced by the piston `A v` belong to the
+/// machine itself and are not included.
 ///
 /// The equations are `mass qdd = torque + G (piston_force + A+ p+ - A- p-)`,
 /// `cap_compliance dp+/dt = cap_flow - A+ v`, `rod_compliance dp-/dt = rod_flow + A- v`,
@@ -30,7 +30,7 @@ pub struct Rows<T> {
     pub pump_flow: T,
     /// Volume times compressibility of the pump line, m³/Pa.
     pub pump_compliance: T,
-    /// What takes up oil of the pump line without compressing it, m³/Pa: gas behind a bladder.
+    /// Compliance of the pump line besides its oil, m³/Pa: gas behind a bladder.
     pub accumulator_compliance: T,
 }
 
@@ -53,7 +53,7 @@ impl<T: Scalar> Rows<T> {
         }
     }
 
-    /// Sets every sum back to zero without allocating.
+    /// Resets every sum to zero without allocating.
     pub fn clear(&mut self) {
         let zero = T::from(0.0);
         for sums in [
@@ -72,7 +72,7 @@ impl<T: Scalar> Rows<T> {
         self.accumulator_compliance = zero;
     }
 
-    /// Flow into the pump line per rate of its pressure, m³/Pa.
+    /// Total compliance of the pump line, m³/Pa.
     pub fn pump_line_compliance(&self) -> T {
         self.pump_compliance + self.accumulator_compliance
     }
@@ -87,8 +87,8 @@ impl<T: Scalar> Rows<T> {
         self.mass[row * self.joints + column]
     }
 
-    /// Torque on a joint together with that of its cylinder: of the pressures in the chambers, or of the force measured on the rod,
-    /// N m (N). It is what accelerates the joint.
+    /// Torque on a joint including that of its cylinder (from the pressures in the chambers or the force measured on the rod), N
+    /// m (N). It accelerates the joint.
     pub fn driven_torque(&self, joint: usize, situation: &Situation<'_, T>) -> T {
         let piston = &situation.pistons[joint];
         let drive = match situation.chambers(joint) {
@@ -105,7 +105,7 @@ impl<T: Scalar> Rows<T> {
 }
 
 impl Rows<Dual> {
-    /// Takes the values of `totals`, and keeps its own derivatives.
+    /// Copies the values of `totals` and keeps its own derivatives.
     pub(super) fn set_values(&mut self, totals: &Rows<Dual>) {
         let sums = [
             (&mut self.mass, &totals.mass),

@@ -1,4 +1,4 @@
-//! Everything an effect may look at.
+//! The values that effects can read.
 
 use super::Rounding;
 use super::smooth::at_most;
@@ -27,38 +27,38 @@ pub struct Piston<T> {
     pub cap_volume: T,
     /// Rod side volume V-, m³.
     pub rod_volume: T,
-    /// What the recording says of the valve, as an orifice area, m²: measured, or commanded where no spool sensor exists.
+    /// Valve input of the recording as an orifice area, m²: measured, or commanded if there is no spool sensor.
     pub command: T,
-    /// Flow of the valve's effects into the cap side, m³/s; known only where an effect of the model asks for it
+    /// Flow of the valve's effects into the cap side, m³/s; set only if an effect of the model needs it
     /// ([`crate::effects::Physics::reads_metering_flows`]).
     pub cap_flow: T,
     /// The same into the rod side.
     pub rod_flow: T,
-    /// Where the spool really is, as an orifice area, m²: the input after lag and hysteresis.
+    /// True spool position as an orifice area, m²: the input after lag and hysteresis.
     pub spool: T,
-    /// Area open to flow, m²: the spool's after dead zone and area law. It sets the metered flow.
+    /// Area open to flow, m²: the spool position after dead zone and area law. It sets the metered flow.
     pub opening: T,
-    /// Opening of the edge through which oil comes from the pump line, m²; as `opening` where no effect tells the edges apart.
+    /// Opening of the edge from the pump line, m²; equals `opening` unless an effect treats the edges differently.
     pub supply_opening: T,
-    /// Opening of the edge through which oil returns to the tank, m²; likewise.
+    /// Opening of the edge to the tank, m²; likewise.
     pub return_opening: T,
-    /// By how much the section's bypass has been closed, m²: |spool|, less what the bypass overlaps.
+    /// Closing of the section's bypass, m²: |spool|, less the overlap of the bypass.
     pub bypass_closing: T,
-    /// Share of a flow back from the chamber to the pump that passes the valve section: 1 without a check valve.
+    /// Fraction of the backflow from the chamber to the pump that passes the valve section: 1 without a check valve.
     pub backflow: T,
-    /// Pressure drop that a compensator leaves to the edges fed by the pump, Pa; `None` without one.
+    /// Pressure drop that a compensator keeps across the edges fed by the pump, Pa; `None` without one.
     pub compensator_margin: Option<T>,
-    /// Pressure loss per square of the flow in each hose between valve and chamber, Pa s²/m⁶; `None` without.
+    /// Pressure loss per squared flow in each hose between valve and chamber, Pa s²/m⁶; `None` without hoses.
     pub hose_resistance: Option<T>,
     /// How the corners of friction and of flow are rounded.
     pub rounding: Rounding<T>,
-    /// Force that drives a cylinder without chambers, N: measured on the rod, and with the pressures' where the motion is
-    /// imposed.
+    /// Force that drives a cylinder without chambers, N: measured on the rod; for an imposed motion it includes the pressure
+    /// force.
     pub rod_force: T,
 }
 
 impl<T> Piston<T> {
-    /// What `of` makes of each number.
+    /// Applies `of` to each number.
     pub fn each<U>(&self, of: impl Fn(&T) -> U) -> Piston<U> {
         Piston {
             joint: of(&self.joint),
@@ -88,13 +88,13 @@ impl<T> Piston<T> {
 }
 
 impl<T: Scalar> Piston<T> {
-    /// `sgn(v)`, as far as friction knows it.
+    /// `sgn(v)`, rounded as for friction.
     pub fn direction(&self) -> T {
         self.rounding.sign(self.velocity)
     }
 
-    /// Openings of the edges at the cap and at the rod side, m², with the sign of the motion. An edge that an effect closes further than
-    /// shut is shut.
+    /// Openings of the edges at the cap and at the rod side, m², with the sign of the motion. An opening that an effect reduces
+    /// below zero counts as closed.
     pub fn edges(&self) -> [T; 2] {
         let extends = self.opening.value() >= 0.0;
         let shut = |opening: T| if (opening.value() >= 0.0) == extends { opening } else { T::from(0.0) };
@@ -112,20 +112,20 @@ impl<T: Scalar> Piston<T> {
         self.rounding.root(pressure_drop)
     }
 
-    /// `phi` of the pressure drop (Pa) from pump to chamber over a metering edge, as far as a compensator leaves it and flow
-    /// may run back.
+    /// `phi` of the pressure drop (Pa) from pump to chamber over a metering edge, limited by a compensator and by the permitted
+    /// backflow.
     pub fn drawn_root(&self, pressure_drop: T) -> T {
         let root = self.root(self.compensator_margin.map_or(pressure_drop, |margin| at_most(pressure_drop, margin)));
         if pressure_drop.value() < 0.0 { root * self.backflow } else { root }
     }
 }
 
-/// Everything an effect may look at, at one instant.
+/// All values that effects can read, at one instant.
 #[derive(Debug, Clone)]
 pub struct Situation<'m, T> {
     /// The machine.
     pub machine: &'m Machine,
-    /// Its unit of time beside that of the reference ([`crate::machine::Size::time`]), a pure number.
+    /// Its unit of time relative to the reference machine ([`crate::machine::Size::time`]), a pure number.
     pub time_scale: f64,
     /// Time since the first sample of the recording, s.
     pub time: T,
@@ -140,7 +140,7 @@ pub struct Situation<'m, T> {
 }
 
 impl<'m, T: Scalar> Situation<'m, T> {
-    /// A situation with everything zero, to be filled.
+    /// A situation with all values zero, to be filled.
     pub fn empty(machine: &'m Machine) -> Self {
         let zero = T::from(0.0);
         let piston = Piston {
@@ -191,7 +191,7 @@ impl<'m, T: Scalar> Situation<'m, T> {
 }
 
 impl Situation<'_, Dual> {
-    /// Takes over the values of `other`, which is of the same machine, as constants.
+    /// Copies the values of `other`, which belongs to the same machine, as constants.
     pub(super) fn hold(&mut self, other: &Self) {
         let held = |number: &Dual| constant(number.re);
         self.time = held(&other.time);

@@ -13,9 +13,9 @@ pub struct System<'m> {
     model: &'m Model,
     layout: Layout,
     parameter_ranges: Vec<(usize, usize)>,
-    /// Effects that change what others see.
+    /// Effects that change the values other effects see.
     adjusting: Vec<usize>,
-    /// Effects that look at how the input changes.
+    /// Effects that read the rate of the input.
     readers_of_course: Vec<usize>,
     /// Effects with memory.
     remembering: Vec<usize>,
@@ -28,12 +28,12 @@ pub struct System<'m> {
     size: Size,
 }
 
-/// Memory for one evaluation, reused so that none allocates.
+/// Memory for one evaluation, reused so that evaluations do not allocate.
 #[derive(Debug, Clone)]
 pub struct Workspace<'m, T> {
-    /// What the effects saw at the last evaluation.
+    /// The values that the effects read at the last evaluation.
     pub situation: Situation<'m, T>,
-    /// What they added.
+    /// Contributions of the effects.
     pub rows: Rows<T>,
     mass: Vec<T>,
     torque: Vec<T>,
@@ -83,7 +83,7 @@ impl<'m> System<'m> {
         self.model
     }
 
-    /// Where each state stands.
+    /// Positions of the states.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -93,7 +93,7 @@ impl<'m> System<'m> {
         self.reads_metering_flows
     }
 
-    /// Number of the effect that has the parameter with this index.
+    /// Index of the effect that owns the parameter with this index.
     pub(super) fn owner(&self, parameter: usize) -> Option<usize> {
         self.parameter_ranges.iter().position(|&(first, last)| (first..last).contains(&parameter))
     }
@@ -115,7 +115,7 @@ impl<'m> System<'m> {
         }
     }
 
-    /// Time derivative of `state` (in the order of [`Layout`]) into `rates`.
+    /// Writes the time derivative of `state` (in the order of [`Layout`]) to `rates`.
     pub fn rates<T: Number>(
         &self,
         workspace: &mut Workspace<'m, T>,
@@ -149,7 +149,7 @@ impl<'m> System<'m> {
         }
     }
 
-    /// Adds the effects that are `wanted`, by where they act, to the rows.
+    /// Adds the effects for which `wanted` returns true to the rows.
     fn contribute<T: Number>(
         &self,
         workspace: &mut Workspace<'m, T>,
@@ -183,7 +183,7 @@ impl<'m> System<'m> {
         }
     }
 
-    /// Rates of one effect's memory, where it has any.
+    /// Writes the rates of one effect's memory, if it has any.
     pub(super) fn remember_one<T: Number>(
         &self,
         number: usize,
@@ -211,8 +211,8 @@ impl<'m> System<'m> {
         first..first + states
     }
 
-    /// Fills the situation: kinematics, pressures, and the spool after the effects that act on it, whose state rates
-    /// go to `rates`.
+    /// Fills the situation: kinematics, pressures, and the spool after the effects that act on it, whose state rates are written
+    /// to `rates`.
     pub fn observe<T: Number>(
         &self,
         workspace: &mut Workspace<'m, T>,
@@ -244,7 +244,7 @@ impl<'m> System<'m> {
                 piston.rod_volume = chambers.rod_volume(cylinder.stroke, piston.displacement);
             }
             if cylinder.imposed_motion.is_some() {
-                // The states run along with what is imposed; a state set elsewhere returns to it.
+                // The states follow the imposed motion; a deviating state returns to it.
                 let imposed = &inputs.imposed[index];
                 piston.cap_pressure = imposed.cap_pressure;
                 piston.rod_pressure = imposed.rod_pressure;
@@ -265,7 +265,7 @@ impl<'m> System<'m> {
         self.observe_valves(situation, parameters, state, rates);
     }
 
-    /// The valve's part of the situation: spools, then openings, then what effects adjust of them for others.
+    /// The valve's part of the situation: spools, then openings, then the adjustments for other effects.
     fn observe_valves<T: Number>(
         &self,
         situation: &mut Situation<'m, T>,
@@ -321,7 +321,8 @@ impl<'m> System<'m> {
         }
     }
 
-    /// Writes what is known of one cylinder into `state`: joint coordinate (rad, m), piston velocity (m/s), cap and rod pressure (Pa).
+    /// Writes the known values of one cylinder to `state`: joint coordinate (rad, m), piston velocity (m/s), cap and rod pressure
+    /// (Pa).
     pub fn set_cylinder<T: Number>(
         &self,
         cylinder: usize,
@@ -344,8 +345,8 @@ impl<'m> System<'m> {
         self.layout.effect_states.iter().any(|&(_, states)| states > 0)
     }
 
-    /// Sets the effects' own states. Spools are at these openings (m², one per cylinder; one that is left out is zero): settled, or
-    /// where their sensors say. Other states are where they begin.
+    /// Sets the effects' own states. Spools are set to these openings (m², one per cylinder; missing ones are zero), settled or
+    /// as measured. Other states take their initial values.
     pub fn set_effect_states(&self, openings: &[f64], state: &mut [f64]) {
         for number in 0..self.model.effects.len() {
             if let Site::Cylinder(cylinder) = self.model.effects[number].site {
@@ -370,18 +371,18 @@ impl<'m> System<'m> {
         }
     }
 
-    /// Those of [`System::state_scales`] that are no spools.
+    /// The entries of [`System::state_scales`] that are not spools.
     pub fn law_states(&self) -> impl Iterator<Item = (usize, f64)> {
         let spans: Vec<_> = self.remembering.iter().map(|&number| self.states_of(number)).collect();
         self.state_scales().filter(move |(index, _)| spans.iter().any(|span| span.contains(index)))
     }
 
-    /// Order of magnitude of each effect's own states: index in the state vector and magnitude, in its unit.
+    /// Order of magnitude of each effect's own states: index in the state vector and magnitude in the state's unit.
     pub fn state_scales(&self) -> impl Iterator<Item = (usize, f64)> {
         let each = self.model.effects.iter().zip(&self.layout.effect_states);
         each.flat_map(|(effect, &(first, states))| {
             let size = self.model.machine.size_at(effect.site);
-            // Memory is in the unit of its law; all else is an opening.
+            // Memory has the unit of its law; every other state is an opening.
             let factor = if effect.physics.has_memory() { 1.0 } else { size.factor(Growth::OPENING) };
             (0..states).map(move |state| (first + state, factor * effect.physics.state_scale(state)))
         })
@@ -392,8 +393,8 @@ impl<'m> System<'m> {
         &self.own_instruments
     }
 
-    /// What the model's instruments make of what they measure: sums of the effects that act on sensors. They do not
-    /// depend on the state, so once per set of parameters is enough.
+    /// Distortions of the model's instruments: sums of the effects that act on sensors. They do not depend on the state, so one
+    /// evaluation per set of parameters is enough.
     pub fn instruments<T: Number>(&self, parameters: &[T]) -> Instruments<T> {
         let mut instruments = Instruments::true_ones(self.model.machine.cylinders.len());
         for (effect, &(first, last)) in self.model.effects.iter().zip(&self.parameter_ranges) {
@@ -402,7 +403,7 @@ impl<'m> System<'m> {
         instruments
     }
 
-    /// From rows to rates: solves the mass matrix and divides flows by compliances.
+    /// Computes rates from rows: solves the mass matrix and divides flows by compliances.
     pub(super) fn assemble<T: Number>(&self, workspace: &mut Workspace<'m, T>, rates: &mut [T]) {
         let layout = &self.layout;
         let Workspace { situation, rows, mass, torque } = workspace;
@@ -430,7 +431,7 @@ impl<'m> System<'m> {
         TRACKING * self.size.time()
     }
 
-    /// The force that each imposed motion takes: inertia, less what effects and pressures do.
+    /// The force required by each imposed motion: inertia, less the forces of effects and pressures.
     fn assemble_rod_forces<T: Number>(&self, workspace: &Workspace<'m, T>, state: &[T], rates: &mut [T]) {
         let layout = &self.layout;
         let Workspace { situation, rows, .. } = workspace;
@@ -452,12 +453,12 @@ impl<'m> System<'m> {
     }
 }
 
-/// How fast the states of an imposed motion return to it and a force sensor follows, s: shorter than the sample intervals
-/// of recordings, so that nothing is smoothed that was measured.
+/// Time constant with which states return to an imposed motion and a force sensor follows, s: shorter than the sample intervals
+/// of recordings, so that no measured signal is smoothed.
 const TRACKING: f64 = 2e-3;
 
-/// Solves the small symmetric positive definite system `matrix x = right` in place by elimination without pivoting,
-/// which is stable for positive definite matrices. Written here because it runs on dual numbers, a few entries each.
+/// Solves the small symmetric positive definite system `matrix x = right` in place by elimination without pivoting, which is
+/// stable for positive definite matrices. A custom solver, because it runs on dual numbers with a few entries each.
 fn solve_symmetric<T: Number>(matrix: &mut [T], right: &mut [T]) {
     let order = right.len();
     for pivot in 0..order {

@@ -1,4 +1,4 @@
-//! What a law does over the range of a machine, before anything is fitted: a wrong sign is seen at once.
+//! Evaluates a law over the range of a machine before a fit, to find errors such as a wrong sign early.
 
 use super::law::Law;
 use super::variable::{Variable, VariableCard};
@@ -8,26 +8,26 @@ use crate::equations::{Inputs, Rows, Situation, System};
 use crate::machine::{Cylinder, Supply};
 use crate::scalar::{Dual, constant, derivative, variable};
 
-/// What was found of a law at one place of a machine.
+/// Result of the check of a law at one place of a machine.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Checked {
     /// Least and largest value over the range of the machine, in the unit of its row.
     pub range: [f64; 2],
-    /// What is wrong with it.
+    /// Problems found.
     pub problems: Vec<CheckProblem>,
-    /// Share of the states in which it takes energy from what it acts on, and in which it gives some; none for openings, readings and
-    /// laws with memory.
+    /// Fraction of the states in which the law takes energy, and in which it adds energy; none for openings, readings and laws
+    /// with memory.
     pub power: Option<[f64; 2]>,
-    /// Its value over each of its variables, the others at usual values.
+    /// Its value over each of its variables, with the others at usual values.
     pub curves: Vec<Curve>,
 }
 
-/// What is wrong with a law.
+/// A problem with a law.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckProblem {
-    /// It is not a finite number somewhere.
+    /// Its value is not finite somewhere.
     #[error("its value is not finite where {0}")]
     NotFinite(String),
     /// Its slope is not finite somewhere.
@@ -40,10 +40,10 @@ pub enum CheckProblem {
         at: String,
         /// Value before.
         from: f64,
-        /// Value behind.
+        /// Value after.
         to: f64,
     },
-    /// It is nothing everywhere.
+    /// It is zero everywhere.
     #[error("it is zero over the whole range of the machine")]
     Nothing,
 }
@@ -60,28 +60,29 @@ pub struct Curve {
     pub points: Vec<[f64; 2]>,
 }
 
-/// States that are looked at.
+/// Number of states evaluated.
 const STATES: usize = 4000;
 
-/// Points of a curve.
+/// Points per curve.
 const POINTS: usize = 41;
 
-/// Lines through the range along which jumps are looked for.
+/// Lines through the range on which the check searches for jumps.
 const LINES: usize = 60;
 
-/// Points of such a line.
+/// Points per line.
 const LINE_POINTS: usize = 200;
 
-/// Halvings that bring two neighbours of a line close together: 2⁻³⁰ of the range is far less than any width of a corner.
+/// Bisections between two neighbouring points of a line: 2⁻³⁰ of the range is far less than the width of any corner.
 const HALVINGS: usize = 30;
 
-/// Part of a law's range that is a jump when it remains.
+/// Remaining change, as a fraction of a law's range, that counts as a jump.
 const JUMP: f64 = 0.01;
 
-/// Coordinates of a state: s, v, p_cap, p_rod, p_pump, p_tank, u, rod_force, t, each as a part of its range from 0 to 1, then states.
+/// Coordinates of a state: s, v, p_cap, p_rod, p_pump, p_tank, u, rod_force, t, each as a fraction of its range from 0 to 1, then
+/// states.
 const COORDINATES: usize = 9;
 
-/// Checks a law as the effect `number` of `model`, with its parameter values there. `None` where that effect is no formula.
+/// Checks a law as the effect `number` of `model`, with its parameter values there. `None` if that effect is not a formula.
 pub fn check(model: &Model, number: usize) -> Option<Checked> {
     let effect = model.effects.get(number)?;
     let law = &Law::read(effect.physics.formula()?).ok()?;
@@ -149,13 +150,13 @@ impl Bench<'_, '_> {
         ranges
     }
 
-    /// A point from shares of the ranges.
+    /// A point given by fractions of the ranges.
     fn point(&self, share: impl Fn(usize) -> f64) -> Vec<f64> {
         let ranges = self.ranges().into_iter().enumerate();
         ranges.map(|(number, [low, high])| low + (high - low) * share(number)).collect()
     }
 
-    /// Points that fill the range evenly (the additive recurrence of square roots of primes).
+    /// Points that fill the range evenly (the additive recurrence with square roots of primes).
     fn random(&self, number: usize) -> Vec<f64> {
         const PRIMES: [f64; 12] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0];
         self.point(|coordinate| ((number + 1) as f64 * PRIMES[coordinate % PRIMES.len()].sqrt()).fract())
@@ -185,7 +186,7 @@ impl Bench<'_, '_> {
         let mut inputs = Inputs::zero(machine.cylinders.len());
         for number in 0..machine.cylinders.len() {
             let linkage = &machine.cylinders[number].linkage;
-            // The joint is found for the value; its derivative follows from the lever.
+            // The value of the joint coordinate comes from the kinematics, its derivative from the lever.
             let joint = linkage.joint(point[0].value());
             let lever = linkage.lever(joint);
             let layout = self.system.layout();
@@ -209,7 +210,7 @@ impl Bench<'_, '_> {
         let mut workspace = self.system.workspace();
         let mut rates = state.clone();
         let parameters: Vec<T> = self.system.model().parameter_values().into_iter().map(T::from).collect();
-        // All rows, so that metering flows are known where the law asks for them.
+        // Evaluates all rows, so that metering flows are known if the law needs them.
         self.system.rates(&mut workspace, &parameters, &state, &inputs, &mut rates);
         workspace.situation
     }
@@ -222,7 +223,7 @@ impl Bench<'_, '_> {
     fn look_at_values(&self, points: &[Vec<f64>], checked: &mut Checked) {
         let widths: Vec<f64> = self.ranges().iter().map(|[low, high]| high - low).collect();
         for point in points {
-            // One direction through all coordinates at once sees every slope.
+            // One derivative direction through all coordinates reveals every infinite slope.
             let moved: Vec<Dual> =
                 point.iter().zip(&widths).map(|(&value, &width)| constant(value) + variable(0.0, 0) * width).collect();
             let found = self.value(&moved);
@@ -271,7 +272,7 @@ impl Bench<'_, '_> {
         }
     }
 
-    /// Shares of the states in which the law takes energy, and in which it gives some.
+    /// Fractions of the states in which the law takes energy, and in which it adds energy.
     fn power(&self, points: &[Vec<f64>]) -> [f64; 2] {
         let powers: Vec<f64> = points.iter().map(|point| self.power_at(point)).collect();
         let share = |wanted: fn(f64) -> bool| {
@@ -280,7 +281,7 @@ impl Bench<'_, '_> {
         [share(|power| power < 0.0), share(|power| power > 0.0)]
     }
 
-    /// Power that the law gives to pistons, joints and oil, W, flows at their pressures.
+    /// Power that the law adds to pistons, joints and oil, W; flows count at their pressures.
     fn power_at(&self, point: &[f64]) -> f64 {
         let situation = self.situation(point);
         let mut rows = Rows::zero(situation.pistons.len());
@@ -321,7 +322,7 @@ impl Bench<'_, '_> {
         curves
     }
 
-    /// Values of the law's variables, in words.
+    /// Formats the values of the law's variables.
     fn place(&self, point: &[f64]) -> String {
         let mut used: Vec<usize> = self.law.variables().filter_map(coordinate).collect();
         used.sort_unstable();
@@ -334,10 +335,10 @@ impl Bench<'_, '_> {
     }
 }
 
-/// Where the supply's pressure is not known: that of mobile machines, Pa.
+/// Pressure if that of the supply is unknown, usual for mobile machines, Pa.
 const USUAL_PRESSURE: f64 = 2e7;
 
-/// Where the coordinates that are not drawn stand, as shares of their ranges: a piston that moves out under load.
+/// Values of the coordinates that a curve keeps constant, as fractions of their ranges: a piston that extends under load.
 const USUAL: [f64; COORDINATES] = [0.7, 0.75, 0.4, 0.15, 0.6, 0.1, 0.75, 0.7, 0.5];
 
 /// Names and units of the coordinates.
@@ -353,7 +354,7 @@ const NAMES: [[&str; 2]; COORDINATES] = [
     ["t", "s"],
 ];
 
-/// The coordinate that moves a variable.
+/// The coordinate that sets a variable.
 fn coordinate(variable: Variable) -> Option<usize> {
     match variable {
         Variable::Displacement | Variable::Joint | Variable::Lever => Some(0),

@@ -11,24 +11,24 @@ use crate::equations::Situation;
 use crate::recording::slopes;
 
 /// An expression of columns. Its numbers have no units, its corners (`sign`, `step`, `if`) are sharp, and `rate(x)` is the
-/// derivative of a column by time.
+/// time derivative of a column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnFormula {
     program: Program,
 }
 
-/// Samples to each side of the one at which a rate is taken.
+/// Samples on each side of a sample for its rate.
 const RATE_SAMPLES: usize = 2;
 
 impl ColumnFormula {
-    /// Reads a formula. `names` are those of the columns.
+    /// Parses a formula. `names` are those of the columns.
     ///
     /// # Errors
-    /// [`FormulaError`], in one line that points at the place.
+    /// [`FormulaError`], in one line with the position.
     pub fn read(text: &str, names: &[String]) -> Result<ColumnFormula, FormulaError> {
         let expression = parse(text, &Names { parameters: names, states: &[], rates: true })?;
         for (symbol, at) in expression.names() {
-            // What a law knows of the machine, a table does not.
+            // A table has no machine variables.
             if let Symbol::Variable(variable, _) = symbol {
                 let name = text.get(at.clone()).unwrap_or(variable.card().name).to_string();
                 let suggestion = nearest(&name, names.iter().map(String::as_str));
@@ -38,13 +38,13 @@ impl ColumnFormula {
         Ok(ColumnFormula { program: compile_plain(&expression, text)? })
     }
 
-    /// Whether a formula can write this name: letters, digits and `_`, and parts of that with dots between.
+    /// Whether a formula can use this name: letters, digits and `_`, and such parts separated by dots.
     pub fn can_name(name: &str) -> bool {
         name.split('.').all(|part| part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'))
             && is_word(name.split('.').next().unwrap_or_default())
     }
 
-    /// The numbers of the names that it uses, in order.
+    /// The indices of the columns that it uses, in order.
     pub fn inputs(&self) -> Vec<usize> {
         let mut inputs: Vec<usize> = self.program.inputs.iter().filter_map(number).collect();
         inputs.sort_unstable();
@@ -52,8 +52,8 @@ impl ColumnFormula {
         inputs
     }
 
-    /// Its value at each time, s. `columns` are those of [`ColumnFormula::inputs`], as long as `time`; a value is `NaN` where
-    /// one of what it uses is.
+    /// Its value at each time, s. `columns` are those of [`ColumnFormula::inputs`], as long as `time`; a value is `NaN` if
+    /// one of its inputs is.
     pub fn evaluate(&self, time: &[f64], columns: &[&[f64]]) -> Vec<f64> {
         let inputs = self.inputs();
         let width = inputs.last().map_or(0, |last| last + 1);
@@ -73,7 +73,7 @@ impl ColumnFormula {
                     rates[*input] = slopes.get(sample).copied().unwrap_or(f64::NAN);
                 }
             }
-            // A comparison with what is not measured has an answer of its own, and that would be taken for a value.
+            // A comparison with `NaN` is false, which would pass for a result.
             let is_known = |symbol: &Symbol| match symbol {
                 Symbol::Parameter(number) => now[*number].is_finite(),
                 Symbol::State(number) => rates[*number].is_finite(),
@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn columns_are_computed_from_columns() {
         assert!((evaluate("(p_hi - p_lo) * 1e5")[5] - 2.5e5).abs() < 1e-6);
-        // Names of the language are columns here, and corners are sharp.
+        // Names of machine variables are columns here, and corners are sharp.
         assert_eq!(evaluate("if(t > 0.45, 1, -1)"), [[-1.0; 5], [1.0; 5]].concat());
         assert_eq!(evaluate("sign(t - 1e-9)")[..2], [-1.0, 1.0]);
         assert!((evaluate("rate(arm.x) + 0*arm.x")[4] + 2.0).abs() < 1e-9);

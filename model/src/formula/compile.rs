@@ -1,4 +1,4 @@
-//! From a tree to a program: units are checked, numbers are worked out, and what stands twice is computed once.
+//! Compiles a tree to a program: checks units, folds constants and merges common subexpressions.
 
 use std::ops::Range;
 
@@ -31,7 +31,7 @@ enum Value {
     Register(u16),
 }
 
-/// Compiles a formula whose value has to be in the unit of `row`: its name and dimension. `unit_of` gives the dimension of a name.
+/// Compiles a formula whose value must have the unit of `row`: its name and dimension. `unit_of` returns the dimension of a name.
 pub(super) fn compile(
     expression: &Expression,
     text: &str,
@@ -50,8 +50,8 @@ pub(super) fn compile(
     Ok(compiler.finished(whole.value))
 }
 
-/// Compiles by how much the first of two expressions is larger. Numbers have the SI unit that their place asks for: a condition on a
-/// recording is read by whoever wrote it, and means nothing elsewhere.
+/// Compiles the difference of two expressions. Numbers take the SI unit that their context requires: a condition on a recording
+/// is read only by its author and is not used elsewhere.
 pub(super) fn compile_difference(
     [larger, smaller]: &[Expression; 2],
     text: &str,
@@ -65,7 +65,7 @@ pub(super) fn compile_difference(
     Ok(compiler.finished(difference))
 }
 
-/// Compiles a formula over numbers without units. Its corners are sharp: how wide one of a column may be, nobody knows.
+/// Compiles a formula over numbers without units. Its corners are sharp, because the scale of a column is unknown.
 pub(super) fn compile_plain(expression: &Expression, text: &str) -> Result<Program, FormulaError> {
     let unit_of = |_: &Symbol| Dimension::PURE;
     let mut compiler =
@@ -78,14 +78,14 @@ struct Compiler<'a> {
     text: &'a str,
     unit_of: &'a dyn Fn(&Symbol) -> Dimension,
     program: Program,
-    /// Whether a number has the unit that its place asks for; else it is a pure number.
+    /// Whether a number takes the unit that its context requires; otherwise it is a pure number.
     numbers_have_units: bool,
-    /// Whether `sign`, `step`, `root` and `if` change at once.
+    /// Whether `sign`, `step`, `root` and `if` are sharp.
     is_sharp: bool,
 }
 
 impl Compiler<'_> {
-    /// The program whose value is this one: that of its last register.
+    /// The program for this value: the value of its last register.
     fn finished(mut self, value: Value) -> Program {
         match value {
             Value::Register(register) if usize::from(register) + 1 == self.program.operations.len() => {}
@@ -198,7 +198,7 @@ impl Compiler<'_> {
 
     fn call(&mut self, function: Function, arguments: &[Expression]) -> Result<Part, FormulaError> {
         let parts: Vec<Part> = arguments.iter().map(|argument| self.part(argument)).collect::<Result<_, _>>()?;
-        // The parser has counted them.
+        // The parser has checked their number.
         let (Some(first), Some(whole)) = (parts.first().copied(), span(arguments)) else {
             return Err(self.error(Problem::Expected("an argument"), &(0..0)));
         };
@@ -238,7 +238,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// Functions of several arguments in one unit.
+    /// Functions of several arguments with the same unit.
     fn of_several(&mut self, function: Function, parts: &[Part], at: &Range<usize>) -> Result<Part, FormulaError> {
         let mut unit = parts[0].unit;
         for part in &parts[1..] {
@@ -255,7 +255,7 @@ impl Compiler<'_> {
                 let above = most(self, first, parts[1].value);
                 least(self, above, parts[2].value)
             }
-            // Smoothstep: how far along from begin to end.
+            // Smoothstep: the fraction of the way from begin to end.
             _ => {
                 let (begin, end) = (parts[1].value, parts[2].value);
                 let along = self.two(first, begin, |a, b| a - b, Operation::Subtract);
@@ -289,7 +289,7 @@ impl Compiler<'_> {
         Ok(Part { value: self.emit(Operation::Choose(registers[0], registers[1], registers[2])), unit })
     }
 
-    /// The unit of two parts that must have the same.
+    /// The common unit of two parts.
     fn same(&self, verb: &'static str, left: Unit, right: Unit, at: &Range<usize>) -> Result<Unit, FormulaError> {
         match (left, right) {
             (Unit::Any, other) | (other, Unit::Any) => Ok(other),
@@ -350,7 +350,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// The register of an operation: that of the same one before, or a new one. The parser limits how many there are.
+    /// The register of an operation: that of an identical earlier one, or a new one. The parser limits their number.
     fn emit(&mut self, operation: Operation) -> Value {
         let operations = &mut self.program.operations;
         let known = operations.iter().position(|known| *known == operation);
@@ -378,13 +378,13 @@ fn fixed_power(register: u16, exponent: f64, corner: Corner) -> Operation {
     }
 }
 
-/// Largest power that is worked out by multiplication.
+/// Largest integer power that is computed by multiplication.
 const LARGEST_WHOLE_POWER: f64 = 32.0;
 
 type Fold = fn(f64) -> f64;
 type Emit = fn(u16) -> Operation;
 
-/// Functions of a pure number that give a pure number.
+/// Functions of a pure number with a pure number as the result.
 fn of_pure_number(function: Function) -> Option<(Fold, Emit)> {
     match function {
         Function::Exp => Some((f64::exp, Operation::Exp)),

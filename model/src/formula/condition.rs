@@ -11,7 +11,7 @@ use crate::equations::Situation;
 use crate::machine::Machine;
 use crate::recording::{CylinderSignals, Recording, is_measured, slopes};
 
-/// A comparison of two expressions of what is measured. Numbers in it are in SI units.
+/// A comparison of two expressions of measured signals. Its numbers are in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
     /// Above zero where the condition holds.
@@ -19,10 +19,10 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// Reads a condition.
+    /// Parses a condition.
     ///
     /// # Errors
-    /// [`FormulaError`], in one line that points at the place.
+    /// [`FormulaError`], in one line with the position.
     pub fn read(text: &str) -> Result<Condition, FormulaError> {
         let sides = parse_condition(text, &Names { parameters: &[], states: &[], rates: false })?;
         for (symbol, at) in sides.iter().flat_map(super::expression::Expression::names) {
@@ -35,13 +35,13 @@ impl Condition {
         }
         let unit_of = |symbol: &Symbol| match symbol {
             Symbol::Variable(variable, _) => variable.dimension(),
-            // Without names there are none.
+            // The list of names is empty, so these do not occur.
             Symbol::Parameter(_) | Symbol::State(_) => super::dimension::Dimension::PURE,
         };
         Ok(Condition { difference: compile_difference(&sides, text, &unit_of)? })
     }
 
-    /// Whether it holds, for each cylinder of `machine` sample by sample. It does not where something that it asks for was not
+    /// Whether it holds, for each cylinder of `machine` sample by sample. It does not hold where a signal that it uses was not
     /// measured.
     pub fn holds(&self, machine: &Machine, recording: &Recording) -> Vec<Vec<bool>> {
         let mut now: Situation<'_, f64> = Situation::empty(machine);
@@ -93,7 +93,7 @@ fn why_not(variable: Variable) -> Option<&'static str> {
     }
 }
 
-/// Half width of the line whose slope is the velocity, s, on a machine of the reference size; and in samples.
+/// Half width of the window of the straight line for the velocity: in s, on a machine of the reference size; and in samples.
 const HALF_WIDTH: (f64, usize) = (0.02, 2);
 
 /// The measured velocity, or the slope of the displacement, m/s.
@@ -113,7 +113,7 @@ mod tests {
     fn recording() -> Recording {
         let time: Vec<f64> = (0..1000).map(|index| f64::from(index) * 2e-3).collect();
         let mut recording = Recording::unmeasured("made up", time, &["arm"]);
-        // Stands still for a second, then moves at 0.1 m/s.
+        // Rests for a second, then moves at 0.1 m/s.
         recording.cylinders[0].displacement = recording.time.iter().map(|t| 0.1 * (t - 1.0).max(0.0)).collect();
         recording.pump_pressure = recording.time.iter().map(|t| 1e6 * t).collect();
         recording
@@ -131,7 +131,7 @@ mod tests {
         assert!((share("abs(v) < 0.05") - 0.5).abs() < 0.01);
         assert!((share("p_pump >= 5e5") - 0.75).abs() < 0.01);
         assert!((share("t < 0.4*2") - 0.4).abs() < 0.01);
-        // What nobody measured does not hold, whichever way it is asked.
+        // A condition on an unmeasured signal does not hold, whatever the comparison.
         assert_eq!((share("p_cap > 0"), share("p_cap < 0")), (0.0, 0.0));
     }
 

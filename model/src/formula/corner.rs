@@ -1,29 +1,29 @@
-//! How widely the corners of a formula are rounded.
+//! Widths over which the corners of a formula are rounded.
 //!
-//! A law with a jump stalls a simulation: at a speed of zero friction would change its sign at every step. So a formula's `sign`, `step` and
-//! `if` change over a width, as the corners of the equations do.
+//! A law with a jump stalls a simulation: at zero speed friction would change its sign at every step. So a formula's `sign`,
+//! `step` and `if` change over a width, like the corners of the equations.
 
 use super::dimension::Dimension;
 use crate::equations::{Rounding, Situation};
 use crate::machine::{Cylinder, Size};
 use crate::scalar::Scalar;
 
-/// What a corner's argument is, which says how widely it is rounded.
+/// The kind of a corner's argument, which sets the width of its rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Corner {
-    /// A speed, rounded as the friction of the piston.
+    /// A speed, rounded like the friction of the piston.
     Speed,
-    /// A pressure, rounded as the flow of the valve's edges.
+    /// A pressure, rounded like the flow of the valve's edges.
     Pressure,
     /// An opening, over a ten-thousandth of the largest one.
     Area,
     /// A position, over a ten-thousandth of the stroke.
     Length,
-    /// A time, over 10 ms: longer than the interval of a recorder, so that a fit sees where it is.
+    /// A time, over 10 ms: longer than a sample interval, so that a fit can locate it.
     Time,
     /// A pure number, over a thousandth.
     Pure,
-    /// Anything else is compared with its own size and has a sharp corner.
+    /// Any other kind: no natural scale, so the corner is sharp.
     Sharp,
 }
 
@@ -37,7 +37,7 @@ const PURE_WIDTH: f64 = 1e-3;
 const SHARE_WIDTH: f64 = 1e-4;
 
 impl Corner {
-    /// That of an argument with this dimension.
+    /// The corner of an argument with this dimension.
     pub fn of(dimension: Dimension) -> Corner {
         let is = |unit: &str| Dimension::read(unit).is_ok_and(|known| known == dimension);
         if dimension.is_pure() {

@@ -1,6 +1,6 @@
 //! Units as powers of metre, kilogram, second, kelvin and ampere.
 
-/// Powers are counted in twelfths, so that roots of roots stay whole.
+/// Powers are counted in twelfths, so that roots of roots stay integers.
 const WHOLE: i32 = 12;
 
 /// The base units, in the order of the powers.
@@ -13,14 +13,14 @@ pub struct Dimension {
     powers: [i32; BASE.len()],
 }
 
-/// What is wrong with a unit.
+/// A unit that cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("\"{unit}\" is no SI unit: {reason}; write it like \"N s/(m Pa)\", \"m3/s\" or \"-\" for a pure number")]
 #[non_exhaustive]
 pub struct UnitError {
     /// The text.
     pub unit: String,
-    /// Why it cannot be read.
+    /// The reason.
     pub reason: String,
 }
 
@@ -47,7 +47,7 @@ const NAMED: [(&str, [i32; 5]); 19] = [
     ("m6", [6, 0, 0, 0, 0]),
 ];
 
-/// Units that readers know at a glance, for messages: the first that fits is written.
+/// Common units, for messages: the first match is used.
 const READABLE: [&str; 20] = [
     "m",
     "m2",
@@ -72,20 +72,20 @@ const READABLE: [&str; 20] = [
 ];
 
 impl Dimension {
-    /// That of a pure number.
+    /// The dimension of a pure number.
     pub const PURE: Dimension = Dimension { powers: [0; BASE.len()] };
 
-    /// Whether it is that of a pure number.
+    /// Whether it is the dimension of a pure number.
     pub fn is_pure(self) -> bool {
         self == Dimension::PURE
     }
 
-    /// That of a product.
+    /// The dimension of a product.
     pub fn times(self, other: Dimension) -> Dimension {
         self.combine(other, 1)
     }
 
-    /// That of a quotient.
+    /// The dimension of a quotient.
     pub fn over(self, other: Dimension) -> Dimension {
         self.combine(other, -1)
     }
@@ -98,7 +98,8 @@ impl Dimension {
         Dimension { powers }
     }
 
-    /// That of a power; `None` where a base unit would have no whole number of twelfths, or more than a hundred.
+    /// The dimension of a power; `None` if a base unit's power would not be an integer number of twelfths, or more than
+    /// a hundred.
     pub fn to_the(self, exponent: f64) -> Option<Dimension> {
         let mut powers = self.powers;
         for power in &mut powers {
@@ -112,10 +113,11 @@ impl Dimension {
         Some(Dimension { powers })
     }
 
-    /// Reads a unit: names with powers (`m3`, `s^2`, `Pa^0.5`, `sqrt(Pa)`) in a product, at most one `/` on each level.
+    /// Parses a unit: names with powers (`m3`, `s^2`, `Pa^0.5`, `sqrt(Pa)`) in a product, at most one `/` on each
+    /// level.
     ///
     /// # Errors
-    /// [`UnitError`] with the name that is unknown.
+    /// [`UnitError`] with the unknown name.
     pub fn read(text: &str) -> Result<Dimension, UnitError> {
         let error = |reason: String| UnitError { unit: text.chars().take(40).collect(), reason };
         if text.len() > LONGEST {
@@ -129,7 +131,7 @@ impl Dimension {
         if reader.rest.is_empty() { Ok(dimension) } else { Err(error(format!("\"{}\" is left over", reader.rest))) }
     }
 
-    /// The unit for a message: one with a name where there is one, else a product of base units.
+    /// The unit for a message: a named one if there is one, otherwise a product of base units.
     pub fn text(self) -> String {
         if self.is_pure() {
             return "a pure number".to_string();
@@ -155,7 +157,7 @@ impl Dimension {
 /// Longest unit, bytes.
 const LONGEST: usize = 100;
 
-/// Deepest brackets of a unit.
+/// Deepest nesting of brackets in a unit.
 const DEEPEST: usize = 4;
 
 fn exponent(twelfths: i32) -> String {
@@ -236,7 +238,7 @@ impl Reader<'_> {
         self.raised(Dimension { powers: powers.map(|power| power * WHOLE) })
     }
 
-    /// A power right behind a factor: `2`, `^2`, `^0.5`.
+    /// A power directly after a factor: `2`, `^2`, `^0.5`.
     fn raised(&mut self, factor: Dimension) -> Result<Dimension, String> {
         let text = self.rest.strip_prefix('^').unwrap_or(self.rest);
         let length = text.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-')).unwrap_or(text.len());

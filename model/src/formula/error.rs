@@ -1,34 +1,34 @@
-//! What can be wrong with a formula.
+//! Errors in a formula.
 
 use std::ops::Range;
 
-/// A formula that cannot be used, with the place in it.
+/// An invalid formula, with the position of the error.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{problem}, at column {}{}", at.start + 1, near(excerpt))]
 #[non_exhaustive]
 pub struct FormulaError {
-    /// What is wrong.
+    /// The error.
     pub problem: Problem,
-    /// Bytes of the formula that it is about.
+    /// Bytes of the formula that the error refers to.
     pub at: Range<usize>,
     /// The beginning of those bytes.
     pub excerpt: String,
 }
 
-/// What is wrong with a formula.
+/// An error in a formula.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Problem {
-    /// A character that no formula has.
+    /// An invalid character.
     #[error("'{0}' is no part of a formula")]
     Character(char),
     /// A number that cannot be read or is too large for a double.
     #[error("not a finite number")]
     Number,
-    /// Something else is needed here.
+    /// Another token is required here.
     #[error("expected {0}")]
     Expected(&'static str),
-    /// The formula goes on after its end.
+    /// Text after the end of the formula.
     #[error("expected an operator or the end")]
     Trailing,
     /// Two comparisons in a row.
@@ -45,7 +45,7 @@ pub enum Problem {
         /// The nearest known name.
         suggestion: Option<String>,
     },
-    /// A name that is no function.
+    /// A name that is not a function.
     #[error("unknown function \"{name}\"{}", did_you_mean(suggestion))]
     UnknownFunction {
         /// The name.
@@ -58,20 +58,20 @@ pub enum Problem {
     Arguments {
         /// The function.
         function: &'static str,
-        /// What it takes, in words.
+        /// Description of the required arguments.
         wanted: &'static str,
         /// How many there are.
         found: usize,
     },
-    /// A table whose knots are not usable.
+    /// A table with invalid knots.
     #[error("a table needs at least two knots, as many values, and knots that rise")]
     Table,
-    /// A variable that this row cannot have.
+    /// A variable that is not available in this row.
     #[error("{name} is not known here: {reason}")]
     Unavailable {
         /// The variable.
         name: String,
-        /// Why it is not known.
+        /// The reason.
         reason: &'static str,
     },
     /// Two parts of a sum, or of a comparison, in different units.
@@ -95,7 +95,7 @@ pub enum Problem {
     /// A power of something with a unit whose exponent is not a number.
     #[error("a quantity in {0} can be raised only to a constant number, because the unit of the result must be known")]
     VariableExponent(String),
-    /// The formula has another unit than its row.
+    /// The formula has a different unit from its row.
     #[error("the formula is in {found}, but {row} is in {wanted}")]
     WrongRow {
         /// The row.
@@ -105,13 +105,13 @@ pub enum Problem {
         /// The formula's unit.
         found: String,
     },
-    /// Longer than any law.
+    /// The formula is too long.
     #[error("longer than {0} characters")]
     TooLong(usize),
-    /// Deeper than any law.
+    /// The formula is nested too deeply.
     #[error("nested more than {0} deep")]
     TooDeep(usize),
-    /// More operations than any law.
+    /// The formula has too many operations.
     #[error("more than {0} operations")]
     TooManyOperations(usize),
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::function::Function;
 use super::variable::Variable;
 
-/// A part of a formula and where it stands in the text.
+/// A part of a formula and its position in the text.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Expression {
     pub node: Node,
@@ -13,7 +13,7 @@ pub(super) struct Expression {
 }
 
 impl Expression {
-    /// Every name in it and where it stands.
+    /// Every name in it and its position.
     pub fn names(&self) -> Vec<(&Symbol, Range<usize>)> {
         let (mut found, mut waiting) = (Vec::new(), vec![self]);
         while let Some(part) = waiting.pop() {
@@ -30,7 +30,7 @@ impl Expression {
     }
 }
 
-/// What a part of a formula is.
+/// The kind of a part of a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Node {
     Number(f64),
@@ -49,18 +49,18 @@ pub(super) enum Node {
     },
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) enum Symbol {
-    /// The effect's parameter of this number.
+    /// The effect's parameter with this index.
     Parameter(usize),
-    /// The effect's state of this number.
+    /// The effect's state with this index.
     State(usize),
-    /// A variable of the effect's own place, or of the cylinder of this name.
+    /// A variable of the effect's own place, or of the cylinder with this name.
     Variable(Variable, Option<String>),
 }
 
-/// An operator with two sides.
+/// A binary operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Operator {
     Add,

@@ -22,7 +22,7 @@ pub(super) enum Function {
     Smoothstep,
 }
 
-/// All functions that take numbers, as a formula writes them. `table` and `if` have a form of their own.
+/// All functions of numbers, by their names in formulas. `table` and `if` have their own syntax.
 pub(super) const FUNCTIONS: [(&str, Function); 17] = [
     ("abs", Function::Abs),
     ("sign", Function::Sign),
@@ -44,12 +44,12 @@ pub(super) const FUNCTIONS: [(&str, Function); 17] = [
 ];
 
 impl Function {
-    /// As a formula writes it.
+    /// Its name in formulas.
     pub fn name(self) -> &'static str {
         FUNCTIONS.iter().find(|(_, function)| *function == self).map_or("", |(name, _)| name)
     }
 
-    /// How many arguments it takes, in words, and whether `count` is one of these numbers.
+    /// Description of its number of arguments, and whether `count` is valid.
     pub fn takes(self, count: usize) -> (&'static str, bool) {
         match self {
             Function::Min | Function::Max => ("two arguments or more", count >= 2),

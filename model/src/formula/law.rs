@@ -10,7 +10,7 @@ use crate::equations::{Channel, Instruments, Rows, Situation};
 use crate::machine::Machine;
 use crate::scalar::Scalar;
 
-/// A law that was read from a text.
+/// A law read from a text.
 #[derive(Debug, Clone)]
 pub struct Law {
     pub(super) card: Card,
@@ -19,12 +19,12 @@ pub struct Law {
     pub(super) states: Vec<StateLaw>,
     pub(super) program: Program,
     pub(super) text: FormulaText,
-    /// Other cylinders that its formulas name.
+    /// Other cylinders named in its formulas.
     pub(super) others: Vec<String>,
     pub(super) reads_metering_flows: bool,
 }
 
-/// How a state of a law changes.
+/// Rate of change of a state of a law.
 #[derive(Debug, Clone)]
 pub(super) struct StateLaw {
     pub start: Program,
@@ -33,12 +33,12 @@ pub(super) struct StateLaw {
 }
 
 impl Law {
-    /// Where it enters the equations.
+    /// Its row in the equations.
     pub fn row(&self) -> Row {
         self.row
     }
 
-    /// The variables of its formula, in the order in which they stand there first.
+    /// The variables of its formula, in the order of their first occurrence.
     pub(super) fn variables(&self) -> impl Iterator<Item = Variable> {
         self.program.inputs.iter().filter_map(|input| match input {
             Symbol::Variable(variable, None) => Some(*variable),
@@ -46,8 +46,8 @@ impl Law {
         })
     }
 
-    /// What its formula gives in a situation, in the unit of its row: for given parameters in the order of their cards, and states in
-    /// theirs. A law of the opening gets the opening of the situation.
+    /// The value of its formula in a situation, in the unit of its row: for given parameters in the order of their cards, and
+    /// states in theirs. A law of the opening reads the situation's opening.
     pub fn value<T: Scalar>(&self, site: Site, parameters: &[T], states: &[T], now: &Situation<'_, T>) -> T {
         self.program.evaluate(&Law::moment(site, parameters, states, now))
     }
@@ -211,7 +211,7 @@ impl Physics for Law {
 }
 
 impl Variable {
-    /// Whether it is a metering flow.
+    /// Whether the row is a metering flow.
     pub(super) fn is_a_metering_flow(self) -> bool {
         matches!(self, Variable::CapFlow | Variable::RodFlow)
     }

@@ -1,8 +1,8 @@
-//! In which of its parameters a formula is linear.
+//! Finds the parameters in which a formula is linear.
 
 use super::expression::{Expression, Node, Operator, Symbol};
 
-/// Which of `count` parameters can be in a set in which the formula is linear, all at once: earlier ones first.
+/// Which of `count` parameters form a set in which the formula is jointly linear: earlier ones take precedence.
 pub(super) fn linear_parameters(formula: &Expression, count: usize) -> Vec<bool> {
     let mut chosen = vec![false; count];
     for number in 0..count {
@@ -22,7 +22,7 @@ enum Degree {
 
 fn degree(expression: &Expression, chosen: &[bool]) -> Degree {
     let of = |part: &Expression| degree(part, chosen);
-    // Whatever is not a sum or a product is linear in nothing that it depends on.
+    // Any other operation is not linear in the parameters that it depends on.
     let other = |parts: &[&Expression]| {
         let is_constant = parts.iter().all(|part| of(part) == Degree::Constant);
         if is_constant { Degree::Constant } else { Degree::Other }

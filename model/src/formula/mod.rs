@@ -1,7 +1,8 @@
-//! Laws that a user writes as text.
+//! User-defined laws, written as text.
 //!
-//! A formula is read (`parser`), checked for units and compiled (`compile`), and evaluated with plain numbers or dual numbers
-//! (`program`). So one text serves simulation, regressor, power and sensitivities, as the code of a built-in effect does.
+//! A formula is parsed (`parser`), checked for units and compiled (`compile`), and evaluated with plain numbers or dual
+//! numbers (`program`). So one text is enough for simulation, regressor, power and sensitivities, like the code of a built-in
+//! effect.
 
 mod check;
 mod column_formula;

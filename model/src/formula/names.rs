@@ -1,4 +1,4 @@
-//! What the names in a formula stand for.
+//! Resolves the names in a formula.
 
 use super::expression::Symbol;
 use super::variable::VARIABLES;
@@ -8,12 +8,12 @@ use super::variable::VARIABLES;
 pub(super) struct Names<'a> {
     pub parameters: &'a [String],
     pub states: &'a [String],
-    /// Whether `rate(x)` is the state that has the number of the parameter `x`: for formulas over columns.
+    /// Whether `rate(x)` is the state with the index of the parameter `x`: for formulas over columns.
     pub rates: bool,
 }
 
 impl<'a> Names<'a> {
-    /// What a name stands for; `None` where it is unknown.
+    /// The meaning of a name; `None` if it is unknown.
     pub fn find(&self, name: &str) -> Option<Symbol> {
         let position = |names: &[String]| names.iter().position(|known| known == name);
         position(self.parameters)

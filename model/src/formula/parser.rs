@@ -1,4 +1,4 @@
-//! From tokens to a tree, with the usual precedence: `-x^2` is `-(x^2)`, `2^3^2` is `2^(3^2)`.
+//! Parses tokens to a tree, with the usual precedence: `-x^2` is `-(x^2)`, `2^3^2` is `2^(3^2)`.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ const DEEPEST: usize = 64;
 /// Most operations. A law of the catalogue has five to twenty.
 const MOST_OPERATIONS: usize = 400;
 
-/// Reads a formula. `names` are the parameters, states and variables that it may use.
+/// Parses a formula. `names` are the parameters, states and variables that it may use.
 pub(super) fn parse(text: &str, names: &Names<'_>) -> Result<Expression, FormulaError> {
     let mut parser = Parser { text, tokens: tokens(text)?, next: 0, depth: 0, operations: 0, names };
     let expression = parser.sum()?;
@@ -28,7 +28,7 @@ pub(super) fn parse(text: &str, names: &Names<'_>) -> Result<Expression, Formula
     }
 }
 
-/// Reads a comparison, as in `abs(v) > 0.002`: what is the larger side where it holds, then the other.
+/// Parses a comparison, as in `abs(v) > 0.002`: returns the side that is larger if the comparison holds, then the other.
 pub(super) fn parse_condition(text: &str, names: &Names<'_>) -> Result<[Expression; 2], FormulaError> {
     let mut parser = Parser { text, tokens: tokens(text)?, next: 0, depth: 0, operations: 0, names };
     let sides = parser.comparison("a comparison: <, <=, > or >=")?;
@@ -64,7 +64,7 @@ impl Parser<'_> {
         FormulaError::new(problem, at, self.text)
     }
 
-    /// Takes the next token; the end stays.
+    /// Advances to the next token; stays at the end.
     fn take(&mut self) {
         self.next = (self.next + 1).min(self.tokens.len() - 1);
     }
@@ -92,7 +92,7 @@ impl Parser<'_> {
         result
     }
 
-    /// One more operation.
+    /// Counts an operation.
     fn count(&mut self) -> Result<(), FormulaError> {
         self.operations += 1;
         if self.operations > MOST_OPERATIONS {
@@ -124,7 +124,7 @@ impl Parser<'_> {
         Ok(left)
     }
 
-    /// A sign binds less than a power: `-x^2` is `-(x^2)`.
+    /// A sign has lower precedence than a power: `-x^2` is `-(x^2)`.
     fn signed(&mut self) -> Result<Expression, FormulaError> {
         let begin = self.at().start;
         if self.takes('-') {
@@ -138,7 +138,7 @@ impl Parser<'_> {
         self.power()
     }
 
-    /// Powers bind to the right, and an exponent may have a sign.
+    /// Powers are right-associative, and an exponent may have a sign.
     fn power(&mut self) -> Result<Expression, FormulaError> {
         let base = self.atom()?;
         if !self.takes('^') {
@@ -183,7 +183,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A call, behind its "(".
+    /// A call, after its "(".
     fn call(&mut self, name: &str, at: Range<usize>) -> Result<Expression, FormulaError> {
         let begin = at.start;
         self.count()?;
@@ -271,7 +271,8 @@ impl Parser<'_> {
         Ok(node)
     }
 
-    /// One comparison: the side that is larger where it holds, then the other. `expected` says what is needed where there is none.
+    /// Parses one comparison: returns the side that is larger if it holds, then the other. `expected` is the error text if there
+    /// is no comparison.
     fn comparison(&mut self, expected: &'static str) -> Result<[Expression; 2], FormulaError> {
         let left = self.sum()?;
         let is_less = match self.token() {
@@ -304,14 +305,14 @@ fn binary(operator: Operator, left: Expression, right: Expression) -> Expression
     Expression { node: Node::Binary(operator, Box::new(left), Box::new(right)), at }
 }
 
-/// Whether a name can be that of a parameter or a state: a word that no variable or function has.
+/// Whether a name can be that of a parameter or a state: a word that is not a variable or function.
 pub(super) fn is_word(name: &str) -> bool {
     let mut letters = name.chars();
     letters.next().is_some_and(|first| first.is_ascii_alphabetic() || first == '_')
         && letters.all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
 }
 
-/// Whether a name is one of the language's own.
+/// Whether a name is reserved by the language.
 pub(super) fn is_reserved(name: &str) -> bool {
     let is_function = FUNCTIONS.iter().any(|(function, _)| *function == name);
     is_function || name == "table" || name == "if" || Symbol::is_variable(name)

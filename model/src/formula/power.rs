@@ -1,12 +1,12 @@
-//! Powers of what may be zero.
+//! Powers of values that may be zero.
 //!
-//! The slope of `x^0.5` at zero is infinite, and the product of an infinite slope with a change of zero is not a number: a simulation
-//! that starts there could not take its first step.
+//! The slope of `x^0.5` at zero is infinite, and the product of an infinite slope with a change of zero is not a number. A
+//! simulation that starts there could not take its first step.
 
 use crate::scalar::Scalar;
 
-/// `base^exponent`. Below `width` a power between zero and one is the odd cubic that meets it with its slope, as the flow through an
-/// orifice is laminar at small pressure drops; not a number where the base is negative.
+/// `base^exponent`. Below `width` a power between zero and one is the odd cubic that matches its value and slope there, like the
+/// laminar flow through an orifice at small pressure drops. It is not a number if the base is negative.
 pub(super) fn fixed_power<T: Scalar>(base: T, exponent: f64, width: T) -> T {
     let is_steep = exponent > 0.0 && exponent < 1.0;
     if is_steep && base.value() >= 0.0 && base.value() < width.value() {
@@ -20,7 +20,7 @@ pub(super) fn fixed_power<T: Scalar>(base: T, exponent: f64, width: T) -> T {
     base.powf(exponent)
 }
 
-/// `base^exponent` where both change.
+/// `base^exponent` with a variable base and exponent.
 pub(super) fn power<T: Scalar>(base: T, exponent: T) -> T {
     if base.value() == 0.0 && exponent.value() > 0.0 {
         return T::from(0.0);

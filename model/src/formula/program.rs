@@ -10,12 +10,12 @@ use crate::equations::{Piston, Situation};
 use crate::machine::{Machine, Mechanism, Supply};
 use crate::scalar::Scalar;
 
-/// One operation. Its result goes into the register of its own number; its arguments are registers before it.
+/// One operation. Its result is stored in the register with its own index; its arguments are earlier registers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Operation {
     /// A number.
     Number(f64),
-    /// What the input of this number is.
+    /// The input with this index.
     Input(u16),
     Add(u16, u16),
     Subtract(u16, u16),
@@ -24,9 +24,9 @@ pub(super) enum Operation {
     Negate(u16),
     /// A register times a number.
     Scale(u16, f64),
-    /// A whole power.
+    /// An integer power.
     WholePower(u16, i32),
-    /// A power that is a number.
+    /// A power with a constant exponent.
     FixedPower(u16, f64, Corner),
     Power(u16, u16),
     Abs(u16),
@@ -44,14 +44,14 @@ pub(super) enum Operation {
     Min(u16, u16),
     Max(u16, u16),
     Step(u16, Corner),
-    /// `3x² - 2x³` of a number between zero and one, cut off outside.
+    /// `3x² - 2x³` of a number between zero and one, clamped outside.
     Smooth(u16),
     Table(u16, u16),
-    /// The second register where the first is one, the third where it is zero, a mixture between.
+    /// The second register if the first is one, the third if it is zero, a mixture in between.
     Choose(u16, u16, u16),
 }
 
-/// A formula, ready to be evaluated.
+/// A compiled formula.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Program {
     pub operations: Vec<Operation>,
@@ -59,7 +59,7 @@ pub(super) struct Program {
     pub tables: Vec<Table>,
 }
 
-/// What a formula is evaluated from.
+/// Values for the evaluation of a formula.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moment<'a, 'm, T> {
     pub parameters: &'a [T],
@@ -67,11 +67,11 @@ pub(super) struct Moment<'a, 'm, T> {
     pub now: &'a Situation<'m, T>,
     /// The effect's own cylinder; `None` at the pump line.
     pub cylinder: Option<usize>,
-    /// What `u` is while openings are being formed; else that of the situation.
+    /// The value of `u` while openings are being computed; otherwise that of the situation.
     pub opening: Option<T>,
 }
 
-/// Registers that fit on the stack for a law of usual size.
+/// Number of registers that fit on the stack; enough for a law of usual size.
 const SMALL: usize = 24;
 
 impl Program {
@@ -80,7 +80,7 @@ impl Program {
         Program { operations: Vec::new(), inputs: Vec::new(), tables: Vec::new() }
     }
 
-    /// The formula's value.
+    /// Evaluates the formula.
     pub fn evaluate<T: Scalar>(&self, moment: &Moment<'_, '_, T>) -> T {
         let zero = T::from(0.0);
         if self.operations.len() <= SMALL {
@@ -90,7 +90,7 @@ impl Program {
         }
     }
 
-    /// The value of a formula of parameters alone.
+    /// Evaluates a formula of parameters alone.
     pub fn of_parameters<T: Scalar>(&self, parameters: &[T]) -> T {
         let machine = nowhere();
         let now = Situation::empty(&machine);
@@ -212,7 +212,7 @@ fn smooth<T: Scalar>(x: T) -> T {
     }
 }
 
-/// A side that has no share has no say, even where it is not a number.
+/// A side with zero weight is ignored, even if it is not a number.
 fn choose<T: Scalar>(share: T, then: T, otherwise: T) -> T {
     if share.value() == 1.0 {
         then
@@ -239,7 +239,7 @@ impl<T: Scalar> Moment<'_, '_, T> {
             Variable::PumpPressure => return now.pump_pressure,
             Variable::TankPressure => return now.tank_pressure,
             Variable::Time => return now.time,
-            // Formulas with these are refused where they are read.
+            // The reader rejects formulas with these variables.
             Variable::Temperature | Variable::Acceleration => return T::from(f64::NAN),
             _ => {}
         }
@@ -272,7 +272,7 @@ fn of_piston<T: Scalar>(variable: Variable, piston: &Piston<T>) -> T {
     }
 }
 
-/// What the machine is, in SI units.
+/// Constants of the machine, in SI units.
 fn constant<T>(variable: Variable, now: &Situation<'_, T>, cylinder: Option<usize>) -> f64 {
     let Some(own) = cylinder.and_then(|cylinder| now.machine.cylinders.get(cylinder)) else { return f64::NAN };
     let areas = match (&own.chambers, &own.imposed_motion) {

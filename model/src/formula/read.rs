@@ -1,4 +1,4 @@
-//! From the text of a formula effect to a law.
+//! Reads a formula effect from text.
 
 use super::compile::compile;
 use super::dimension::{Dimension, UnitError};
@@ -14,55 +14,55 @@ use super::text::{FormulaText, ParameterText, StateText};
 use super::variable::Variable;
 use crate::effects::{ActsOn, Card, Family, Growth, Kind, Needs, ParameterCard, Start, Text, nearest};
 
-/// A formula effect that cannot be read.
+/// An invalid formula effect.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("formula effect \"{name}\": {problem}")]
 #[non_exhaustive]
 pub struct LawError {
     /// Name of the effect.
     pub name: String,
-    /// What is wrong.
+    /// The error.
     pub problem: LawProblem,
 }
 
-/// What is wrong with a formula effect.
+/// An error in a formula effect.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LawProblem {
-    /// A name that cannot be one.
+    /// An invalid name.
     #[error("\"{0}\" cannot be a name: use letters, digits and _, at most 60, and begin with a letter")]
     Name(String),
-    /// A name that the language has already.
+    /// A name that is reserved by the language.
     #[error("\"{0}\" is a variable or function of formulas; give it another name")]
     Reserved(String),
     /// A row that does not exist.
     #[error("acts_on = \"{row}\" is unknown{}; it is one of {}", suggestion.as_ref().map_or(String::new(), |name| format!(" (did you mean \"{name}\"?)")), row_names())]
     Row {
-        /// The row asked for.
+        /// The requested row.
         row: String,
-        /// The nearest that exists.
+        /// The nearest existing row.
         suggestion: Option<String>,
     },
-    /// A formula that cannot be used.
+    /// An invalid formula.
     #[error("{what}: {error}")]
     Formula {
         /// Which: "formula", "rate of z", "start of z".
         what: String,
-        /// Why.
+        /// The error.
         error: Box<FormulaError>,
     },
-    /// A unit that cannot be read.
+    /// An invalid unit.
     #[error("{what}: {error}")]
     Unit {
         /// The parameter or state.
         what: String,
-        /// Why.
+        /// The error.
         error: UnitError,
     },
     /// A parameter or state that no formula uses.
     #[error("no formula uses {0}")]
     Unused(String),
-    /// A parameter whose numbers do not fit together.
+    /// A parameter with inconsistent numbers.
     #[error("parameter {parameter}: {reason}")]
     Parameter {
         /// The parameter.
@@ -70,7 +70,7 @@ pub enum LawProblem {
         /// What does not fit.
         reason: String,
     },
-    /// More parameters or states than a law has.
+    /// Too many parameters or states.
     #[error("more than {0} parameters or states")]
     TooMany(usize),
 }
@@ -79,17 +79,17 @@ fn row_names() -> String {
     ROWS.iter().map(|card| card.name).collect::<Vec<_>>().join(", ")
 }
 
-/// Most parameters and states of a law together.
+/// Largest number of parameters and states of a law together.
 const MOST_NAMES: usize = 24;
 
 /// Longest name.
 const LONGEST_NAME: usize = 60;
 
 impl Law {
-    /// Reads a formula effect.
+    /// Parses a formula effect.
     ///
     /// # Errors
-    /// [`LawError`] in one line that points at the place.
+    /// [`LawError`] in one line with the position.
     pub fn read(text: &FormulaText) -> Result<Law, LawError> {
         Reader::new(text).and_then(|reader| reader.law()).map_err(|problem| {
             let name = text.name.chars().take(LONGEST_NAME).collect();
@@ -196,7 +196,7 @@ impl<'a> Reader<'a> {
         unused.map_or(Ok(()), |name| Err(LawProblem::Unused(name)))
     }
 
-    /// Whether every variable is known where the formula is evaluated.
+    /// Whether every variable is available where the formula is evaluated.
     fn check_variables(&self, tree: &Expression, text: &str) -> Result<(), FormulaError> {
         let refused = |(symbol, at): (&Symbol, std::ops::Range<usize>)| {
             let (name, reason) = match symbol {
@@ -214,7 +214,7 @@ impl<'a> Reader<'a> {
         tree.names().into_iter().find_map(refused).map_or(Ok(()), Err)
     }
 
-    /// Why a variable, of another cylinder or of the effect's own, is not known in this row.
+    /// Why a variable, of another cylinder or of the effect's own, is not available in this row.
     fn why_not(&self, variable: Variable, of_another: bool) -> Option<&'static str> {
         let is_of_the_pump = self.row.acts_on() == ActsOn::PumpLine;
         if let Some(reason) = variable.why_not() {
@@ -319,7 +319,7 @@ fn parameter_card(name: &str, text: &ParameterText, is_linear: bool) -> Result<P
         unit: Text::Owned(text.unit.clone()),
         meaning: Text::Owned(text.meaning.clone()),
         kind: if is_linear { Kind::Linear } else { Kind::Shape },
-        // What a user writes is for the user's machine.
+        // User formulas are written for one machine and do not scale.
         growth: Growth::NONE,
         minimum,
         maximum,
@@ -329,10 +329,10 @@ fn parameter_card(name: &str, text: &ParameterText, is_linear: bool) -> Result<P
     })
 }
 
-/// How many times the largest start the maximum is where none is given: no user knows a start by more than that.
+/// Default maximum as a multiple of the largest start value: no start is less certain than that.
 const FAR: f64 = 1e6;
 
-/// Order of magnitude of a state in its unit.
+/// Order of magnitude of a state, in its unit.
 fn scale(name: &str, text: &StateText, unit: Dimension) -> Result<f64, LawProblem> {
     if let Some(typical) = text.typical {
         return if typical.is_finite() && typical > 0.0 {

@@ -1,9 +1,9 @@
-//! Where a formula enters the equations.
+//! Rows of the equations that a formula can enter.
 
 use super::dimension::Dimension;
 use crate::effects::{ActsOn, Needs};
 
-/// What a formula gives.
+/// The quantity that a formula computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Row {
     /// Force on the piston along its extension, N.
@@ -32,27 +32,27 @@ pub enum Row {
     SupplyOpening,
     /// Opening of the edge through which oil returns to the tank, m².
     ReturnOpening,
-    /// What the cap pressure's instrument shows beside the truth, Pa.
+    /// Offset of the cap pressure reading, Pa.
     CapPressureReading,
-    /// What the rod pressure's instrument shows beside the truth, Pa.
+    /// Offset of the rod pressure reading, Pa.
     RodPressureReading,
-    /// What the pump pressure's instrument shows beside the truth, Pa.
+    /// Offset of the pump pressure reading, Pa.
     PumpPressureReading,
-    /// What the displacement's instrument shows beside the truth, m.
+    /// Offset of the displacement reading, m.
     DisplacementReading,
 }
 
-/// What is said about a row.
+/// Description of a row.
 pub struct RowCard {
-    /// As a catalogue file writes it.
+    /// Its name in catalogue files.
     pub name: &'static str,
     /// The row.
     pub row: Row,
     /// Unit of its formula.
     pub unit: &'static str,
-    /// What the formula gives.
+    /// The quantity that the formula computes.
     pub meaning: &'static str,
-    /// How an effect there shows in data.
+    /// Signature of an effect in this row in data.
     pub shows: &'static str,
     /// Its part in the energy balance.
     pub energy: &'static str,
@@ -161,9 +161,9 @@ pub static ROWS: [RowCard; 17] = [
 ];
 
 impl Row {
-    /// Its card.
+    /// The card of the row.
     pub fn card(self) -> &'static RowCard {
-        // Every row has a card; the first is a stand-in that no input can reach.
+        // Every row has a card; the fallback is unreachable.
         ROWS.iter().find(|card| card.row == self).unwrap_or(&ROWS[0])
     }
 
@@ -172,7 +172,7 @@ impl Row {
         Dimension::read(self.card().unit).unwrap_or(Dimension::PURE)
     }
 
-    /// The part of the machine that its effects act on.
+    /// The part of the machine that effects in this row act on.
     pub fn acts_on(self) -> ActsOn {
         match self {
             Row::PumpLeak | Row::PumpPressureReading => ActsOn::PumpLine,
@@ -182,7 +182,7 @@ impl Row {
         }
     }
 
-    /// What a cylinder must have for it.
+    /// What a cylinder must have.
     pub fn needs(self) -> Needs {
         match self {
             Row::PistonForce | Row::JointTorque | Row::DisplacementReading => Needs::Nothing,
@@ -191,12 +191,12 @@ impl Row {
         }
     }
 
-    /// Whether it is the opening of edges of a valve.
+    /// Whether the row is an opening of the valve's edges.
     pub fn is_an_opening(self) -> bool {
         matches!(self, Row::Opening | Row::SupplyOpening | Row::ReturnOpening)
     }
 
-    /// Whether it is an instrument's.
+    /// Whether the row is an instrument reading.
     pub fn is_a_reading(self) -> bool {
         matches!(
             self,

@@ -2,7 +2,7 @@
 
 use crate::scalar::Scalar;
 
-/// A curve through knots, that rises and falls only where its values do. Beyond its ends it stays at the end values.
+/// A curve through knots that is monotone between them. Outside the knots it keeps the end values.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Table {
     knots: Vec<f64>,
@@ -11,12 +11,12 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Through `values` at `knots`, which rise and are at least two.
+    /// Curve through `values` at `knots`; there are at least two knots, in ascending order.
     pub fn new(knots: Vec<f64>, values: Vec<f64>) -> Self {
         let chords: Vec<f64> = (1..knots.len())
             .map(|index| (values[index] - values[index - 1]) / (knots[index] - knots[index - 1]))
             .collect();
-        // At its ends the curve has the slope of its first and last chord: two knots are a straight line.
+        // At each end the curve has the slope of the end chord: two knots give a straight line.
         let mut slopes = vec![0.0; knots.len()];
         if let (Some(&first), Some(&last)) = (chords.first(), chords.last()) {
             slopes[0] = first;
@@ -27,7 +27,8 @@ impl Table {
             if before * after > 0.0 {
                 let (left, right) = (knots[index] - knots[index - 1], knots[index + 1] - knots[index]);
                 let weights = (2.0 * right + left, right + 2.0 * left);
-                // Harmonic mean of the chords (Fritsch and Butland 1984): at most three times the smaller one.
+                // Weighted harmonic mean of the chords' slopes (Fritsch and Butland 1984): at most three times the
+                // smaller one.
                 slopes[index] = (weights.0 + weights.1) / (weights.0 / before + weights.1 / after);
             }
         }
@@ -52,7 +53,7 @@ impl Table {
         let along = (x - self.knots[index]) / width;
         let (from, to) = (self.values[index], self.values[index + 1]);
         let (start, end) = (self.slopes[index] * width, self.slopes[index + 1] * width);
-        // Hermite form, by powers of the way along.
+        // Hermite form, in powers of the fraction of the interval.
         let cubic = 2.0 * (from - to) + start + end;
         let square = 3.0 * (to - from) - 2.0 * start - end;
         ((along * cubic + square) * along + start) * along + from

@@ -1,14 +1,14 @@
-//! From text to tokens.
+//! Splits text into tokens.
 
 use std::ops::Range;
 
 use super::error::{FormulaError, Problem};
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Token {
     Number(f64),
-    /// A name, with `.` where it is another cylinder's: `boom.v`.
+    /// A name, with `.` for one of another cylinder: `boom.v`.
     Name(String),
     /// One of `+ - * / ^ ( ) [ ] ,`.
     Symbol(char),
@@ -19,14 +19,14 @@ pub(super) enum Token {
     End,
 }
 
-/// A token and where it stands.
+/// A token and its position.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Placed {
     pub token: Token,
     pub at: Range<usize>,
 }
 
-/// Longest formula, bytes. A law of this length is a program.
+/// Longest formula, bytes. A longer one is a program, not a law.
 const LONGEST: usize = 4096;
 
 /// The tokens of a formula, with [`Token::End`] last.
@@ -70,7 +70,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, FormulaError> {
     Ok(found)
 }
 
-/// Bytes of the number at the beginning of `text`: digits, a point, digits, an exponent.
+/// Length in bytes of the number at the beginning of `text`: digits, a point, digits, an exponent.
 fn number_length(text: &str) -> usize {
     let digits = |from: usize| text[from..].bytes().take_while(u8::is_ascii_digit).count();
     let mut length = digits(0);

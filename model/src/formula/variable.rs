@@ -29,13 +29,13 @@ pub(super) enum Variable {
     Temperature,
 }
 
-/// A variable as a formula writes it.
+/// Name and description of a variable.
 pub(super) struct VariableCard {
     pub name: &'static str,
     pub variable: Variable,
     /// SI unit.
     pub unit: &'static str,
-    /// What it is.
+    /// Its meaning.
     pub meaning: &'static str,
 }
 
@@ -69,10 +69,10 @@ pub(super) static VARIABLES: [VariableCard; 21] = [
 ];
 
 impl Variable {
-    /// Its card.
+    /// The card of the variable.
     pub fn card(self) -> &'static VariableCard {
         let found = VARIABLES.iter().find(|card| card.variable == self);
-        // Every variable has a card; the first is a stand-in that no input can reach.
+        // Every variable has a card; the fallback is unreachable.
         found.unwrap_or(&VARIABLES[0])
     }
 
@@ -94,13 +94,13 @@ impl Variable {
         )
     }
 
-    /// Whether only a cylinder with pressures has it.
+    /// Whether only a cylinder with known pressures has it.
     pub fn needs_pressures(self) -> bool {
         self.needs_oil()
             || matches!(self, Variable::CapPressure | Variable::RodPressure | Variable::CapArea | Variable::RodArea)
     }
 
-    /// Why a formula cannot use it yet, if so.
+    /// Why a formula cannot use it yet, if it cannot.
     pub fn why_not(self) -> Option<&'static str> {
         match self {
             Variable::Acceleration => Some("the equations of motion are solved for it; use a mass or a state instead"),
@@ -116,7 +116,7 @@ pub fn variables() -> impl Iterator<Item = [&'static str; 3]> {
 }
 
 impl Symbol {
-    /// The variable of this name, `v` or `boom.v`.
+    /// The variable with this name, `v` or `boom.v`.
     pub fn variable(name: &str) -> Option<Symbol> {
         let (cylinder, own) = name.rsplit_once('.').map_or((None, name), |(cylinder, own)| (Some(cylinder), own));
         let variable = VARIABLES.iter().find(|card| card.name == own)?.variable;

@@ -3,10 +3,10 @@
 use super::{CommandUnit, Linkage};
 use crate::scalar::Scalar;
 
-/// A cylinder or motor, its linkage to the joint, and what is known of its chambers.
+/// A cylinder or motor, its linkage to the joint, and the known data of its chambers.
 ///
-/// A motor is a cylinder without ends. Its displacement is the angle of its shaft in rad, its force is the torque on the shaft in N m,
-/// its areas are its displacement volume in m³/rad, and its chambers do not change their size.
+/// A motor is a cylinder without ends. Its displacement is the shaft angle in rad, its force is the shaft torque in N m, its
+/// areas are its displacement volume in m³/rad, and its chamber volumes are constant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cylinder {
     /// "boom", "arm", "bucket", "load".
@@ -19,7 +19,7 @@ pub struct Cylinder {
     pub ends: [f64; 2],
     /// Oil chambers; `None` for a drive whose force is measured instead.
     pub chambers: Option<Chambers>,
-    /// The rod is moved from outside, whatever force that takes; only without chambers.
+    /// An external machine imposes the rod's motion, whatever the force; only without chambers.
     pub imposed_motion: Option<ImposedMotion>,
 }
 
@@ -36,13 +36,13 @@ impl Cylinder {
         displacement <= retracted + near || displacement >= extended - near
     }
 
-    /// A travel that is usual for it, m: the stroke. Two turns of the shaft for a motor, rad.
+    /// Usual travel, m: the stroke. For a motor two turns of the shaft, rad.
     pub fn usual_travel(&self) -> f64 {
         if self.is_motor() { 4.0 * std::f64::consts::PI } else { self.stroke }
     }
 }
 
-/// A rod that a testing machine moves: displacement and chamber pressures are inputs, the force on the rod is the output.
+/// A rod moved by a testing machine: displacement and chamber pressures are inputs, the force on the rod is the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImposedMotion {
     /// Piston area on the cap side A+, m².
@@ -65,26 +65,26 @@ pub struct Chambers {
     pub cap_area: f64,
     /// Piston area on the rod side A-, m² (m³/rad for a motor, at port B).
     pub rod_area: f64,
-    /// Volume of pipes and ports on the cap side V+min, m³; for a motor all of the volume.
+    /// Volume of pipes and ports on the cap side V+min, m³; for a motor the whole volume.
     pub cap_dead_volume: f64,
     /// Volume of pipes and ports on the rod side V-min, m³.
     pub rod_dead_volume: f64,
-    /// What feeds them.
+    /// The drive that feeds them.
     pub drive: Drive,
 }
 
-/// What feeds the chambers of a cylinder.
+/// The drive that feeds the chambers of a cylinder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Drive {
     /// A valve section on the machine's supply.
     Valve {
-        /// Its input u where it is fully open, umax: the largest orifice area in m², or what commands it in its own unit.
+        /// Its input u when fully open, umax: the largest orifice area in m², or the command in its own unit.
         full_command: f64,
         /// Unit of that input.
         unit: CommandUnit,
     },
-    /// A pump of its own between both chambers: a closed circuit. Its input u is the flow in m³/s that it would give without losses:
-    /// speed times displacement.
+    /// A separate pump between both chambers: a closed circuit. Its input u is the lossless flow in m³/s: speed times
+    /// displacement.
     Pump {
         /// Largest such flow, m³/s.
         full_flow: f64,
@@ -110,7 +110,7 @@ impl Drive {
 }
 
 impl Chambers {
-    /// Largest input umax of the drive, m² for a valve whose orifice area is known.
+    /// Largest input umax of the drive, m² for a valve with a known orifice area.
     pub fn full_command(&self) -> f64 {
         self.drive.full_command()
     }
@@ -120,7 +120,7 @@ impl Chambers {
         cap_pressure * self.cap_area - rod_pressure * self.rod_area
     }
 
-    /// Cap side volume V+ = V+min + (L/2 + s) A+ in m³, \[A\] Eq. 1. It is constant where the stroke is infinite.
+    /// Cap side volume V+ = V+min + (L/2 + s) A+ in m³, \[A\] Eq. 1. It is constant for an infinite stroke.
     pub fn cap_volume<T: Scalar>(&self, stroke: f64, displacement: T) -> T {
         if stroke.is_infinite() {
             return T::from(self.cap_dead_volume);
@@ -128,7 +128,7 @@ impl Chambers {
         (displacement + stroke / 2.0) * self.cap_area + self.cap_dead_volume
     }
 
-    /// Rod side volume V- = V-min + (L/2 - s) A- in m³, \[A\] Eq. 1. It is constant where the stroke is infinite.
+    /// Rod side volume V- = V-min + (L/2 - s) A- in m³, \[A\] Eq. 1. It is constant for an infinite stroke.
     pub fn rod_volume<T: Scalar>(&self, stroke: f64, displacement: T) -> T {
         if stroke.is_infinite() {
             return T::from(self.rod_dead_volume);

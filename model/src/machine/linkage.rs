@@ -1,8 +1,9 @@
-//! How a piston drives a joint.
+//! Kinematics between piston and joint.
 
 use crate::scalar::Scalar;
 
-/// Kinematics between piston displacement s (m from mid-stroke; shaft angle in rad for a motor) and joint coordinate q (rad, or m for a linear load).
+/// Kinematics between piston displacement s (m from mid-stroke; shaft angle in rad for a motor) and joint coordinate q (rad, or m
+/// for a linear load).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Linkage {
     /// Cylinder pinned across a joint, cosine law: `l² = la² + lb² - 2 la lb cos(theta)`, `l = lc + s`.
@@ -17,11 +18,11 @@ pub enum Linkage {
         /// `false`: theta = q (boom); `true`: theta = 2 pi - q (arm), so that extension lowers q.
         mirrored: bool,
     },
-    /// The piston carries the load itself: q = s, \[B\] Eq. 5.
+    /// The piston moves the load directly: q = s, \[B\] Eq. 5.
     Direct,
     /// A motor turns the joint through a gear: shaft angle s = n q.
     Gear {
-        /// Turns n of the shaft for one of the joint; below zero where they turn opposite ways.
+        /// Shaft turns n per turn of the joint; negative if they turn in opposite directions.
         ratio: f64,
     },
 }
@@ -30,7 +31,7 @@ impl Linkage {
     /// Piston displacement s(q) in m.
     pub fn displacement<T: Scalar>(&self, joint: T) -> T {
         match *self {
-            // The cosine is the same for q and 2 pi - q, so the mirrored arm needs no case of its own here.
+            // The cosine is the same for q and 2 pi - q, so the mirrored arm needs no special case here.
             Linkage::Triangle { foot_arm, rod_arm, mid_stroke_length, .. } => {
                 let squared = joint.cos() * (-2.0 * foot_arm * rod_arm) + (foot_arm * foot_arm + rod_arm * rod_arm);
                 squared.sqrt() - mid_stroke_length
@@ -53,7 +54,7 @@ impl Linkage {
         }
     }
 
-    /// Joint coordinate q(s); `NaN` where the triangle cannot close.
+    /// Joint coordinate q(s); `NaN` if the triangle cannot close.
     pub fn joint(&self, displacement: f64) -> f64 {
         match *self {
             Linkage::Triangle { foot_arm, rod_arm, mid_stroke_length, mirrored } => {

@@ -1,22 +1,22 @@
-//! How the joints move, and where gravity pulls.
+//! Kinematic chain of the joints, and the direction of gravity.
 
-/// The kinematic chain that the cylinders drive. Parameters to be identified (inertias, gravity moments) are not here
-/// but in the effects `inertia` and `gravity`.
+/// The kinematic chain that the cylinders drive. Parameters to be identified (inertias, gravity moments) are in the
+/// effects `inertia` and `gravity`, not here.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mechanism {
     /// One link turning about a joint whose base is held at a fixed angle; the link hangs straight down at
     /// `base_angle + q = 0` (\[A\] Eq. 4 with q1 = q1const).
     SingleLink {
-        /// Angle q1const at which everything before the joint is held, rad.
+        /// Fixed angle q1const of everything before the joint, rad.
         base_angle: f64,
     },
     /// Two links in a vertical plane, \[A\] Eq. 1.
     TwoLink,
     /// Any number of links in a vertical plane, each turning about a joint of the one before it.
     PlanarChain {
-        /// Distance from each joint to the next, m: one less than there are links.
+        /// Distance from each joint to the next, m: one fewer than the links.
         link_lengths: Vec<f64>,
-        /// What turns the plane of the links: its joint comes first.
+        /// The swing of the links' plane, if any: its joint comes first.
         swing: Option<Swing>,
     },
     /// A mass moving along the cylinder's own axis, \[B\] Eq. 5.
@@ -25,10 +25,10 @@ pub enum Mechanism {
     Rotor,
 }
 
-/// A vertical axis about which the house turns with all links.
+/// A vertical axis about which the upper structure swings with all links.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swing {
-    /// How far the first link's joint is in front of the axis, m.
+    /// Distance of the first link's joint in front of the axis, m.
     pub boom_foot: f64,
 }
 
@@ -37,9 +37,9 @@ pub struct Swing {
 pub struct Chain<'m> {
     /// Distance from each joint to the next, m.
     pub lengths: &'m [f64],
-    /// Number of the first link's joint: one where a swing comes before it.
+    /// Number of the first link's joint: one if a swing precedes it.
     pub first: usize,
-    /// What turns the plane of the links.
+    /// The swing of the links' plane, if any.
     pub swing: Option<Swing>,
 }
 
@@ -65,7 +65,7 @@ impl Mechanism {
         }
     }
 
-    /// The links, where they are a chain.
+    /// The links, if they form a chain.
     pub fn chain(&self) -> Option<Chain<'_>> {
         match self {
             Mechanism::PlanarChain { link_lengths, swing } => {
@@ -75,7 +75,7 @@ impl Mechanism {
         }
     }
 
-    /// Whether gravity has no hold on this joint, because its axis stands upright.
+    /// Whether gravity does not act on this joint, because its axis is vertical.
     pub fn is_upright(&self, joint: usize) -> bool {
         self.chain().is_some_and(|chain| chain.is_swing(joint))
     }

@@ -1,4 +1,4 @@
-//! The machine: geometry and known constants, nothing that has to be identified.
+//! The machine: geometry and known constants, but no parameters to be identified.
 
 mod cylinder;
 mod linkage;
@@ -17,17 +17,17 @@ pub use units::CommandUnit;
 /// A machine: a mechanism driven by one cylinder or motor per joint, fed by one supply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Machine {
-    /// Short name, as on the command line: `zx30u-arm`.
+    /// Short name for the command line: `zx30u-arm`.
     pub name: String,
-    /// What the machine is, for people.
+    /// Description for the user.
     pub description: String,
     /// Gravity acceleration g in m/s².
     pub gravity: f64,
-    /// How joints move.
+    /// Kinematics of the joints.
     pub mechanism: Mechanism,
     /// One cylinder or motor per joint, in the order of the joints.
     pub cylinders: Vec<Cylinder>,
-    /// Where the oil comes from.
+    /// Source of the oil.
     pub supply: Supply,
 }
 
@@ -37,12 +37,12 @@ impl Machine {
         self.cylinders.iter().position(|cylinder| cylinder.name == name)
     }
 
-    /// Whether the cylinders have chambers; a machine without is driven by a measured force.
+    /// Whether the cylinders have chambers; a machine without chambers is driven by a measured force.
     pub fn has_chambers(&self) -> bool {
         self.cylinders.iter().any(|cylinder| cylinder.chambers.is_some())
     }
 
-    /// Whether the rods are moved from outside, and the forces on them are the outputs.
+    /// Whether the rods' motions are imposed, so that the forces on the rods are the outputs.
     pub fn has_imposed_motion(&self) -> bool {
         self.cylinders.iter().any(|cylinder| cylinder.imposed_motion.is_some())
     }

@@ -1,30 +1,30 @@
-//! How large a machine is: what is large for one is nothing for another.
+//! Size of a machine, for scaling limits and tolerances.
 
 use super::{Drive, Machine, Supply};
 use crate::effects::Site;
 
-/// How large a part of a machine is beside the arm of a 3 t excavator (`zx30u-arm`), for which limits, starts, windows of time and
-/// tolerances are written down.
+/// Size of a part of a machine relative to the arm of a 3 t excavator (`zx30u-arm`), for which limits, starts, windows of time
+/// and tolerances are specified.
 ///
-/// Machines of every size work with the same pressures. Lengths, areas, openings and speeds then say how everything else grows. Each
-/// ratio is a power of two: machines of nearly one size are treated alike.
+/// Machines of every size work with the same pressures. Lengths, areas, openings and speeds determine how everything else scales.
+/// Each ratio is a power of two, so machines of nearly the same size are treated alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Size {
     /// Ratio of strokes.
     pub stroke: f64,
-    /// Ratio of piston areas; also that of forces.
+    /// Ratio of piston areas, which is also the ratio of forces.
     pub area: f64,
     /// Ratio of largest orifice areas, in whatever unit a model file gives them: mm², volts, or a share.
     pub opening: f64,
     /// Ratio of the speeds of pistons.
     pub speed: f64,
-    /// Ratio of the levers between piston and joint: that of strokes, but for a gear.
+    /// Ratio of the levers between piston and joint: equal to that of strokes, except for a gear.
     pub lever: f64,
-    /// Ratio of the speeds at which seals and gaps begin to slide: one but for a motor, whose shaft turns where a piston moves.
+    /// Ratio of the sliding speeds of seals and gaps: one, except for a motor, whose shaft rotates.
     pub sliding: f64,
 }
 
-/// Powers of the ratios of a [`Size`] with which a quantity grows.
+/// Exponents of the ratios of a [`Size`] with which a quantity scales.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Growth {
     stroke: i32,
@@ -36,19 +36,19 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// Pressures, pure numbers, and what belongs to a recording.
+    /// Pressures, pure numbers, and quantities of a recording.
     pub const NONE: Growth = Growth::of(0, 0, 0, 0);
-    /// Speeds at which seals begin to slide, m/s.
+    /// Speeds at which seals start to slide, m/s.
     pub const SEAL_SPEED: Growth = Growth { sliding: 1, ..Growth::NONE };
     /// Distances between joints and on links, m.
     pub const LEVER: Growth = Growth::of(0, 0, 0, 0).with_levers(1);
     /// Positions of pistons and lengths along a stroke, m.
     pub const LENGTH: Growth = Growth::of(1, 0, 0, 0);
-    /// Times in which a machine moves, s.
+    /// Times of a machine's motion, s.
     pub const TIME: Growth = Growth::of(1, 0, 0, -1);
     /// Volumes of oil, m³.
     pub const VOLUME: Growth = Growth::of(1, 1, 0, 0);
-    /// Orifice areas, m², or what commands them.
+    /// Orifice areas, m², or their commands.
     pub const OPENING: Growth = Growth::of(0, 0, 1, 0);
     /// Forces, N, and forces per pressure, m².
     pub const FORCE: Growth = Growth::of(0, 1, 0, 0);
@@ -85,10 +85,10 @@ impl Growth {
 }
 
 impl Size {
-    /// The size of the machine for which numbers are written down.
+    /// The size of the reference machine.
     pub const REFERENCE: Size = Size { stroke: 1.0, area: 1.0, opening: 1.0, speed: 1.0, lever: 1.0, sliding: 1.0 };
 
-    /// The factor by which a quantity is larger than at the reference.
+    /// The ratio of a quantity to its value on the reference machine.
     pub fn factor(&self, growth: Growth) -> f64 {
         self.stroke.powi(growth.stroke)
             * self.area.powi(growth.area)
@@ -98,13 +98,13 @@ impl Size {
             * self.sliding.powi(growth.sliding)
     }
 
-    /// The factor of times, a pure number.
+    /// The factor for times, a pure number.
     pub fn time(&self) -> f64 {
         self.factor(Growth::TIME)
     }
 }
 
-/// A ratio as the nearest power of two; one where it is none.
+/// The nearest power of two; one if the ratio has none.
 fn rounded(ratio: f64) -> f64 {
     if ratio.is_finite() && ratio > 0.0 { ratio.log2().round().exp2() } else { 1.0 }
 }
@@ -115,17 +115,17 @@ const REFERENCE_STROKE: f64 = 0.6;
 const REFERENCE_AREA: f64 = 3.8e-3;
 /// Largest orifice area of its valve section, m².
 const REFERENCE_OPENING: f64 = 1.15e-4;
-/// Speed at which all of its pump's flow drives it, m/s, \[A\] Table 1.
+/// Speed at the full flow of its pump, m/s, \[A\] Table 1.
 const REFERENCE_SPEED: f64 = 0.1;
 /// Lever of the arm's cylinder, m: about the distance of the rod's pin from the joint, \[A\] Table 1.
 const REFERENCE_LEVER: f64 = 0.33;
-/// Speed of a motor's shaft where no pump flow says better, rad/s: 500 revolutions per minute.
+/// Speed of a motor's shaft if no pump flow determines it, rad/s: 500 revolutions per minute.
 const MOTOR_SPEED: f64 = 50.0;
 /// Distance of a motor's gaps from its axis, m: a few centimetres on motors of all sizes.
 const MOTOR_RADIUS: f64 = 0.03;
 
 impl Machine {
-    /// Size of the whole machine: that of its cylinder with the longest stroke, or of its first motor where it has no cylinder.
+    /// Size of the whole machine: that of its cylinder with the longest stroke, or of its first motor if it has no cylinder.
     pub fn size(&self) -> Size {
         let stroke = |cylinder: &usize| self.cylinders[*cylinder].stroke;
         let cylinders = (0..self.cylinders.len()).filter(|&cylinder| !self.cylinders[cylinder].is_motor());
@@ -141,9 +141,9 @@ impl Machine {
         }
     }
 
-    /// Speeds are those that the pump can drive, else those of the reference. A motion that is imposed takes the time of the
-    /// reference: no drive of the machine's own sets it. A drive whose force is measured shows no area: its forces are taken for those
-    /// of the reference.
+    /// Speeds are those at the pump's flow, otherwise those of the reference. An imposed motion has the time scale of the
+    /// reference, because no drive of the machine sets it. A drive with a measured force has no known area, so its forces are
+    /// those of the reference.
     fn cylinder_size(&self, index: usize) -> Size {
         let Some(cylinder) = self.cylinders.get(index) else { return Size::REFERENCE };
         let stroke = rounded(cylinder.stroke / REFERENCE_STROKE);
@@ -175,7 +175,7 @@ impl Machine {
         if !cylinder.is_motor() {
             return size;
         }
-        // A motor has no stroke: it turns in the time of the reference as far as it does at its usual speed.
+        // A motor has no stroke: its travel is the angle at its usual speed in the reference's time.
         let lever = rounded(cylinder.linkage.lever(0.0_f64).abs() / REFERENCE_LEVER);
         Size { stroke: speed, lever, sliding: rounded(1.0 / MOTOR_RADIUS), ..size }
     }

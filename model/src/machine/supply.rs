@@ -1,18 +1,18 @@
-//! Where the oil comes from.
+//! The oil supply.
 
 /// The hydraulic supply of the valve sections.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Supply {
     /// A pump feeding a line whose pressure is a state of the model, \[A\] Eq. 2.
     PumpLine(PumpLine),
-    /// The supply pressure is set from outside, whatever flows: closed-centre systems, \[B\].
+    /// The supply pressure is given from outside, at any flow: closed-centre systems, \[B\].
     PressureSource(PressureSource),
-    /// No oil at all: the force on the load is measured.
+    /// No oil: the force on the load is measured.
     None,
 }
 
 impl Supply {
-    /// Tank pressure where the recording does not measure it, Pa (gauge); zero without oil.
+    /// Tank pressure if the recording does not measure it, Pa (gauge); zero without oil.
     pub fn tank_pressure(&self) -> f64 {
         match self {
             Supply::PumpLine(line) => line.tank_pressure,
@@ -21,7 +21,7 @@ impl Supply {
         }
     }
 
-    /// Pump flow where the recording does not measure it, m³/s; zero where the supply's pressure is set from outside.
+    /// Pump flow if the recording does not measure it, m³/s; zero if the supply pressure is given from outside.
     pub fn pump_flow(&self) -> f64 {
         match self {
             Supply::PumpLine(line) => line.flow,
@@ -30,12 +30,12 @@ impl Supply {
     }
 }
 
-/// Known constants of a supply whose pressure is kept from outside.
+/// Known constants of a supply with externally controlled pressure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PressureSource {
-    /// Supply pressure Pp where the recording does not measure it, Pa (gauge).
+    /// Supply pressure Pp if the recording does not measure it, Pa (gauge).
     pub pressure: f64,
-    /// Tank pressure Pt where the recording does not measure it, Pa (gauge).
+    /// Tank pressure Pt if the recording does not measure it, Pa (gauge).
     pub tank_pressure: f64,
 }
 
@@ -44,8 +44,8 @@ pub struct PressureSource {
 pub struct PumpLine {
     /// Volume Vp of the line, m³.
     pub volume: f64,
-    /// Pump flow Qp where the recording does not measure it, m³/s.
+    /// Pump flow Qp if the recording does not measure it, m³/s.
     pub flow: f64,
-    /// Tank pressure pt where the recording does not measure it, Pa (gauge).
+    /// Tank pressure pt if the recording does not measure it, Pa (gauge).
     pub tank_pressure: f64,
 }

@@ -1,4 +1,5 @@
-//! Units that depend on the machine: a motor turns where a cylinder moves, and a valve's input is not always an area.
+//! Units that depend on the machine: a motor rotates where a cylinder translates, and a valve's input is not always
+//! an area.
 
 use std::borrow::Cow;
 
@@ -31,7 +32,7 @@ impl CommandUnit {
         }
     }
 
-    /// Factor and symbol of the unit that people read it in.
+    /// Factor and symbol of the display unit.
     pub fn for_people(self) -> (f64, &'static str) {
         match self {
             CommandUnit::SquareMetre => (1e6, "mm2"),
@@ -42,7 +43,7 @@ impl CommandUnit {
         }
     }
 
-    /// Unit of a flow per root of a pressure drop and input.
+    /// Unit of a flow per square root of pressure drop and per input.
     fn flow_gain(self) -> &'static str {
         match self {
             CommandUnit::SquareMetre => "m/(s sqrt(Pa))",
@@ -55,7 +56,8 @@ impl CommandUnit {
 }
 
 impl Cylinder {
-    /// Unit of a parameter of this cylinder that has `unit` at a cylinder whose valve is given by its orifice area.
+    /// Unit of a parameter at this cylinder, where `unit` is that for a cylinder whose valve is given by its orifice
+    /// area.
     pub fn unit_of(&self, unit: &str, growth: Growth) -> Cow<'static, str> {
         let command = self.chambers.map(|chambers| chambers.drive.command_unit());
         let is_motor = self.is_motor();

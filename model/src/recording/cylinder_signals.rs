@@ -24,7 +24,7 @@ pub struct CylinderSignals {
 }
 
 impl CylinderSignals {
-    /// Signals of a cylinder of which nothing was measured.
+    /// Signals of a cylinder without any measurement.
     pub fn unmeasured(name: &str, samples: usize) -> Self {
         let nothing = vec![f64::NAN; samples];
         CylinderSignals {
@@ -40,7 +40,7 @@ impl CylinderSignals {
         }
     }
 
-    /// The signals with what `pick` makes of each.
+    /// Applies `pick` to every signal.
     pub(super) fn with_columns(&self, pick: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         CylinderSignals {
             name: self.name.clone(),

@@ -1,22 +1,22 @@
-//! What can be wrong with a recording.
+//! Errors in a recording.
 
 use thiserror::Error;
 
-/// A recording that breaks its own promises or lacks what was asked of it.
+/// An inconsistent recording, or one that lacks a requested cylinder.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// A signal has another number of values than the clock has samples.
+    /// The number of values of a signal differs from the number of samples of the clock.
     #[error("signal {signal} has {found} values, but the clock has {expected} samples")]
     LengthMismatch {
         /// Contract name of the signal.
         signal: String,
-        /// Values that it has.
+        /// Number of values.
         found: usize,
-        /// Samples of the clock.
+        /// Number of samples of the clock.
         expected: usize,
     },
-    /// Time stands still, jumps back, or is not a number.
+    /// Time does not increase, or is not a number.
     #[error("the clock does not increase at sample {index}: {previous} s, then {next} s")]
     ClockNotIncreasing {
         /// Index of the offending sample.
@@ -26,14 +26,14 @@ pub enum RecordingError {
         /// Its time in s.
         next: f64,
     },
-    /// No cylinder of that name.
+    /// There is no cylinder with that name.
     #[error("{source_name} has no cylinder \"{wanted}\"; it has {}", quoted_list(found))]
     UnknownCylinder {
         /// The recording's source.
         source_name: String,
-        /// The name asked for.
+        /// The requested name.
         wanted: String,
-        /// The names that exist.
+        /// The existing names.
         found: Vec<String>,
     },
 }

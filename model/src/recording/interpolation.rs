@@ -1,7 +1,7 @@
 //! Values between samples.
 
-/// Linear interpolation of `values` over the strictly increasing `time` at `at` (same unit as `time`), held constant
-/// outside. `NaN` values are not interpolated over: the result is `NaN` when a neighbour is. Empty input gives `NaN`.
+/// Linear interpolation of `values` over the strictly increasing `time` at `at` (same unit as `time`), constant outside.
+/// It does not bridge `NaN` values: the result is `NaN` if a neighbour is. Empty input gives `NaN`.
 pub fn linear(time: &[f64], values: &[f64], at: f64) -> f64 {
     let Some(last) = time.len().checked_sub(1) else {
         return f64::NAN;
@@ -21,8 +21,8 @@ pub fn linear(time: &[f64], values: &[f64], at: f64) -> f64 {
     values[before] + fraction * (values[after] - values[before])
 }
 
-/// Cubic through the four samples around `at` (Lagrange), on an even or uneven clock. A straight line where only the two
-/// nearest are measured; `NaN` where one of these is not, and outside the samples.
+/// Cubic through the four samples around `at` (Lagrange), on an even or uneven clock. A straight line if only the two
+/// nearest are measured; `NaN` if one of these is not, and outside the samples.
 pub fn cubic(time: &[f64], values: &[f64], at: f64) -> f64 {
     let (Some(&first), Some(&last)) = (time.first(), time.last()) else {
         return f64::NAN;

@@ -1,4 +1,4 @@
-//! Signals on one clock. A measured bag and a simulation are the same type.
+//! Signals on one clock. Measured bags and simulations use the same type.
 
 mod cylinder_signals;
 mod denoise;
@@ -29,9 +29,9 @@ pub use standard_deviation::standard_deviation;
 /// oil temperature is in °C.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Recording {
-    /// Where the signals come from, for people: a bag's path or a simulated model's name.
+    /// Source of the signals, for the user: a bag's path or a simulated model's name.
     pub source: String,
-    /// Stamp of the first sample in nanoseconds since the Unix epoch.
+    /// Timestamp of the first sample in nanoseconds since the Unix epoch.
     pub start_nanoseconds: i64,
     /// Sample times in s after the first sample, strictly increasing; the first entry is 0.
     pub time: Vec<f64>,
@@ -81,13 +81,13 @@ impl Recording {
         self.at(&(0..self.len()).step_by(stride.max(1)).collect::<Vec<usize>>())
     }
 
-    /// The samples with these numbers, which are in order and below the recording's length.
+    /// The samples with these indices, which are in ascending order and below the recording's length.
     #[must_use]
     pub fn at(&self, samples: &[usize]) -> Self {
         self.with_columns(|column| samples.iter().map(|&sample| column[sample]).collect())
     }
 
-    /// The recording with what `pick` makes of each column. A clone that is cut afterwards would keep the memory of the whole.
+    /// Applies `pick` to each column. A clone that is cut afterwards would keep the memory of the whole recording.
     fn with_columns(&self, pick: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         Recording {
             source: self.source.clone(),
@@ -101,7 +101,7 @@ impl Recording {
         }
     }
 
-    /// The recording at other times, s on its own clock: straight lines between samples, `NaN` outside.
+    /// The recording at other times, s on its own clock: linear interpolation between samples, `NaN` outside.
     #[must_use]
     pub fn interpolated(&self, times: &[f64]) -> Self {
         let range = self.time.first().copied().unwrap_or(0.0)..=self.time.last().copied().unwrap_or(0.0);
@@ -124,7 +124,7 @@ impl Recording {
         part
     }
 
-    /// The clock and every signal, to change all of them sample by sample in the same way.
+    /// The clock and every signal, for the same change to all of them sample by sample.
     pub fn columns_mut(&mut self) -> Vec<&mut Vec<f64>> {
         let own = [
             &mut self.time,
@@ -154,8 +154,8 @@ impl Recording {
         }
     }
 
-    /// Median time between samples in s; `NaN` for fewer than two samples. The median, not the mean, because lost
-    /// messages leave gaps that say nothing about the rate of the clock.
+    /// Median time between samples in s; `NaN` for fewer than two samples. The median, not the mean, because gaps from lost
+    /// messages must not affect it.
     pub fn sample_interval(&self) -> f64 {
         median_interval(&self.time)
     }
@@ -163,7 +163,7 @@ impl Recording {
     /// The signals of the cylinder with this name.
     ///
     /// # Errors
-    /// [`RecordingError::UnknownCylinder`] with the names that the recording has.
+    /// [`RecordingError::UnknownCylinder`] with the existing names.
     pub fn cylinder(&self, name: &str) -> Result<&CylinderSignals, RecordingError> {
         self.cylinders.iter().find(|cylinder| cylinder.name == name).ok_or_else(|| RecordingError::UnknownCylinder {
             source_name: self.source.clone(),
@@ -172,7 +172,7 @@ impl Recording {
         })
     }
 
-    /// Checks the invariants that the fields promise: equal lengths and a strictly increasing, finite clock.
+    /// Checks the invariants of the fields: equal lengths and a strictly increasing, finite clock.
     ///
     /// # Errors
     /// [`RecordingError::LengthMismatch`] or [`RecordingError::ClockNotIncreasing`].
@@ -210,7 +210,7 @@ impl Recording {
         signals
     }
 
-    /// The signal with this contract name, `None` when there is no such name.
+    /// The signal with this contract name, `None` if there is no such name.
     pub fn signal(&self, name: &str) -> Option<&[f64]> {
         self.signals().into_iter().find(|(candidate, _)| candidate == name).map(|(_, values)| values)
     }

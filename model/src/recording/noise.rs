@@ -1,15 +1,17 @@
-//! Whether a signal was measured or is what somebody has asked for.
+//! Distinguishes measured signals from commands, by their noise.
 
-/// Share of the samples at which a measured value differs from the one before. A command stands still between two words of its sender.
+/// Fraction of the samples at which a measured value differs from the previous one. A command is constant between two messages of
+/// its sender.
 const OFTEN_NEW: f64 = 0.1;
 
-/// Share of these at which it turns round: noise does at two of three, with a coarse converter at one of three, a ramp at none.
+/// Fraction of these at which it changes direction: two of three for noise, one of three with a coarse converter, none for a
+/// ramp.
 const OFTEN_TURNS: f64 = 0.2;
 
-/// Fewer changes than this say nothing.
+/// Fewest changes for a decision.
 const FEWEST_CHANGES: usize = 20;
 
-/// Whether a signal has the noise of a measurement, so that it is no command as it was given.
+/// Whether a signal has measurement noise and so is not a command as sent.
 pub fn has_noise(values: &[f64]) -> bool {
     let steps = || values.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| step.is_finite());
     let changes: Vec<f64> = steps().filter(|step| *step != 0.0).collect();
@@ -32,7 +34,7 @@ mod tests {
         for command in [&sine, &steps, &slow] {
             assert!(!has_noise(command));
         }
-        // A noise of half a step of the converter.
+        // Noise of half a step of the converter.
         let mut seed = 1_u64;
         let mut random = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);

@@ -1,20 +1,21 @@
-//! Where a recording is cut: a clock that was set forward, or a recorder that paused.
+//! Splits a recording where the clock was set forward or the recorder paused.
 
 use std::borrow::Cow;
 use std::ops::Range;
 
 use super::Recording;
 
-/// Sample intervals without a sample after which what follows is another piece.
+/// Sample intervals without a sample after which a new piece begins.
 const INTERVALS: f64 = 1000.0;
-/// The same in s. Within two seconds an arm comes to rest by itself; beyond, nothing before says where it is.
+/// The same in s. Within two seconds an arm comes to rest by itself; after that, its earlier states do not determine its
+/// position.
 const LEAST: f64 = 2.0;
 
 impl Recording {
     /// The samples of each piece, in order: pieces are more than 1000 sample intervals, and more than 2 s, apart.
     ///
-    /// A clock that is set forward by a year leaves a gap of a year between two samples. Nothing is known of that time, so no
-    /// method may go through it.
+    /// A clock that is set forward by a year leaves a gap of a year between two samples. Nothing is known about that time, so
+    /// no method may bridge it.
     pub fn pieces(&self) -> Vec<Range<usize>> {
         let longest = longest_gap(self.sample_interval());
         let mut pieces = Vec::new();
@@ -28,7 +29,7 @@ impl Recording {
         pieces
     }
 
-    /// Time of all pieces together, s: a clock that is set forward adds nothing.
+    /// Total time of all pieces, s: a clock that is set forward adds nothing.
     pub fn recorded_time(&self) -> f64 {
         self.pieces().iter().map(|piece| self.time[piece.end - 1] - self.time[piece.start]).sum()
     }
@@ -49,7 +50,7 @@ pub fn longest_gap(interval: f64) -> f64 {
     if interval.is_finite() { LEAST.max(INTERVALS * interval) } else { LEAST }
 }
 
-/// A clock on which no gap is longer than [`longest_gap`] for this interval: what comes later is moved forward. For methods
+/// A clock on which no gap is longer than [`longest_gap`] for this interval: later samples are moved forward. For methods
 /// whose work grows with the length of a recording.
 pub fn closed_gaps(time: &[f64], interval: f64) -> Cow<'_, [f64]> {
     let longest = longest_gap(interval);

@@ -1,27 +1,27 @@
-//! How finely a signal is resolved.
+//! Resolution of a signal.
 
-/// Share of samples that repeat the one before, from which on a signal may be coarser than its noise. A converter whose step
-/// is a fifth of the noise repeats one in twenty, one whose step is the noise one in four.
+/// Fraction of samples that repeat the previous one, from which on the resolution may be coarser than the noise. A converter
+/// with a step of a fifth of the noise repeats one sample in twenty, one with a step equal to the noise one in four.
 const LEAST_REPEATS: f64 = 0.2;
 
-/// Values that differ by less than this part of the largest one are the same, but for rounding on their way here.
+/// Values that differ by less than this fraction of the largest one count as equal, because of rounding on their way here.
 const ROUNDING: f64 = 1e-9;
 
-/// Fewer values than this are levels of something that is switched, not steps of a converter.
+/// With fewer values than this, a signal is switched, not quantised by a converter.
 const FEWEST_VALUES: usize = 20;
 
-/// Share of a converter's step by which the distance of two values may miss a multiple of it.
+/// Tolerance of the distances between values from multiples of a converter's step, as a fraction of the step.
 const UNEVEN: f64 = 0.02;
 
-/// Share of all distances that have to be multiples.
+/// Fraction of all distances that must be multiples.
 const MOST_SPACINGS: f64 = 0.9;
 
-/// Share of changes that have to be followed by another one than themselves. A signal that a program makes runs up its ramps
-/// in equal steps; a converter's come now and then.
+/// Fraction of changes that must be followed by a different change. A signal made by a program has ramps of equal steps; the
+/// steps of a converter are irregular.
 const IRREGULAR: f64 = 0.5;
 
-/// Step of the converter that a signal went through, in its unit, where that is what limits it; zero where noise is larger
-/// than a few steps, which hides them, and for signals without any.
+/// Step of the converter that quantised a signal, in the signal's unit, if it limits the resolution. Zero if the noise
+/// exceeds a few steps, which hides them, and for signals without steps.
 pub fn resolution(signal: &[f64]) -> f64 {
     let repeats = signal.windows(2).filter(|pair| pair[0] == pair[1]).count();
     if (repeats as f64) < LEAST_REPEATS * signal.len() as f64 {

@@ -1,4 +1,4 @@
-//! One instant of a machine at work: what a recording has in one row, before there is a recording.
+//! One instant of a working machine: one row of a recording, before the recording exists.
 
 /// State of a machine at one instant, measured or simulated; `NaN` = not measured. Units are those of a [`super::Recording`].
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +35,7 @@ pub struct CylinderSample {
 }
 
 impl CylinderSample {
-    /// A cylinder of which nothing is measured.
+    /// A cylinder without any measurement.
     pub fn unmeasured() -> Self {
         CylinderSample {
             joint_angle: f64::NAN,

@@ -1,7 +1,7 @@
-//! The rate of a signal that is only sampled.
+//! The rate of a sampled signal.
 
-/// The slope of the straight line through the samples around each sample, per s: those within `half_width` s, and at least so
-/// many to each side. Samples that are not measured are passed over; `NaN` where fewer than two are left.
+/// The slope of the straight line through the samples around each sample, per s: those within `half_width` s, and at least
+/// `fewest` on each side. Samples that are not measured are skipped; `NaN` if fewer than two are left.
 pub fn slopes(time: &[f64], values: &[f64], (half_width, fewest): (f64, usize)) -> Vec<f64> {
     let slope = |sample: usize| {
         let first = time.partition_point(|&t| t < time[sample] - half_width).min(sample.saturating_sub(fewest));

@@ -1,6 +1,6 @@
-//! How far a signal spreads.
+//! Standard deviation of a signal.
 
-/// Standard deviation of the finite values of a signal; 0 when there are none.
+/// Standard deviation of the finite values of a signal; 0 if there are none.
 pub fn standard_deviation(signal: &[f64]) -> f64 {
     let finite = || signal.iter().filter(|value| value.is_finite());
     let count = finite().count() as f64;

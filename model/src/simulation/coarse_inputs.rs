@@ -1,11 +1,11 @@
-//! An input on a coarser clock.
+//! Resamples an input to a coarser clock.
 
-/// Values at the samples `kept`, in order, whose straight lines come nearest to `values` (least squares over all samples).
+/// Values at the samples `kept`, in order, whose straight lines are nearest to `values` (least squares over all samples).
 ///
-/// Taking the kept values themselves would cut each corner to the same side: a valve that closes between two kept
-/// samples would seem open for too long, and the oil that passes meanwhile is a pressure error that lasts. The nearest
-/// lines pass the same oil. They are kept within what the input really was around each time, so that no valve that was
-/// closed opens to the other side; that costs half of what was won at a corner.
+/// Using the kept values themselves would cut each corner to the same side. A valve that closes between two kept samples
+/// would seem open for too long, and the extra oil is a lasting pressure error. The nearest lines pass the same oil. They
+/// are limited to the range of the input around each time, so that no closed valve opens to the other side. That limit
+/// loses half of the gain at a corner.
 pub(super) fn nearest_lines(time: &[f64], values: &[f64], kept: &[usize]) -> Vec<f64> {
     if kept.len() == values.len() {
         return values.to_vec();
@@ -30,7 +30,7 @@ pub(super) fn bend(time: &[f64], values: &[f64]) -> f64 {
     time.iter().zip(values).map(distance).fold(0.0, f64::max)
 }
 
-/// The nearest lines, wherever they lead.
+/// The nearest lines, without limits.
 fn projected(time: &[f64], values: &[f64], kept: &[usize]) -> Vec<f64> {
     let nodes = kept.len();
     if nodes < 2 {
@@ -41,7 +41,7 @@ fn projected(time: &[f64], values: &[f64], kept: &[usize]) -> Vec<f64> {
         let (first, last) = (ends[0], ends[1]);
         let length = time[last] - time[first];
         for sample in first..=last {
-            // The ends belong to two pieces, half to each.
+            // The end samples belong to two pieces, half to each.
             let weight = if sample == first || sample == last { 0.5 } else { 1.0 };
             let to_next = if length > 0.0 { (time[sample] - time[first]) / length } else { 0.0 };
             let to_this = 1.0 - to_next;
@@ -56,7 +56,7 @@ fn projected(time: &[f64], values: &[f64], kept: &[usize]) -> Vec<f64> {
     right
 }
 
-/// Mean from each kept sample to the next: for an input that is held, what passes meanwhile stays the same.
+/// Mean from each kept sample to the next: for a held input, the oil volume in between stays the same.
 pub(super) fn interval_means(values: &[f64], kept: &[usize]) -> Vec<f64> {
     let ends = kept.iter().skip(1).copied().chain([values.len()]);
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;

@@ -1,7 +1,7 @@
-//! Linear equations of the order of a model's states, solved in memory that is reused.
+//! Solves linear systems of the order of a model's states, in reused memory.
 //!
-//! Written here and not left to `nalgebra`, whose matrices of run-time size allocate at each factorisation and go
-//! through general kernels: for five to a dozen states those cost several times the arithmetic itself.
+//! A custom solver instead of `nalgebra`, whose matrices of run-time size allocate at each factorisation and use
+//! general kernels: for five to a dozen states those cost several times the arithmetic itself.
 
 /// LU factors, with row exchanges, of a small square matrix.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ impl Factors {
     }
 
     /// Sets the matrix to `diagonal I - weight J` and factorises it; `jacobian` is column-major, as `nalgebra` stores
-    /// it. A singular matrix gives solutions that are not finite, which whoever controls the step refuses.
+    /// it. A singular matrix gives solutions that are not finite, which the step control rejects.
     pub fn factorise(&mut self, diagonal: f64, weight: f64, jacobian: &[f64]) {
         let order = self.order;
         for (column, values) in jacobian.chunks_exact(order).enumerate() {
@@ -81,7 +81,7 @@ impl Factors {
         }
     }
 
-    /// Replaces right-hand sides that stand side by side, row-major with `columns` columns, by their solutions.
+    /// Replaces several right-hand sides, row-major with `columns` columns, by their solutions.
     pub fn solve_side_by_side(&self, right: &mut [f64], columns: usize) {
         let order = self.order;
         for (index, &other) in self.exchanges.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! A motion that is imposed on a cylinder, from its measured displacement.
+//! Computes the imposed motion of a cylinder from its measured displacement.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -7,11 +7,11 @@ use crate::equations::ImposedState;
 use crate::machine::Cylinder;
 use crate::recording::{CylinderSignals, is_measured};
 
-/// Half width of the parabolas whose slope and bend are rate and acceleration, in samples and in s, whichever is longer.
+/// Half width of the parabolas for rate and acceleration, in samples and in s, whichever is longer.
 const HALF_WIDTH: (f64, f64) = (5.0, 0.02);
 
-/// Joint coordinate with its rate and acceleration, and both pressures, at each sample; a side whose pressure is not
-/// measured is open to the air. `None` when neither displacement nor joint angle is measured.
+/// Joint coordinate with its rate and acceleration, and both pressures, at each sample. A side without a measured
+/// pressure counts as open to the air. `None` if neither displacement nor joint angle is measured.
 pub(super) fn imposed_signals(
     cylinder: &Cylinder,
     signals: &CylinderSignals,
@@ -41,7 +41,7 @@ fn parabolas(time: &[f64], signal: &[f64]) -> [Vec<f64>; 3] {
     for (index, &centre) in time.iter().enumerate() {
         let first = time.partition_point(|&t| t < centre - half_width);
         let last = time.partition_point(|&t| t <= centre + half_width);
-        // A sample alone in a pause of the clock stands still.
+        // A single sample in a pause of the clock has zero rate.
         let [value, slope, bend] =
             parabola(&time[first..last], &signal[first..last], centre, half_width).unwrap_or([signal[index], 0.0, 0.0]);
         all[0].push(value);

@@ -1,14 +1,14 @@
-//! The state at which a simulation starts, from what was measured there.
+//! Determines the initial state of a simulation from measurements.
 
 use crate::equations::{Channel, Distortion, Inputs, Layout, System};
 use crate::recording::Recording;
 use crate::{Model, SignalError};
 
-/// Time over which measurements are averaged for a start, s: long enough to average noise of a 500 Hz recording over
-/// ten samples, short against the dynamics of an arm.
+/// Averaging time for the initial state, s: long enough to average the noise of a 500 Hz recording over ten samples, short
+/// compared with the dynamics of an arm.
 const WINDOW: f64 = 0.02;
 
-/// The first sample from `from` on at which a measurement says where every piston is.
+/// The first sample from `from` on at which the measurements determine the position of every piston.
 pub fn first_known_position(model: &Model, recording: &Recording, from: usize) -> Option<usize> {
     let signals: Vec<_> =
         model.machine.cylinders.iter().filter_map(|cylinder| recording.cylinder(&cylinder.name).ok()).collect();
@@ -17,13 +17,14 @@ pub fn first_known_position(model: &Model, recording: &Recording, from: usize) -
     })
 }
 
-/// State of `model` at sample `index` of a recording. Positions and pressures come from straight lines through the
-/// samples within 0.02 s after it (on a machine of the reference size), velocity is the slope of the displacement's line (\[A\] Section 4.1: "estimated by just
-/// first order differentiation") unless it is measured. Pressures that nobody measures start where forces balance. `spool`
-/// gives the valve openings at the sample, m². What the model's sensor effects add to measurements is taken away.
+/// State of `model` at sample `index` of a recording. Positions and pressures come from straight lines through the samples within
+/// 0.02 s after it (on a machine of the reference size). The velocity is the slope of the displacement's line (\[A\] Section 4.1:
+/// "estimated by just first order differentiation") unless it is measured. Unmeasured pressures start where forces balance.
+/// `spool` has the valve openings at the sample, m². The distortions of the model's sensor effects are removed from the
+/// measurements.
 ///
 /// # Errors
-/// [`SignalError::NoInitialState`] when displacement and joint angle of a cylinder are both missing there or impossible.
+/// [`SignalError::NoInitialState`] if displacement and joint angle of a cylinder are both missing there or impossible.
 pub fn initial_state(
     system: &System<'_>,
     recording: &Recording,
@@ -93,8 +94,8 @@ pub fn initial_state(
     Ok(state)
 }
 
-/// Sets pressures that nobody measures so that the forces on the piston balance, as far as pressures above tank can: where
-/// both sides of a cylinder are unmeasured, the one that has to push has more than tank pressure.
+/// Sets unmeasured pressures so that the forces on the piston balance, as far as pressures above tank allow. If both sides of a
+/// cylinder are unmeasured, the side that carries the load is above tank pressure.
 fn balance(system: &System<'_>, spool: &[f64], tank_pressure: f64, unmeasured: &[[bool; 2]], state: &mut [f64]) {
     let (model, layout) = (system.model(), system.layout());
     let mut inputs = Inputs::<f64>::zero(layout.joints);
@@ -120,11 +121,11 @@ fn balance(system: &System<'_>, spool: &[f64], tank_pressure: f64, unmeasured: &
     }
 }
 
-/// Value and slope of a signal that is `delay` s late, at sample `index`: of the straight line through the values that
-/// were reported within `window` s after the delay.
+/// Value and slope of a signal with a delay of `delay` s, at sample `index`: from the straight line through the values reported
+/// within `window` s after the delay.
 fn start_line(time: &[f64], signal: &[f64], index: usize, delay: f64, window: f64) -> Option<(f64, f64)> {
     let start = *time.get(index)? + delay;
-    // A clock's last digit must not cost the first point.
+    // Rounding of the clock must not exclude the first point.
     let first = time.partition_point(|&t| t < start - 1e-9);
     let points: Vec<(f64, f64)> = time[first..]
         .iter()

@@ -1,29 +1,29 @@
-//! Moments of a recording in which nobody knows what was commanded.
+//! Finds intervals of a recording in which an input is unknown.
 
 use crate::Model;
 use crate::machine::Supply;
 use crate::recording::{CylinderSignals, Recording};
 
-/// Sample intervals over which an input may be bridged by a straight line: a cell or message that was lost, not a manoeuvre.
+/// Most sample intervals of an input that a straight line may bridge: a lost cell or message, not a manoeuvre.
 const BRIDGED: usize = 10;
 
-/// Moments in which an input of a model is missing for longer than a line may bridge.
+/// Intervals in which an input of a model is missing for longer than a line may bridge.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 #[must_use]
 pub struct InputHoles {
-    /// Samples at which every input is known, or can be bridged.
+    /// Samples at which every input is known or can be bridged.
     pub known: Vec<usize>,
     /// Number of holes.
     pub count: usize,
-    /// The longest of them, s.
+    /// Longest hole, s.
     pub longest: f64,
-    /// All of them, s.
+    /// Total duration of the holes, s.
     pub total: f64,
 }
 
-/// The holes in the inputs of `model` within a recording. An input that is not measured at all is no hole; nor is what is missing before
-/// the first value or after the last one.
+/// The holes in the inputs of `model` within a recording. An input that is not measured at all is not a hole, and neither are
+/// missing values before the first value or after the last one.
 pub fn input_holes(model: &Model, recording: &Recording) -> InputHoles {
     let mut hidden = vec![false; recording.len()];
     for cylinder in &model.machine.cylinders {
@@ -63,7 +63,7 @@ fn valve_input(signals: &CylinderSignals) -> &[f64] {
     }
 }
 
-/// Marks the runs without a value that are longer than [`BRIDGED`], between the first value and the last.
+/// Marks the intervals without a value that are longer than [`BRIDGED`], between the first value and the last.
 fn mark_holes(input: &[f64], hidden: &mut [bool]) {
     let mut last_known: Option<usize> = None;
     for (sample, value) in input.iter().enumerate() {

@@ -9,7 +9,7 @@ use crate::machine::{Growth, Size, Supply};
 use crate::recording::{CylinderSignals, Recording, is_measured, standard_deviation};
 use crate::{Model, SignalError};
 
-/// How an input runs between its samples.
+/// Interpolation of an input between its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Interpolation {
     /// Straight lines: right for a measured quantity.
@@ -18,43 +18,43 @@ pub enum Interpolation {
     Hold,
 }
 
-/// Distance from a straight line that does not matter, m²: a two-hundredth of the noise of a good spool sensor.
+/// Negligible deviation from a straight line, m²: a two-hundredth of the noise of a good spool sensor.
 const STRAIGHT_AREA: f64 = 1e-9;
-/// The same for the rate of an opening, m²/s: what changes it by [`STRAIGHT_AREA`] in a millisecond of lead.
+/// The same for the rate of an opening, m²/s: it changes the opening by [`STRAIGHT_AREA`] in a millisecond of lead.
 const STRAIGHT_RATE: f64 = 1e-6;
 /// The same for rod forces, N: a three-hundredth of a load cell's noise.
 const STRAIGHT_FORCE: f64 = 0.03;
 /// The same for tank and supply pressure, Pa: a tenth of the noise of a good sensor.
 const STRAIGHT_PRESSURE: f64 = 200.0;
-/// The same for the pump's flow, m³/s: a few millionths of a small excavator's.
+/// The same for the pump's flow, m³/s: a few millionths of the flow of a small excavator.
 const STRAIGHT_FLOW: f64 = 2e-9;
 
-/// Share of an opening's spread that a line may miss. Where two valves leave little of a pump's way to the tank a thousandth of an
-/// opening is a hundredth of a pressure.
+/// Permitted deviation of a line, as a fraction of an opening's spread. If two valves nearly close the pump's path to the tank, a
+/// thousandth of an opening is a hundredth of a pressure.
 const MOST_MISSED: f64 = 5e-4;
-/// The same for a held opening, whose mean passes the same oil: jumps only.
+/// The same for a held opening, whose mean passes the same oil: only jumps exceed it.
 const MOST_MISSED_HELD: f64 = 0.1;
 
-/// Inputs of a model on the clock of a recording, without holes: gaps of single signals are bridged by straight lines.
+/// Inputs of a model on the clock of a recording, without holes: straight lines bridge gaps of single signals.
 #[derive(Debug, Clone)]
 pub struct InputSignals {
     /// Sample times, s.
     pub time: Vec<f64>,
     orifice_area: Vec<(Interpolation, Vec<f64>)>,
-    /// Rate of the opening between each sample and the next, m²/s, where an effect looks at it.
+    /// Rate of the opening between each sample and the next, m²/s, if an effect reads it.
     orifice_rate: Vec<Option<Vec<f64>>>,
     rod_force: Vec<Vec<f64>>,
     imposed: Vec<Option<ImposedState<Vec<f64>>>>,
     supply_pressure: Vec<f64>,
     tank_pressure: Vec<f64>,
     pump_flow: Vec<f64>,
-    /// Of the machine: what is straight for one is bent for a smaller one.
+    /// Size of the machine: a small deviation on one machine is large on a smaller one.
     size: Size,
 }
 
 impl InputSignals {
-    /// The inputs that `model` needs, from a recording. The spool opening is the measured one where a sensor exists,
-    /// else the command. Tank pressure and pump flow fall back to the machine's constants.
+    /// The inputs that `model` needs, from a recording. The spool opening is the measured one if there is a sensor, otherwise the
+    /// command. Tank pressure and pump flow default to the machine's constants.
     ///
     /// # Errors
     /// [`SignalError::MissingInput`], [`SignalError::Recording`].
@@ -97,7 +97,7 @@ impl InputSignals {
             .iter()
             .enumerate()
             .map(|(cylinder, (interpolation, values))| {
-                // A held command is taken for what it is: nobody knows better when it acts.
+                // A held command is used as it is, because its true time of action is unknown.
                 (*interpolation == Interpolation::Linear && reads_course(model, cylinder))
                     .then(|| secants(&recording.time, values))
             })
@@ -122,7 +122,7 @@ impl InputSignals {
         })
     }
 
-    /// The inputs at the samples `kept`: straight lines nearest to the full ones, means of held ones.
+    /// The inputs at the samples `kept`: straight lines nearest to the full ones, means for held inputs.
     #[must_use]
     pub fn at(&self, kept: &[usize]) -> Self {
         let lines = |values: &[f64]| nearest_lines(&self.time, values, kept);
@@ -155,8 +155,8 @@ impl InputSignals {
         }
     }
 
-    /// The samples that a simulation needs: every `stride`-th, and all between two of these where an opening departs from the
-    /// line between them by more than a share of its own spread.
+    /// The samples that a simulation needs: every `stride`-th, and all samples between two of these if an opening deviates from
+    /// the line between them by more than a fraction of its own spread.
     pub fn needed_samples(&self, stride: usize) -> Vec<usize> {
         let stride = stride.max(1);
         let spreads: Vec<f64> = self.orifice_area.iter().map(|(_, values)| standard_deviation(values)).collect();
@@ -195,12 +195,12 @@ impl InputSignals {
         &self.orifice_area[cylinder].1
     }
 
-    /// Sets the opening of one cylinder's valve at one sample, m²: for simulations in which somebody steers.
+    /// Sets the opening of one cylinder's valve at one sample, m²: for interactive simulations.
     pub fn set_orifice_area(&mut self, cylinder: usize, sample: usize, area: f64) {
         self.orifice_area[cylinder].1[sample] = area;
     }
 
-    /// Supply pressure at each sample, Pa; zero where the pump line's pressure is a state of the model.
+    /// Supply pressure at each sample, Pa; zero if the pump line's pressure is a state of the model.
     pub fn supply_pressure(&self) -> &[f64] {
         &self.supply_pressure
     }
@@ -210,9 +210,9 @@ impl InputSignals {
         &self.tank_pressure
     }
 
-    /// Whether all inputs run straight from sample `first` to sample `last`: lines within a small part of what good
-    /// sensors resolve, held ones without any change. An imposed motion never counts as straight: its acceleration is felt
-    /// as a force, so every sample of it matters.
+    /// Whether all inputs are straight from sample `first` to sample `last`: lines within a small fraction of the resolution of
+    /// good sensors, held inputs without any change. An imposed motion never counts as straight: its acceleration acts as a
+    /// force, so every sample of it matters.
     pub fn is_straight(&self, first: usize, last: usize) -> bool {
         let (start, duration) = (self.time[first], self.time[last] - self.time[first]);
         let straight_rate = STRAIGHT_RATE * self.size.factor(Growth::OPENING) / self.size.time();
@@ -222,14 +222,14 @@ impl InputSignals {
                 .all(|index| (values[index] - values[first] - slope * (self.time[index] - start)).abs() <= most)
         };
         self.orifice_area.iter().all(|(interpolation, values)| match interpolation {
-            // Another edge of the valve opens where the sign changes.
+            // A change of sign opens another edge of the valve.
             Interpolation::Linear => {
                 near_line(values, STRAIGHT_AREA * self.size.factor(Growth::OPENING))
                     && !changes_sign(&values[first..=last])
             }
             Interpolation::Hold => values[first + 1..last].iter().all(|&value| value == values[first]),
         }) && self.orifice_rate.iter().flatten().all(|rates| {
-            // With the interval before, whose rate counts at the first sample.
+            // Includes the previous interval, whose rate counts at the first sample.
             rates[first.saturating_sub(1)..=last].iter().all(|rate| (rate - rates[first]).abs() <= straight_rate)
         }) && self.imposed.iter().all(Option::is_none)
             && self.rod_force.iter().all(|values| near_line(values, STRAIGHT_FORCE * self.size.factor(Growth::FORCE)))
@@ -248,7 +248,7 @@ impl InputSignals {
     /// Inputs at `fraction` (0 to 1) of the way from sample `index` to the next, into `inputs`.
     pub fn between(&self, index: usize, fraction: f64, inputs: &mut Inputs<f64>) {
         let next = (index + 1).min(self.time.len().saturating_sub(1));
-        // Exactly the next sample's value at its end, so that an integrator can see that nothing jumps there.
+        // Exactly the next sample's value at the end, so that an integrator can detect that there is no jump.
         let line = |values: &[f64]| {
             if fraction < 1.0 { values[index] + fraction * (values[next] - values[index]) } else { values[next] }
         };
@@ -290,7 +290,7 @@ fn reads_course(model: &Model, cylinder: usize) -> bool {
     model.effects.iter().any(|effect| effect.site == Site::Cylinder(cylinder) && effect.physics.reads_course())
 }
 
-/// Rates between neighbouring samples, the last one twice, so that there are as many as samples.
+/// Rates between neighbouring samples, with the last one repeated to match the number of samples.
 fn secants(time: &[f64], values: &[f64]) -> Vec<f64> {
     let mut rates: Vec<f64> =
         time.windows(2).zip(values.windows(2)).map(|(t, v)| (v[1] - v[0]) / (t[1] - t[0])).collect();
@@ -298,7 +298,8 @@ fn secants(time: &[f64], values: &[f64]) -> Vec<f64> {
     rates
 }
 
-/// Tank pressure and pump flow where nothing measures them.
+/// Interpolation and values of the opening: the spool estimate if there is a sensor, otherwise the command; `None` without
+/// either.
 fn orifice_input(signals: &CylinderSignals, time: &[f64]) -> Option<(Interpolation, Vec<f64>)> {
     if is_measured(&signals.orifice_area) {
         return without_holes(time, &signals.orifice_area).map(|measured| {
@@ -309,12 +310,12 @@ fn orifice_input(signals: &CylinderSignals, time: &[f64]) -> Option<(Interpolati
     is_measured(&signals.orifice_command).then(|| (Interpolation::Hold, command_or_closed(&signals.orifice_command)))
 }
 
-/// Commanded openings, m². Before the first command the valve is taken to be closed: nobody has asked for anything.
+/// Commanded openings, m². Before the first command the valve counts as closed.
 fn command_or_closed(command: &[f64]) -> Vec<f64> {
     command.iter().map(|&area| if area.is_finite() { area } else { 0.0 }).collect()
 }
 
-/// The signal with holes bridged by straight lines and held at the ends; `None` when nothing was measured.
+/// The signal with holes bridged by straight lines and constant at the ends; `None` if there is no measured value.
 pub(crate) fn without_holes(time: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
     if signal.iter().all(|value| value.is_finite()) {
         return (!signal.is_empty()).then(|| signal.to_vec());
@@ -327,8 +328,8 @@ pub(crate) fn without_holes(time: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
     Some(time.iter().map(|&t| crate::recording::linear(&known_time, &known, t)).collect())
 }
 
-/// Half width of the mean over tank pressure, in samples. The tank line is short and open: its pressure moves slowly,
-/// while its sensor's noise would enter every flow to tank at small pressure drops.
+/// Half width of the mean over tank pressure, in samples. The tank line is short and open, so its pressure changes slowly, while
+/// its sensor's noise would enter every flow to tank at small pressure drops.
 const TANK_HALF_WIDTH: usize = 10;
 
 fn smoothed(values: &[f64]) -> Vec<f64> {

@@ -1,11 +1,11 @@
 //! A linearly implicit integrator for stiff equations with sampled inputs.
 //!
 //! Scheme: Rodas3 (Sandu et al., Atmos. Environ. 31 (1997) 3459), four stages, third order, L-stable, with an embedded
-//! second-order solution for the error. Chosen over a general solver because a recording's input bends at every sample:
-//! a multistep or high-order method restarts there, while one Rosenbrock step from sample to sample needs one exact
-//! Jacobian, one factorisation and three rates, and never iterates, so friction, closed valves and zero pressure drops
-//! cannot make it fail to converge. `benches/simulation.rs` measures it against the solvers of `diffsol`, and
-//! `tests/reference_solutions.rs` checks it against them.
+//! second-order solution for the error. Chosen over a general solver because a recording's input has a kink at every sample. A
+//! multistep or high-order method restarts there. A Rosenbrock step from sample to sample needs one exact Jacobian, one
+//! factorisation and three rates, and it never iterates, so friction, closed valves and zero pressure drops cannot prevent
+//! convergence. `benches/simulation.rs` compares its speed with the solvers of `diffsol`, and `tests/reference_solutions.rs` its
+//! results.
 
 use thiserror::Error;
 
@@ -15,25 +15,25 @@ use super::{InputSignals, Linearisation};
 use crate::equations::{Inputs, System, Workspace};
 use crate::machine::{Growth, Machine, Mechanism};
 
-/// Why a simulation ended early.
+/// Why a simulation stopped early.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimulationError {
-    /// The step size fell below what can carry the solution on.
+    /// The step size fell below the minimum.
     #[error("the simulation of {model} stops at {time:.3} s: step {step:.1e} s is below {minimum:.1e} s; {state}")]
     StepTooSmall {
         /// Machine of the model.
         model: String,
         /// Simulated time, s.
         time: f64,
-        /// Step that was still too large, s.
+        /// Last rejected step, s.
         step: f64,
         /// Smallest step allowed, s.
         minimum: f64,
-        /// State there, for people.
+        /// The state there, as text.
         state: String,
     },
-    /// The solution can only be carried on in steps so short that it would take hours.
+    /// The steps are so short that the simulation would take hours.
     #[error(
         "the simulation of {model} crawls at {time:.3} s in steps of {step:.1e} s, with {state}; something is far stiffer there than a machine is: look at volumes, masses and the parameters of what acts there"
     )]
@@ -44,7 +44,7 @@ pub enum SimulationError {
         time: f64,
         /// Step, s.
         step: f64,
-        /// State there, for people.
+        /// The state there, as text.
         state: String,
     },
     /// The state is no longer a number.
@@ -54,17 +54,16 @@ pub enum SimulationError {
         model: String,
         /// Simulated time, s.
         time: f64,
-        /// State there, for people.
+        /// The state there, as text.
         state: String,
     },
 }
 
-/// How exact a simulation is, on a machine of [`crate::machine::Size::REFERENCE`]; the integrator adapts it to its machine.
+/// Accuracy of a simulation, on a machine of [`crate::machine::Size::REFERENCE`]; the integrator scales it to its machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerances {
-    /// Relative error per step. 1e-4, because a step's error decays with the dynamics and the embedded estimate is of
-    /// second order while the solution is of third: measured against 1e-8, trajectories then agree within a hundredth
-    /// of usual sensor noise.
+    /// Relative error per step. 1e-4, because a step's error decays with the dynamics, and the embedded estimate is of second
+    /// order while the solution is of third. Compared with 1e-8, trajectories agree within a hundredth of usual sensor noise.
     pub relative: f64,
     /// Absolute error per step of joint coordinates, rad or m: a hundredth of a good displacement sensor's noise.
     pub joint: f64,
@@ -74,15 +73,15 @@ pub struct Tolerances {
     pub pressure: f64,
     /// Smallest step, s.
     pub minimum_step: f64,
-    /// Largest step, s; also bounds steps over gaps of the clock. 5 ms, so that a fit takes two for each of its samples: with one of 6 ms
-    /// it is a quarter faster, but sensitivities are off by a tenth where an opening depends on a pressure.
+    /// Largest step, s; also limits steps over gaps of the clock. 5 ms, so that a fit takes two steps for each of its samples.
+    /// With 6 ms a fit is a quarter faster, but sensitivities are off by a tenth where an opening depends on a pressure.
     pub maximum_step: f64,
-    /// Steps per simulated second that are taken for long. 2e4: a machine in a hurry takes 5e3, closed valves and end stops
-    /// included; parameters that no machine has take millions, and a search that meets them must not wait for hours.
+    /// Steps per simulated second above which a simulation counts as too slow. 2e4: a fast machine takes 5e3, including closed
+    /// valves and end stops. Unrealistic parameters take millions, and a search that meets them must not wait for hours.
     pub most_steps_per_second: f64,
 }
 
-/// Steps that may be taken at once, whatever the simulated time: shocks need some hundred.
+/// Steps allowed at once, independent of the simulated time: shocks need several hundred.
 const STEPS_AT_ONCE: f64 = 5e4;
 
 impl Default for Tolerances {
@@ -100,7 +99,7 @@ impl Default for Tolerances {
 }
 
 impl Tolerances {
-    /// The same on a machine of another size. Relative errors and pressures stay.
+    /// The same, scaled to the size of a machine. Relative errors and pressures stay the same.
     fn for_machine(self, machine: &Machine) -> Self {
         let time = machine.size().time();
         let is_linear = matches!(machine.mechanism, Mechanism::LinearLoad);
@@ -122,7 +121,7 @@ impl Tolerances {
             joint: self.joint * factor,
             rate: self.rate * factor,
             pressure: self.pressure * factor,
-            // Steps grow with less than the inverse of the tolerance.
+            // The number of steps grows more slowly than the inverse of the tolerance.
             most_steps_per_second: self.most_steps_per_second / factor,
             ..self
         }
@@ -138,7 +137,7 @@ pub struct Integrator<'m, 's> {
     settings: Tolerances,
     workspace: Workspace<'m, f64>,
     pub(super) linearisation: Linearisation<'m>,
-    /// State and inputs of `linearisation`; the state is empty before the first.
+    /// State and inputs of `linearisation`; the state is empty before the first linearisation.
     linearised_at: (Vec<f64>, Inputs<f64>),
     pub(super) inputs: Inputs<f64>,
     pub(super) later_inputs: Inputs<f64>,
@@ -148,9 +147,9 @@ pub struct Integrator<'m, 's> {
     pub(super) trial: Vec<f64>,
     trial_rates: Vec<f64>,
     step: f64,
-    /// Steps that may be taken before the simulation is given up as too slow.
+    /// Steps left before the simulation stops as too slow.
     allowance: f64,
-    /// Steps taken and refused so far, for benchmarks.
+    /// Steps accepted and rejected so far, for benchmarks.
     pub steps: (usize, usize),
 }
 
@@ -158,8 +157,8 @@ pub struct Integrator<'m, 's> {
 pub(super) const GAMMA: f64 = 0.5;
 
 impl<'m, 's> Integrator<'m, 's> {
-    /// An integrator for `system` with these parameter values (in the model's order). `sensitivity_parameters` are the
-    /// indices of parameters for which sensitivities will be asked; empty if none.
+    /// An integrator for `system` with these parameter values (in the model's order). `sensitivity_parameters` are the indices of
+    /// parameters for which sensitivities will be computed; empty if none.
     pub fn new(
         system: &'s System<'m>,
         parameters: &[f64],
@@ -201,7 +200,7 @@ impl<'m, 's> Integrator<'m, 's> {
     /// Advances `state` from sample `index` of `signals` to the next one, and `sensitivity` with it.
     ///
     /// # Errors
-    /// [`SimulationError`] when the solution cannot be carried on.
+    /// [`SimulationError`] if the solution cannot be continued.
     pub fn advance(
         &mut self,
         signals: &InputSignals,
@@ -248,12 +247,13 @@ impl<'m, 's> Integrator<'m, 's> {
         Ok(())
     }
 
-    /// The longest step that the last one's error recommends, s.
+    /// The longest step recommended by the error of the last one, s.
     pub(super) fn next_step(&self) -> f64 {
         self.step.min(self.settings.maximum_step)
     }
 
-    /// Whether a step of this length and error (in units of the tolerance) counts, and sets the length of the next one.
+    /// Decides whether to accept a step of this length and error (in units of the tolerance), and sets the length of the next
+    /// one.
     pub(super) fn judge(&mut self, error: f64, step: f64) -> bool {
         let counts = error <= 1.0;
         if counts {
@@ -268,8 +268,8 @@ impl<'m, 's> Integrator<'m, 's> {
         counts
     }
 
-    /// Linearises at `state` and `self.inputs`, unless that is where it was done last: the end of a step with
-    /// sensitivities is the start of the next one, but for inputs that jump there or a state set by the caller.
+    /// Linearises at `state` and `self.inputs`, unless that was the last point. With sensitivities, the end of a step is the
+    /// start of the next one, except where inputs jump or the caller sets a state.
     pub(super) fn linearise(&mut self, state: &[f64]) {
         let (known_state, known_inputs) = &mut self.linearised_at;
         if known_state == state && *known_inputs == self.inputs {
@@ -287,7 +287,7 @@ impl<'m, 's> Integrator<'m, 's> {
         self.factors.factorise(1.0 / (GAMMA * step), 1.0, self.linearisation.by_state.as_slice());
         let factors = &self.factors;
 
-        // The input's drift over the step, as the secant of the rates: exact where rates are linear in the input.
+        // Drift of the input over the step, as the secant of the rates: exact if rates are linear in the input.
         self.system.rates(&mut self.workspace, &self.parameters, state, &self.later_inputs, &mut self.trial_rates);
         let rates = &self.linearisation.rates;
         let drift = &mut self.drift;
@@ -342,7 +342,7 @@ impl<'m, 's> Integrator<'m, 's> {
         (sum / states as f64).sqrt()
     }
 
-    /// Error that a step may make in one state that has this value, in the state's unit.
+    /// Error tolerance of one state with this value, in the state's unit.
     pub(super) fn scale(&self, index: usize, value: f64) -> f64 {
         self.tolerances[index] + self.settings.relative * value.abs()
     }

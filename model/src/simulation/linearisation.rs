@@ -12,9 +12,9 @@ pub struct Linearisation<'m> {
     pub rates: Vec<f64>,
     /// df/dx, states by states.
     pub by_state: DMatrix<f64>,
-    /// df/dp, states by the parameters asked for.
+    /// df/dp, states by the requested parameters.
     pub by_parameter: DMatrix<f64>,
-    /// Parameters that the whole model has to be asked about, with their columns.
+    /// Parameters that need an evaluation of the whole model, with their columns.
     far_reaching: Vec<(usize, usize)>,
     own_rows: OwnRows<'m>,
     workspace: Workspace<'m, Dual>,

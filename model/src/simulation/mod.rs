@@ -1,4 +1,4 @@
-//! From a model and its inputs to a trajectory, with sensitivities where wanted.
+//! Simulates a model with its inputs to a trajectory, with sensitivities if required.
 
 mod coarse_inputs;
 mod factors;

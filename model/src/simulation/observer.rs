@@ -1,4 +1,4 @@
-//! What instruments report along a trajectory, with derivatives.
+//! Instrument readings along a trajectory, with derivatives.
 
 use std::collections::VecDeque;
 
@@ -9,13 +9,13 @@ use crate::equations::{Channel, Distortion, Inputs, System, Workspace};
 use crate::recording::Recording;
 use crate::scalar::{Dual, constant, derivative, variable};
 
-/// Instruments of a model that is being simulated: fed with the state at one sample after the other, it gives what each
-/// instrument reports then, and how that depends on parameters and initial states.
+/// Instruments of a simulated model. From the states at successive samples, it computes the reading of each instrument,
+/// and its dependence on parameters and initial states.
 ///
-/// A late instrument reports the past, so an observer remembers the trajectory over the longest delay. Between samples
-/// it goes by the cubic that has the trajectory's values and rates at both ends (Hermite), whose slope is also the
-/// derivative by the delay; sensitivities are interpolated by straight lines. Before the start of a trajectory an
-/// instrument is taken to have seen the state at the start.
+/// A delayed instrument reports the past, so an observer stores the trajectory over the longest delay. Between samples
+/// it uses the cubic with the trajectory's values and rates at both ends (Hermite), whose slope is also the derivative
+/// with respect to the delay. Sensitivities are interpolated linearly. Before the start of a trajectory, the initial
+/// state applies.
 #[derive(Debug, Clone)]
 pub struct Observer<'m, 's> {
     system: &'s System<'m>,
@@ -30,12 +30,13 @@ pub struct Observer<'m, 's> {
     rates: Vec<f64>,
 }
 
-/// One instrument with the derivatives of what it does.
+/// One instrument with the derivatives of its distortion.
 #[derive(Debug, Clone)]
 struct Instrument {
     channel: Channel,
     distortion: Distortion<f64>,
-    /// Column of the sensitivities, derivative of the offset, derivative of the delay; without those that are zero.
+    /// Column of the sensitivities, derivative of the offset, derivative of the delay; entries that are zero are
+    /// omitted.
     slopes: Vec<(usize, f64, f64)>,
 }
 
@@ -46,7 +47,8 @@ struct Snapshot {
     values: Vec<f64>,
     /// Their time derivatives.
     slopes: Vec<f64>,
-    /// Their derivatives by parameters and initial states, channels by columns; empty without sensitivities.
+    /// Their derivatives with respect to parameters and initial states, channels by columns; empty without
+    /// sensitivities.
     gradients: DMatrix<f64>,
 }
 
@@ -91,7 +93,7 @@ impl<'m, 's> Observer<'m, 's> {
         }
     }
 
-    /// What the instruments report, in the order of the channels, at the last sample observed.
+    /// Instrument readings, in the order of the channels, at the last sample observed.
     pub fn readings(&self) -> &[f64] {
         &self.readings
     }
@@ -101,18 +103,18 @@ impl<'m, 's> Observer<'m, 's> {
         &self.gradients
     }
 
-    /// Forgets the past: the next sample is the start of another trajectory.
+    /// Clears the history: the next sample starts another trajectory.
     pub fn restart(&mut self) {
         self.past.clear();
     }
 
-    /// Whether an instrument is late: samples that nobody asks about have to be observed too.
+    /// Whether an instrument is delayed: then samples without a reading must be observed too.
     pub fn looks_back(&self) -> bool {
         self.instruments.iter().any(Instrument::has_delay)
     }
 
-    /// Takes the state at sample `index` of `signals`, and its sensitivity if derivatives are wanted. Samples of one
-    /// trajectory come in order.
+    /// Adds the state at sample `index` of `signals`, and its sensitivity if derivatives are required. Samples of one
+    /// trajectory must be in order.
     pub fn observe(
         &mut self,
         signals: &InputSignals,
@@ -148,7 +150,7 @@ impl<'m, 's> Observer<'m, 's> {
         &self.readings
     }
 
-    /// Takes the state at sample `index` and writes what the instruments report into that sample of a recording.
+    /// Adds the state at sample `index` and writes the instrument readings to that sample of a recording.
     pub fn record(&mut self, signals: &InputSignals, index: usize, state: &[f64], recording: &mut Recording) {
         self.observe(signals, index, state, None);
         let machine = &self.system.model().machine;
@@ -159,7 +161,7 @@ impl<'m, 's> Observer<'m, 's> {
         }
     }
 
-    /// Adds a snapshot and drops those that no instrument looks back to.
+    /// Adds a snapshot and drops those that no instrument needs.
     fn remember(&mut self, signals: &InputSignals, index: usize, state: &[f64], sensitivity: Option<&Sensitivity>) {
         let time = signals.time[index];
         signals.between(index, 0.0, &mut self.inputs);
@@ -187,13 +189,13 @@ impl<'m, 's> Observer<'m, 's> {
 }
 
 impl Instrument {
-    /// Whether it is late, or would be with another parameter value.
+    /// Whether it has a delay, or would have with another parameter value.
     fn has_delay(&self) -> bool {
         self.distortion.delay != 0.0 || self.slopes.iter().any(|&(_, _, by_delay)| by_delay != 0.0)
     }
 }
 
-/// Gradient of a true value into one row of `gradients`.
+/// Writes the gradient of a true value to one row of `gradients`.
 fn gradient(
     system: &System<'_>,
     channel: Channel,
@@ -214,8 +216,8 @@ fn gradient(
     }
 }
 
-/// Value and time derivative of channel `row` at a time in the past, and its gradient into that row of `gradients`. The
-/// past is not empty.
+/// Value and time derivative of channel `row` at a time in the past; its gradient is written to that row of
+/// `gradients`. The past must not be empty.
 fn recall(past: &VecDeque<Snapshot>, row: usize, time: f64, gradients: &mut DMatrix<f64>) -> (f64, f64) {
     let after = past.partition_point(|snapshot| snapshot.time <= time);
     if after == 0 {
@@ -224,7 +226,7 @@ fn recall(past: &VecDeque<Snapshot>, row: usize, time: f64, gradients: &mut DMat
     }
     let from = &past[after - 1];
     let Some(to) = past.get(after) else {
-        // At the present sample, or ahead of it for a delay below zero: along the rates.
+        // At the present sample, or ahead of it for a negative delay: extrapolates along the rates.
         gradients.row_mut(row).copy_from(&from.gradients.row(row));
         return (from.values[row] + from.slopes[row] * (time - from.time), from.slopes[row]);
     };

@@ -1,4 +1,4 @@
-//! A machine that one can step, from sample to sample.
+//! A simulated machine that advances sample by sample.
 
 use super::{InputSignals, Integrator, SimulationError, Tolerances, reachable_rest_state, rest_state};
 use crate::equations::{Inputs, System, Workspace};
@@ -6,10 +6,10 @@ use crate::machine::Supply;
 use crate::recording::{CylinderSample, Recording, Sample};
 use crate::{Model, SignalError};
 
-/// Share of half a stroke at which a machine that left all bounds is set up again.
+/// Fraction of half a stroke at which a machine that left all bounds is restarted.
 const INSIDE: f64 = 0.9;
 
-/// A machine at work under commands that nobody knows beforehand.
+/// A simulated machine whose commands are not known in advance.
 #[derive(Debug)]
 pub struct Plant<'m, 's> {
     system: &'s System<'m>,
@@ -23,11 +23,11 @@ pub struct Plant<'m, 's> {
 }
 
 impl<'m, 's> Plant<'m, 's> {
-    /// A machine at rest with these piston displacements (m), sampled every `period` seconds. `supply_pressure` (Pa) is that of a
-    /// supply set from outside; `None` for the machine's own.
+    /// A machine at rest with these piston displacements (m), sampled every `period` seconds. `supply_pressure` (Pa) is that of
+    /// an external supply; `None` for the machine's own.
     ///
     /// # Errors
-    /// [`SignalError`] when the model needs an input that nobody can command, or the linkage cannot reach a displacement.
+    /// [`SignalError`] if the model needs an input that is not a command, or the linkage cannot reach a displacement.
     pub fn new(
         system: &'s System<'m>,
         displacements: &[f64],
@@ -45,10 +45,10 @@ impl<'m, 's> Plant<'m, 's> {
         Ok(Plant { system, integrator, signals, inputs, workspace, rates, parameters, state })
     }
 
-    /// Sets the valves (m², held for one period) and goes on to the next sample.
+    /// Sets the valves (m², held for one period) and advances to the next sample.
     ///
     /// # Errors
-    /// [`SimulationError`]; the machine is at rest then, near where it was.
+    /// [`SimulationError`]; the machine is then at rest, near its last position.
     pub fn step(&mut self, areas: &[f64]) -> Result<(), SimulationError> {
         self.set_areas(areas);
         let outcome = self.integrator.advance(&self.signals, 0, &mut self.state, None);
@@ -59,7 +59,7 @@ impl<'m, 's> Plant<'m, 's> {
         outcome
     }
 
-    /// The state as perfect instruments see it; the caller stamps it.
+    /// The state as measured by ideal instruments; the caller sets the timestamp.
     pub fn sample(&mut self) -> Sample {
         self.signals.between(0, 0.0, &mut self.inputs);
         self.system.observe(&mut self.workspace, &self.parameters, &self.state, &self.inputs, &mut self.rates);
@@ -131,7 +131,8 @@ impl<'m, 's> Plant<'m, 's> {
     }
 }
 
-/// A recording of two samples that has every input of the model; the valves are set later, and the supply has the machine's constants.
+/// A recording of two samples that has every input of the model; valve commands are set later, and the supply has the machine's
+/// constants.
 fn inputs_of_one_period(model: &Model, period: f64, supply_pressure: Option<f64>) -> Recording {
     let names: Vec<&str> = model.machine.cylinders.iter().map(|cylinder| cylinder.name.as_str()).collect();
     let mut recording = Recording::unmeasured("simulator", vec![0.0, period], &names);
@@ -159,7 +160,7 @@ mod tests {
         let mut plant = Plant::new(&system, &[0.0], 1e-3, None).unwrap();
         let start = plant.sample().cylinders[0].displacement;
         for _ in 0..1000 {
-            // Wide enough that the pump carries the load; with less the arm sinks back through the open centre.
+            // Wide enough that the pump carries the load; with a smaller opening the arm sinks through the open centre.
             plant.step(&[1e-4]).unwrap();
         }
         let state = plant.sample();

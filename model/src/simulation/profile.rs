@@ -4,21 +4,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::recording::Recording;
 
-/// A command profile can not be used.
+/// An invalid command profile.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProfileError {
-    /// A number of the profile is impossible.
+    /// A number of the profile is out of range.
     #[error("profile: {quantity} = {value} must be {must}")]
     Impossible {
-        /// Which number.
+        /// Name of the number.
         quantity: &'static str,
         /// Its value.
         value: f64,
-        /// What it must be.
+        /// Its permitted range.
         must: &'static str,
     },
-    /// A profile asks for nothing.
+    /// A profile has no segments.
     #[error("profile: {cylinder} has no segments; give it some, or leave its profile out and it stays closed")]
     Empty {
         /// The cylinder.
@@ -104,7 +104,7 @@ impl Segment {
         }
     }
 
-    /// The largest frequency, Hz; zero for what has none.
+    /// The largest frequency, Hz; zero for a segment without one.
     pub fn largest_frequency(&self) -> f64 {
         match *self {
             Segment::Sine { frequency, .. } => frequency,
@@ -113,7 +113,7 @@ impl Segment {
         }
     }
 
-    /// The largest area either way, m².
+    /// The largest absolute area, m².
     pub fn largest_area(&self) -> f64 {
         match *self {
             Segment::Sine { amplitude, .. }
@@ -148,8 +148,8 @@ impl Segment {
 }
 
 impl Profile {
-    /// Commands each cylinder of a recording along its own profile from the first sample on, with the valve exactly where it
-    /// is told to be; those without a profile stay closed. No force acts on any rod.
+    /// Commands each cylinder of a recording with its own profile from the first sample on. The valves follow exactly;
+    /// cylinders without a profile stay closed. No force acts on any rod.
     ///
     /// ```
     /// use excavator_model::prelude::*;
@@ -177,7 +177,7 @@ impl Profile {
         }
     }
 
-    /// Whole length in s.
+    /// Total length in s.
     pub fn duration(&self) -> f64 {
         self.segments.iter().map(Segment::duration).sum()
     }
@@ -194,7 +194,7 @@ impl Profile {
         0.0
     }
 
-    /// Checks that every number makes sense.
+    /// Checks that every number is valid.
     ///
     /// # Errors
     /// [`ProfileError::Impossible`], and [`ProfileError::Empty`] for a profile without segments.

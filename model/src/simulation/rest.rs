@@ -1,4 +1,4 @@
-//! A machine at rest.
+//! Rest states of a machine.
 
 use crate::SignalError;
 use crate::equations::{Inputs, System};
@@ -9,7 +9,7 @@ const PRELOAD: f64 = 3e5;
 /// [`rest_state`] of displacements (m) that the linkages can reach.
 ///
 /// # Errors
-/// [`SignalError::NoInitialState`] where one cannot.
+/// [`SignalError::NoInitialState`] if one cannot.
 pub fn reachable_rest_state(
     system: &System<'_>,
     displacements: &[f64],
@@ -29,7 +29,7 @@ pub fn reachable_rest_state(
 }
 
 /// State of a machine at rest with these piston displacements (m): velocities zero, chamber pressures in balance with
-/// gravity, pump pressure a little above tank. `NaN` joints where the linkage cannot reach a displacement.
+/// gravity, pump pressure a little above tank. Joints are `NaN` if the linkage cannot reach a displacement.
 pub fn rest_state(system: &System<'_>, displacements: &[f64], inputs: &Inputs<f64>) -> Vec<f64> {
     let layout = system.layout();
     let machine = &system.model().machine;

@@ -1,4 +1,4 @@
-//! Whole simulations.
+//! Simulates whole recordings.
 
 use super::{
     InputSignals, Integrator, Observer, SimulationError, Tolerances, first_known_position, initial_state, rest_state,
@@ -9,23 +9,23 @@ use crate::equations::{Channel, System};
 use crate::machine::Supply;
 use crate::recording::Recording;
 
-/// Why there is no simulated recording.
+/// Why a simulation failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// The recording does not give what the model needs.
+    /// The recording lacks an input of the model.
     #[error(transparent)]
     Signal(#[from] SignalError),
-    /// The integration ended early.
+    /// The integration stopped early.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
 }
 
-/// Simulates `model` with the inputs of `recording` from the state measured at its start; the result has the
-/// recording's clock and inputs, and displacement, velocity, joint angle and pressures as its instruments report them.
+/// Simulates `model` with the inputs of `recording` from the state measured at its start. The result has the recording's
+/// clock and inputs, and displacement, velocity, joint angle and pressures as its instruments report them.
 ///
-/// Each piece of the recording ([`Recording::pieces`]) is simulated from its own start: what happened between is not known.
-/// What comes before the first measured position of a piece has `NaN` for what is simulated.
+/// Each piece of the recording ([`Recording::pieces`]) is simulated from its own start, because the time between pieces is
+/// unknown. Simulated signals are `NaN` before the first measured position of a piece.
 ///
 /// ```
 /// use excavator_model::prelude::*;
@@ -80,7 +80,7 @@ pub fn simulate(model: &Model, recording: &Recording) -> Result<Recording, RunEr
     }
 }
 
-/// Sets what a simulation gives, all the time.
+/// Sets all simulated signals to `value` at all samples.
 fn fill_simulated(model: &Model, recording: &mut Recording, value: f64) {
     let system = System::new(model);
     for channel in Channel::all(system.layout()) {
@@ -126,7 +126,7 @@ pub fn simulate_from(
 }
 
 /// Simulates `model` with the inputs of `recording` from rest at these piston displacements, m from mid-stroke, and with the
-/// pressures that hold it there; see [`rest_state`].
+/// pressures that balance the forces there; see [`rest_state`].
 ///
 /// ```
 /// use excavator_model::prelude::*;
@@ -156,8 +156,8 @@ pub fn simulate_from_rest(
     Ok(simulate_from(model, recording, &signals, state, tolerances)?)
 }
 
-/// Writes what instruments report of a state into sample `index` of a recording, as far as the state alone says it: with
-/// the model's sensor offsets, but without delays, which need the past; an [`Observer`] has both.
+/// Writes the instrument readings of a state to sample `index` of a recording, as far as the state alone determines them:
+/// with the model's sensor offsets, but without delays, which need the history; an [`Observer`] has both.
 pub fn observed(system: &System<'_>, state: &[f64], index: usize, recording: &mut Recording) {
     let machine = &system.model().machine;
     for channel in Channel::all(system.layout()) {

@@ -1,4 +1,4 @@
-//! How a trajectory depends on parameters and initial states.
+//! Sensitivities of a trajectory to parameters and initial states.
 
 use super::Linearisation;
 use super::factors::Factors;
@@ -6,25 +6,25 @@ use crate::equations::{Reach, System};
 
 /// Forward sensitivities `S = dx/d(parameters, initial states)`, carried along a trajectory.
 ///
-/// `dS/dt = df/dx S + df/dp` is linear; it is integrated by TR-BDF2 (second order, L-stable) with the Jacobians at both
-/// ends of each step and straight lines between them. Sensitivities steer a search and enter standard errors, so a
-/// relative error of 1e-3 is ample.
+/// `dS/dt = df/dx S + df/dp` is linear. TR-BDF2 (second order, L-stable) integrates it with the Jacobians at both ends of each
+/// step and linear interpolation between them. Sensitivities direct a search and enter standard errors, so a relative error of
+/// 1e-3 is sufficient.
 #[derive(Debug, Clone)]
 pub struct Sensitivity {
-    /// Columns of the parameters asked for, then of the initial states, that can be other than zero; those of instruments cannot.
+    /// Columns of the requested parameters, then of the initial states, that can be non-zero; those of instruments cannot.
     columns: Vec<usize>,
-    /// How many columns there are.
+    /// Number of columns.
     width: usize,
-    /// How many of `columns` are of parameters.
+    /// Number of `columns` that belong to parameters.
     acting: usize,
     states: usize,
-    /// The sensitivities, row-major, so that one row operation runs over all columns at once.
+    /// The sensitivities, row-major, so that one row operation covers all columns.
     values: Vec<f64>,
-    /// The stage that is being solved for, likewise.
+    /// The stage being solved, likewise.
     stage: Vec<f64>,
     start_by_state: Vec<f64>,
     middle_by_state: Vec<f64>,
-    /// By the acting parameters, row-major: at the start of a step, at its end.
+    /// Derivatives with respect to the acting parameters, row-major: at the start of a step, at its end.
     by_parameter: [Vec<f64>; 2],
     factors: Factors,
 }
@@ -55,28 +55,28 @@ impl Sensitivity {
         }
     }
 
-    /// How many columns there are: one for each parameter asked for, then one for each initial state.
+    /// Number of columns: one for each requested parameter, then one for each initial state.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// The columns that can be other than zero, in ascending order.
+    /// The columns that can be non-zero, in ascending order.
     pub fn columns(&self) -> &[usize] {
         &self.columns
     }
 
-    /// Derivatives of one state by what each of [`Sensitivity::columns`] is for.
+    /// Derivatives of one state with respect to the variables of [`Sensitivity::columns`].
     pub fn of_state(&self, state: usize) -> &[f64] {
         &self.values[state * self.columns.len()..(state + 1) * self.columns.len()]
     }
 
-    /// Derivatives of all states by what one column is for.
+    /// Derivatives of all states with respect to the variable of one column.
     pub fn by_column(&self, column: usize) -> Vec<f64> {
         let position = self.columns.binary_search(&column);
         (0..self.states).map(|state| position.map_or(0.0, |position| self.of_state(state)[position])).collect()
     }
 
-    /// Notes the Jacobians at the start of a step.
+    /// Stores the Jacobians at the start of a step.
     pub(super) fn begin(&mut self, linearisation: &Linearisation<'_>) {
         self.start_by_state.copy_from_slice(linearisation.by_state.as_slice());
         self.note_by_parameter(linearisation, 0);
@@ -90,9 +90,9 @@ impl Sensitivity {
         }
     }
 
-    /// Carries the sensitivities over a step of length `step`, with the Jacobians at its end.
+    /// Advances the sensitivities over a step of length `step`, with the Jacobians at its end.
     pub(super) fn finish(&mut self, linearisation: &Linearisation<'_>, step: f64) {
-        /// Where TR-BDF2 puts its middle stage: 2 - sqrt 2 makes both stages share one coefficient.
+        /// Position of the middle stage of TR-BDF2: 2 - sqrt 2 makes both stages share one coefficient.
         const MIDDLE: f64 = 2.0 - std::f64::consts::SQRT_2;
         let weight = MIDDLE / 2.0 * step;
         self.note_by_parameter(linearisation, 1);

@@ -1,8 +1,8 @@
-//! A servo that a spool follows its command through.
+//! A servo model between the command and the spool.
 
 use nalgebra::{Matrix3, Vector3};
 
-/// How a command runs between its samples.
+/// Interpolation of a command between its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Between {
     /// Straight lines.
@@ -11,34 +11,35 @@ pub(super) enum Between {
     Held,
 }
 
-/// A lag of first order with a delay, its rate limited.
+/// A first-order lag with a delay and a limited rate.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Servo {
     /// Time constant, s.
     pub lag: f64,
-    /// Time after which it is told, s; negative where the recording has the command late.
+    /// Delay of the command at the servo, s; negative if the command is late in the recording.
     pub delay: f64,
-    /// Most that the opening changes, m²/s; infinite where nothing limits it.
+    /// Largest rate of the opening, m²/s; infinite if there is no limit.
     pub rate: f64,
-    /// What it is told between the samples of the command.
+    /// Command between its samples.
     pub between: Between,
 }
 
-/// Standard errors by which a gain must differ from 1, an offset from 0 and a start from rest to be taken for more than noise. A
-/// pump's pressure can go with the square of what a valve has left to close: a hundredth of the sensor's noise there is
-/// more than the noise of the pressure sensor.
+/// Standard errors by which a gain must differ from 1, an offset from 0 and a start from rest to count as significant. A pump's
+/// pressure can depend on the square of a valve's remaining opening: there a hundredth of the sensor's noise exceeds the noise
+/// of the pressure sensor.
 const DOUBT: f64 = 3.0;
 
-/// What a spool behind a servo can do: follow, and settle from where it was when the recording began.
+/// Possible responses of a spool behind a servo: it follows the command, and settles from its position at the start of the
+/// recording.
 pub(super) struct Courses {
-    /// The command behind the servo, m²: a spool that was where it had been told when the recording began.
+    /// The command behind the servo, m²: for a spool that was at its commanded position when the recording began.
     settled: Vec<f64>,
-    /// How much of another begin is left, from 1.
+    /// Decaying contribution of another initial position, from 1.
     begin: Vec<f64>,
 }
 
 impl Courses {
-    /// Of `command`, m², at the times `time`, s.
+    /// For `command`, m², at the times `time`, s.
     pub fn new(time: &[f64], command: &[f64], servo: Servo) -> Self {
         let settled = match servo.between {
             _ if servo.rate.is_finite() => behind_limited(time, command, servo),
@@ -56,18 +57,18 @@ impl Courses {
         Courses { settled, begin }
     }
 
-    /// The course nearest to `measured`, with any gain, offset and begin.
+    /// The course nearest to `measured`, with free gain, offset and initial position.
     pub fn nearest(&self, measured: &[f64]) -> Option<Vec<f64>> {
         self.nearest_of(measured, [true; 3])
     }
 
-    /// The simplest course that the sensor does not contradict.
+    /// The simplest course that is consistent with the sensor.
     pub fn simplest(&self, measured: &[f64], noise: f64) -> Vec<f64> {
         let any = self.nearest(measured);
         let least = any.as_ref().map_or(f64::INFINITY, |nearest| misfit(measured, nearest));
         let contradicts =
             |course: &Vec<f64>, dropped: f64| misfit(measured, course) - least > dropped * (DOUBT * noise).powi(2);
-        // Nothing free but the begin, nothing free but gain and offset, or all.
+        // Nothing free, only the initial position free, or only gain and offset free; all free otherwise.
         [([false, false, false], 3.0), ([false, false, true], 2.0), ([true, true, false], 1.0)]
             .into_iter()
             .filter_map(|(free, dropped)| Some((self.nearest_of(measured, free)?, dropped)))
@@ -77,11 +78,11 @@ impl Courses {
             .unwrap_or_else(|| self.settled.clone())
     }
 
-    /// The course nearest to `measured` with the gain, the offset, the begin as they are to be unless they are `free`.
+    /// The course nearest to `measured`; gain, offset and initial position keep their nominal values unless they are `free`.
     fn nearest_of(&self, measured: &[f64], free: [bool; 3]) -> Option<Vec<f64>> {
         let fixed = |settled: f64| if free[0] { 0.0 } else { settled };
         let parts = |settled: f64, begin: f64| {
-            // Of the size of the opening, so that no column is lost in rounding.
+            // Scaled to the size of the opening, so that no column is lost in rounding.
             Vector3::new(settled, AREA, AREA * begin)
                 .zip_map(&Vector3::from(free), |value, free| if free { value } else { 0.0 })
         };
@@ -113,7 +114,7 @@ pub(super) fn misfit(measured: &[f64], follower: &[f64]) -> f64 {
     measured.iter().zip(follower).map(|(measured, follower)| (measured - follower).powi(2)).sum()
 }
 
-/// The command at times asked for one after the other: straight lines between its samples, or held until the next one.
+/// The command at successive times: straight lines between its samples, or held until the next one.
 fn course_of<'s>(time: &'s [f64], command: &'s [f64], between: Between) -> impl FnMut(f64) -> f64 + 's {
     let mut position = 0;
     move |at: f64| {
@@ -126,10 +127,10 @@ fn course_of<'s>(time: &'s [f64], command: &'s [f64], between: Between) -> impl 
     }
 }
 
-/// Parts of a sample interval in which a servo at its limit stays there or leaves it.
+/// Parts of a sample interval; in each, a rate-limited servo is either at its limit or not.
 const PARTS: usize = 4;
 
-/// The command behind a servo whose rate is limited: in each part of an interval at its limit, or following a straight line.
+/// The command behind a servo with a limited rate: in each part of an interval it is at its limit, or follows a straight line.
 fn behind_limited(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
     let Servo { lag, delay, rate, between } = servo;
     let mut delayed = course_of(time, command, between);
@@ -152,10 +153,10 @@ fn behind_limited(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
     spool
 }
 
-/// Samples are even but for rounding: an exponential is computed again where the interval differs by more than this part.
+/// Samples are even except for rounding: an exponential is recomputed if the interval differs by more than this fraction.
 const SAME_INTERVAL: f64 = 1e-9;
 
-/// What is left of a deviation after a time.
+/// Decay of a deviation over time.
 struct Decay {
     lag: f64,
     interval: f64,
@@ -167,7 +168,7 @@ impl Decay {
         Decay { lag, interval: f64::NAN, left: f64::NAN }
     }
 
-    /// The part that is left after `interval`, s.
+    /// The fraction that remains after `interval`, s.
     fn over(&mut self, interval: f64) -> f64 {
         let same = (interval - self.interval).abs() <= SAME_INTERVAL * self.interval;
         if !same {
@@ -177,7 +178,7 @@ impl Decay {
     }
 }
 
-/// Straight lines between commands behind the servo, exactly integrated.
+/// The servo's response to linearly interpolated commands, integrated exactly.
 fn behind_lines(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
     let Servo { lag, delay, between, .. } = servo;
     let mut delayed = course_of(time, command, between);
@@ -197,7 +198,7 @@ fn behind_lines(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
     spool
 }
 
-/// Commands that are held until the next one behind the servo, exactly integrated.
+/// The servo's response to held commands, integrated exactly.
 fn behind_steps(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
     let Servo { lag, delay, .. } = servo;
     let mut changes = time.iter().map(|t| t + delay).zip(command.iter().copied()).peekable();
@@ -212,7 +213,7 @@ fn behind_steps(time: &[f64], command: &[f64], servo: Servo) -> Vec<f64> {
     for pair in time.windows(2) {
         let mut now = pair[0];
         while let Some((at, next)) = changes.next_if(|(at, _)| *at <= pair[1]) {
-            // Most commands say what the last one said.
+            // Most commands repeat the previous one.
             if next != held {
                 state = held + (state - held) * ((now - at) / lag).exp();
                 (now, held) = (at, next);

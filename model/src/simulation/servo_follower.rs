@@ -1,35 +1,36 @@
-//! The servo that a spool follows its command through, found in a recording.
+//! Identifies the servo between command and spool from a recording.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::servo::{Between, Courses, Servo, misfit};
 use crate::recording::median_interval;
 
-/// Time constants that are tried, in sample intervals: from faster than any sampling to a slow pilot stage.
+/// Candidate time constants, in sample intervals: from faster than any sampling to a slow pilot stage.
 const LAGS: [f64; 12] = [0.5, 1.0, 2.0, 3.5, 6.0, 10.0, 17.5, 30.0, 50.0, 100.0, 200.0, 400.0];
 
-/// Samples that the servo is searched on; longer recordings are thinned, two numbers need no more for a start, and
-/// are polished on all samples.
+/// Samples for the search of the servo. Longer recordings are thinned, which is enough for start values of two numbers; the
+/// refinement uses all samples.
 const SEARCH_SAMPLES: usize = 2000;
 
-/// Sample intervals below which a lag is none: nothing tells it from a delay, and a search for both would not end.
+/// Lags below this, in sample intervals, count as zero: they cannot be separated from a delay, and a search for both would not
+/// converge.
 const SHORTEST_LAG: f64 = 0.25;
 
-/// The lagged, delayed, scaled and shifted command (m²) that is nearest to the measured spool, whose sensor's noise has
-/// the standard deviation `noise`, m². `None` where the command never moves.
+/// The lagged, delayed, scaled and shifted command (m²) that is nearest to the measured spool, whose sensor's noise has the
+/// standard deviation `noise`, m². `None` if the command never moves.
 ///
-/// What the sensor leaves in doubt is as simple as can be: the spool goes where it is told, and it was there before the
-/// recording began.
+/// Where the sensor is inconclusive, the simplest assumption applies: the spool goes to its commanded position, and was there
+/// before the recording began.
 pub(super) fn servo_follower(time: &[f64], measured: &[f64], command: &[f64], noise: f64) -> Option<Vec<f64>> {
     let stride = (time.len() / SEARCH_SAMPLES).max(1);
     let thin = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
-    // The median: pauses of hours between stretches say nothing about the rate of the clock.
+    // The median: pauses of hours between pieces must not affect the interval.
     let interval = median_interval(time);
     let shortest_lag = SHORTEST_LAG * interval;
     let lines = best_servo(&thin(time), &thin(measured), &thin(command), interval)?;
-    // A held command is the line between its samples half an interval later.
+    // A held command is the interpolated one half an interval later.
     let held = Servo { delay: lines.delay - interval / 2.0, between: Between::Held, ..lines };
-    // A jump told by a message acts at once; a knob that was sampled ran on in between.
+    // A command sent as a message jumps at once; a sampled knob moves continuously between samples.
     let (_, servo) = [lines, held]
         .into_iter()
         .filter_map(|servo| polished(time, measured, command, servo, shortest_lag))
@@ -38,14 +39,14 @@ pub(super) fn servo_follower(time: &[f64], measured: &[f64], command: &[f64], no
     Some(Courses::new(time, command, limited.unwrap_or(servo)).simplest(measured, noise))
 }
 
-/// Rates that are tried, as parts of the fastest that the spool would change behind a servo without a limit.
+/// Candidate rates, as fractions of the fastest rate of the spool behind a servo without a limit.
 const RATES: [f64; 6] = [0.9, 0.75, 0.6, 0.45, 0.3, 0.2];
 
-/// Standard deviations of the sensor's noise that a limit of the rate has to explain, all its readings together.
+/// Standard deviations of the sensor's noise that a rate limit must explain, over all its readings together.
 const DOUBT: f64 = 5.0;
 
-/// The servo with a limited rate, where the sensor shows one. A follower without it runs ahead on every fast move, and how a
-/// valve closes, which decides where the load stops, comes out by a part of the sensor's noise wrong.
+/// The servo with a limited rate, if the sensor shows one. Without the limit, the follower runs ahead on every fast move. The
+/// closing of a valve, which decides where the load stops, would then be off by a fraction of the sensor's noise.
 fn limited(
     time: &[f64],
     measured: &[f64],
@@ -70,20 +71,20 @@ fn limited(
     (unlimited - reached > (DOUBT * noise).powi(2)).then_some(limited)
 }
 
-/// Gauss-Newton steps on all samples. What thinning leaves of the error in time shifts the opening of the whole recording, and
-/// nothing that comes after could tell: three steps take it down to what the sensor knows.
+/// Gauss-Newton steps on all samples. The time error left by thinning would shift the opening of the whole recording, which no
+/// later stage could detect. Three steps reduce it to the accuracy of the sensor.
 const STEPS: usize = 3;
 
-/// The same for a limited rate, whose start is a guess: lag and delay have made up for it as far as they could.
+/// The same for a limited rate, whose start is a guess: lag and delay have compensated for it as far as they could.
 const STEPS_LIMITED: usize = 10;
 
-/// The servo near `servo` that comes nearest to the measured spool, and how near.
+/// The servo near `servo` that is nearest to the measured spool, and its misfit.
 fn polished(time: &[f64], measured: &[f64], command: &[f64], servo: Servo, shortest_lag: f64) -> Option<(f64, Servo)> {
     let nearest = |servo: Servo| Courses::new(time, command, servo).nearest(measured);
     let (mut servo, mut here) = (servo, nearest(servo)?);
     let steps = if servo.rate.is_finite() { STEPS_LIMITED } else { STEPS };
     for _ in 0..steps {
-        // Changes by which the course changes visibly and still in proportion.
+        // Steps that change the course visibly but still linearly.
         let (lag_change, delay_change, rate_change) = (0.02 * servo.lag, 0.4 * shortest_lag, 0.02 * servo.rate);
         let mut slopes = vec![
             slope(&here, &nearest(Servo { lag: servo.lag + lag_change, ..servo })?, lag_change),
@@ -103,7 +104,7 @@ fn polished(time: &[f64], measured: &[f64], command: &[f64], servo: Servo, short
         }
         let scaled = DMatrix::from_diagonal(&scale) * &matrix * DMatrix::from_diagonal(&scale);
         let all = scaled.lu().solve(&right.component_mul(&scale)).map(|step| step.component_mul(&scale));
-        // Where a lag is as good as a delay there is no telling them apart: the delay alone.
+        // If a lag and a delay cannot be separated, only the delay is used.
         let mut delay_alone = DVector::zeros(slopes.len());
         delay_alone[1] = right[1] / matrix[(1, 1)];
         let shorter = |step: &DVector<f64>| [1.0, 0.5, 0.25].map(|part| step * part);
@@ -121,7 +122,7 @@ fn polished(time: &[f64], measured: &[f64], command: &[f64], servo: Servo, short
     Some((misfit(measured, &here), servo))
 }
 
-/// Change of a course per unit of what changed by `change`.
+/// Change of a course per unit of a parameter changed by `change`.
 fn slope(here: &[f64], there: &[f64], change: f64) -> Vec<f64> {
     here.iter().zip(there).map(|(here, there)| (there - here) / change).collect()
 }
@@ -140,7 +141,7 @@ fn best_servo(time: &[f64], measured: &[f64], command: &[f64], interval: f64) ->
     for lag in LAGS {
         consider(lag * interval, 0.0, &mut best);
     }
-    // Coordinate search from the best of the grid; the misfit is smooth in both.
+    // Coordinate search from the best grid point; the misfit is smooth in both variables.
     let (mut lag_factor, mut delay_step) = (1.3_f64, 2.0 * interval);
     for _ in 0..24 {
         let (before, lag, delay) = (best.0, best.1, best.2);
@@ -168,7 +169,8 @@ mod tests {
     /// Noise of a good spool sensor, m².
     const NOISE: f64 = 2e-7;
 
-    /// A minute of a spool that begins `away` m² from where it was told, behind a servo of 12 ms: times, the command, where it was.
+    /// A minute of a spool that starts `away` m² from its commanded position, behind a servo of 12 ms: times, command, true
+    /// position.
     fn steered(away: f64) -> [Vec<f64>; 3] {
         let time: Vec<f64> = (0..30_000).map(|k| 0.002 * f64::from(k)).collect();
         let command: Vec<f64> =
@@ -195,7 +197,7 @@ mod tests {
     fn a_sensor_that_reads_what_was_told_has_neither_gain_nor_offset() {
         let [time, command, spool] = steered(0.0);
         let follower = servo_follower(&time, &read(&spool, 1.0, 0.0), &command, NOISE).unwrap();
-        // Rests are as the command has them, to the last digit but what the servo has not settled yet.
+        // At rest it equals the command, except for the part that has not settled yet.
         let resting = (0..time.len()).filter(|&k| (4.9..5.0).contains(&time[k].rem_euclid(5.0)));
         let off = |k: usize| (follower[k] - spool[k]).abs();
         assert!(resting.map(off).fold(0.0, f64::max) < 1e-9);
@@ -213,7 +215,7 @@ mod tests {
     fn a_recording_may_begin_while_the_spool_moves() {
         let [time, command, spool] = steered(-9e-5);
         let follower = servo_follower(&time, &read(&spool, 1.0, 0.0), &command, NOISE).unwrap();
-        // Where it began is known from a dozen readings.
+        // A dozen readings determine its start.
         assert!(largest_error(&follower, spool.iter().copied()) < NOISE);
         assert!(largest_error(&follower[100..], spool[100..].iter().copied()) < NOISE / 10.0);
     }
@@ -239,7 +241,7 @@ mod tests {
         let (lag, rate) = (0.012, 1.1e-3);
         let mut spool = vec![command[0]];
         for pair in command.windows(2) {
-            // A tenth of a millisecond at a time, along the line from one command to the next.
+            // In steps of a tenth of a millisecond, along the line from one command to the next.
             let last = spool[spool.len() - 1];
             spool.push((0..20).fold(last, |now, part| {
                 let told = pair[0] + (pair[1] - pair[0]) * (f64::from(part) + 0.5) / 20.0;
@@ -247,7 +249,7 @@ mod tests {
             }));
         }
         let follower = servo_follower(&time, &read(&spool, 1.0, 0.0), &command, NOISE).unwrap();
-        // Unlimited it would run ahead by 1e-5 m² on the way.
+        // Without the limit it would run ahead by 1e-5 m² on the way.
         let error = largest_error(&follower, spool.iter().copied());
         assert!(error < NOISE / 2.0, "{error:e}");
         let resting = (0..time.len()).filter(|&k| (4.9..5.0).contains(&time[k].rem_euclid(5.0)));

@@ -1,4 +1,4 @@
-//! Spool estimates that were made before.
+//! Cache of spool estimates.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, LazyLock};
@@ -6,10 +6,11 @@ use std::sync::{Arc, LazyLock};
 use quick_cache::Weighter;
 use quick_cache::sync::Cache;
 
-/// Estimates that are kept. A diagnosis asks some eighty times for each of about ten recordings and parts of these.
+/// Number of cached estimates. A diagnosis asks about eighty times for each of about ten recordings and parts of
+/// these.
 const KEPT: usize = 64;
 
-/// Samples that all of these have together at most, 64 MB: ten recordings of half an hour at 500 Hz.
+/// Largest total number of their samples, 64 MB: ten recordings of half an hour at 500 Hz.
 const KEPT_SAMPLES: u64 = 8_000_000;
 
 #[derive(Clone)]
@@ -24,15 +25,15 @@ impl Weighter<[u64; 3], Arc<[f64]>> for BySamples {
 static MEMORY: LazyLock<Cache<[u64; 3], Arc<[f64]>, BySamples>> =
     LazyLock::new(|| Cache::with_weighter(KEPT, KEPT_SAMPLES, BySamples));
 
-/// What `estimate` gives for these signals, from memory if it was asked for them before: every fit of every candidate
-/// needs the same estimate, and making it takes as long as a tenth of a fit.
+/// The result of `estimate` for these signals, cached: every fit of every candidate needs the same estimate, which
+/// takes as long as a tenth of a fit.
 pub(super) fn remembered(
     time: &[f64],
     measured: &[f64],
     command: &[f64],
     estimate: impl FnOnce() -> Vec<f64>,
 ) -> Vec<f64> {
-    // Keys of 192 bits: that two recordings share one will not happen.
+    // Keys of 192 bits: a collision of two recordings will not happen.
     let key = [time, measured, command].map(fingerprint);
     let known: Result<Arc<[f64]>, std::convert::Infallible> = MEMORY.get_or_insert_with(&key, || Ok(estimate().into()));
     match known {

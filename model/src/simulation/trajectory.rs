@@ -1,24 +1,24 @@
 //! Whole trajectories: the state at every sample, with steps that may span several samples.
 //!
-//! Where inputs run straight over a few samples, one step of the integrator carries the state over all of them, and the
-//! samples in between come from the cubic through both ends and their rates. That is of the order of the integrator
-//! itself. Rates of a stiff pressure tell more of its distance from equilibrium than of its course over the step; so
-//! what they say about curvature goes through the step's own linearly implicit operator, which leaves slow components as
-//! they are and takes out the fast ones.
+//! Where inputs are straight over a few samples, one step of the integrator spans all of them. The samples in between
+//! come from the cubic through both ends and their rates, which has the order of the integrator itself. The rate of a
+//! stiff pressure depends more on its distance from equilibrium than on its course over the step. So the curvature from
+//! the rates passes through the step's own linearly implicit operator, which keeps slow components and removes the fast
+//! ones.
 
 use super::integrator::{GAMMA, Integrator};
 use super::{InputSignals, SimulationError};
 
-/// Samples that one step may span. The largest step is 5 ms; at more than 1.6 kHz other costs prevail.
+/// Samples that one step may span. The largest step is 5 ms; above 1.6 kHz other costs dominate.
 const MOST_SAMPLES: usize = 8;
 
-/// How much smaller than a single sample's the error of a long step has to be: many small steps are more exact than
-/// their tolerance says, because the largest step hardly ever is at its limit; long ones are not.
+/// Factor by which the error of a long step must be smaller than that of a single sample. Many small steps are more
+/// accurate than their tolerance, because even the error of the largest one is rarely at its limit; long ones are not.
 const STRICTER: f64 = 4.0;
 
-/// How far from straight, in units of the tolerance, a state's course may be in the middle of a long step. The curvature
-/// of an arm's own oscillation comes to about one; where a chamber leaves cavitation or a piston an end stop, the course
-/// has a corner that no cubic follows.
+/// Largest deviation of a state's course from a straight line in the middle of a long step, in units of the tolerance.
+/// The curvature of an arm's own oscillation is about one. Where a chamber leaves cavitation or a piston leaves an end
+/// stop, the course has a corner that no cubic can follow.
 const MOST_BEND: f64 = 5.0;
 
 /// Cubic course of a state over one step.
@@ -26,17 +26,18 @@ const MOST_BEND: f64 = 5.0;
 struct Course {
     start: Vec<f64>,
     start_rates: Vec<f64>,
-    /// What the rates at both ends add to the secant over the step, in units of the state.
+    /// Contribution of the rates at both ends to the course, in addition to the secant over the step, in units of the
+    /// state.
     bend: [Vec<f64>; 2],
     between: Vec<f64>,
 }
 
 impl Integrator<'_, '_> {
-    /// Carries `state` from the first sample of `signals` to the last and calls `visit` with every sample's number and
+    /// Advances `state` from the first sample of `signals` to the last and calls `visit` with every sample's number and
     /// state. Steps are as long as tolerances and the straightness of the inputs allow ([`InputSignals::is_straight`]).
     ///
     /// # Errors
-    /// [`SimulationError`] when the solution cannot be carried on.
+    /// [`SimulationError`] if the solution cannot be continued.
     pub fn follow(
         &mut self,
         signals: &InputSignals,
@@ -87,7 +88,8 @@ impl Integrator<'_, '_> {
         end
     }
 
-    /// One step from sample `index` to sample `end`; whether it was exact enough. If not, `state` is left as it was.
+    /// One step from sample `index` to sample `end`; returns whether it was accurate enough. If not, `state` stays
+    /// unchanged.
     fn step_over(
         &mut self,
         signals: &InputSignals,

@@ -1,15 +1,15 @@
-//! From what instruments reported back to what was.
+//! Recovers true values from instrument readings.
 
 use crate::Model;
 use crate::equations::{Channel, Distortion, System};
 use crate::recording::{Recording, cubic};
 
-/// The recording as true instruments would have made it: what the model's sensor effects add is taken away. Offsets are
-/// subtracted; late signals are moved forward on the clock by their delay, with a cubic between samples, and end by that
-/// much earlier (`NaN`). Inputs stay as they are. A model without sensor effects changes nothing.
+/// The recording as ideal instruments would have made it, without the model's sensor effects. Offsets are subtracted.
+/// Delayed signals are moved forward on the clock by their delay, with a cubic between samples, and end earlier by that
+/// time (`NaN`). Inputs stay unchanged. A model without sensor effects changes nothing.
 ///
-/// For equations that are fed with measurements. How the true values depend on the sensor effects' parameters says
-/// [`Distortion::truth`].
+/// For equations that take measurements as inputs. [`Distortion::truth`] gives the dependence of the true values on the
+/// sensor effects' parameters.
 #[must_use]
 pub fn undistorted(model: &Model, recording: &Recording) -> Recording {
     let mut corrected = recording.clone();

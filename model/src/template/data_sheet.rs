@@ -1,29 +1,29 @@
-//! What an engineer knows of a machine before it is measured.
+//! Data of a machine that are known before measurements.
 
-/// A data sheet. All in SI units.
+/// A data sheet. All values are in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DataSheet {
     /// Name of the machine, a word.
     pub name: String,
     /// Name of the cylinder or motor, a word.
     pub part: String,
-    /// What drives it.
+    /// The drive.
     pub drive: DriveKind,
-    /// What is driven.
+    /// The driven actuator.
     pub actuator: Actuator,
-    /// What it moves.
+    /// The load.
     pub load: Load,
-    /// Input at which the valve is fully open; for drives with a valve.
+    /// Input at which the valve is fully open; only for drives with a valve.
     pub command: Option<ValveCommand>,
-    /// Flow of the fully open valve; estimated where it is left out.
+    /// Flow of the fully open valve; estimated if omitted.
     pub rated: Option<RatedFlow>,
-    /// Pressure of the supply, Pa: of a valve on constant pressure, of the charge line of a pump drive, or the cut-off of a load-sensing
-    /// pump.
+    /// Pressure of the supply, Pa: of a valve on constant pressure, of the charge line of a pump drive, or the cut-off of a
+    /// load-sensing pump.
     pub supply_pressure: Option<f64>,
     /// Largest flow of the pump, m³/s.
     pub pump_flow: Option<f64>,
-    /// Oil volumes between valve and cap side and between valve and rod side, m³: hoses and ports. A tenth of the stroke's volume where they
-    /// are left out.
+    /// Oil volumes between valve and cap side and between valve and rod side, m³: hoses and ports. A tenth of the stroke's volume
+    /// if omitted.
     pub dead_volumes: Option<[f64; 2]>,
     /// Bulk modulus of the oil, Pa.
     pub bulk_modulus: Option<f64>,
@@ -33,7 +33,7 @@ pub struct DataSheet {
     pub metering_drop: Option<f64>,
 }
 
-/// What drives a cylinder or motor.
+/// The drive of a cylinder or motor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DriveKind {
     /// A valve on a supply of constant pressure.
@@ -42,15 +42,15 @@ pub enum DriveKind {
     OpenCentre,
     /// A valve with a pressure compensator on a load-sensing pump.
     LoadSensing,
-    /// A pump of its own, in a closed circuit.
+    /// A separate pump, in a closed circuit.
     Pump,
-    /// A force that is measured.
+    /// A measured force.
     Force,
-    /// A testing machine that moves the rod, whatever force that takes.
+    /// A testing machine that imposes the rod's motion, whatever the force.
     ImposedMotion,
 }
 
-/// What is driven.
+/// The driven actuator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Actuator {
     /// A cylinder.
@@ -68,7 +68,7 @@ pub enum Actuator {
     Motor {
         /// Volume per angle of the shaft, m³/rad.
         displacement: f64,
-        /// Turns of the shaft for one of the load; angle per travel in rad/m for a load that moves along a line.
+        /// Shaft turns per turn of the load; angle per travel in rad/m for a load that moves along a line.
         ratio: f64,
     },
 }
@@ -84,7 +84,7 @@ pub enum CylinderKind {
     SingleActing,
 }
 
-/// What is moved.
+/// The load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Load {
     /// A mass along a line.
@@ -143,7 +143,7 @@ impl ValveCommand {
     }
 }
 
-/// Flow of a fully open valve over one of its edges.
+/// Flow of a fully open valve across one of its edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RatedFlow {
     /// Flow, m³/s.
@@ -152,20 +152,20 @@ pub struct RatedFlow {
     pub drop: f64,
 }
 
-/// A number that nothing can stand in for.
+/// A missing value that cannot be estimated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("a machine with this drive needs {what}")]
 #[non_exhaustive]
 pub struct MissingFromDataSheet {
-    /// What is missing, for people.
+    /// Description of the missing value.
     pub what: &'static str,
 }
 
 impl DataSheet {
-    /// Pressure that the machine works at, Pa.
+    /// Working pressure of the machine, Pa.
     pub(super) fn working_pressure(&self) -> f64 {
         match self.drive {
-            // The charge line of a closed circuit has nothing of what the pump gives.
+            // The charge pressure of a closed circuit is unrelated to the pump's working pressure.
             DriveKind::Pump => USUAL_PRESSURE,
             _ => self.supply_pressure.unwrap_or(USUAL_PRESSURE),
         }
@@ -185,7 +185,7 @@ impl DataSheet {
         }
     }
 
-    /// Flow that the actuator is made for, m³/s.
+    /// Rated flow of the actuator, m³/s.
     pub(super) fn usual_flow(&self) -> f64 {
         let by_speed = match self.actuator {
             Actuator::Cylinder { stroke, .. } => stroke / STROKE_TIME,
@@ -198,7 +198,7 @@ impl DataSheet {
 /// A usual working pressure of mobile and bench hydraulics, Pa.
 const USUAL_PRESSURE: f64 = 1e7;
 
-/// Time in which a piston usually makes its stroke, s.
+/// Usual time of a full stroke, s.
 const STROKE_TIME: f64 = 2.0;
 
 /// Usual speed of a motor's shaft, rad/s: 500 revolutions per minute.

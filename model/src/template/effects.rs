@@ -11,7 +11,7 @@ use crate::effects::Site;
 /// A value from the data sheet: parameter, value, whether it is known, source.
 type Value = (&'static str, f64, bool, &'static str);
 
-/// An effect of the file: its name, whether it sits at the pump line, and what the data sheet says of its parameters.
+/// An effect of the file: its name, whether it acts on the pump line, and the data sheet's values of its parameters.
 struct Entry {
     effect: &'static str,
     at_pump: bool,
@@ -78,16 +78,17 @@ fn full_force(sheet: &DataSheet) -> f64 {
     sheet.areas()[0] * sheet.working_pressure()
 }
 
-/// Speed that the usual flow drives, m/s; of a motor's shaft, rad/s.
+/// Speed at the usual flow, m/s; of a motor's shaft, rad/s.
 fn usual_speed(sheet: &DataSheet) -> f64 {
     sheet.usual_flow() / sheet.areas()[0]
 }
 
-/// Usual share of the full force that is Coulomb friction, and that is viscous at the usual speed.
+/// Usual Coulomb friction, and viscous friction at the usual speed, as fractions of the full force.
 const COULOMB_SHARE: f64 = 0.02;
 const VISCOUS_SHARE: f64 = 0.05;
 
-/// Usual loss of a pump drive, and leakage over a piston as a share of the usual flow at the working pressure.
+/// Usual efficiency of a pump drive, and leakage across a piston as a fraction of the usual flow at the working
+/// pressure.
 const PUMP_SHARE: f64 = 0.97;
 const LEAKAGE_SHARE: f64 = 0.005;
 

@@ -1,12 +1,13 @@
-//! A machine for each drive, actuator and unit of input that no built-in model has.
+//! Example machines for each drive, actuator and unit of input that no built-in model covers.
 
 use super::{Actuator, CylinderKind, DataSheet, DriveKind, Load, ValveCommand, model_text};
 use crate::Model;
 use crate::document::parse;
 use crate::effects::Catalogue;
 
-/// Models from made-up data sheets: a pump-driven cylinder of unequal areas and one of equal areas, a motor on a valve, a load-sensing
-/// axis, a single-acting cylinder. The valves of the last three and of three more take an orifice area, a voltage, a current, a share.
+/// Models from example data sheets: a pump-driven cylinder of unequal areas and one of equal areas, a motor on a valve, a
+/// load-sensing axis, a single-acting cylinder. The valves of the last three and of three more have an orifice area, a voltage, a
+/// current or a share as input.
 pub fn examples() -> Vec<Model> {
     let texts = sheets().into_iter().filter_map(|sheet| Some((model_text(&sheet).ok()?, sheet.name)));
     texts.filter_map(|(text, name)| parse(&name, &text, &Catalogue::built_in()).ok()).collect()

@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use super::{Actuator, CylinderKind, DataSheet, DriveKind, Load, MissingFromDataSheet, ValveCommand};
 
-/// Volume of hoses and ports as a share of the stroke's.
+/// Volume of hoses and ports as a fraction of the stroke volume.
 const DEAD_SHARE: f64 = 0.1;
 
-/// The text, up to the first effect.
+/// The text before the first effect.
 pub(super) fn text(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
     let mut text = format!(
         "# {}\n#\n# Numbers are in SI units. Those with `known = true` and the machine's own are taken as they are; `identify` finds the\n\
@@ -57,7 +57,7 @@ fn constant(key: &str, value: f64, unit: &str, source: &str) -> String {
     format!("{key} = {{ value = {}, unit = \"{unit}\", source = \"{source}\" }}\n", short(value))
 }
 
-/// A number with six digits, as people write it. TOML wants a point or an exponent in it.
+/// Formats a number with six digits. TOML requires a point or an exponent in it.
 pub(super) fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded:?}") } else { format!("{rounded:e}") }
@@ -99,7 +99,7 @@ fn supply(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
     })
 }
 
-/// Volume of the pump line, as time of the pump's flow, s: that of \[A\] Table 1.
+/// Volume of the pump line divided by the pump flow, s: that of \[A\] Table 1.
 const LINE_TIME: f64 = 0.32;
 
 fn actuator(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
@@ -149,7 +149,7 @@ fn actuator(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
     }
 }
 
-/// Oil on each side of a motor, as turns of its shaft.
+/// Oil volume on each side of a motor, in turns of its shaft.
 const MOTOR_TURNS: f64 = 4.0;
 
 fn linkage(load: &Load) -> String {

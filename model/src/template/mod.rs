@@ -1,4 +1,4 @@
-//! Model files for machines that are known by their data sheets: commented text that reads, runs, and can be changed by hand.
+//! Writes model files for machines known by their data sheets: commented text that parses, runs, and can be edited by hand.
 
 mod data_sheet;
 mod effects;
@@ -14,23 +14,23 @@ pub use examples::examples;
 use crate::document::{DocumentError, parse};
 use crate::effects::Catalogue;
 
-/// Why no model file could be written.
+/// Why a model file cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TemplateError {
     /// The data sheet lacks something.
     #[error(transparent)]
     Missing(#[from] MissingFromDataSheet),
-    /// The numbers do not make a machine.
+    /// The numbers do not define a valid machine.
     #[error(transparent)]
     Document(#[from] DocumentError),
 }
 
-/// The model file of a machine with this data sheet. What the data sheet does not say is estimated from the size of the machine and is
-/// for an identification to find.
+/// The model file of a machine with this data sheet. Values that the data sheet lacks are estimated from the size of the machine,
+/// for an identification to refine.
 ///
 /// # Errors
-/// [`TemplateError`] where a number is missing that nothing can stand in for, or where numbers contradict each other.
+/// [`TemplateError`] if a number is missing that cannot be estimated, or if numbers contradict each other.
 pub fn model_text(sheet: &DataSheet) -> Result<String, TemplateError> {
     let machine = machine::text(sheet)?;
     let bare = parse(&sheet.name, &machine, &Catalogue::built_in())?;

@@ -1,4 +1,4 @@
-//! What comes out of the monitor.
+//! Output of the energy monitor.
 
 use crate::effects::Text;
 
@@ -18,8 +18,8 @@ pub struct Balance {
     pub metering_loss: f64,
 }
 
-/// The energy balance of one cylinder and its link. In a chain of links the residual of one cylinder also holds what
-/// the links pass on to each other; in the sum over all cylinders that cancels.
+/// The energy balance of one cylinder and its link. In a chain of links the residual of one cylinder also contains
+/// the energy exchanged between links; it cancels in the sum over all cylinders.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CylinderBalance {
@@ -35,7 +35,7 @@ pub struct CylinderBalance {
     pub hamiltonian_rate: f64,
     /// Power supplied through the valve, or by the measured force on the rod, W.
     pub supply: f64,
-    /// Power of each effect that does not store, W.
+    /// Power of each effect that does not only store energy, W.
     pub terms: Vec<EffectTerm>,
 }
 
@@ -45,7 +45,7 @@ pub struct CylinderBalance {
 pub struct EffectTerm {
     /// Name in the catalogue.
     pub effect: Text,
-    /// W; negative = taken out of the stored energy.
+    /// W; negative = reduces the stored energy.
     pub power: f64,
 }
 
@@ -60,7 +60,7 @@ impl CylinderBalance {
         self.terms.iter().map(|term| term.power).sum()
     }
 
-    /// `hamiltonian_rate - (dissipation + supply)`, W: what the model does not explain.
+    /// `hamiltonian_rate - (dissipation + supply)`, W: the part that the model does not explain.
     pub fn residual(&self) -> f64 {
         self.hamiltonian_rate - (self.dissipation() + self.supply)
     }

@@ -1,9 +1,9 @@
-//! The energy balance of a machine at work, sample by sample, from what is measured.
+//! The energy balance of a working machine, sample by sample, from measurements.
 //!
 //! Each state gets one [`Balance`], with the same effect code that drives the simulation. Two of its numbers need a
-//! derivative: the velocity, where no sensor measures it, and the rate of the Hamiltonian. Both are the slope of the
-//! least-squares parabola over the samples within `half_width` of the state, so a balance belongs to a state in the
-//! past and carries that state's stamp: the delay is one half width, two where the velocity is estimated
+//! derivative: the velocity, if no sensor measures it, and the rate of the Hamiltonian. Both are the slope of the
+//! least-squares parabola over the samples within `half_width` of the state. So a balance belongs to a past state and
+//! carries that state's timestamp: the delay is one half width, or two if the velocity is estimated
 //! ([`Monitor::delay`]).
 
 mod balance;

@@ -1,4 +1,4 @@
-//! From measured states to balances.
+//! Computes balances from measured states.
 
 use std::collections::VecDeque;
 
@@ -11,13 +11,13 @@ use crate::equations::{Inputs, LawStates, System};
 use crate::machine::Supply;
 use crate::recording::{CylinderSample, Sample};
 
-/// How the monitor differentiates, and what it takes for a gap.
+/// Settings for differentiation and for gaps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Half width of the window of a slope, s. 10 ms: at 1 kHz it averages 21 samples, and an arm's energy, which
-    /// changes within 50 ms at the fastest, passes with 97 % of its amplitude.
+    /// Half width of the window of a slope, s. 10 ms: at 1 kHz it averages 21 samples, and passes 97 % of the
+    /// amplitude of an arm's energy, which changes within 50 ms at the fastest.
     pub half_width: f64,
-    /// Time without a sample that separates what comes after from what was before, s.
+    /// A pause longer than this counts as a gap, s: windows do not reach across it.
     pub gap: f64,
 }
 
@@ -27,40 +27,40 @@ impl Default for Settings {
     }
 }
 
-/// What the monitor met.
+/// Counters of the monitor.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Counts {
-    /// States taken.
+    /// States received.
     pub states: u64,
-    /// Balances given.
+    /// Balances returned.
     pub balances: u64,
-    /// States with the stamp of the one before, left out.
+    /// States with the same timestamp as the previous one, dropped.
     pub duplicates: u64,
-    /// States older than the one before, left out.
+    /// States older than the previous one, dropped.
     pub out_of_order: u64,
-    /// Gaps, after which windows start anew.
+    /// Gaps, after which windows start again.
     pub gaps: u64,
-    /// Jumps of the clock backwards, after which windows start anew.
+    /// Backward jumps of the clock, after which windows start again.
     pub jumps: u64,
-    /// Balances in which something is `NaN` because a signal was missing.
+    /// Balances with a `NaN` because a signal was missing.
     pub incomplete: u64,
 }
 
-/// Rounding of times, s: less than the distance of any two samples, more than doubles lose within a day.
+/// Rounding of times, s: less than any sample interval, more than the rounding error of doubles within a day.
 const ROUNDING: f64 = 1e-9;
 /// A state older than the newest by more than this is a jump of the clock, not a late message, ns.
 const BACKWARDS: i64 = 1_000_000_000;
 
-/// Follows one machine.
+/// Monitors one machine.
 #[derive(Debug)]
 pub struct Monitor<'m, 's> {
     system: &'s System<'m>,
     parameters: Vec<f64>,
     settings: Settings,
-    /// States whose balances are not complete, oldest first; the first `stored` have their storage.
+    /// States whose balances are not complete, oldest first; the storage of the first `stored` is known.
     waiting: VecDeque<Waiting>,
-    /// Entries of `waiting` that have been given away and stay for the windows of younger ones.
+    /// Entries of `waiting` whose balance was returned, kept for the windows of later states.
     given: usize,
     /// Entries of `waiting` whose storage and powers are known.
     evaluated: usize,
@@ -72,7 +72,7 @@ pub struct Monitor<'m, 's> {
 #[derive(Debug)]
 struct Waiting {
     sample: Sample,
-    /// Seconds since the first sample after a new beginning.
+    /// Seconds since the first sample after a restart.
     time: f64,
     balance: Option<Balance>,
 }
@@ -93,18 +93,18 @@ impl<'m, 's> Monitor<'m, 's> {
         }
     }
 
-    /// Time by which a balance comes later than its state, s: until the window of the Hamiltonian's rate is full, and
-    /// before that the window of the velocity where no sensor measures it.
+    /// Delay of a balance behind its state, s: until the window of the Hamiltonian's rate is full, plus the window of
+    /// the velocity if no sensor measures it.
     pub fn delay(&self, velocity_is_measured: bool) -> f64 {
         if velocity_is_measured { self.settings.half_width } else { 2.0 * self.settings.half_width }
     }
 
-    /// What was met so far.
+    /// The counters so far.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Takes a state; the balances that are complete with it go to `balances`, in the order of their states.
+    /// Adds a state. Balances that are now complete are appended to `balances`, in the order of their states.
     pub fn push(&mut self, sample: Sample, balances: &mut Vec<Balance>) {
         let mut first = sample.nanoseconds;
         if let Some(newest) = self.waiting.back().map(|waiting| waiting.sample.nanoseconds) {
@@ -133,7 +133,7 @@ impl<'m, 's> Monitor<'m, 's> {
         self.forget();
     }
 
-    /// Gives what is waiting, with the windows that there are, and starts anew.
+    /// Returns the pending balances, with the windows available so far, and restarts.
     pub fn flush(&mut self, balances: &mut Vec<Balance>) {
         self.evaluate(f64::INFINITY, true);
         self.give(f64::INFINITY, true, balances);
@@ -142,7 +142,7 @@ impl<'m, 's> Monitor<'m, 's> {
         self.evaluated = 0;
     }
 
-    /// Storage and powers of the states whose velocity can be known at time `now`.
+    /// Computes storage and powers of the states whose velocity can be known at time `now`.
     fn evaluate(&mut self, now: f64, all: bool) {
         while let Some(next) = self.waiting.get(self.evaluated) {
             let measured = self.has_velocity(&next.sample);
@@ -160,12 +160,12 @@ impl<'m, 's> Monitor<'m, 's> {
         }
     }
 
-    /// Rates of the Hamiltonian for the states whose window is full.
+    /// Computes rates of the Hamiltonian for the states whose window is full, and returns their balances.
     fn give(&mut self, now: f64, all: bool, balances: &mut Vec<Balance>) {
         while self.given < self.evaluated {
             let Some(next) = self.waiting.get(self.given) else { return };
             let reach = next.time + self.settings.half_width;
-            // The window is full when the states behind its end have been evaluated too.
+            // The window is full once the states after its end have been evaluated too.
             let known = self.waiting.get(self.evaluated.saturating_sub(1)).map_or(now, |last| last.time);
             if !all && known < reach - ROUNDING {
                 return;
@@ -187,7 +187,7 @@ impl<'m, 's> Monitor<'m, 's> {
         }
     }
 
-    /// Drops the states that no window needs any more.
+    /// Drops the states that no window needs.
     fn forget(&mut self) {
         while self.given > 0 {
             let (Some(oldest), Some(next)) = (self.waiting.front(), self.waiting.get(self.given)) else { return };
@@ -202,7 +202,7 @@ impl<'m, 's> Monitor<'m, 's> {
 
     /// The states within a half width of `centre`.
     fn around(&self, centre: f64) -> impl Iterator<Item = &Waiting> {
-        // A little more, so that rounding of stamps does not decide whether a window is symmetric.
+        // Slightly wider, so that rounding of timestamps does not make a window asymmetric.
         let half_width = self.settings.half_width + ROUNDING;
         self.waiting
             .iter()
@@ -214,7 +214,7 @@ impl<'m, 's> Monitor<'m, 's> {
         sample.cylinders.iter().all(|cylinder| cylinder.velocity.is_finite())
     }
 
-    /// Storage and powers at one state; the rate of the Hamiltonian is still to come.
+    /// Storage and powers at one state; the rate of the Hamiltonian follows later.
     fn balance(&mut self, index: usize, state: &[f64], inputs: &Inputs<f64>) -> Balance {
         let model: &Model = self.system.model();
         let book = self.accountant.ledger(&self.parameters, state, inputs);
@@ -259,7 +259,7 @@ impl<'m, 's> Monitor<'m, 's> {
         inputs.rod_force[number] * cylinder.linkage.lever(state[layout.joint(number)]) * state[layout.rate(number)]
     }
 
-    /// State vector, but for the effects' own states, and inputs of a measured state.
+    /// State vector, without the effects' own states, and inputs of a measured state.
     fn state_of(&self, waiting: &Waiting) -> (Vec<f64>, Inputs<f64>) {
         let layout = self.system.layout();
         let machine = &self.system.model().machine;

@@ -1,11 +1,11 @@
 //! Slopes of noisy signals on an uneven clock.
 
-/// Fewest values that a slope is taken from: a parabola has three coefficients, one more value to average.
+/// Fewest values for a slope: a parabola has three coefficients, and one more value averages.
 const FEWEST: usize = 4;
 
-/// Slope at `centre` of the least-squares parabola through `points` (time in s, value); values that are not finite are
-/// left out. `NaN` with fewer than four values, or with all of them on one side: a one-sided parabola's slope is five
-/// times as noisy and lags.
+/// Slope at `centre` of the least-squares parabola through `points` (time in s, value). Values that are not finite are
+/// skipped. `NaN` with fewer than four values, or if all are on one side: a one-sided parabola's slope is five times
+/// as noisy and lags.
 pub(super) fn slope_at(points: impl Iterator<Item = (f64, f64)>, centre: f64) -> f64 {
     let (mut count, mut before, mut after) = (0_usize, false, false);
     // Sums of powers of time, and of the value times powers of time, about the centre.

@@ -1,17 +1,17 @@
-//! Judging the balances: does the model explain the energy, and could it at all?
+//! Decides whether the model explains the energy balance, and whether the balance is physically possible.
 
 use std::collections::VecDeque;
 
 use super::Balance;
 
-/// How the watch judges.
+/// Settings of the watch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WatchSettings {
-    /// Time over which powers are averaged, s. 1 s: long against the noise of a differentiated energy, short against
-    /// a work cycle.
+    /// Time over which powers are averaged, s. 1 s: long compared with the noise of a differentiated energy, short compared
+    /// with a work cycle.
     pub window: f64,
-    /// Standard errors that a mean residual must exceed. 5: with one window per second a false alarm comes once in
-    /// twenty days of white noise.
+    /// Standard errors that a mean residual must exceed. 5: with one window per second, white noise causes one false alarm in
+    /// twenty days.
     pub significance: f64,
 }
 
@@ -33,22 +33,21 @@ pub struct Window {
     pub stored: f64,
     /// Energy supplied, J.
     pub supplied: f64,
-    /// Energy that the effects of the model gave, J; negative = dissipated.
+    /// Energy that the effects of the model add, J; negative = dissipated.
     pub dissipated: f64,
-    /// Standard error of `stored - supplied - dissipated` from the noise of the signals and from what happens between two
-    /// states, J.
+    /// Standard error of `stored - supplied - dissipated`, J, from signal noise and from changes between two states.
     pub standard_error: f64,
-    /// Significance asked for.
+    /// Significance required.
     pub significance: f64,
-    /// Size of `stored - supplied - dissipated` that is below what the balance resolves, J.
+    /// Resolution of `stored - supplied - dissipated`, J: a smaller value means nothing.
     pub resolution: f64,
 }
 
-/// Share of the energy that went through, of which a balance says nothing: what happens between two states, above all when
-/// a valve steps. Simulator and monitor of the same model leave up to 0.3 % at 1 kHz; sensors are worse.
+/// Fraction of the energy throughput that a balance cannot resolve, because of changes between two states, above all steps of
+/// a valve. Simulator and monitor of the same model leave up to 0.3 % at 1 kHz; sensors are worse.
 const SHARE: f64 = 5e-3;
-/// Share of the stored energy below which its change is not resolved: what an integration with a relative tolerance of 1e-6
-/// leaves, a hundred times less than the best pressure transducers.
+/// Fraction of the stored energy below which its change is not resolved: the error of an integration with a relative tolerance
+/// of 1e-6, a hundred times less than that of the best pressure transducers.
 const ROUNDING: f64 = 1e-6;
 
 impl Window {
@@ -57,33 +56,33 @@ impl Window {
         (self.stored - self.supplied - self.dissipated) / self.length
     }
 
-    /// Size of a mean residual that noise alone does not reach, and at least what the balance resolves, W.
+    /// Limit of the mean residual that noise alone does not exceed, but at least the resolution of the balance, W.
     ///
-    /// Noise is carried through the balance as through a linear one. Where the pressure drop over a valve is smaller
-    /// than the noise of the pressure sensors the square root is far from linear, the supplied power is biased, and the
-    /// residual may exceed this without any physics missing.
+    /// Noise is propagated through the linearised balance. Where the pressure drop over a valve is smaller than the noise of
+    /// the pressure sensors, the square root is strongly nonlinear and the supplied power is biased. The residual may then
+    /// exceed this limit without any missing physics.
     pub fn threshold(&self) -> f64 {
         self.least() / self.length
     }
 
-    /// Energy that neither noise nor resolution explains, J.
+    /// Energy that noise and resolution can explain, J.
     fn least(&self) -> f64 {
         (self.significance * self.standard_error).max(self.resolution)
     }
 
-    /// Whether noise explains what the model does not.
+    /// Whether noise explains the residual.
     pub fn is_explained(&self) -> bool {
         self.residual().abs() <= self.threshold()
     }
 
-    /// Whether more energy was stored than supplied, beyond the noise: no passive machine does that, so an instrument
-    /// or the supply side of the model is wrong.
+    /// Whether more energy was stored than supplied, beyond the noise. No passive machine does that, so an instrument or the
+    /// supply side of the model is wrong.
     pub fn violates_passivity(&self) -> bool {
         self.stored - self.supplied > self.least()
     }
 }
 
-/// Collects balances and judges them window by window.
+/// Collects balances and evaluates them window by window.
 #[derive(Debug)]
 pub struct Watch {
     settings: WatchSettings,
@@ -94,24 +93,24 @@ pub struct Watch {
 struct Point {
     nanoseconds: i64,
     stored: f64,
-    /// Sum of the sizes of the stored energies.
+    /// Sum of the absolute stored energies.
     size: f64,
     supply: f64,
     dissipation: f64,
 }
 
-/// Fewest balances that a window is judged by.
+/// Fewest balances in a window that is evaluated.
 const FEWEST: usize = 20;
-/// Time without a balance that ends a window unjudged, ns.
+/// A longer pause between balances discards the window, ns.
 const GAP: i64 = 200_000_000;
 
 impl Watch {
-    /// Judges from now on.
+    /// A watch without any balances yet.
     pub fn new(settings: WatchSettings) -> Self {
         Watch { settings, points: VecDeque::new() }
     }
 
-    /// Takes a balance; gives a window when one is full. Incomplete balances are left out.
+    /// Adds a balance; returns a window when one is full. Incomplete balances are skipped.
     pub fn push(&mut self, balance: &Balance) -> Option<Window> {
         let sum = |of: fn(&super::CylinderBalance) -> f64| balance.cylinders.iter().map(of).sum::<f64>();
         let point = Point {
@@ -147,8 +146,8 @@ impl Watch {
             let step = (right.nanoseconds - left.nanoseconds) as f64 * 1e-9;
             supplied += 0.5 * step * (left.supply + right.supply);
             dissipated += 0.5 * step * (left.dissipation + right.dissipation);
-            // A valve that steps between two states does so anywhere between them: the trapezoid's error is spread evenly over
-            // the step of the power, once to each side.
+            // A valve may step anywhere between two states. So the trapezoid's error is uniformly distributed over the step of
+            // the power, on both sides.
             between += (step * (right.supply + right.dissipation - left.supply - left.dissipation)).powi(2) / 12.0;
             through += 0.5 * step * (left.supply.abs() + right.supply.abs());
             through += 0.5 * step * (left.dissipation.abs() + right.dissipation.abs());
