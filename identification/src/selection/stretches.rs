@@ -70,7 +70,7 @@ impl<'m> Selection<'m> {
     /// Takes the next block of the recording.
     ///
     /// # Errors
-    /// [`RegressionError`] when it lacks a cylinder of the model, or all of its stretches lack inputs.
+    /// [`RegressionError`] if it lacks a cylinder of the model, or all of its stretches lack inputs.
     pub fn offer(&mut self, block: &Recording) -> Result<(), RegressionError> {
         self.start.get_or_insert(block.start_nanoseconds);
         self.duration += block.recorded_time();

@@ -57,7 +57,7 @@ impl Comparison {
 /// Piston velocity of a cylinder, m/s: as measured, else the slope of the displacement.
 ///
 /// # Errors
-/// [`RunError::Signal`] when inputs of the model are missing.
+/// [`RunError::Signal`] if inputs of the model are missing.
 pub fn measured_velocity(model: &Model, recording: &Recording) -> Result<Vec<Vec<f64>>, RunError> {
     Ok(observe(model, recording)?.cylinders.into_iter().map(|cylinder| cylinder.velocity).collect())
 }
@@ -88,7 +88,7 @@ pub fn measured_velocity(model: &Model, recording: &Recording) -> Result<Vec<Vec
 /// ```
 ///
 /// # Errors
-/// [`RunError`] when the recording lacks inputs or the simulation fails.
+/// [`RunError`] if the recording lacks inputs or the simulation fails.
 pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunError> {
     beside(model, recording, simulate(model, recording)?)
 }
@@ -96,7 +96,7 @@ pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunEr
 /// A recording beside other signals on its clock.
 ///
 /// # Errors
-/// [`RunError`] when the recording lacks inputs.
+/// [`RunError`] if the recording lacks inputs.
 pub(super) fn beside(model: &Model, recording: &Recording, simulated: Recording) -> Result<Comparison, RunError> {
     let mut measured = recording.clone();
     for (cylinder, velocity) in model.machine.cylinders.iter().zip(measured_velocity(model, recording)?) {

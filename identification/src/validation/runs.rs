@@ -36,7 +36,7 @@ impl Repeat {
 /// Compares two runs, the second one shifted so that the commands agree best.
 ///
 /// # Errors
-/// [`RunError`] when a recording lacks the inputs of the model.
+/// [`RunError`] if a recording lacks the inputs of the model.
 pub fn compare_runs(model: &Model, run: &Recording, again: &Recording) -> Result<Repeat, RunError> {
     let (first, second) = (command(model, run)?, command(model, again)?);
     let shift = alignment(&first, &second);
