@@ -69,8 +69,8 @@ fn arrivals(model: &Model, recording: &Recording) -> Vec<bool> {
 }
 
 impl SegmentedRecording {
-    /// Thins `recording` to about `sample_rate` samples per second and cuts it into segments of about `duration` s. All
-    /// have the same length, and none crosses a gap in the sample times.
+    /// Thins `recording` to about `sample_rate` samples per second and cuts it into segments of about `duration` s.
+    /// None crosses a gap in the sample times, and all between two gaps have the same length.
     ///
     /// # Errors
     /// [`SignalError`] if inputs or initial states are missing.
