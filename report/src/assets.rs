@@ -1,4 +1,4 @@
-//! What a page carries along so that it needs no network.
+//! Embedded files of a page, so that it needs no network.
 
 /// uPlot 1.6.32 (npm package `uplot`), unchanged. Its first comment, an address, is left out of pages.
 const UPLOT_SCRIPT: &str = include_str!("assets/uPlot.iife.min.js");
@@ -6,7 +6,7 @@ const UPLOT_SCRIPT: &str = include_str!("assets/uPlot.iife.min.js");
 /// Style sheet of uPlot.
 pub(super) const UPLOT_STYLE: &str = include_str!("assets/uPlot.min.css");
 
-/// Licence of uPlot (MIT), which asks to go with every copy.
+/// Licence of uPlot (MIT), which every copy must include.
 pub(super) const UPLOT_LICENCE: &str = include_str!("assets/uPlot.LICENSE");
 
 /// Style sheet of the pages, with the colours of the light scheme.
@@ -15,10 +15,11 @@ pub(super) const PAGE_STYLE: &str = include_str!("assets/report.css");
 /// Colours of the dark scheme.
 pub(super) const DARK_STYLE: &str = include_str!("assets/dark.css");
 
-/// Chooses the scheme before anything is drawn.
+/// Chooses the colour scheme before anything is drawn.
 pub(super) const SCHEME_SCRIPT: &str = include_str!("assets/scheme.js");
 
-/// What a page does once it is there, in this order: plots over time, their keyboard, the moving machine, contents and printing.
+/// Scripts that run after a page is loaded, in this order: plots over time, their keyboard control, the moving machine,
+/// contents and printing.
 pub(super) const PAGE_SCRIPTS: [&str; 5] = [
     include_str!("assets/plots.js"),
     include_str!("assets/keyboard.js"),
@@ -27,8 +28,8 @@ pub(super) const PAGE_SCRIPTS: [&str; 5] = [
     include_str!("assets/page.js"),
 ];
 
-/// Reads a robot description (URDF) in a browser and places its links in the plane of the arm: `readRobot`, `placeLinks`,
-/// `outline` and what they need, as functions of a script.
+/// Reads a robot description (URDF) in a browser and places its links in the plane of the arm: `readRobot`,
+/// `placeLinks`, `outline` and their helpers, as functions of a script.
 pub const KINEMATICS: &str = include_str!("assets/kinematics.js");
 
 /// The plotting library without its first comment.
@@ -39,7 +40,7 @@ pub(super) fn uplot_script() -> &'static str {
     }
 }
 
-/// uPlot for pages of others: its script, its style sheet, and its licence, which has to go with them.
+/// uPlot for pages of other crates: its script, its style sheet, and its licence, which must be included.
 pub fn plotting() -> (&'static str, &'static str, &'static str) {
     (uplot_script(), UPLOT_STYLE, UPLOT_LICENCE)
 }

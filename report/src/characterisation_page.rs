@@ -1,4 +1,4 @@
-//! What the procedures of \[B\] found, on one page.
+//! A page with the results of the procedures of \[B\].
 
 use excavator_identification::characterisation::{
     ChamberLeakage, Characterisation, ClosedValve, DeadZone, DirectionalGain, Edge, Estimate, FrictionCurve,
@@ -12,8 +12,8 @@ use super::characterisation_plots::{edge_plots, friction_plot, gain_plots, trans
 use super::numbers::{SIDES_95, percent, significant, with_margin};
 use super::page::{Section, page, tile};
 
-/// A page with gains, dead zones, leakage and friction of every cylinder, with 95 % bands, and why what is not there could
-/// not be measured.
+/// A page with gains, dead zones, leakage and friction of every cylinder, with 95 % bands, and the reasons for missing
+/// results.
 ///
 /// ```
 /// use excavator_identification::characterisation::characterise;
@@ -137,7 +137,7 @@ fn dead_zones(one: &Characterisation) -> Markup {
     }
 }
 
-/// A leakage coefficient as people say it, per pressure of this process's unit: displayed value of 1 m³/(s Pa), and the unit.
+/// Unit for leakage coefficients, per pressure in this process's unit: displayed value of 1 m³/(s Pa), and the unit.
 pub fn leakage_unit() -> (f64, String) {
     let pressure = PressureUnit::shown();
     (60e6 / pressure.factor(), format!("ml/(min {})", pressure.symbol()))

@@ -9,10 +9,11 @@ use super::numbers::SIDES_95;
 use super::svg::{Frame, picture, range_of};
 use super::units;
 
-/// Pairs of colours that people with any colour vision tell apart: from closed and from the edge, opening and closing.
+/// Pairs of colours that are distinguishable with any colour vision: from closed and from the edge, opening and
+/// closing.
 const FIRST: &str = "var(--blue)";
 const SECOND: &str = "var(--orange)";
-/// Points of a curve.
+/// Number of points of a curve.
 const POINTS: usize = 60;
 const SIZE: (f64, f64) = (265.0, 205.0);
 const MARGINS: (f64, f64, f64, f64) = (46.0, 8.0, 20.0, 36.0);
@@ -64,7 +65,7 @@ pub(super) fn edge_plots(found: &[(Edge, &DeadZone)]) -> Markup {
     html! {
         (key([(FIRST, "opening"), (SECOND, "closing")]))
         div.panels { @for (edge, zone) in found {
-            // Most of a run is far from the edge; the picture shows three dead zones of it.
+            // Most of a run is far from the edge, so the picture shows only three dead zones.
             @let shown = 3.0 * zone.opening.value.abs().max(5.0 * zone.hysteresis.value.abs()) * 1e6;
             @let points = |opens: bool| -> Vec<Vec<(f64, f64)>> {
                 zone.curves.iter().filter(|curve| curve.opens == opens)

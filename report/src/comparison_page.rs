@@ -1,4 +1,4 @@
-//! A model beside recordings.
+//! A page that compares a model with recordings.
 
 use excavator_identification::validation::{Baselines, Comparison, Repeat};
 use excavator_model::Model;
@@ -11,12 +11,12 @@ use super::page::{Section, page, tile};
 use super::time_plots::{Line, MODEL, OTHER_MODEL, SECOND_RUN, hint, time_plots};
 use super::{parameter_table, signal_tables};
 
-/// What is drawn beside the model on every plot of a recording.
+/// Additional data on every plot of a recording.
 #[derive(Debug, Clone, Copy)]
 pub enum Beside<'a> {
     /// Another model of the machine.
     Model(&'a Comparison),
-    /// Another run of it, aligned.
+    /// Another run of the machine, aligned.
     Run(&'a Repeat),
 }
 
@@ -29,12 +29,12 @@ impl<'a> Beside<'a> {
         }
     }
 
-    /// What a legend or a head of a column calls it.
+    /// Its name in a legend or a column heading.
     pub fn label(self) -> &'static str {
         self.line().label
     }
 
-    /// NMSE of a signal; `NaN` where it has none.
+    /// NMSE of a signal; `NaN` if it has none.
     pub fn error_of(self, signal: &str) -> f64 {
         let own = self.comparison().signals.iter().find(|own| own.name == signal);
         own.map_or(f64::NAN, |own| own.normalised_error)
@@ -48,13 +48,13 @@ impl<'a> Beside<'a> {
     }
 }
 
-/// A recording beside its model, and whatever else is drawn with it.
+/// Lines of a recording, its model, and all additional data.
 fn comparison_lines<'a>(comparison: &'a Comparison, others: &[Beside<'a>]) -> Vec<(Line, &'a Comparison)> {
     std::iter::once((MODEL, comparison)).chain(others.iter().map(|other| (other.line(), other.comparison()))).collect()
 }
 
-/// A page that shows how far `model` is from recordings: measures, every signal over time, and every signal's error
-/// against command, speed, pressure and position.
+/// A page that compares `model` with recordings: measures, every signal over time, and every signal's error against
+/// command, speed, pressure and position.
 ///
 /// `baselines` are those of the comparisons, in their order; `others` belong to the first one.
 pub fn comparison_page(

@@ -1,4 +1,4 @@
-//! How far a model is from a recording, in plain sentences.
+//! Summarises the error of a model on a recording in plain sentences.
 
 use excavator_identification::validation::{Baselines, Comparison, PhaseShare, SignalComparison};
 
@@ -8,7 +8,7 @@ use super::numbers::{percent, significant};
 /// Share of a signal's error that one phase of motion must hold to be mentioned.
 const MOST_OF_IT: f64 = 0.8;
 
-/// What a comparison shows: how much of the recording the model explains, how good that is, and where it is worst.
+/// Summary of a comparison: how much of the recording the model explains, how good that is, and where it is worst.
 pub fn comparison_sentence(comparison: &Comparison, baselines: &Baselines) -> String {
     let machine = &comparison.machine.name;
     let mean = comparison.mean_error();
@@ -35,7 +35,7 @@ pub fn comparison_sentence(comparison: &Comparison, baselines: &Baselines) -> St
     sentences.join(" ")
 }
 
-/// Share of the variance that a mean NMSE leaves to the model. All of it is never explained.
+/// Share of the variance that the model explains at a mean NMSE. It is never all of it.
 fn explained(nmse: f64) -> String {
     match 100.0 * (1.0 - nmse) {
         share if share >= 99.95 => "more than 99.9 %".to_string(),
@@ -44,7 +44,7 @@ fn explained(nmse: f64) -> String {
     }
 }
 
-/// How what is drawn beside the model does on the same recording.
+/// Summary of the additional data on the same recording.
 pub fn others_sentence(comparison: &Comparison, other: Beside<'_>) -> String {
     let (own, its) = (comparison.mean_error(), other.comparison().mean_error());
     let error = significant(its, 3);
@@ -77,7 +77,7 @@ fn worst_sentence(signal: &SignalComparison) -> String {
     )
 }
 
-/// "arm.cap_pressure" as a person says it: the cap pressure of arm.
+/// "arm.cap_pressure" in words: the cap pressure of arm.
 fn spoken(signal: &str) -> String {
     match signal.split_once('.') {
         Some((part, quantity)) => format!("the {} of {part}", quantity.replace('_', " ")),

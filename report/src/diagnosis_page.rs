@@ -1,4 +1,4 @@
-//! What a model is missing.
+//! A page with what a model is missing.
 
 use excavator_identification::decision::Kind;
 use excavator_identification::diagnosis::{Candidate, Diagnosis, Part};
@@ -19,8 +19,8 @@ use super::verdict_text::verdict_sentence;
 use super::{energy_tables, parameter_table};
 
 /// A page with a diagnosis: the verdict, the evidence, and where the model fails. `comparisons_before` are the model
-/// without additions on the validation recordings; `missing` is what the energy ledger of the refitted model says of each
-/// of them.
+/// without additions on the validation recordings; `missing` is the missing power in the energy ledger of the refitted
+/// model for each of them.
 ///
 /// ```no_run
 /// use excavator_identification::diagnosis::Diagnosis;
@@ -69,7 +69,7 @@ pub fn diagnosis_page(
     page("Diagnosis", &model.machine.name, &lead, &sections)
 }
 
-/// What the energy ledger says, recording by recording.
+/// Results of the energy ledger, recording by recording.
 fn missing_power(missing: &[(String, Vec<MissingPower>)]) -> Markup {
     html! {
         @for (source, found) in missing {

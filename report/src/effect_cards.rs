@@ -1,4 +1,4 @@
-//! What the catalogue says about an effect.
+//! Shows the catalogue's card of an effect.
 
 use excavator_identification::diagnosis::{Candidate, contribution};
 use excavator_model::recording::Recording;
@@ -11,7 +11,7 @@ use super::verdict_text::place_of;
 /// Card, picture on `recordings` and fitted parameters of a named candidate.
 pub(super) fn effect_card(candidate: &Candidate<'_>, recordings: &[&Recording]) -> Markup {
     let card = candidate.addition.physics.card();
-    // A picture that cannot be made leaves its place empty; the words beside it stand without.
+    // If the picture cannot be made, the card has only text.
     let shown = contribution(candidate.trial, candidate.addition, recordings).ok().flatten();
     html! {
         div.card {

@@ -1,4 +1,4 @@
-//! An effect as the data show it.
+//! Plots an effect as shown by the data.
 
 use excavator_identification::diagnosis::{Contribution, ContributionBin, Drawn};
 use excavator_model::machine::Machine;

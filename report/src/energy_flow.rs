@@ -1,4 +1,4 @@
-//! Where the energy went, as ribbons from the pump to what took it.
+//! Draws the energy flow as ribbons from the pump to the losses and stores.
 
 use excavator_identification::energy::Totals;
 use excavator_model::Model;
@@ -17,12 +17,12 @@ const CYLINDER: &str = "var(--green)";
 const STORED: &str = "var(--sky)";
 const UNEXPLAINED: &str = "var(--purple)";
 
-/// Columns of the picture. Left of the pump stands what gives energy back to its line.
+/// Columns of the picture. Sources that return energy to the pump line are left of the pump.
 const PUMP: usize = 1;
 const CYLINDERS: usize = 2;
 const TAKERS: usize = 3;
 
-/// Parts below this share of everything are left out of the picture; the table has them.
+/// Parts below this share of the total are left out of the picture. The table includes them.
 const SMALLEST: f64 = 5e-4;
 
 /// The picture of some energies.
@@ -72,7 +72,7 @@ pub(super) fn energy_flow(model: &Model, totals: &Totals) -> Markup {
     sankey(&flow.nodes, &flow.ribbons, "flow of energy from the pump to losses and storage")
 }
 
-/// What 100 % is.
+/// Energy that counts as 100 %.
 pub(super) fn whole(model: &Model, totals: &Totals) -> f64 {
     match model.machine.supply {
         Supply::PumpLine(_) => totals.pump,
@@ -100,7 +100,8 @@ impl Flow {
         self.ribbons.push(Ribbon { from, to, amount: amount.abs() });
     }
 
-    /// `amount` from a node to what took it, in `column`; where that gave instead, from it to the node, on whose left it stands.
+    /// Adds a ribbon of `amount` from a node to a new sink in `column`. If the amount is negative, the new node is a
+    /// source to the left of the node, and the ribbon leads from it.
     fn give(&mut self, node: usize, label: &str, amount: f64, column: usize, colour: &'static str) {
         if !amount.is_finite() || amount.abs() < SMALLEST * self.whole.abs() {
             return;

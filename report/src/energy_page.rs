@@ -1,4 +1,4 @@
-//! Where the energy of a recording went.
+//! A page with the energy flow of a recording.
 
 use excavator_identification::energy::{CylinderTraces, EnergyAnalysis, missing_power};
 use excavator_model::Model;
@@ -143,7 +143,7 @@ fn rates(model: &Model, trace: &CylinderTraces, number: usize, budget: usize) ->
     }
 }
 
-/// How a rate stands against another: by how many degrees it lags or leads.
+/// Phase of a rate against another: its lag or lead in degrees.
 fn against(lag: Option<f64>) -> String {
     match lag {
         None => "has no measured phase against".to_string(),
@@ -200,7 +200,7 @@ fn stored(trace: &CylinderTraces, number: usize, budget: usize) -> Markup {
     }
 }
 
-/// What is missing over time, with its band, equation by equation.
+/// Missing power over time, with its band, equation by equation.
 fn residual_plots(model: &Model, analysis: &EnergyAnalysis) -> Markup {
     let time: Vec<f64> = analysis.windows.iter().map(|window| window.time).collect();
     html! { @for (index, place) in analysis.places.iter().enumerate() {

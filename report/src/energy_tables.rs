@@ -1,4 +1,4 @@
-//! Energies and the ledger in numbers.
+//! Tables of energies and of the ledger.
 
 use excavator_identification::energy::{EnergyAnalysis, MissingPower, Regime, Totals};
 use excavator_model::Model;
@@ -45,7 +45,7 @@ pub(super) fn energies(model: &Model, analysis: &EnergyAnalysis) -> Markup {
     }
 }
 
-/// What a ledger that does not close has gained.
+/// Label for the unexplained gain of a ledger that does not close.
 const UNEXPLAINED: &str = "gained without explanation";
 
 struct Line<'a> {
@@ -53,7 +53,7 @@ struct Line<'a> {
     effect: Option<&'a str>,
     energy: f64,
     heading: bool,
-    /// A difference of others: its deviation is not the difference of theirs.
+    /// Whether it is a difference of other lines. Its deviation is not the difference of theirs.
     derived: bool,
 }
 
@@ -92,7 +92,7 @@ fn lines<'a>(model: &Model, totals: &'a Totals) -> Vec<Line<'a>> {
     lines
 }
 
-/// The balance of the pump line in one line.
+/// The balance of the pump line in one row.
 pub(super) fn pump_line(model: &Model, analysis: &EnergyAnalysis) -> Markup {
     let Some(line) = analysis.pump_line(model) else {
         return html! { p.empty { "The supply of this machine is not part of the model." } };
@@ -114,7 +114,7 @@ pub(super) fn pump_line(model: &Model, analysis: &EnergyAnalysis) -> Markup {
     }
 }
 
-/// Power that is missing, place by place and condition by condition.
+/// Missing power, place by place and condition by condition.
 pub(super) fn ledger(model: &Model, analysis: &EnergyAnalysis) -> Markup {
     html! {
         p.note { "All powers in W." }
@@ -141,7 +141,7 @@ pub(super) fn ledger(model: &Model, analysis: &EnergyAnalysis) -> Markup {
     }
 }
 
-/// What is missing, in sentences.
+/// Missing power, in sentences.
 pub(super) fn evidence(missing: &[MissingPower]) -> Markup {
     html! {
         @if missing.is_empty() { p { "The ledger closes at every equation: noise explains what is left." } }

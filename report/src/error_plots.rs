@@ -1,4 +1,4 @@
-//! The error against what the machine does: command, speed, pressure, position.
+//! Plots the error against variables of the machine: command, speed, pressure, position.
 
 use std::borrow::Cow;
 
@@ -12,7 +12,7 @@ use super::time_plots::Line;
 use super::units::{self, Unit};
 use super::words;
 
-/// Bins along the variable.
+/// Number of bins along the variable.
 const BINS: usize = 32;
 
 /// Samples that a bin needs to have a mean.
@@ -32,7 +32,7 @@ pub(super) struct Errors<'a> {
     pub comparisons: &'a [Comparison],
 }
 
-/// Something that the machine does, in display units.
+/// A variable of the machine, in display units.
 struct Variable<'a> {
     label: String,
     unit: Unit<'a>,
@@ -146,7 +146,7 @@ fn cloud(model: &Model, name: &str, index: usize, errors: &Errors<'_>, unit: Uni
     (means.len() > 1).then_some(Cloud { line: errors.line, points, means })
 }
 
-/// Mean and standard deviation over bins of equal width; the outermost half percents are left out.
+/// Mean and standard deviation over bins of equal width; the outermost half percent on each side is left out.
 fn means(points: &[(f64, f64)]) -> Vec<(f64, f64, f64)> {
     let mut sorted: Vec<f64> = points.iter().map(|point| point.0).collect();
     sorted.sort_by(f64::total_cmp);
@@ -172,7 +172,8 @@ fn means(points: &[(f64, f64)]) -> Vec<(f64, f64, f64)> {
         .collect()
 }
 
-/// What the error of a signal is plotted against; always the same number of variables for the same model and signal.
+/// The variables that the error of a signal is plotted against. Their number is always the same for the same model and
+/// signal.
 fn variables<'a>(model: &Model, name: &str, recording: &'a Recording) -> Vec<Variable<'a>> {
     let own = name.split_once('.').map(|(cylinder, _)| cylinder);
     let several = model.machine.cylinders.len() > 1;

@@ -1,4 +1,4 @@
-//! Which effects were tried, what each gained, and where the model fails.
+//! Tables of the tried effects, their gains, and where the model fails.
 
 use excavator_identification::diagnosis::{Candidate, Diagnosis, Part, Share};
 use maud::{Markup, html};
@@ -7,10 +7,10 @@ use super::numbers::{percent, significant};
 use super::verdict_text::NONE_TRIED;
 use super::words;
 
-/// Rows of the table of regimes.
+/// Largest number of rows in the table of regimes.
 const MOST_REGIMES: usize = 12;
 
-/// Candidates with evidence, then the others, folded away.
+/// Candidates with evidence, then the others, collapsed.
 pub(super) fn evidence(diagnosis: &Diagnosis) -> Markup {
     let (rows, rejected) = (diagnosis.candidates(), diagnosis.rejected());
     if diagnosis.tried() == 0 {
@@ -76,7 +76,7 @@ fn table(rows: &[Candidate<'_>]) -> Markup {
     }
 }
 
-/// Class of what an effect is in the verdict.
+/// CSS class for the role of an effect in the verdict.
 fn class_of(candidate: &Candidate<'_>) -> &'static str {
     match candidate.part {
         _ if candidate.is_tied_with_first => "tied",
@@ -95,7 +95,7 @@ fn two_digits(value: f64) -> String {
     }
 }
 
-/// Where the residual is, as bars.
+/// Distribution of the residual, as bars.
 pub(super) fn regimes(map: &[Share]) -> Markup {
     let largest = map.iter().map(|share| share.share_of_residual).fold(0.0, f64::max);
     html! {

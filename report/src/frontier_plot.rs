@@ -1,4 +1,4 @@
-//! Error against complexity.
+//! Plots error against complexity.
 
 use excavator_identification::proposal::Proposals;
 use maud::{Markup, html};
@@ -8,7 +8,7 @@ use super::svg::{Frame, picture, range_of};
 const DOT: &str = "var(--purple)";
 const LINE: &str = "var(--brown)";
 
-/// Each proposal by its number of parameters and its error, which is drawn by its logarithm; the given model has none.
+/// Each proposal by its number of parameters and the logarithm of its error. The given model has zero parameters.
 pub(super) fn frontier_plot(found: &Proposals) -> Markup {
     let point = |count: usize, error: f64| (count as f64, error.log10());
     let mut points = vec![point(0, found.error_before)];

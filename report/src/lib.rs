@@ -1,8 +1,8 @@
-//! The HTML report: what was measured, what the model does, and what it is missing, on one page that a browser opens
+//! The HTML report: the measurement, the simulation, and what the model is missing, on one page that a browser opens
 //! from disk without a network.
 //!
-//! Each function returns a whole page as text; writing it to a file is left to the caller. Plots over time are drawn by
-//! uPlot, which is part of the page; all others are inline pictures. All text from models and recordings is escaped.
+//! Each function returns a whole page as text; the caller writes it to a file. Plots over time are drawn by uPlot,
+//! which is part of the page; all others are inline pictures. All text from models and recordings is escaped.
 
 mod assets;
 mod characterisation_page;

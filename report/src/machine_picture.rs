@@ -1,4 +1,4 @@
-//! The machine from its side, moving along a recording as measured and as simulated.
+//! Side view of the machine, moving along a recording as measured and as simulated.
 
 use excavator_identification::validation::Comparison;
 use excavator_model::machine::{Cylinder, Linkage, Mechanism};
@@ -8,15 +8,15 @@ use maud::{Markup, PreEscaped, html};
 
 use super::time_plots::{Line, shortest, text};
 
-/// Positions of one joint at most: a motion of a minute is smooth with ten in a second.
+/// Largest number of positions of one joint. A motion of a minute is smooth with ten per second.
 const MOST_POSITIONS: usize = 600;
 
-/// Decimals of a joint position in rad or m: a deviation of a micrometre can be drawn enlarged.
+/// Decimals of a joint position in rad or m, so that a deviation of a micrometre can be drawn enlarged.
 const DECIMALS: usize = 6;
 
-/// The box in which the script of the page draws the machine of `models` at the cursor of the plots of `group`; nothing
-/// where no joint moves in the plane that is drawn, or where its position is no output that was compared: an imposed motion
-/// cannot deviate.
+/// The box in which the page's script draws the machine of `models` at the cursor of the plots of `group`. It is empty
+/// if no joint moves in the drawing plane, or if its position is not a compared output: an imposed motion cannot
+/// deviate.
 pub(super) fn machine_picture(models: &[(Line, &Comparison)], group: &str) -> Markup {
     let Some((_, first)) = models.first() else { return html! {} };
     if !drawn(first).any(|cylinder| is_compared(first, cylinder)) {
@@ -46,7 +46,7 @@ pub(super) fn machine_picture(models: &[(Line, &Comparison)], group: &str) -> Ma
     html! { div.machine { script type="application/json" { (PreEscaped(json)) } } }
 }
 
-/// Cylinders whose joints move in the plane that is drawn.
+/// Cylinders whose joints move in the drawing plane.
 fn drawn(comparison: &Comparison) -> impl Iterator<Item = &Cylinder> {
     let machine = &comparison.machine;
     let beside = matches!(machine.mechanism, Mechanism::LinearLoad | Mechanism::Rotor) && machine.cylinders.len() > 1;
@@ -60,14 +60,14 @@ fn is_compared(comparison: &Comparison, cylinder: &Cylinder) -> bool {
     comparison.signals.iter().any(|signal| names.contains(&signal.name))
 }
 
-/// Indices of at most [`MOST_POSITIONS`] samples, first and last among them.
+/// Indices of at most [`MOST_POSITIONS`] samples, including the first and the last.
 fn evenly(samples: usize) -> Vec<usize> {
     let count = samples.min(MOST_POSITIONS);
     (0..count).map(|k| k * (samples - 1) / (count - 1).max(1)).collect()
 }
 
-/// Positions of a cylinder's joint, measured and of each model; `None` where no model moves it. Where it is not measured,
-/// the first model stands in.
+/// Positions of a cylinder's joint, measured and of each model. Returns `None` if a model has no positions of it. If it
+/// is not measured, the first model is the reference.
 fn joint_json(cylinder: &Cylinder, models: &[(Line, &Comparison)], kept: &[usize]) -> Option<String> {
     let simulated: Vec<Vec<f64>> =
         models.iter().map(|(_, comparison)| positions(&comparison.simulated, cylinder)).collect::<Option<_>>()?;
@@ -88,7 +88,7 @@ fn joint_json(cylinder: &Cylinder, models: &[(Line, &Comparison)], kept: &[usize
     ))
 }
 
-/// Joint positions of a cylinder in a recording, rad or m: those it has, or those that its displacement gives.
+/// Joint positions of a cylinder in a recording, rad or m: as recorded, or computed from its displacement.
 fn positions(recording: &Recording, cylinder: &Cylinder) -> Option<Vec<f64>> {
     let of = |quantity: &str| {
         recording.signal(&format!("{}.{quantity}", cylinder.name)).filter(|values| is_measured(values))

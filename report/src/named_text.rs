@@ -1,4 +1,4 @@
-//! What named additions did, in plain sentences.
+//! Describes the result of named additions in plain sentences.
 
 use excavator_identification::decision::Kind;
 use excavator_identification::diagnosis::NamedVerdict;
@@ -10,7 +10,8 @@ use super::signal_tables::added_name;
 use super::verdict_text::verdict_sentence;
 use super::words;
 
-/// What a refinement came to, in one or two plain sentences: the verdict of its diagnosis, or what named additions did.
+/// Result of a refinement in one or two plain sentences: the verdict of its diagnosis, or the result of named
+/// additions.
 pub fn refinement_sentence(refinement: &Refinement) -> String {
     match &refinement.reason {
         Reason::Found(diagnosis) => verdict_sentence(&refinement.given_model, diagnosis),

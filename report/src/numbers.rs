@@ -1,9 +1,9 @@
-//! Numbers for people.
+//! Formats numbers for readers.
 
-/// What stands where there is no number.
+/// Placeholder for a missing number.
 pub(super) const NOTHING: &str = "–";
 
-/// `value` with `digits` significant digits; a power of ten where plain digits would be hard to read.
+/// `value` with `digits` significant digits, with a power of ten if plain digits would be hard to read.
 pub(super) fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return NOTHING.to_string();
@@ -39,7 +39,7 @@ pub(super) fn with_margin(value: f64, error: f64) -> String {
     if shift == 0 { pair } else { format!("({pair}) × 10{}", superscript(shift)) }
 }
 
-/// A known value, with no more digits than it has, four at most.
+/// A known value with its own digits, four at most.
 fn plain(value: f64) -> String {
     let text = significant(value, 4);
     let (mantissa, power) = text.split_once(" × ").map_or((text.as_str(), None), |(m, p)| (m, Some(p)));
@@ -47,8 +47,7 @@ fn plain(value: f64) -> String {
     power.map_or(mantissa.to_string(), |power| format!("{mantissa} × {power}"))
 }
 
-/// How the one number by which models are compared changes, for the end of a sentence: `falls from 0.00691 to 0.000314 (22.0 times
-/// smaller)`.
+/// Change of the error measure that models are compared by, for the end of a sentence
 pub(super) fn change_of_error([before, after]: [f64; 2]) -> String {
     let (from, to) = (significant(before, 3), significant(after, 3));
     if after < before {
@@ -75,7 +74,7 @@ pub(super) fn decimal(value: f64) -> String {
     with_minus(&format!("{:.1}", if rounded == 0.0 { 0.0 } else { rounded }))
 }
 
-/// By how much a squared error falls: "12 times less".
+/// Factor by which a squared error decreases: "12 times less".
 pub(super) fn ratio(times: f64) -> String {
     match times {
         times if !times.is_finite() => NOTHING.to_string(),
@@ -94,7 +93,7 @@ pub(super) fn power_of_ten(exponent: i32) -> String {
     format!("10{}", superscript(exponent))
 }
 
-/// The exponent of what [`power_of_ten`] writes.
+/// The exponent in a text from [`power_of_ten`].
 pub(super) fn exponent_in(power: &str) -> Option<i32> {
     const DIGITS: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
     let digits: Option<String> = power

@@ -4,10 +4,10 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::assets::{DARK_STYLE, PAGE_SCRIPTS, PAGE_STYLE, SCHEME_SCRIPT, UPLOT_LICENCE, UPLOT_STYLE, uplot_script};
 
-/// A page allows itself nothing but what it carries.
+/// A page may load nothing except its embedded content.
 const CONTENT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
-/// Where the dark scheme holds until the button of the page says otherwise. Never on paper.
+/// Media query for the dark scheme until the page's button overrides it. It never applies to paper.
 const DARK_MEDIA: &str = "screen and (prefers-color-scheme: dark)";
 
 /// One part of a page.
@@ -16,7 +16,7 @@ pub(super) struct Section {
     pub anchor: &'static str,
     /// Heading.
     pub title: String,
-    /// What is under it.
+    /// Content below the heading.
     pub body: Markup,
 }
 

@@ -11,11 +11,11 @@ use maud::{Markup, html};
 use super::numbers::{NOTHING, SIDES_95, percent, with_margin};
 use super::{units, words};
 
-/// Half width of the 95 % interval over the value from which on a number is called poorly known.
+/// Ratio of the half width of the 95 % interval to the value above which a number counts as poorly known.
 const POORLY_KNOWN: f64 = 1.0;
 
-/// All parameters of a model, effect by effect. Marked are effects in `added` (`effect@place`), and nuisance effects that show
-/// since the model `given`.
+/// All parameters of a model, effect by effect. Effects in `added` (`effect@place`) are marked, and nuisance effects
+/// that show and that the model `given` lacks.
 pub(super) fn of_model(given: &Model, model: &Model, added: &[String]) -> Markup {
     let effects: Vec<&ModelEffect> = model.effects.iter().filter(|effect| !effect.parameters.is_empty()).collect();
     let marks = nuisances_shown(given, model)
@@ -33,7 +33,8 @@ pub(super) fn of_effect(model: &Model, name: &str, site: Site) -> Markup {
     table(model, &effects, None)
 }
 
-/// With a column of effects where `marks` are given: words for some of them, by `effect@place`. The last that fits is taken.
+/// The table has a column of effects if `marks` are given: labels for some of them, by `effect@place`. The last label
+/// of an effect applies.
 fn table(model: &Model, effects: &[&ModelEffect], marks: Option<BTreeMap<String, &'static str>>) -> Markup {
     let (in_model, marks) = (marks.is_some(), marks.unwrap_or_default());
     let poor = effects
@@ -80,7 +81,7 @@ fn cells(
     relative: Option<f64>,
     mark: Option<&ValueMark>,
 ) -> Markup {
-    // A window of time is read along the recording, a time constant is short.
+    // A window of time is read on the time axis of the recording; a time constant is short.
     let is_a_time = parameter.card.start.is_a_time();
     let unit = if is_a_time { units::SECOND } else { units::of_parameter(&parameter.card.unit) };
     let margin = margin(parameter).unwrap_or(f64::NAN);
@@ -121,7 +122,7 @@ fn margin(parameter: &Parameter) -> Option<f64> {
     parameter.margin_95.or(from_error).filter(|margin| !parameter.known && margin.is_finite())
 }
 
-/// That half width over the value.
+/// Ratio of that half width to the value.
 fn relative_margin(parameter: &Parameter) -> Option<f64> {
     margin(parameter).filter(|_| parameter.value != 0.0).map(|margin| (margin / parameter.value).abs())
 }

@@ -1,4 +1,4 @@
-//! Fitted values that are hard to believe, in a plain sentence.
+//! Lists implausible fitted values in a plain sentence.
 
 use excavator_identification::plausibility::{Doubt, Implausible, implausible};
 use excavator_model::Model;
@@ -6,11 +6,11 @@ use excavator_model::Model;
 use super::numbers::significant;
 use super::words;
 
-/// Most values that are listed; the rest are counted.
+/// Largest number of listed values. The rest are counted.
 const LISTED: usize = 4;
 
-/// What is hard to believe of the values of `found`, which was `given` before it was fitted, and what to check; `None` where that is
-/// nothing.
+/// The implausible values of `found`, which was `given` before the fit, and what to check. Returns `None` if there are
+/// none.
 pub fn implausible_sentence(given: &Model, found: &Model) -> Option<String> {
     let all = implausible(given, found);
     if all.is_empty() {

@@ -1,4 +1,4 @@
-//! Energies and powers over time, with error bands.
+//! Plots energies and powers over time, with error bands.
 
 use maud::{Markup, html};
 
@@ -26,15 +26,15 @@ pub(super) struct PowerLine<'a> {
 pub(super) struct PowerPlot<'a> {
     /// Plots of a group are zoomed together.
     pub group: &'a str,
-    /// What is on the axis.
+    /// Label of the axis.
     pub label: &'a str,
     /// Its unit.
     pub unit: &'a str,
     /// px.
     pub height: usize,
-    /// Whether the axis of time is under it.
+    /// Whether it has the time axis below it.
     pub last: bool,
-    /// Points of a line at most.
+    /// Largest number of points of a line.
     pub budget: usize,
 }
 

@@ -18,7 +18,8 @@ use super::proposal_text::{numbers, proposal_sentence};
 use super::time_plots::{AFTER, BEFORE, Line, hint, time_plots};
 use super::unexplained_plot::unexplained_plot;
 
-/// A page with proposed laws: what is missing as a curve, the laws on it, error against complexity, and the measurement before and after.
+/// A page with proposed laws: the missing physics as a curve with the laws on it, error against complexity, and the
+/// comparison with the measurement before and after.
 pub fn proposal_page(model: &Model, found: &Proposals) -> String {
     let class = if found.kind == ProposalVerdict::Law { "missing_effect" } else { "unexplained" };
     let lead = html! {
@@ -69,10 +70,10 @@ pub fn proposal_page(model: &Model, found: &Proposals) -> String {
     page("Proposed laws", &model.machine.name, &lead, &sections)
 }
 
-/// Most laws with a picture of their own.
+/// Largest number of laws with a picture of their own.
 const MOST_SHOWN: usize = 3;
 
-/// Which rows and variables single terms speak for.
+/// Rows and variables that the predictions for single terms support.
 fn survey(survey: &Survey) -> Markup {
     let table = |head: &str, last: &str, findings: &[Finding]| {
         html! {
@@ -93,7 +94,7 @@ fn survey(survey: &Survey) -> Markup {
     }
 }
 
-/// Most rows and variables in the survey.
+/// Largest number of rows and variables in the survey.
 const MOST_FINDINGS: usize = 8;
 
 fn table(found: &Proposals) -> Markup {
@@ -130,11 +131,11 @@ pub fn result(found: &Proposals, proposal: &Proposal) -> &'static str {
     }
 }
 
-/// The law on what the equation lacks, and its numbers.
+/// The law, drawn on the residual of the equation, and its numbers.
 fn shown(found: &Proposals, proposal: &Proposal, machine: &Machine, recordings: &[&Recording]) -> Markup {
     let trial = &found.diagnosis.trials[proposal.trial];
     let addition = trial.additions.iter().find(|addition| addition.physics.card().name == proposal.text.name);
-    // A picture that cannot be made leaves its place empty.
+    // If the picture cannot be made, its place stays empty.
     let contribution = addition.and_then(|addition| contribution(trial, addition, recordings).ok().flatten());
     html! {
         div.card {
@@ -145,7 +146,7 @@ fn shown(found: &Proposals, proposal: &Proposal, machine: &Machine, recordings: 
     }
 }
 
-/// The recording on which the model errs most, before and with the first proposal.
+/// The recording with the largest error of the model, before and with the first proposal.
 fn over_time(found: &Proposals) -> Markup {
     let worst =
         (0..found.before.len()).max_by(|&a, &b| found.before[a].mean_error().total_cmp(&found.before[b].mean_error()));

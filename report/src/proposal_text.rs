@@ -1,4 +1,4 @@
-//! What a search for laws found, in plain sentences.
+//! Describes the result of a search for laws in plain sentences.
 
 use excavator_identification::proposal::{Guess, Proposal, ProposalVerdict, Proposals};
 use excavator_model::Model;
@@ -7,7 +7,7 @@ use super::numbers::{change_of_error, percent, significant, with_margin};
 use super::verdict_text::verdict_sentence;
 use super::words;
 
-/// What a search for laws found, in a few sentences.
+/// Result of a search for laws, in a few sentences.
 pub fn proposal_sentence(model: &Model, found: &Proposals) -> String {
     let machine = &model.machine.name;
     let mut sentences = Vec::new();
@@ -46,7 +46,7 @@ pub fn proposal_sentence(model: &Model, found: &Proposals) -> String {
     sentences.join(" ")
 }
 
-/// What single terms promise.
+/// Prediction for the most promising single term.
 pub fn guess_sentence(guess: &Guess) -> String {
     let text = &guess.text;
     let number = |(name, parameter): (&String, &excavator_model::formula::ParameterText)| {
@@ -100,7 +100,7 @@ fn smaller(found: &Proposals, proposal: &Proposal) -> String {
     format!("With it{with}, the mean NMSE on recordings that were not fitted {change}.")
 }
 
-/// In which equation and along which variable the model fails.
+/// The equation and the variable with which the model fails.
 fn lacking(found: &Proposals) -> Option<String> {
     let left = found.lacking.as_ref()?;
     let without = if found.proposals.is_empty() { "The" } else { "Without it the" };

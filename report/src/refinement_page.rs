@@ -1,4 +1,4 @@
-//! From the given model to one that misses less.
+//! A page on the way from the given model to a better one.
 
 use excavator_identification::diagnosis::Diagnosis;
 use excavator_identification::refinement::Refinement;
@@ -16,8 +16,8 @@ use super::signal_tables::{Stages, recordings};
 use super::step_plot::step_plot;
 use super::time_plots::{AFTER, BEFORE, Line, MODEL, hint, time_plots};
 
-/// A page with the story of a refinement: errors step by step, signals before and after, the final model, and the
-/// diagnosis behind it.
+/// A page with the steps of a refinement: errors step by step, signals before and after, the final model, and its
+/// diagnosis.
 ///
 /// ```no_run
 /// use excavator_identification::diagnosis::DiagnosisSettings;
@@ -105,7 +105,7 @@ fn about_steps(refinement: &Refinement) -> Markup {
     }
 }
 
-/// The recording on which the first model errs most.
+/// The recording with the largest error of the first model.
 fn overlay(models: &[(Line, &[Comparison])]) -> Markup {
     let errors = models.first().map_or(&[][..], |(_, comparisons)| comparisons);
     let worst = (0..errors.len()).max_by(|&a, &b| errors[a].mean_error().total_cmp(&errors[b].mean_error()));

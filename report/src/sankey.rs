@@ -1,4 +1,4 @@
-//! A picture of flows that part and join: nodes in columns, ribbons as wide as what flows.
+//! A Sankey diagram: nodes in columns, and ribbons as wide as their flow.
 
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ use super::svg::{picture, short};
 pub(super) struct Node {
     /// What it is.
     pub label: String,
-    /// How much, for people.
+    /// Amount as text.
     pub amount: String,
     /// Column, from the left.
     pub column: usize,
@@ -33,21 +33,21 @@ pub(super) struct Ribbon {
 /// Width of the picture, px, unless labels need more.
 const WIDTH: f64 = 940.0;
 const BAR: f64 = 13.0;
-/// Between a bar and the label beside it.
+/// Distance between a bar and its label.
 const SPACE: f64 = 7.0;
-/// Width of a character of a label, on the safe side.
+/// Width of a character of a label, rounded up for safety.
 const CHARACTER: f64 = 6.6;
 /// Height of a label of two lines.
 const LABEL: f64 = 31.0;
 /// Distance between nodes of a column.
 const GAP: f64 = 10.0;
-/// Least width in which ribbons bend from one column to the next.
+/// Smallest width in which ribbons bend from one column to the next.
 const BEND: f64 = 60.0;
 /// Height of the largest column without its labels and gaps.
 const FLOW_HEIGHT: f64 = 250.0;
 const TOP: f64 = 4.0;
 
-/// The picture. Nodes stand in the order in which they are given; without any flow it is empty.
+/// Draws the diagram. Nodes keep the given order. It is empty without any flow.
 pub(super) fn sankey(nodes: &[Node], ribbons: &[Ribbon], description: &str) -> Markup {
     let Some(layout) = Layout::of(nodes, ribbons) else { return html! { p.empty { "No energy flowed." } } };
     let content = html! {
@@ -73,7 +73,7 @@ struct Bar {
     label: (f64, f64),
 }
 
-/// A ribbon in the picture: level from `start` to `bend`, then over to `end`. Heights are those of its middle.
+/// A ribbon in the picture: horizontal from `start` to `bend`, then curved to `end`. Heights are those of its middle.
 #[derive(Debug)]
 struct Path {
     start: (f64, f64),
@@ -83,14 +83,14 @@ struct Path {
     colour: &'static str,
 }
 
-/// Where everything stands.
+/// Positions of all parts.
 ///
-/// No label lies under a flow. A column has a bar, room for its labels, and room for the ribbons that leave it to bend. In
-/// the room of the labels ribbons are level, so that they cover no more than the heights of their own bars; the label of a
-/// bar that something leaves stands above it, all others stand beside theirs.
+/// No label lies under a flow. A column has a bar, room for its labels, and room for the outgoing ribbons to bend.
+/// Ribbons are horizontal in the room of the labels, so that they cover only the heights of their own bars. A bar with
+/// outgoing ribbons has its label above it; all others have theirs beside it.
 struct Layout {
     size: (f64, f64),
-    /// None where nothing flows.
+    /// `None` for a node without flow.
     bars: Vec<Option<Bar>>,
     paths: Vec<Path>,
 }
@@ -130,7 +130,7 @@ impl Layout {
             let middle = short(0.5 * (path.bend + path.end.0));
             let [above0, below0] = [path.start.1 - half, path.start.1 + half].map(short);
             let [above1, below1] = [path.end.1 - half, path.end.1 + half].map(short);
-            // Outlines, not thick lines: those bulge where they are wide and bend sharply.
+            // Outlines instead of thick lines, which bulge where they are wide and bend sharply.
             let _ = write!(
                 drawing,
                 r#"<path d="M{x0} {above0}H{bend}C{middle} {above0} {middle} {above1} {x1} {above1}V{below1}C{middle} {below1} {middle} {below0} {bend} {below0}H{x0}Z" style="fill:{}" fill-opacity="0.38"></path>"#,
@@ -141,7 +141,7 @@ impl Layout {
     }
 }
 
-/// A ribbon from left to right. What flows back is drawn between the same sides of its nodes.
+/// A ribbon from left to right. A backward flow is drawn between the same sides of its nodes.
 struct Flow {
     left: usize,
     right: usize,
@@ -161,7 +161,7 @@ fn text_width(node: &Node) -> f64 {
     node.label.chars().count().max(node.amount.chars().count()) as f64 * CHARACTER
 }
 
-/// Left edges of columns with these rooms, and the width of all; a column without room is left out.
+/// Left edges of columns with these widths, and the total width. A column without width is left out.
 fn across(rooms: &[f64]) -> (Vec<f64>, f64) {
     let needed: f64 = rooms.iter().sum();
     let bends = rooms.iter().filter(|room| **room > 0.0).count().saturating_sub(1);
@@ -178,7 +178,7 @@ fn across(rooms: &[f64]) -> (Vec<f64>, f64) {
     (lefts, needed + bend * bends as f64)
 }
 
-/// Bars one under the other in their columns, and the height of the highest column.
+/// Bars stacked in their columns, and the height of the highest column.
 fn bars(nodes: &[Node], sizes: &[f64], leaving: &[f64], lefts: &[f64], scale: f64) -> (Vec<Option<Bar>>, f64) {
     let mut next = vec![TOP; lefts.len()];
     let mut bars = Vec::with_capacity(nodes.len());
@@ -202,7 +202,7 @@ fn bars(nodes: &[Node], sizes: &[f64], leaving: &[f64], lefts: &[f64], scale: f6
     (bars, next.iter().copied().fold(0.0, f64::max))
 }
 
-/// Ribbons side by side at their bars, in their order.
+/// Ribbons stacked at their bars, in their order.
 fn paths(flows: &[Flow], nodes: &[Node], bars: &[Option<Bar>], rooms: &[f64], scale: f64) -> Vec<Path> {
     let (mut left, mut arrived) = (vec![0.0; bars.len()], vec![0.0; bars.len()]);
     let mut paths = Vec::with_capacity(flows.len());
@@ -245,7 +245,8 @@ mod tests {
         assert!(!drawn.contains("nothing"));
     }
 
-    /// Height of the middle of a path at `x`: a cubic that is level at both ends, whose `x` and `y` have the same parameter.
+    /// Height of the middle of a path at `x`: a cubic curve that is horizontal at both ends, with `x` and `y` as
+    /// functions of one parameter.
     fn height_at(path: &Path, x: f64) -> Option<f64> {
         if x < path.start.0 || x > path.end.0 {
             return None;
@@ -280,7 +281,7 @@ mod tests {
             flow(1, 4, 30.0),
             flow(3, 5, 0.1),
             flow(4, 6, 29.0),
-            // What flows back.
+            // A backward flow.
             flow(7, 4, 2.0),
         ];
         let Some(layout) = Layout::of(&nodes, &ribbons) else { unreachable!("energy flows") };

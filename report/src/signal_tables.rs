@@ -1,4 +1,4 @@
-//! How far each signal is off, as tables.
+//! Tables of the errors of each signal.
 
 use excavator_identification::refinement::Refinement;
 use excavator_identification::validation::{Comparison, Correlation};
@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use super::numbers::{NOTHING, decimal, significant};
 use super::{units, words};
 
-/// Mean, largest size of the error (measured - model) of a signal, SI.
+/// Mean and largest absolute value of the error (measured - model) of a signal, SI.
 fn error_sizes(comparison: &Comparison, name: &str) -> Option<(f64, f64)> {
     let pairs = || {
         comparison
@@ -61,7 +61,7 @@ pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
     }
 }
 
-/// A correlation with its lag, "no" where chance explains it.
+/// A correlation with its lag, or "no" if chance explains it.
 fn correlation(found: Option<Correlation>) -> String {
     match found {
         None => NOTHING.to_string(),
@@ -81,7 +81,7 @@ fn frequencies(comparisons: &[Comparison]) -> String {
     if found.is_empty() { String::new() } else { format!(" ({})", found.join(", ")) }
 }
 
-/// What was compared: source, length and rate of each recording.
+/// The compared recordings: source, length and rate of each.
 pub(super) fn recordings(comparisons: &[Comparison]) -> Markup {
     html! {
         @if comparisons.is_empty() { p.empty { "No recording." } } @else {

@@ -1,4 +1,4 @@
-//! Errors falling from step to step.
+//! Plots the errors from step to step.
 
 use maud::{Markup, html};
 
@@ -6,7 +6,7 @@ use super::signal_tables::Stages;
 use super::svg::{Frame, picture, short};
 use super::words;
 
-/// Colours that people with any colour vision tell apart (Okabe and Ito), darkest first.
+/// Colours that are distinguishable with any colour vision (Okabe and Ito), darkest first.
 const COLOURS: [&str; 8] = [
     "var(--blue)",
     "var(--orange)",
@@ -18,7 +18,7 @@ const COLOURS: [&str; 8] = [
     "var(--slate)",
 ];
 
-/// Least distance between two labels, px.
+/// Smallest distance between two labels, px.
 const LABEL_HEIGHT: f64 = 15.0;
 
 /// Width of a character of a label, px.
@@ -72,7 +72,7 @@ pub(super) fn step_plot(stages: &Stages) -> Markup {
     picture(size, "error of each signal at each step", &content)
 }
 
-/// Rows in which the names of the steps stand, so that they do not touch.
+/// Number of rows for the names of the steps, so that they do not touch.
 fn rows_of_names(names: &[String]) -> usize {
     let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
     let spacing = (WIDTH - LEFT - RIGHT) / names.len() as f64;
@@ -98,7 +98,7 @@ fn label_heights(stages: &Stages, frame: &Frame) -> Vec<(usize, f64)> {
         label.1 = label.1.max(free);
         free = label.1 + LABEL_HEIGHT;
     }
-    // Pushed out at the bottom: move up again.
+    // Labels below the bottom are moved up again.
     let mut limit = frame.size.1 - frame.margins.3;
     for label in labels.iter_mut().rev() {
         label.1 = label.1.min(limit);

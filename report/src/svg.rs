@@ -1,4 +1,4 @@
-//! Small still pictures: a frame with axes, and points in it.
+//! Small static pictures: a frame with axes, and points in it.
 
 use std::fmt::Write;
 
@@ -9,10 +9,10 @@ use super::numbers::{exponent_in, power_of_ten};
 /// Width of a character of a tick label, px.
 const CHARACTER: f64 = 6.2;
 
-/// Least distance between two tick labels, px.
+/// Smallest distance between two tick labels, px.
 const SPACE: f64 = 8.0;
 
-/// Most labelled ticks that an axis is asked for.
+/// Largest number of labelled ticks requested for an axis.
 const MOST_TICKS: usize = 5;
 
 /// Width up to which a picture fits on a narrow screen, px.
@@ -32,13 +32,13 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Where `x` is in the picture.
+    /// Horizontal position of `x` in the picture.
     pub fn at_x(&self, x: f64) -> f64 {
         let (left, right, ..) = self.margins;
         left + (x - self.x.0) / (self.x.1 - self.x.0) * (self.size.0 - left - right)
     }
 
-    /// Where `y` is in the picture.
+    /// Vertical position of `y` in the picture.
     pub fn at_y(&self, y: f64) -> f64 {
         let (_, _, top, bottom) = self.margins;
         self.size.1 - bottom - (y - self.y.0) / (self.y.1 - self.y.0) * (self.size.1 - top - bottom)
@@ -93,7 +93,7 @@ impl Frame {
         ))
     }
 
-    /// Small dots where points are inside.
+    /// Small dots at the points inside the frame.
     pub fn dots(&self, points: &[(f64, f64)], colour: &str) -> Markup {
         let mut path = String::new();
         for &(x, y) in points.iter().filter(|(x, y)| self.holds(*x, *y)) {
@@ -106,7 +106,7 @@ impl Frame {
 
     fn path(&self, points: impl Iterator<Item = (f64, f64)>) -> String {
         let mut path = String::new();
-        // What lies beside the axes would strike through their labels.
+        // Points beyond the axes would cover their labels.
         let room = 1e-6 * (self.x.1 - self.x.0);
         let inside = |x: f64| x >= self.x.0 - room && x <= self.x.1 + room;
         for (x, y) in points.filter(|&(x, y)| inside(x) && y.is_finite()) {
@@ -117,7 +117,7 @@ impl Frame {
     }
 }
 
-/// The picture around what is drawn. A large one scrolls on a narrow screen.
+/// The picture around its content. A large one scrolls on a narrow screen.
 pub(super) fn picture(size: (f64, f64), description: &str, content: &Markup) -> Markup {
     let (width, height) = (short(size.0), short(size.1));
     let drawing = html! {
@@ -133,7 +133,7 @@ pub(super) fn picture(size: (f64, f64), description: &str, content: &Markup) -> 
     }
 }
 
-/// Coordinates need no more than a tenth of a pixel.
+/// Rounds a coordinate to a tenth of a pixel.
 pub(super) fn short(value: f64) -> f64 {
     (value * 10.0).round() / 10.0
 }
@@ -142,12 +142,12 @@ pub(super) fn short(value: f64) -> f64 {
 struct Ticks {
     values: Vec<f64>,
     texts: Vec<String>,
-    /// Power of ten that is taken out of the texts.
+    /// Power of ten that is left out of the tick labels.
     exponent: i32,
 }
 
 impl Ticks {
-    /// About `wanted` ticks, and two at least.
+    /// About `wanted` ticks, at least two.
     fn of(range: (f64, f64), wanted: usize) -> Self {
         let (values, exponent) = (ticks(range, wanted), exponent_of(range));
         let step = tick_step(range, wanted);
@@ -155,7 +155,7 @@ impl Ticks {
         Ticks { values, texts, exponent }
     }
 
-    /// Ticks along an axis of this many pixels whose labels, side by side, do not touch.
+    /// Ticks along a horizontal axis of this many pixels whose labels do not touch.
     fn across(range: (f64, f64), pixels: f64) -> Self {
         let scale = pixels / (range.1 - range.0);
         let fitting = (2..=MOST_TICKS).rev().map(|wanted| Ticks::of(range, wanted)).find(|ticks| ticks.fit(scale));
@@ -173,7 +173,7 @@ impl Ticks {
     }
 }
 
-/// Round numbers inside a range, about `wanted` of them, and two at least.
+/// Round numbers inside a range, about `wanted` of them, at least two.
 fn ticks(range: (f64, f64), wanted: usize) -> Vec<f64> {
     let step = tick_step(range, wanted);
     if !(step.is_finite() && step > 0.0) {
@@ -183,7 +183,7 @@ fn ticks(range: (f64, f64), wanted: usize) -> Vec<f64> {
     (first..=last).take(4 * wanted).map(|index| index as f64 * step).collect()
 }
 
-/// A round step with about `wanted` ticks in the range, and two at least.
+/// A round step with about `wanted` ticks in the range, at least two.
 fn tick_step(range: (f64, f64), wanted: usize) -> f64 {
     let rough = (range.1 - range.0) / wanted as f64;
     let power = 10_f64.powf(rough.log10().floor());
@@ -198,7 +198,7 @@ fn tick_step(range: (f64, f64), wanted: usize) -> f64 {
     steps.into_iter().find(|&step| step <= usual && count(step) >= 2.0).unwrap_or(usual)
 }
 
-/// A multiple of three where plain digits would be long, else zero.
+/// A multiple of three if plain digits would be long, otherwise zero.
 fn exponent_of(range: (f64, f64)) -> i32 {
     let largest = range.0.abs().max(range.1.abs());
     if !(largest.is_finite() && largest > 0.0) {
@@ -210,7 +210,7 @@ fn exponent_of(range: (f64, f64)) -> i32 {
 
 fn tick_text(tick: f64, step: f64, exponent: i32) -> String {
     let power = 10_f64.powi(exponent);
-    // A step such as 0.001 that is a little too small must not ask for one more decimal.
+    // A step such as 0.001 that is slightly too small must not need one more decimal.
     let decimals = (-((step / power).log10() + 1e-9).floor()).max(0.0) as usize;
     format!("{:.decimals$}", tick / power).replace('-', "−")
 }
@@ -228,7 +228,7 @@ fn with_power(label: &str, exponent: i32) -> String {
     if power == 0 { format!("{name} ({unit}") } else { format!("{name} ({} {unit}", power_of_ten(power)) }
 }
 
-/// A range that holds all values with some room; around zero and of size one for none.
+/// A range that contains all values with some margin. Without values it has size one around zero.
 pub(super) fn range_of(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values
         .filter(|value| value.is_finite())

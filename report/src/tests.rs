@@ -1,4 +1,4 @@
-//! Pages as a whole, made from a simulation instead of a recording.
+//! Tests whole pages, made from a simulation instead of a recording.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -67,7 +67,7 @@ fn fit_of(model: &Model, error: f64) -> Fit {
     for parameter in model.parameters_mut() {
         parameter.standard_error = Some(parameter.value.abs() * 0.02);
     }
-    // One displacement, whose sensor has a noise of 0.1 mm.
+    // One displacement with a sensor noise of 0.1 mm.
     let instrument =
         Instrument { name: "load.displacement".into(), unit: "m", channel: Channel::Displacement(0), noise: 1e-4 };
     Fit {
@@ -84,7 +84,7 @@ fn fit_of(model: &Model, error: f64) -> Fit {
     }
 }
 
-/// A trial with these effects, whose squared error is `e^-improvement` of the given model's.
+/// A trial with these effects. Its squared error is `e^-improvement` times that of the given model.
 fn trial(names: &[&str], improvement: f64) -> Trial {
     let mut extended = model();
     let mut additions = Vec::new();
@@ -98,7 +98,7 @@ fn trial(names: &[&str], improvement: f64) -> Trial {
     Trial { additions, fit: fit_of(&extended, 1e-3), validation, seconds: 0.0 }
 }
 
-/// A diagnosis whose hypotheses are `trials` behind the given model; `set` are their numbers, from 1.
+/// A diagnosis whose hypotheses are the given model and then `trials`. `set` holds their numbers, from 1.
 fn diagnosis(kind: Kind, trials: Vec<Trial>, set: &[usize], reasons: Vec<Reason>) -> Diagnosis {
     let share = |equation: &str, share| Share {
         equation: equation.into(),
@@ -148,7 +148,7 @@ fn adequate(reason: Reason) -> Diagnosis {
 
 const NOISE: Reason = Reason::WithinNoise { log_error_ratio: 0.0, limit: 0.2 };
 
-/// A dead zone and a hose loss that is no answer.
+/// A dead zone, and a hose loss that is not an answer.
 fn dead_zone() -> Vec<Trial> {
     vec![trial(&["valve_dead_zone"], 2.0), trial(&["hose_loss"], -0.01)]
 }
@@ -254,7 +254,7 @@ fn comparison_has_every_signal_and_its_error() {
     let gap = plots.iter().find(|plot| plot["label"] == "cap pressure").unwrap();
     assert!(gap["series"][0]["values"].as_array().unwrap().iter().any(serde_json::Value::is_null));
     assert!(page.contains("valve opening (mm²)") && page.contains("error (MPa)"));
-    // Plots can be reached by keyboard and say what they show; so do pictures.
+    // Plots are reachable by keyboard and have a description. Pictures have a description too.
     let reachable = r#"<div class="time-plot" tabindex="0" role="application""#;
     assert_eq!(page.matches(reachable).count(), plots.len());
     assert!(page.contains(r#"aria-label="Arm cap pressure error over time: measured − model""#));
@@ -401,7 +401,7 @@ fn diagnosis_shows_evidence_cards_and_what_is_left() {
     assert_sound(&diagnosis_page(&model(), &adequate(NOISE), &[comparison(0.0)], &[]));
 }
 
-/// Gives the last effect of a model a value that a fit found.
+/// Sets the value of a model's last effect as if a fit had found it.
 fn found_value(model: &mut Model, value: f64) {
     let parameter = &mut model.effects.last_mut().unwrap().parameters[0];
     (parameter.value, parameter.standard_error) = (value, Some(1e-9));
@@ -448,11 +448,11 @@ fn nuisances_are_told_once_they_are_known() {
         let sentence = verdict_sentence(&plain, &found);
         assert!(sentence.contains("takes this into account"), "{}: {sentence}", physics.card().name);
     }
-    // What only stood in for what was missing is not told.
+    // A nuisance that only compensated for the missing effect is not reported.
     found.trials[0].fit.model.effects.last_mut().unwrap().parameters[0].standard_error = Some(1e9);
     assert!(!verdict_sentence(&plain, &found).contains("takes this into account"));
     found.trials[0].fit.model = known.clone();
-    // Whoever says so in the model needs no telling.
+    // A nuisance that the given model already has is not reported.
     assert!(!verdict_sentence(&known, &found).contains("spool sensor"));
 }
 

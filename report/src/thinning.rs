@@ -1,12 +1,12 @@
-//! Fewer points for a plot, without losing what stands out.
+//! Reduces the points of a plot and keeps its extremes.
 
 use excavator_model::recording::median_interval;
 
-/// Sampling intervals without a sample from which on a line is torn.
+/// Length of a gap, in sampling intervals, from which a line is interrupted.
 const TORN: f64 = 10.0;
 
-/// Indices of at most about `budget` samples that keep the extremes of every series: the time axis is cut into equal
-/// runs, and of each run the samples where a series is least and greatest stay.
+/// Indices of at most about `budget` samples that keep the extremes of every series. The time axis is cut into equal
+/// runs, and in each run the samples with the smallest and largest value of a series are kept.
 pub(super) fn indices(series: &[&[f64]], samples: usize, budget: usize) -> Vec<usize> {
     if samples <= budget || series.is_empty() {
         return (0..samples).collect();
@@ -21,7 +21,7 @@ pub(super) fn indices(series: &[&[f64]], samples: usize, budget: usize) -> Vec<u
             kept.extend(finite().min_by(|&a, &b| values[a].total_cmp(&values[b])));
             kept.extend(finite().max_by(|&a, &b| values[a].total_cmp(&values[b])));
         }
-        // A run in which something is not measured must stay visible as a gap.
+        // A run with a sample that was not measured must stay visible as a gap.
         for values in series {
             kept.extend((start..end).find(|&index| values.get(index).is_some_and(|value| !value.is_finite())));
         }
@@ -31,7 +31,7 @@ pub(super) fn indices(series: &[&[f64]], samples: usize, budget: usize) -> Vec<u
     kept
 }
 
-/// Places in `kept` after which the clock has a gap, where a line must end.
+/// Positions in `kept` before a time gap, where a line must end.
 pub(super) fn gaps(time: &[f64], kept: &[usize]) -> Vec<usize> {
     let longest = TORN * median_interval(time);
     let mut before = Vec::with_capacity(time.len());

@@ -1,4 +1,4 @@
-//! Measured and simulated signals over time, the error under them on the same axis.
+//! Plots measured and simulated signals over time, with the error below on the same axis.
 
 use excavator_identification::validation::{Comparison, SignalComparison};
 use excavator_model::recording::is_measured;
@@ -9,20 +9,20 @@ use super::thinning;
 use super::units::{self, Unit};
 use super::{numbers, words};
 
-/// Points of one series at most.
+/// Largest number of points of one series.
 const MOST_POINTS: usize = 2000;
 
-/// Points of one series at least, however many there are.
+/// Smallest number of points of one series, regardless of the number of series.
 const FEWEST_POINTS: usize = 200;
 
-/// Numbers that all plots of a page share, times among them. With about six characters each they leave room for the rest of
-/// a page of one megabyte.
+/// Total count of numbers, including times, for all plots of a page. With about six characters each they leave room for
+/// the rest of a page of one megabyte.
 const NUMBERS_OF_A_PAGE: usize = 75_000;
 
-/// How one model's line looks.
+/// Style of one model's line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
-    /// In the legend.
+    /// Label in the legend.
     pub label: &'static str,
     /// CSS colour.
     pub colour: &'static str,
@@ -43,13 +43,13 @@ pub(super) const SECOND_RUN: Line = Line { label: "second run", colour: "var(--p
 /// The measurement.
 const MEASURED: Line = Line { label: "measured", colour: "var(--measured)", dashed: false };
 
-/// Width of the measured line, px: it lies under the models and must show on both sides of them.
+/// Width of the measured line, px. It lies under the models and must be visible on both sides of them.
 const MEASURED_WIDTH: f64 = 4.0;
 
 /// Width of all other lines, px.
 const MODEL_WIDTH: f64 = 1.4;
 
-/// How to use the plots.
+/// Instructions for the plots.
 pub(super) fn hint() -> Markup {
     html! {
         p.hint {
@@ -61,11 +61,11 @@ pub(super) fn hint() -> Markup {
     }
 }
 
-/// Plots of all signals of one recording under one or more models. `number` tells recordings of a page apart, of which
-/// there are `recordings`.
+/// Plots of all signals of one recording under one or more models. `number` identifies the recording among the
+/// `recordings` of a page.
 pub(super) fn time_plots(models: &[(Line, &Comparison)], number: usize, recordings: usize) -> Markup {
     let Some((_, first)) = models.first() else { return html! { p.empty { "Nothing to compare." } } };
-    // Of each signal two plots with a time axis each: the measurement and the models, and their errors.
+    // Each signal has two plots, each with times: one of the measurement and the models, one of their errors.
     let columns = first.signals.len() * recordings * (2 * models.len() + 3);
     let group = format!("recording-{number}");
     let budget = (NUMBERS_OF_A_PAGE / columns.max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
@@ -123,10 +123,10 @@ fn signal_plots(models: &[(Line, &Comparison)], name: &str, group: &str, budget:
     }
 }
 
-/// One plot as the page's script wants it.
+/// One plot in the format of the page's script.
 struct Plot<'a> {
     group: &'a str,
-    /// The signal, for those who do not see the plot.
+    /// Name of the signal for screen readers.
     title: &'a str,
     label: &'a str,
     unit: Unit<'a>,
@@ -173,8 +173,8 @@ impl Plot<'_> {
     }
 }
 
-/// The box that the page's script draws `json` into. The keyboard moves its cursor, so it is a widget with a focus, and
-/// `description` says what it shows.
+/// The box that the page's script draws `json` into. The keyboard moves its cursor, so it is a focusable widget.
+/// `description` describes its content.
 pub(super) fn plot_box(description: &str, json: &str) -> Markup {
     html! {
         div.time-plot tabindex="0" role="application" aria-roledescription="plot" aria-label=(description) {
@@ -183,12 +183,12 @@ pub(super) fn plot_box(description: &str, json: &str) -> Markup {
     }
 }
 
-/// JSON text that cannot end the script it stands in.
+/// JSON text that cannot close its script element.
 pub(super) fn text(words: &str) -> String {
     serde_json::Value::from(words).to_string().replace('<', "\\u003c")
 }
 
-/// JSON array of the kept values with five significant digits; what is not a number is `null`.
+/// JSON array of the kept values with five significant digits; values that are not finite are `null`.
 pub(super) fn array(values: &[f64], factor: f64, kept: &[usize]) -> String {
     let entries: Vec<String> = kept
         .iter()
@@ -200,7 +200,7 @@ pub(super) fn array(values: &[f64], factor: f64, kept: &[usize]) -> String {
     format!("[{}]", entries.join(","))
 }
 
-/// The same number in as few characters as JSON has for it: plain digits of 1e-30 would fill a line.
+/// The same number in the fewest characters that JSON allows. Plain digits of 1e-30 would fill a line.
 pub(super) fn shortest(decimal: &str) -> String {
     let Ok(value) = decimal.parse::<f64>() else { return "null".to_string() };
     let (plain, scientific) = (value.to_string(), format!("{value:e}"));

@@ -1,4 +1,4 @@
-//! The residual that no effect of the catalogue explains, as a curve.
+//! Plots the residual that no effect of the catalogue explains, as a curve.
 
 use excavator_identification::diagnosis::Unexplained;
 use excavator_model::machine::Machine;
@@ -9,7 +9,7 @@ use super::residual_units::{unit_of_residual, unit_of_variable};
 use super::svg::{Frame, picture, range_of};
 use super::words;
 
-/// What is left, with its band.
+/// The residual, with its band.
 pub(super) fn unexplained_plot(machine: &Machine, left: &Unexplained) -> Markup {
     let (x_unit, y_unit) = (unit_of_variable(machine, &left.equation, left.variable), unit_of_residual(left.unit));
     let points: Vec<(f64, f64, f64)> = left

@@ -1,4 +1,4 @@
-//! SI to the units that people read off gauges.
+//! Converts SI units to the units on gauges.
 
 use std::f64::consts::PI;
 
@@ -31,7 +31,7 @@ pub(super) const LITRE_PER_MINUTE: Unit<'static> = unit(6e4, "l/min");
 /// Times.
 pub(super) const SECOND: Unit<'static> = unit(1.0, "s");
 
-/// Pressures, in the unit of the person's choice.
+/// Pressures, in the unit that the user chose.
 pub(super) fn pressure() -> Unit<'static> {
     let shown = PressureUnit::shown();
     unit(shown.factor(), shown.symbol())
@@ -40,17 +40,17 @@ pub(super) fn pressure() -> Unit<'static> {
 /// Angles of joints.
 const DEGREE: Unit<'static> = unit(180.0 / PI, "°");
 
-/// Position of a piston; of a motor's shaft.
+/// Unit for the position of a piston or of a motor's shaft.
 pub(super) fn of_position(cylinder: Option<&Cylinder>) -> Unit<'static> {
     if cylinder.is_some_and(Cylinder::is_motor) { unit(0.5 / PI, "rev") } else { MILLIMETRE }
 }
 
-/// Speed of a piston; of a motor's shaft.
+/// Unit for the speed of a piston or of a motor's shaft.
 pub(super) fn of_speed(cylinder: Option<&Cylinder>) -> Unit<'static> {
     if cylinder.is_some_and(Cylinder::is_motor) { unit(30.0 / PI, "rpm") } else { MILLIMETRE_PER_SECOND }
 }
 
-/// Input of a cylinder's drive.
+/// Unit for the input of a cylinder's drive.
 pub(super) fn of_opening(cylinder: Option<&Cylinder>) -> Unit<'static> {
     match cylinder.and_then(|cylinder| cylinder.chambers).map(|chambers| chambers.drive.command_unit()) {
         Some(CommandUnit::SquareMetre) | None => SQUARE_MILLIMETRE,

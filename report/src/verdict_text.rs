@@ -1,4 +1,4 @@
-//! The verdict in plain sentences. They print the reasons of the decision and decide nothing.
+//! Writes the verdict in plain sentences. They state the reasons of the decision and decide nothing.
 
 use excavator_identification::decision::{Kind, Reason};
 use excavator_identification::diagnosis::{Candidate, Diagnosis};
@@ -11,7 +11,7 @@ use super::numbers::{change_of_error, percent};
 use super::plausibility_text::implausible_sentence;
 use super::words;
 
-/// What a diagnosis found, in a few plain sentences. Effects that the recordings cannot tell apart are all named.
+/// Result of a diagnosis, in a few plain sentences. Effects that the recordings cannot separate are all named.
 ///
 /// ```no_run
 /// use excavator_identification::diagnosis::{DiagnosisSettings, diagnose};
@@ -36,7 +36,7 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
         sentences.push(TOO_COARSE.to_string());
     }
     let last = &diagnosis.supported().fit.model;
-    // A wrong model bends its nuisances too.
+    // Nuisances of a wrong model are biased too.
     if diagnosis.verdict.kind != Kind::Unexplained {
         sentences.extend(nuisances(model, last));
     }
@@ -48,7 +48,7 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
 const TOO_COARSE: &str = "The recordings are coarse: the readings of the inputs alone could cause an error of this size. Record command and \
                           opening faster, or with less noise, before acting on this.";
 
-/// What is said where no effect was tried.
+/// Text for a diagnosis in which no effect was tried.
 pub const NONE_TRIED: &str =
     "The model leaves only sensor noise. There was nothing for an effect to explain, so none was tried.";
 
@@ -104,7 +104,7 @@ fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
     )
 }
 
-/// How the mean NMSE on the validation recordings changes with this hypothesis.
+/// Change of the mean NMSE on the validation recordings with this hypothesis.
 fn change_with(diagnosis: &Diagnosis, trial: &Trial) -> String {
     change_of_error([diagnosis.given(), trial].map(|one| diagnosis.error_of(one)))
 }
@@ -142,7 +142,7 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
     text + &construction(diagnosis)
 }
 
-/// What the favoured hypothesis does explain.
+/// The part that the favoured hypothesis explains.
 fn partly(diagnosis: &Diagnosis, selected: &[Candidate<'_>]) -> String {
     let Some(Reason::PartlyExplained { before, after, .. }) =
         diagnosis.verdict.reasons.iter().find(|reason| matches!(reason, Reason::PartlyExplained { .. }))
@@ -163,10 +163,10 @@ fn partly(diagnosis: &Diagnosis, selected: &[Candidate<'_>]) -> String {
     }
 }
 
-/// Share of the misfit from which on an effect is said to be most of what is missing.
+/// Share of the misfit from which an effect is called most of what is missing.
 const MOSTLY: f64 = 0.7;
 
-/// What explains the recordings if the machine is built so, with a space before it.
+/// Structural effects that would explain the recordings, with a leading space.
 fn construction(diagnosis: &Diagnosis) -> String {
     let Some(number) = diagnosis.verdict.structural_alternative() else { return String::new() };
     let trial = &diagnosis.trials[number];
@@ -210,7 +210,7 @@ fn undetermined(diagnosis: &Diagnosis) -> Option<String> {
     ))
 }
 
-/// What the nuisance effects that show in the model `last` say of the machine, those of one kind in one sentence.
+/// Sentences on the nuisance effects that show in the model `last`, one for each kind.
 fn nuisances(given: &Model, last: &Model) -> Vec<String> {
     let mut kinds: Vec<([&str; 2], Vec<String>)> = Vec::new();
     for effect in nuisances_shown(given, last) {

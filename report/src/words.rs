@@ -1,4 +1,4 @@
-//! Names from the catalogue and the equations in words of a machine engineer.
+//! Translates names from the catalogue and the equations into the terms of a machine engineer.
 
 use excavator_model::effects::{ActsOn, Card};
 
@@ -41,7 +41,7 @@ pub(super) fn capitalised(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }
 
-/// A variable that a residual follows.
+/// Name of a variable that a residual depends on.
 pub(super) fn variable(name: &str) -> String {
     match name {
         "command" => "valve opening".to_string(),

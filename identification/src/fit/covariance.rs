@@ -4,28 +4,29 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::normal_equations::SegmentSums;
 
-/// Share of the largest eigenvalue of the information, in units where its diagonal is 1, below which recordings say nothing of
-/// a direction: rounding in sums of 1e4 samples leaves 1e-14 of what cancels.
+/// Threshold relative to the largest eigenvalue of the information matrix (scaled to a unit diagonal). The recordings
+/// do not determine a direction whose eigenvalue is below it. Rounding in sums of 1e4 samples leaves 1e-14 of terms
+/// that cancel.
 const NOTHING_SAID: f64 = 1e-12;
-/// Part that a parameter may have in such a direction and still be called determined.
+/// Largest component of a parameter along such a direction at which the parameter still counts as determined.
 const NO_PART: f64 = 1e-3;
 
-/// Covariance that holds for coloured errors: blocks of half a second are taken as independent, errors inside one may be
-/// correlated in any way (cluster-robust "sandwich", Liang and Zeger 1986), with the factor n/(n - p) on the blocks. And the
-/// ratio of its diagonal to that of white errors.
+/// Covariance for coloured errors, and the ratio of its diagonal to that for white errors. Blocks of half a second are
+/// taken as independent. Errors inside one block may be correlated in any way (cluster-robust "sandwich", Liang and
+/// Zeger 1986), with the factor n/(n - p) on the blocks.
 ///
-/// A recording with no more blocks than parameters cannot tell for each of them how far its errors are from white. They then share one
-/// ratio, the mean over all directions.
+/// If there are no more blocks than parameters, the deviation from white errors cannot be estimated per parameter. All
+/// parameters then share one ratio, the mean over all directions.
 ///
-/// `scales` are the units of the parameters in `sums`. A parameter of which the recordings say nothing, alone or against
-/// another, has an infinite variance and an inflation of NaN; it takes nothing from what is known of the others.
+/// `scales` are the units of the parameters in `sums`. A parameter that the recordings do not determine, alone or in a
+/// combination, has an infinite variance and an inflation of NaN. It does not affect the other parameters.
 pub(super) fn clustered_covariance(sums: &[SegmentSums], scales: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
     let fitted = scales.len();
     let information = sums.iter().fold(DMatrix::zeros(fitted, fitted), |sum, segment| sum + &segment.information);
     of_blocks(information, sums.iter().flat_map(|segment| &segment.block_gradients), scales)
 }
 
-/// The same from J' J and the gradient J' r of each block.
+/// The same computation from J' J and the gradient J' r of each block.
 fn of_blocks<'b>(
     information: DMatrix<f64>,
     gradients: impl Iterator<Item = &'b DVector<f64>>,
@@ -43,12 +44,13 @@ fn of_blocks<'b>(
     let mut covariance = if blocks > parameters {
         &inverse * meat * &inverse * (blocks / (blocks - parameters))
     } else {
-        // In units of white errors: the trace of I^-1 M has one part for each direction, and blocks add up to zero at an optimum.
+        // In units of white errors: each direction adds one term to the trace of I^-1 M, and block gradients sum to
+        // zero at an optimum.
         let mean = (&inverse * meat).trace() / parameters * (blocks / (blocks - 1.0).max(1.0));
-        // Two blocks cancel each other, whatever they say.
+        // The gradients of two blocks always cancel.
         &inverse * if blocks > 2.0 { mean.max(1.0) } else { f64::INFINITY }
     };
-    // White-noise theory is a lower bound that few clusters can fall below by chance.
+    // White-noise theory is a lower bound. With few clusters the estimate can fall below it by chance.
     for index in 0..fitted {
         covariance[(index, index)] = covariance[(index, index)].max(inverse[(index, index)]);
     }
@@ -68,8 +70,8 @@ fn of_blocks<'b>(
     (covariance, inflation)
 }
 
-/// Inverse of the information, and the parameters of which it says nothing; the inverse is then that of the directions of
-/// which something is known.
+/// Inverse of the information matrix, and the parameters that it does not determine. If there are any, the inverse
+/// covers the determined directions only.
 fn inverse(information: DMatrix<f64>) -> (DMatrix<f64>, Vec<usize>) {
     if let Some(factor) = information.clone().cholesky() {
         return (factor.inverse(), Vec::new());
@@ -97,7 +99,8 @@ fn inverse(information: DMatrix<f64>) -> (DMatrix<f64>, Vec<usize>) {
 mod tests {
     use super::*;
 
-    /// Information of two parameters that are known, and of the third and fourth only their sum; of the fifth nothing.
+    /// Information matrix that determines the first two parameters, only the sum of the third and fourth, and not the
+    /// fifth.
     fn information() -> DMatrix<f64> {
         let mut information = DMatrix::zeros(5, 5);
         information.view_mut((0, 0), (2, 2)).copy_from(&DMatrix::from_row_slice(2, 2, &[4e6, 1e3, 1e3, 1.0]));
@@ -113,11 +116,11 @@ mod tests {
         assert!((known - DMatrix::<f64>::identity(2, 2)).amax() < 1e-9);
     }
 
-    /// Errors whose variance is four times what white noise would have, in fewer blocks than there are parameters.
+    /// Errors with four times the variance of white noise, in fewer blocks than there are parameters.
     #[test]
     fn a_short_recording_has_one_inflation_for_all() {
         let information = DMatrix::<f64>::from_diagonal(&DVector::from_vec(vec![4.0, 9.0, 1.0, 16.0]));
-        // Blocks that add up to zero, each direction with four times its white share.
+        // Block gradients that sum to zero, with four times the white-noise variance in each direction.
         let block = |signs: [f64; 4]| {
             DVector::from_iterator(4, (0..4).map(|row| signs[row] * information[(row, row)].sqrt() * 2.0 / 2.0))
         };

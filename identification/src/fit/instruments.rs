@@ -1,4 +1,4 @@
-//! What of a recording a simulation is compared with.
+//! Measured signals of a recording that a simulation is compared with.
 
 use excavator_model::equations::{Channel, System};
 use excavator_model::recording::{Recording, is_measured, noise_level, standard_deviation};
@@ -16,19 +16,19 @@ pub struct Instrument {
     pub noise: f64,
 }
 
-/// Noise is never taken to be below this fraction of a signal's own standard deviation: a noiseless (simulated) signal
-/// would otherwise have infinite weight, and no integrator is exact beyond it.
+/// Lower bound of the noise as a fraction of the signal's own standard deviation. Without it a noiseless (simulated)
+/// signal would have infinite weight, and no integrator is exact beyond it.
 const LEAST_RELATIVE_NOISE: f64 = 1e-4;
 
-/// The instruments that `recordings` have in common for the outputs of a model, with their noise.
+/// The instruments for the outputs of a model that all `recordings` share, with their noise.
 pub fn instruments(system: &System<'_>, recordings: &[&Recording]) -> Vec<Instrument> {
     let machine = &system.model().machine;
     let mut channels = Channel::all(system.layout());
     if system.layout().rod_forces.is_some() {
-        // An imposed motion is no output.
+        // An imposed motion is not an output.
         channels.retain(|channel| matches!(channel, Channel::RodForce(_)));
     }
-    // A position counts once: the displacement where it is measured, else the joint angle.
+    // A position counts once: as the displacement if that is measured, otherwise as the joint angle.
     let (angles, others): (Vec<Channel>, Vec<Channel>) =
         channels.into_iter().partition(|channel| matches!(channel, Channel::JointAngle(_)));
     let mut found: Vec<Instrument> = Vec::new();

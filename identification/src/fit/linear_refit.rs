@@ -1,4 +1,4 @@
-//! What a refit to recordings would leave, from one simulation with sensitivities of each of them.
+//! Predicts the error after a refit to recordings from one simulation with sensitivities of each recording.
 
 use excavator_model::Model;
 use excavator_model::equations::System;
@@ -10,15 +10,15 @@ use super::output_error::{LONGEST_SHIFT, bounded_step, held_at_bounds, parameter
 use super::problem::Problem;
 use super::{FitError, FitSettings, Instrument};
 
-/// Normal equations of a model around its present values on one recording. Those of several recordings add up, so that
-/// the refit to any choice of them costs no further simulation.
+/// Normal equations of a model, linearised at its present values, on one recording. Equations of several recordings add
+/// up, so that a refit to any choice of them needs no further simulation.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearRefit {
     raw: Vec<RawSums>,
     noise: Vec<f64>,
 }
 
-/// What is left of a noise-free recording after a refit, by instrument.
+/// Error that remains on a noise-free recording after a refit, by instrument.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Remainder {
     /// Sum of squared errors, in units of the instrument's noise variance.
@@ -27,14 +27,14 @@ pub(crate) struct Remainder {
     pub counts: Vec<usize>,
 }
 
-/// Damping of the step, relative: enough to keep directions that no recording shows where they are.
+/// Relative damping of the step, just enough to hold directions that no recording shows.
 const DAMPING: f64 = 1e-6;
-/// Rounds in which instruments are weighed by what is left of their errors, as a fit does.
+/// Rounds in which instruments are weighted by their remaining errors
 const ROUNDS: usize = 3;
 
 impl LinearRefit {
-    /// Simulates `model` on a recording without noise. `noise` gives the standard deviation of each instrument's noise, in
-    /// its unit, that a real recording would have.
+    /// Simulates `model` on a recording without noise. `noise` is the standard deviation of each instrument's noise in
+    /// a real recording, in its unit.
     ///
     /// # Errors
     /// [`FitError`].
@@ -54,7 +54,7 @@ impl LinearRefit {
         Ok(LinearRefit { raw, noise: problem.noise })
     }
 
-    /// What a refit of `model`, whose parts these are, to all of them together would leave.
+    /// The error that would remain after a refit of `model` to all `parts` together.
     pub fn remainder(model: &Model, parts: &[&LinearRefit]) -> Remainder {
         let Some(noise) = parts.first().map(|part| &part.noise) else {
             return Remainder { squares: Vec::new(), counts: Vec::new() };
@@ -93,8 +93,8 @@ impl LinearRefit {
         Remainder { squares, counts }
     }
 
-    /// Information (inverse covariance) of the unknown parameters of `model`, each in units of its scale, from sensor noise
-    /// alone; initial states are eliminated. The scales are those of [`scales`].
+    /// Information (inverse covariance) of the unknown parameters of `model`, each in units of its scale, for sensor
+    /// noise alone. Initial states are eliminated. [`scales`] returns the scales.
     pub fn information(model: &Model, parts: &[&LinearRefit]) -> DMatrix<f64> {
         let count = model.unknown_parameters().len();
         let mut information = DMatrix::zeros(count, count);
@@ -109,8 +109,8 @@ impl LinearRefit {
 }
 
 impl Remainder {
-    /// Logarithm of the likelihood ratio that the refitted model loses against the truth: half the sum over instruments of
-    /// `n ln(1 + mean square)`, with errors of unknown size as in [`super::Fit::loss`].
+    /// Logarithm of the likelihood ratio between the truth and the refitted model: half the sum over instruments of `n
+    /// ln(1 + mean square)`, with errors of unknown size as in [`super::Fit::loss`].
     pub fn log_likelihood_ratio(&self) -> f64 {
         let each = self.squares.iter().zip(&self.counts);
         0.5 * each.map(|(squares, &count)| count as f64 * (1.0 + squares / count.max(1) as f64).ln()).sum::<f64>()
@@ -128,7 +128,7 @@ impl Remainder {
         if seen.is_empty() { 0.0 } else { seen.iter().sum::<f64>() / seen.len() as f64 }
     }
 
-    /// Distance from the truth in standard deviations of sensor noise: root of the sum of squares.
+    /// Distance from the truth in standard deviations of sensor noise: square root of the sum of squares.
     pub fn distance(&self) -> f64 {
         self.squares.iter().sum::<f64>().sqrt()
     }
@@ -148,7 +148,7 @@ impl Free {
     }
 }
 
-/// Scale of each of these parameters, in its unit: its size, or what is typical where it is zero.
+/// Scale of each of these parameters, in its unit: its magnitude, or the typical value if it is zero.
 pub(crate) fn scales(model: &Model, parameters: &[usize]) -> Vec<f64> {
     let all: Vec<(f64, f64)> = model.parameters().map(|(_, one)| (one.value.abs(), one.card.typical.abs())).collect();
     parameters

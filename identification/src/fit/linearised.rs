@@ -1,4 +1,4 @@
-//! A model's outputs, linear in its parameters and in some more that it could have.
+//! Outputs of a model, linearised in its own parameters and in further ones that it could have.
 
 use excavator_model::Model;
 use excavator_model::equations::System;
@@ -10,7 +10,7 @@ use super::output_error::{error_sizes, loss_per_reading, parameter_step};
 use super::problem::Problem;
 use super::{FitError, FitSettings};
 
-/// One simulation with sensitivities, from which steps in any choice of further parameters can be foretold.
+/// One simulation with sensitivities, that predicts steps in any choice of further parameters.
 pub(crate) struct Linearised {
     raw: Vec<RawSums>,
     sums: Vec<SegmentSums>,
@@ -22,7 +22,7 @@ pub(crate) struct Linearised {
     pub loss_before: f64,
 }
 
-/// What a step in some further parameters promises.
+/// Predicted result of a step in some further parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Promise {
     /// The chosen parameters after the step, in their units.
@@ -33,11 +33,12 @@ pub(crate) struct Promise {
     pub loss: f64,
 }
 
-/// Levenberg-Marquardt damping of the foretold step: only against parameters that the recordings do not show.
+/// Levenberg-Marquardt damping of the predicted step. It only guards against parameters that the recordings do not
+/// show.
 const DAMPING: f64 = 1e-6;
 
 impl Linearised {
-    /// `model` has the parameters `own` of its own, and may have `further` ones, which are zero.
+    /// Linearises `model` in its own parameters `own` and in the `further` ones, which are zero.
     ///
     /// # Errors
     /// [`FitError`].
@@ -62,8 +63,8 @@ impl Linearised {
         Ok(linearised)
     }
 
-    /// What a step of the model's own parameters and of some of the further ones promises, these given by their numbers. `None` where
-    /// the recordings do not tell them apart.
+    /// Predicts a step of the model's own parameters and of the `chosen` further ones, which are given by their
+    /// indices. Returns `None` if the recordings do not separate them.
     pub fn promise(&self, chosen: &[usize]) -> Option<Promise> {
         let own = self.own.len();
         let held: Vec<bool> =
@@ -89,5 +90,6 @@ impl Linearised {
     }
 }
 
-/// Least error of an instrument in units of its noise, which is an estimate: what is foretold to be less is linear fancy.
+/// Smallest error of an instrument in units of its noise, which is itself an estimate. A smaller prediction is an
+/// artefact of the linearisation.
 const LEAST_ERROR: f64 = 0.7;

@@ -1,4 +1,4 @@
-//! Fits for tests, with errors that were chosen instead of found.
+//! Fits for tests, with chosen errors instead of computed ones.
 
 use excavator_model::Model;
 use excavator_model::equations::Channel;
@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::{Fit, Instrument};
 
-/// A fit of `model` to one displacement whose sensor has this noise (m); its root mean square error is `error` (m).
+/// A fit of `model` to one displacement with sensor noise `noise` (m) and root mean square error `error` (m).
 pub(crate) fn made_up_fit(model: Model, noise: f64, error: f64) -> Fit {
     Fit {
         model,

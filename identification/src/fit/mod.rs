@@ -1,4 +1,4 @@
-//! Output-error fit: simulate, compare with what was measured, improve the parameters.
+//! Output-error fit: simulates, compares with the measurement and improves the parameters.
 
 mod covariance;
 mod instruments;

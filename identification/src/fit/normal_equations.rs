@@ -1,4 +1,4 @@
-//! Normal equations of one segment, its initial state eliminated.
+//! Normal equations of one segment with its initial state eliminated.
 
 use excavator_model::equations::{Channel, System};
 use excavator_model::machine::{Growth, Mechanism};
@@ -19,7 +19,7 @@ pub(super) struct SegmentSums {
     pub squared_errors: Vec<f64>,
     /// Number of readings of each instrument.
     pub counts: Vec<usize>,
-    /// J' r of each block of the segment, after eliminating the initial state; they add up to the gradient.
+    /// J' r of each block of the segment, after eliminating the initial state. They sum to the gradient.
     pub block_gradients: Vec<DVector<f64>>,
     /// Sum of squared errors and number of readings of each instrument in each block.
     pub block_errors: Vec<Vec<(f64, usize)>>,
@@ -30,8 +30,8 @@ pub(super) struct SegmentSums {
     state_gradient: DVector<f64>,
 }
 
-/// Sums over one segment, kept apart by instrument so that instruments can be weighed anew without another simulation.
-/// Errors are in units of each instrument's noise; the initial state is still among the columns.
+/// Sums over one segment, kept separately by instrument, so that instruments can be reweighted without another
+/// simulation. Errors are in units of each instrument's noise; the initial state is still among the columns.
 #[derive(Debug, Clone)]
 pub(super) struct RawSums {
     fitted: usize,
@@ -46,15 +46,17 @@ pub(super) struct RawSums {
     prior_loss: f64,
 }
 
-/// Length of the blocks whose gradients are taken as independent in standard errors, s: longer than any correlation of
-/// an arm's errors but drift, and short enough to give many blocks. As all times here on a machine of the reference size.
+/// Length of the blocks whose gradients are taken as independent in standard errors, s. It is longer than any
+/// correlation of an arm's errors except drift, and short enough for many blocks. Like all times here, it is for a
+/// machine of the reference size.
 pub(super) const BLOCK_DURATION: f64 = 0.5;
 
-/// Readings this soon after the start of a segment are not compared, s: a late instrument would report what happened
-/// before it, which the simulation does not know. Left out for every model, so that all are judged on the same readings.
+/// Readings this soon after the start of a segment are not compared, s. A delayed instrument would report what happened
+/// before the start, which the simulation does not know. They are left out for every model, so that all models are
+/// judged on the same readings.
 const SETTLING: f64 = 0.03;
 
-/// How far an initial state may reasonably be from where the first samples put it; weak, so that it only decides where
+/// How far an initial state may be from the estimate from the first samples. The prior is weak: it only decides where
 /// nothing is measured.
 #[derive(Debug, Clone)]
 pub(super) struct InitialStatePrior {
@@ -67,7 +69,7 @@ impl InitialStatePrior {
         let layout = system.layout();
         let machine = &system.model().machine;
         let size = machine.size();
-        // Angles are alike on machines of every size.
+        // Angles do not scale with the size of the machine.
         let [joint_spread, rate_spread] = match machine.mechanism {
             Mechanism::LinearLoad => [0.01 * size.factor(Growth::LENGTH), 0.5 * size.speed],
             _ => [0.01, 0.5 / size.time()],
@@ -84,13 +86,13 @@ impl InitialStatePrior {
     }
 }
 
-/// Everything that the segments of a fit share.
+/// Data that all segments of a fit share.
 pub(super) struct Shared<'a, 'm> {
     pub system: &'a System<'m>,
     pub parameters: &'a [f64],
     /// Indices of the parameters that are fitted.
     pub fitted: &'a [usize],
-    /// Scale of each fitted parameter: sums are for `parameter / scale`.
+    /// Scale of each fitted parameter. Sums are for `parameter / scale`.
     pub scales: &'a [f64],
     pub instruments: &'a [Instrument],
     pub prior: &'a InitialStatePrior,
@@ -98,7 +100,7 @@ pub(super) struct Shared<'a, 'm> {
 }
 
 impl Shared<'_, '_> {
-    /// Simulates a segment and sums its normal equations. `anchor` is the state that the prior is centred on.
+    /// Simulates a segment and sums its normal equations. The prior is centred on the state `anchor`.
     pub fn sums(
         &self,
         recording: &SegmentedRecording,
@@ -188,7 +190,7 @@ impl Shared<'_, '_> {
     }
 }
 
-/// Adds what the instruments have gathered to the sums, its gradients to the last block.
+/// Adds the rows gathered by the instruments to the sums, and their gradients to the last block.
 fn add_rows(rows: &mut [ReadingRows], information: &mut [DMatrix<f64>], blocks: &mut [Vec<DVector<f64>>]) {
     let Some(block) = blocks.last_mut() else { return };
     for ((rows, information), gradient) in rows.iter_mut().zip(information).zip(block) {
@@ -207,7 +209,7 @@ impl RawSums {
         &self.counts
     }
 
-    /// Adds each instrument's squared errors, in its unit, as they would be after these steps if its readings were linear
+    /// Adds each instrument's squared errors, in its unit, as predicted after these steps for readings that are linear
     /// in the scaled parameters and the initial state.
     pub fn add_predicted(
         &self,
@@ -227,7 +229,7 @@ impl RawSums {
         }
     }
 
-    /// The sums with each instrument's squared noise units multiplied by its factor, initial state eliminated.
+    /// The sums with each instrument's contribution multiplied by its factor and the initial state eliminated.
     pub fn weighed(&self, factors: &[f64]) -> SegmentSums {
         let (fitted, states) = (self.fitted, self.prior_gradient.len());
         let mut information = DMatrix::zeros(fitted + states, fitted + states);
@@ -262,7 +264,7 @@ impl RawSums {
 }
 
 impl SegmentSums {
-    /// Sums that come from no reading: of what is known beforehand.
+    /// Sums without readings, for prior knowledge.
     pub fn without_readings(
         information: DMatrix<f64>,
         gradient: DVector<f64>,
@@ -319,7 +321,7 @@ impl SegmentSums {
         sums
     }
 
-    /// The change of the initial state that goes with a change of the (scaled) parameters, damped by `damping`.
+    /// The change of the initial state for a change of the (scaled) parameters, damped by `damping`.
     pub fn state_step(&self, parameter_step: &DVector<f64>, damping: f64) -> DVector<f64> {
         let right = &self.state_gradient - &self.cross_information * parameter_step;
         let mut matrix = self.state_information.clone();

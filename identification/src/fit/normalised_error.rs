@@ -1,10 +1,10 @@
-//! Errors over the size of the signals.
+//! Errors relative to the variance of the signals.
 
 use excavator_model::recording::{Recording, standard_deviation};
 
 use super::Fit;
 
-/// Mean over instruments of squared error over the signal's own variance; `NaN` when no signal varies.
+/// Mean over instruments of squared error over the signal's own variance. Returns `NaN` if no signal varies.
 pub fn normalised_error(fit: &Fit, recordings: &[&Recording]) -> f64 {
     let errors: Vec<f64> = fit
         .instruments

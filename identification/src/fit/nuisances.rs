@@ -1,7 +1,8 @@
-//! Nuisance effects: how recordings were made, and how the equations round a corner.
+//! Nuisance effects: properties of the recording, and the rounding of corners in the equations.
 //!
-//! They are estimated with every model, each with the prior of its card, and never attributed: a spool sensor that is read half a
-//! millisecond early, or a friction that reverses over 3 mm/s instead of 1 mm/s, looks like a little of many other effects.
+//! They are estimated with every model, each with the prior of its card, and are never attributed. A spool sensor that
+//! is read half a millisecond early, or friction that reverses over 3 mm/s instead of 1 mm/s, resembles a small amount
+//! of many other effects.
 
 use excavator_model::effects::{Corner, Effect, Family, Site};
 use excavator_model::machine::Cylinder;
@@ -16,13 +17,14 @@ pub fn is_nuisance(family: Family) -> bool {
     matches!(family, Family::Recording | Family::Rounding)
 }
 
-/// `model` with every nuisance effect that it has not and that these recordings can have.
+/// `model` with every nuisance effect that it lacks and that these recordings can have.
 #[must_use]
 pub fn with_nuisances(model: &Model, recordings: &[&Recording]) -> Model {
     with_nuisances_of(model, &[Family::Recording, Family::Rounding], recordings)
 }
 
-/// The same of these families. A regression sees no [`Family::Rounding`]: a smoothed velocity reverses slower than the piston.
+/// The same for these families only. A regression cannot estimate [`Family::Rounding`]: a smoothed velocity reverses
+/// more slowly than the piston.
 #[must_use]
 pub fn with_nuisances_of(model: &Model, families: &[Family], recordings: &[&Recording]) -> Model {
     let mut extended = model.clone();
@@ -38,7 +40,7 @@ pub fn with_nuisances_of(model: &Model, families: &[Family], recordings: &[&Reco
 /// Share of the stroke within which a piston is at its end.
 const AT_THE_END: f64 = 0.02;
 
-/// Whether the piston of this cylinder comes to one of its ends.
+/// Whether the piston of this cylinder reaches one of its ends.
 fn comes_to_an_end(cylinder: &Cylinder, recordings: &[&Recording]) -> bool {
     let signals = recordings.iter().filter_map(|recording| recording.cylinder(&cylinder.name).ok());
     signals
@@ -46,7 +48,8 @@ fn comes_to_an_end(cylinder: &Cylinder, recordings: &[&Recording]) -> bool {
         .any(|displacement| cylinder.is_at_an_end(*displacement, AT_THE_END))
 }
 
-/// Only a measured opening can be read at another time than the rest, or from another zero; a command acts when it is given.
+/// Only a measured opening can have a different sampling time or zero than the other signals. A command acts when it is
+/// given.
 fn can_have(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Recording]) -> bool {
     match site {
         Site::Cylinder(index) if physics.rounds() == Some(Corner::EndStop) => {
@@ -60,23 +63,23 @@ fn can_have(model: &Model, physics: &dyn Effect, site: Site, recordings: &[&Reco
     }
 }
 
-/// Nuisance effects of `fitted` that `given` has not and that differ from nothing, in the order of `fitted`.
+/// Nuisance effects of `fitted` that `given` lacks and that differ from their neutral value, in the order of `fitted`.
 pub fn nuisances_shown<'a>(given: &'a Model, fitted: &'a Model) -> impl Iterator<Item = &'a ModelEffect> {
     fitted.effects.iter().filter(|effect| is_added(given, effect) && effect.parameters.iter().any(differs))
 }
 
-/// A model without the nuisance effects that `given` has not and that do not differ from nothing: as simple as it can be.
+/// A model without the nuisance effects that `given` lacks and that do not differ from their neutral value.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Simplified {
     /// The model.
     pub model: Model,
-    /// Indices of its parameters in the model that it was.
+    /// Indices of its parameters in the original model.
     kept: Vec<usize>,
 }
 
 impl Simplified {
-    /// Of a fitted model.
+    /// Simplifies a fitted model.
     pub fn of(given: &Model, fitted: &Model) -> Self {
         let is_idle = |effect: &ModelEffect| is_added(given, effect) && !effect.parameters.iter().any(differs);
         let mut model = fitted.clone();
@@ -86,14 +89,14 @@ impl Simplified {
         Simplified { kept: kept.collect(), model }
     }
 
-    /// The index of a parameter of the model that it was; none where its effect is gone.
+    /// Maps the index of a parameter in the original model. Returns `None` if its effect was removed.
     pub fn index(&self, before: usize) -> Option<usize> {
         self.kept.iter().position(|&kept| kept == before)
     }
 }
 
-/// A fit without the nuisance effects that `given` has not and that do not differ from nothing. The rest is fitted again: it was bent by
-/// what is left out.
+/// A fit without the nuisance effects that `given` lacks and that do not differ from their neutral value. The remaining
+/// parameters are fitted again, because the removed effects had biased them.
 ///
 /// # Errors
 /// [`FitError`].
@@ -114,15 +117,15 @@ fn is_added(given: &Model, effect: &ModelEffect) -> bool {
     is_nuisance(effect.physics.card().family) && !given.has(effect.name(), effect.site)
 }
 
-/// Standard errors by which a nuisance parameter must differ from nothing to be mentioned.
+/// Standard errors by which a nuisance parameter must differ from its neutral value to be reported.
 const LEAST_SIGNIFICANCE: f64 = 3.0;
 
-/// Part of the value that changes nothing by which it must differ: a tenth more or less is the same convention.
+/// Fraction of the neutral value by which it must differ. A tenth more or less is the same convention.
 const LEAST_DIFFERENCE: f64 = 0.1;
 
 fn differs(parameter: &Parameter) -> bool {
     let least = LEAST_SIGNIFICANCE * parameter.standard_error.unwrap_or(f64::INFINITY);
-    // A shift or a lead starts from zero, of which any part is none.
+    // The neutral value of a shift or a lead is zero, so this fraction of it is zero too.
     (parameter.value - centre(parameter)).abs() >= least.max(LEAST_DIFFERENCE * centre(parameter))
 }
 

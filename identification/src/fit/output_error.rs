@@ -1,8 +1,8 @@
 //! Multiple-shooting output-error fit by Gauss-Newton steps with Levenberg-Marquardt damping.
 //!
-//! Written here and not left to a general least-squares crate because each segment's initial state is eliminated from
-//! the normal equations before they are added up: a general solver would factor one dense Jacobian with a column for
-//! each initial state of each segment.
+//! It does not use a general least-squares crate, because each segment's initial state is eliminated from the normal
+//! equations before they are added up. A general solver would factor one dense Jacobian with a column for each initial
+//! state of each segment.
 
 use std::sync::Arc;
 
@@ -21,11 +21,11 @@ use super::problem::Problem;
 use super::trial::loss_of;
 use super::{FitSettings, Instrument, Watch};
 
-/// Why a fit could not be done.
+/// Why a fit failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// The recordings do not give what the model needs.
+    /// The recordings lack signals that the model needs.
     #[error(transparent)]
     Signal(#[from] SignalError),
     /// The model cannot be simulated at the start values.
@@ -40,12 +40,12 @@ pub enum FitError {
     /// No stretch of a recording is long enough.
     #[error("the recordings have no stretch of at least 20 samples without a gap that begins with a measured position")]
     TooShort,
-    /// An effect acts in a window of time, and the recordings do not tell where to look for that.
+    /// An effect acts in a window of time, and the recordings do not show where to search for it.
     #[error(
         "the time at which it acts cannot be found: the force balance needs signals that the recordings do not have"
     )]
     NoActiveWindow,
-    /// Whoever watched it wanted no more of it.
+    /// The watch function stopped the fit.
     #[error("stopped on request")]
     Stopped,
 }
@@ -59,7 +59,7 @@ pub struct Fit {
     pub fitted: Vec<usize>,
     /// Covariance of the fitted parameters, in their units.
     pub covariance: DMatrix<f64>,
-    /// By how much correlated errors have grown the variance of each fitted parameter over that of white errors.
+    /// Ratio of the variance of each fitted parameter to its variance for white errors.
     pub inflation: Vec<f64>,
     /// What was compared.
     pub instruments: Vec<Instrument>,
@@ -67,7 +67,7 @@ pub struct Fit {
     pub errors: Vec<f64>,
     /// Sum of squared errors and number of readings per block of half a second and instrument.
     pub block_errors: Vec<Vec<(f64, usize)>>,
-    /// Recording that each block belongs to, and where it begins, s after the recording's first sample.
+    /// Recording of each block, and its start in s after the recording's first sample.
     pub block_places: Vec<(usize, f64)>,
     /// Gauss-Newton steps taken.
     pub steps: usize,
@@ -77,13 +77,13 @@ pub struct Fit {
 
 impl Fit {
     /// Logarithmic loss: mean over instruments of `ln(mean squared error / noise variance)`, half of minus the
-    /// concentrated log-likelihood per reading. Zero when only noise is left.
+    /// concentrated log-likelihood per reading. It is zero if only noise is left.
     pub fn loss(&self) -> f64 {
         let noise: Vec<f64> = self.instruments.iter().map(|instrument| instrument.noise).collect();
         loss_per_reading(&self.errors, &noise)
     }
 
-    /// Sum of squared errors of an instrument over some of the blocks, and number of readings in it.
+    /// Sum of squared errors of an instrument over some of the blocks, and the number of its readings there.
     pub(crate) fn squares_of(&self, instrument: usize, blocks: impl Iterator<Item = usize>) -> (f64, usize) {
         blocks
             .filter_map(|block| self.block_errors.get(block)?.get(instrument))
@@ -103,8 +103,8 @@ impl Fit {
 
 /// Fits the unknown parameters of `model` to `recordings`, starting from its values.
 ///
-/// Errors of each instrument are divided by their own size in the step before (never less than its noise): where the
-/// model is wrong, that is the maximum-likelihood weighting for errors of unknown size.
+/// Errors of each instrument are divided by their RMS value in the previous step (never less than its noise). For a
+/// wrong model this is the maximum-likelihood weighting for errors of unknown size.
 ///
 /// ```
 /// use excavator_identification::prelude::*;
@@ -135,7 +135,7 @@ pub fn fit(model: &Model, recordings: &[&Recording], settings: &FitSettings) -> 
     fit_watched(model, recordings, settings, &|_| ControlFlow::Continue(()))
 }
 
-/// [`fit`] that tells `watch` before each step and ends when that says so.
+/// Like [`fit`], but calls `watch` before each step and stops when it returns a break.
 ///
 /// # Errors
 /// [`FitError`], among them [`FitError::Stopped`].
@@ -149,7 +149,7 @@ pub fn fit_watched(
     run(model, recordings, settings, fitted, settings.maximum_steps, None, watch)
 }
 
-/// Errors of `model` on `recordings` with its parameters as they are; only initial states are fitted.
+/// Errors of `model` on `recordings`. The parameters are held; only initial states are fitted.
 ///
 /// # Errors
 /// [`FitError`].
@@ -159,12 +159,12 @@ pub fn evaluate(model: &Model, recordings: &[&Recording], settings: &FitSettings
 
 struct State {
     values: Vec<f64>,
-    /// Of each segment, then of the priors.
+    /// One entry per segment, then those of the priors.
     sums: Vec<SegmentSums>,
     loss: f64,
 }
 
-/// The steps of a fit of the parameters `fitted`; `first` is the simulation of the model as it is, where that is known.
+/// Runs the steps of a fit of the parameters `fitted`. `first` is the simulation at the start values, if it is known.
 pub(super) fn run(
     model: &Model,
     recordings: &[&Recording],
@@ -181,7 +181,7 @@ pub(super) fn run(
     let mut segments = problem.segments.clone();
     let mut values = model.parameter_values();
     if first.is_none() {
-        // A start from elsewhere may be outside the range of a prior, from where no step leads back.
+        // A start value may be outside the range of a prior, and no step leads back from there.
         for &index in fitted {
             let [lowest, highest] = bounds[index];
             values[index] = values[index].clamp(lowest, highest);
@@ -259,7 +259,7 @@ pub(super) fn error_sizes(sums: &[RawSums], noise: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Which fitted parameters sit at a bound that the loss would push them through; they take no part in the step.
+/// Fitted parameters at a bound that the next step would cross. They are held in that step.
 pub(super) fn held_at_bounds(sums: &[SegmentSums], values: &[f64], fitted: &[usize], bounds: &[[f64; 2]]) -> Vec<bool> {
     fitted
         .iter()
@@ -291,17 +291,18 @@ pub(super) fn parameter_step(sums: &[SegmentSums], held: &[bool], damping: f64) 
             information[(index, index)] = largest;
             gradient[index] = 0.0;
         }
-        // The floor holds parameters that the recording does not show at all where they are.
+        // The floor keeps parameters that the recording does not show at their values.
         information[(index, index)] += damping * information[(index, index)] + 1e-12 * largest;
     }
     information.cholesky().map(|factor| factor.solve(&gradient))
 }
 
-/// Most that a step moves the edges of a window of time, s. An edge is seen only where it is: what lies beyond comes to
-/// light step by step, and a long one ends outside the recording, from where nothing leads back.
+/// Largest step of the edges of a time window, s. The recordings show an edge only near its present position, so it has
+/// to move step by step. A long step ends outside the recording, and nothing leads back from there.
 pub(super) const LONGEST_SHIFT: f64 = 1.0;
 
-/// All values after a step of the fitted ones, which stay within their bounds, and what was taken of it, in scales.
+/// All values after a step of the fitted ones, which stay within their bounds, and the step that was actually taken, in
+/// scales.
 pub(super) fn bounded_step(
     values: &[f64],
     step: &DVector<f64>,

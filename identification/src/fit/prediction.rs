@@ -1,4 +1,4 @@
-//! What one step of a fit promises, without taking it.
+//! Predicts one step of a fit without taking it.
 
 use std::ops::ControlFlow;
 
@@ -12,20 +12,20 @@ use super::output_error::{bounded_step, error_sizes, held_at_bounds, loss_per_re
 use super::problem::Problem;
 use super::{Fit, FitError, FitSettings};
 
-/// What a Gauss-Newton step from a model's parameters promises.
+/// Prediction of a Gauss-Newton step from a model's parameters.
 #[derive(Debug, Clone)]
 pub struct Prediction {
-    /// Loss of the model as it is, initial states as measured; see [`super::Fit::loss`].
+    /// Loss of the model at its present parameters and measured initial states; see [`super::Fit::loss`].
     pub loss_before: f64,
     /// Loss after the step if the outputs were linear in parameters and initial states.
     pub loss_after: f64,
     /// The model after the step, within the parameters' bounds.
     pub model: Model,
-    /// The simulation of the model as it is.
+    /// The simulation of the model at its present parameters.
     pub(super) sums: Vec<RawSums>,
 }
 
-/// One simulation with sensitivities, and what it promises for a step of all unknown parameters.
+/// Simulates once with sensitivities, and predicts a step of all unknown parameters.
 ///
 /// # Errors
 /// [`FitError`].
@@ -70,8 +70,8 @@ pub fn predict(model: &Model, recordings: &[&Recording], settings: &FitSettings)
     Ok(Prediction { loss_before, loss_after: loss_per_reading(&errors, &problem.noise), model, sums: raw })
 }
 
-/// As [`super::fit`], of the model and on the recordings that `predicted` is of, cut and thinned by the same settings: its
-/// simulation is not made again.
+/// Like [`super::fit`], but reuses the simulation in `predicted`. That must be of the same model and recordings, cut
+/// and thinned by the same settings.
 ///
 /// # Errors
 /// [`FitError`].
@@ -85,5 +85,5 @@ pub(crate) fn fit_predicted(
     run(model, recordings, settings, fitted, settings.maximum_steps, first, &|_| ControlFlow::Continue(()))
 }
 
-/// Levenberg-Marquardt damping of the promised step: that of a fit's first step.
+/// Levenberg-Marquardt damping of the predicted step, equal to that of a fit's first step.
 const DAMPING: f64 = 1e-3;

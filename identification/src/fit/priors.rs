@@ -1,4 +1,4 @@
-//! What is known of nuisance parameters beforehand: for a fit, one more reading of each.
+//! Priors of nuisance parameters. A fit treats each as one more reading.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,11 +9,12 @@ use nalgebra::{DMatrix, DVector};
 
 use super::normal_equations::SegmentSums;
 
-/// The priors of the fitted parameters, in their order; none for a parameter of the machine.
+/// The priors of the fitted parameters, in their order. A parameter of the machine has no prior.
 pub(crate) struct ParameterPriors {
     each: Vec<Option<Known>>,
     instruments: usize,
-    /// Least and largest value of every parameter of the model, in its unit: those of its card, within the range of its prior.
+    /// Smallest and largest value of every parameter of the model, in its unit: the limits of its card, restricted to
+    /// the range of its prior.
     pub bounds: Vec<[f64; 2]>,
 }
 
@@ -23,7 +24,7 @@ struct Known {
     parameter: usize,
     /// The value at which its effect changes nothing, in its unit.
     centre: f64,
-    /// One standard deviation: in its unit, or the logarithm of a factor.
+    /// Standard deviation, in its unit or as the logarithm of a factor.
     deviation: f64,
     scale: PriorScale,
 }
@@ -33,11 +34,11 @@ impl Known {
         let spread = prior.standard_deviation(scales);
         let deviation = if prior.scale == PriorScale::Logarithmic { spread.ln() } else { spread };
         let known = Known { parameter: index, centre: centre(parameter), deviation, scale: prior.scale };
-        // Where the recordings give no scale, as an opening that never leaves zero, nothing is known.
+        // There is no prior if the recordings give no scale, for example if an opening is always zero.
         (known.deviation > 0.0 && known.deviation.is_finite()).then_some(known)
     }
 
-    /// Standard deviations above the centre, and the slope of that, in one over the parameter's unit.
+    /// Distance above the centre in standard deviations, and its slope in one over the parameter's unit.
     fn standardised(&self, value: f64) -> (f64, f64) {
         match self.scale {
             PriorScale::Linear => ((value - self.centre) / self.deviation, 1.0 / self.deviation),
@@ -46,7 +47,7 @@ impl Known {
     }
 }
 
-/// The value of a nuisance parameter at which its effect changes nothing: that from which it is searched.
+/// The value of a nuisance parameter at which its effect changes nothing. A search starts from it.
 pub(crate) fn centre(parameter: &Parameter) -> f64 {
     match &parameter.card.start {
         Start::At(starts) => starts.first().copied().unwrap_or(0.0),
@@ -54,7 +55,8 @@ pub(crate) fn centre(parameter: &Parameter) -> f64 {
     }
 }
 
-/// What spreads are taken from, for each site with a nuisance effect. Recordings are long, so each is read once.
+/// Scales of the priors' standard deviations, for each site with a nuisance effect. Recordings are long, so each is
+/// read only once.
 fn scales_by_site(model: &Model, recordings: &[&Recording]) -> BTreeMap<Site, RecordingScales> {
     let has_prior = |effect: &&ModelEffect| effect.parameters.iter().any(|parameter| parameter.card.prior.is_some());
     let sites: BTreeSet<Site> = model.effects.iter().filter(has_prior).map(|effect| effect.site).collect();
@@ -69,7 +71,7 @@ fn scales_by_site(model: &Model, recordings: &[&Recording]) -> BTreeMap<Site, Re
     sites.into_iter().map(|site| (site, scales(site))).collect()
 }
 
-/// Largest opening at a site, without its sign, m²; 0 where there is no valve.
+/// Largest absolute opening at a site, m²; 0 if there is no valve.
 fn largest_opening(model: &Model, site: Site, recordings: &[&Recording]) -> f64 {
     let Site::Cylinder(index) = site else { return 0.0 };
     let Some(cylinder) = model.machine.cylinders.get(index) else { return 0.0 };
@@ -79,7 +81,7 @@ fn largest_opening(model: &Model, site: Site, recordings: &[&Recording]) -> f64 
 }
 
 impl ParameterPriors {
-    /// Of the parameters `fitted` of a model, for recordings with so many instruments.
+    /// The priors of the parameters `fitted` of a model, for recordings with this number of instruments.
     pub fn of(model: &Model, fitted: &[usize], recordings: &[&Recording], instruments: usize) -> Self {
         let scales = scales_by_site(model, recordings);
         let (known, bounds): (Vec<Option<Known>>, Vec<[f64; 2]>) = model
@@ -100,12 +102,14 @@ impl ParameterPriors {
         ParameterPriors { each: fitted.iter().map(|&index| known[index]).collect(), instruments, bounds }
     }
 
-    /// Sum of squares of how many standard deviations each parameter is off, for all values of the model.
+    /// Sum of squared deviations of the parameters from their priors, in standard deviations. `values` are those of the
+    /// whole model.
     pub fn loss(&self, values: &[f64]) -> f64 {
         self.each.iter().flatten().map(|known| known.standardised(values[known.parameter]).0.powi(2)).sum()
     }
 
-    /// Information of each parameter and its gradient, for parameters in units of these scales; zero where nothing is known.
+    /// Information of each parameter and its gradient, for parameters in units of these scales. Both are zero without a
+    /// prior.
     pub fn equations(&self, values: &[f64], scales: &[f64]) -> Vec<(f64, f64)> {
         let equation = |(known, scale): (&Option<Known>, &f64)| {
             known.as_ref().map_or((0.0, 0.0), |known| {
@@ -117,7 +121,7 @@ impl ParameterPriors {
         self.each.iter().zip(scales).map(equation).collect()
     }
 
-    /// The same as sums of a fit.
+    /// The equations of the priors as sums of a fit.
     pub(super) fn sums(&self, values: &[f64], scales: &[f64]) -> SegmentSums {
         let fitted = self.each.len();
         let (mut information, mut gradient) = (DMatrix::zeros(fitted, fitted), DVector::zeros(fitted));
@@ -126,7 +130,7 @@ impl ParameterPriors {
             information[(number, number)] = own;
             gradient[number] = downhill;
             if own > 0.0 {
-                // Its own scatter is one standard deviation, whatever came out.
+                // The scatter of a prior is one standard deviation, whatever the fitted value.
                 let mut block = DVector::zeros(fitted);
                 block[number] = own.sqrt();
                 blocks.push(block);

@@ -1,4 +1,4 @@
-//! What a fit minimises: recordings cut into segments, simulated side by side.
+//! The minimisation problem of a fit: recordings are cut into segments, which are simulated in parallel.
 
 use std::sync::Arc;
 
@@ -14,17 +14,16 @@ use super::output_error::LONGEST_SHIFT;
 use super::priors::ParameterPriors;
 use super::{FitError, FitSettings, Instrument, Segment, SegmentedRecording, instruments, scales};
 
-/// A model, recordings, and which parameters are free.
+/// A model, recordings and the choice of free parameters.
 pub(super) struct Problem<'s, 'm> {
     system: &'s System<'m>,
     prior: InitialStatePrior,
     recordings: Vec<SegmentedRecording>,
-    /// Which of the recordings each segment is of.
+    /// Index of the recording of each segment.
     owners: Vec<usize>,
-    /// Segments of all recordings in order, each with the state that it was measured to start from, which the prior is
-    /// centred on.
+    /// Segments of all recordings in order, each with its measured initial state, on which the prior is centred.
     pub segments: Vec<Segment>,
-    /// What is compared.
+    /// The compared instruments.
     pub instruments: Vec<Instrument>,
     /// Noise of each instrument, in its unit.
     pub noise: Vec<f64>,
@@ -34,13 +33,13 @@ pub(super) struct Problem<'s, 'm> {
     pub scales: Vec<f64>,
     /// Card of every parameter of the model.
     pub cards: Vec<Arc<ParameterCard>>,
-    /// What is known of nuisance parameters beforehand.
+    /// Priors of nuisance parameters.
     pub priors: ParameterPriors,
 }
 
 impl<'s, 'm> Problem<'s, 'm> {
     /// # Errors
-    /// [`FitError`] when the recordings lack inputs, outputs or length.
+    /// [`FitError`] if the recordings lack inputs or outputs or are too short.
     pub fn new(
         model: &Model,
         system: &'s System<'m>,
@@ -73,25 +72,25 @@ impl<'s, 'm> Problem<'s, 'm> {
         Ok(Problem { system, prior, recordings, owners, segments, instruments, noise, fitted, scales, cards, priors })
     }
 
-    /// Normal equations of every segment with these parameter values, each started from its state in `segments`.
+    /// Normal equations of every segment at these parameter values. Each starts from its state in `segments`.
     ///
     /// # Errors
-    /// [`FitError::Simulation`] when a segment cannot be simulated.
+    /// [`FitError::Simulation`] if a segment cannot be simulated.
     pub fn sums_at(&self, values: &[f64], segments: &[Segment]) -> Result<Vec<RawSums>, FitError> {
         self.each_at(values, segments).into_iter().collect()
     }
 
-    /// [`Problem::sums_at`], segment by segment.
+    /// Like [`Problem::sums_at`], with one result per segment.
     pub fn each_at(&self, values: &[f64], segments: &[Segment]) -> Vec<Result<RawSums, FitError>> {
         let each = segments.par_iter().enumerate();
         each.map(|(number, segment)| self.sums_of(values, number, segment, true)).collect()
     }
 
-    /// Normal equations of segment `number`, started from the state of `segment`: of the parameters and that state, or of
-    /// the state alone.
+    /// Normal equations of segment `number`, started from the state of `segment`: for the parameters and that state, or
+    /// for the state alone.
     ///
     /// # Errors
-    /// [`FitError::Simulation`] when it cannot be simulated.
+    /// [`FitError::Simulation`] if it cannot be simulated.
     pub fn sums_of(
         &self,
         values: &[f64],
@@ -113,12 +112,12 @@ impl<'s, 'm> Problem<'s, 'm> {
         Ok(shared.sums(&self.recordings[self.owners[number]], segment, &self.segments[number].state)?)
     }
 
-    /// Most that a step moves the edges of a window of time, s.
+    /// Largest step of the edges of a time window, s.
     pub fn longest_shift(&self) -> f64 {
         LONGEST_SHIFT * self.system.model().machine.size().time()
     }
 
-    /// Recording and begin (s after its first sample) of each block of `sums`, which are of all segments in order.
+    /// Recording and start (s after its first sample) of each block of `sums`, which hold all segments in order.
     pub fn block_places(&self, sums: &[SegmentSums]) -> Vec<(usize, f64)> {
         let duration = BLOCK_DURATION * self.system.model().machine.size().time();
         let segments = self.owners.iter().zip(&self.segments).map(|(&owner, segment)| {

@@ -1,24 +1,25 @@
-//! Profile likelihood: what recordings say of a parameter that a standard error says little of.
+//! Profile likelihood: confidence intervals of parameters for which a standard error is not reliable.
 //!
-//! The parameter is moved away from its best value step by step, all others are fitted again, and the interval ends where the
-//! outputs are met significantly worse (Raue et al. 2009). Unlike a standard error that holds at bounds, where a coefficient
-//! cannot be negative, and far from the best value; and where no end is found the parameter is not identifiable.
+//! The parameter is moved away from its best value step by step, and all others are fitted again. The interval ends
+//! where the outputs fit significantly worse (Raue et al. 2009). Unlike a standard error, this is valid at bounds,
+//! where a coefficient cannot be negative, and far from the best value. If no end is found, the parameter is not
+//! identifiable.
 
 use excavator_model::recording::Recording;
 
 use super::output_error::fit;
 use super::{Fit, FitError, FitSettings};
 
-/// What recordings say of one parameter.
+/// Profile of one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProfileInterval {
     /// Index of the parameter in the model's order.
     pub index: usize,
-    /// Lower end of the 95 % interval; `None` where every value down to the least possible fits as well.
+    /// Lower end of the 95 % interval; `None` if every value down to the minimum fits as well.
     pub lower: Option<f64>,
-    /// Upper end; `None` where every value up to the largest possible fits as well.
+    /// Upper end; `None` if every value up to the maximum fits as well.
     pub upper: Option<f64>,
-    /// The parameter that takes its place most when it is moved: index in the model's order, and correlation.
+    /// The parameter that compensates for it most: index in the model's order, and correlation.
     pub companion: Option<(usize, f64)>,
 }
 
@@ -31,31 +32,32 @@ impl ProfileInterval {
 
 /// 95 % quantile of chi-square with one degree of freedom.
 const THRESHOLD: f64 = 3.841;
-/// Steps of each fit: it begins at the solution for a value nearby.
+/// Steps of each fit. It starts at the solution for a nearby value.
 const STEPS: usize = 5;
-/// Doublings of the distance before a side is called open.
+/// Doublings of the distance before a side counts as unbounded.
 const DOUBLINGS: usize = 12;
-/// Correlation from which another parameter is named as the one that takes its place.
+/// Smallest correlation at which another parameter is named as compensating for it.
 const TOGETHER: f64 = 0.7;
 
-/// Profiles parameter `index` (in the model's order), one of those that `best` has fitted to `recordings`.
+/// Profiles parameter `index` (in the model's order). `best` is a fit of it and others to `recordings`.
 ///
 /// # Errors
-/// [`FitError`] when the recordings cannot be fitted at all.
+/// [`FitError`] if the recordings cannot be fitted at all.
 pub fn profile(
     best: &Fit,
     recordings: &[&Recording],
     settings: &FitSettings,
     index: usize,
 ) -> Result<ProfileInterval, FitError> {
-    // Fitted once more with the settings of the profile, so that both ends of a difference are of one kind.
+    // The best model is fitted again with the settings of the profile, so that the compared fits have the same
+    // settings.
     let best = fit(&best.model, recordings, &FitSettings { maximum_steps: STEPS, ..*settings })?;
     let settings = FitSettings { maximum_steps: STEPS, least_improvement: 1e-6, ..*settings };
     let side = |direction: f64| end_of(&best, recordings, &settings, index, direction);
     Ok(ProfileInterval { index, lower: side(-1.0), upper: side(1.0), companion: companion(&best, index) })
 }
 
-/// Where the outputs are met significantly worse, going one way.
+/// The value in one direction at which the outputs fit significantly worse.
 fn end_of(best: &Fit, recordings: &[&Recording], settings: &FitSettings, index: usize, direction: f64) -> Option<f64> {
     let parameters: Vec<_> = best.model.parameters().map(|(_, parameter)| parameter).collect();
     let parameter = parameters.get(index)?;
@@ -66,7 +68,7 @@ fn end_of(best: &Fit, recordings: &[&Recording], settings: &FitSettings, index: 
     let mut distance = error.unwrap_or(0.1 * card.typical.abs());
     let mut model = best.model.clone();
     model.parameters_mut().nth(index)?.known = true;
-    // Root of the deviance: in proportion to the distance where the model is linear.
+    // Square root of the deviance. It is proportional to the distance if the model is linear.
     let mut before = (start, 0.0);
     for _ in 0..DOUBLINGS {
         let value = (start + direction * distance).clamp(card.minimum, card.maximum);
@@ -74,7 +76,7 @@ fn end_of(best: &Fit, recordings: &[&Recording], settings: &FitSettings, index: 
             return None;
         }
         model.parameters_mut().nth(index)?.value = value;
-        // A value that the machine cannot be simulated with is not one it can have.
+        // A value at which the simulation fails is outside the interval.
         let Ok(fitted) = fit(&model, recordings, settings) else { return Some(before.0) };
         let root = (deviance(best, &fitted) / (inflation * THRESHOLD)).max(0.0).sqrt();
         if root >= 1.0 {
@@ -89,7 +91,7 @@ fn end_of(best: &Fit, recordings: &[&Recording], settings: &FitSettings, index: 
     None
 }
 
-/// By how much worse the second fit meets the recordings, in units of the first one's errors, squared.
+/// Growth of the sum of squared errors from the first fit to the second, in units of the first one's error variance.
 fn deviance(best: &Fit, other: &Fit) -> f64 {
     let totals = |fit: &Fit, instrument: usize| fit.squares_of(instrument, 0..fit.block_errors.len());
     best.instruments

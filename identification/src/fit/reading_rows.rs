@@ -1,26 +1,26 @@
-//! Rows of a Jacobian, gathered and multiplied many at a time.
+//! Gathers rows of a Jacobian and multiplies many at a time.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Rows that are multiplied together: enough that matrix products run at full speed, few enough to stay in the cache.
+/// Rows that are multiplied together: enough for fast matrix products, few enough to stay in the cache.
 const TOGETHER: usize = 64;
 
 /// Readings of one instrument that are not yet in its normal equations: slopes and error of each, in units of its noise.
 #[derive(Debug)]
 pub(super) struct ReadingRows {
-    /// Columns of the Jacobian by readings.
+    /// One row per column of the Jacobian, one column per reading.
     slopes: DMatrix<f64>,
     errors: DVector<f64>,
     filled: usize,
 }
 
 impl ReadingRows {
-    /// Memory for rows of this many columns.
+    /// Allocates memory for rows with this many columns.
     pub fn new(columns: usize) -> Self {
         ReadingRows { slopes: DMatrix::zeros(columns, TOGETHER), errors: DVector::zeros(TOGETHER), filled: 0 }
     }
 
-    /// Takes one reading.
+    /// Adds one reading.
     pub fn push(&mut self, slopes: impl Iterator<Item = f64>, error: f64) {
         for (slot, slope) in self.slopes.column_mut(self.filled).iter_mut().zip(slopes) {
             *slot = slope;
@@ -34,7 +34,7 @@ impl ReadingRows {
         self.filled == TOGETHER
     }
 
-    /// Adds J' J and J' r of the readings taken, and forgets them.
+    /// Adds J' J and J' r of the gathered readings to the sums, and clears the readings.
     pub fn add_to(&mut self, information: &mut DMatrix<f64>, gradient: &mut DVector<f64>) {
         if self.filled == 0 {
             return;

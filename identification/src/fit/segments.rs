@@ -6,15 +6,15 @@ use excavator_model::recording::Recording;
 use excavator_model::simulation::{InputSignals, first_known_position, initial_state};
 use excavator_model::{Model, SignalError};
 
-/// A recording with its inputs, cut into pieces that are simulated each from an own initial state.
+/// A recording with its inputs, cut into pieces. Each is simulated from its own initial state.
 #[derive(Debug, Clone)]
 pub struct SegmentedRecording {
     /// The recording, thinned.
     pub recording: Recording,
-    /// Whether the model is compared with each sample of it; the others are there because an input bends at them, or a piston arrives
-    /// at a stop. All that are compared are equally far apart, so that no moment counts more than another.
+    /// Whether the model is compared with each sample. The others are kept because an input changes slope there, or a
+    /// piston arrives at a stop. All compared samples are equally spaced, so that all times have the same weight.
     pub compared: Vec<bool>,
-    /// Inputs of the model on its clock.
+    /// Inputs of the model at its sample times.
     pub inputs: InputSignals,
     /// The pieces, in order.
     pub segments: Vec<Segment>,
@@ -27,24 +27,24 @@ pub struct Segment {
     pub first: usize,
     /// Index of the last sample.
     pub last: usize,
-    /// State at the first sample, in the order of the model's layout; improved by the fit.
+    /// State at the first sample, in the order of the model's layout. The fit improves it.
     pub state: Vec<f64>,
 }
 
-/// A gap in the clock longer than this many sample intervals ends a segment: inputs inside it are unknown.
+/// A time gap longer than this many sample intervals ends a segment, because inputs inside it are unknown.
 const LARGEST_GAP: f64 = 10.0;
 
-/// Fewer samples than this say nothing beyond their own initial state.
+/// Fewer samples than this determine no more than their own initial state.
 const FEWEST_SAMPLES: usize = 20;
 
-/// Share of the stroke within which a piston that comes from outside arrives at its stop.
+/// Distance from an end, as a share of the stroke, within which a piston counts as arriving at its stop.
 const AT_THE_END: f64 = 0.005;
 
-/// Time that an arrival takes, s, on a machine of the reference size: the bounce and the shock in the oil.
+/// Duration of an arrival, s, on a machine of the reference size: the bounce and the pressure shock in the oil.
 const ARRIVAL: f64 = 0.3;
 
-/// Whether a piston is arriving at a stop, sample by sample. How it bounces there is a matter of a contact that nobody knows; where
-/// it stands afterwards, and with which pressures, says something of the machine.
+/// Whether a piston is arriving at a stop, sample by sample. The bounce depends on unknown contact properties. The
+/// position and the pressures afterwards do tell something about the machine.
 fn arrivals(model: &Model, recording: &Recording) -> Vec<bool> {
     let mut arriving = vec![false; recording.len()];
     let duration = ARRIVAL * model.machine.size().time();
@@ -69,15 +69,15 @@ fn arrivals(model: &Model, recording: &Recording) -> Vec<bool> {
 }
 
 impl SegmentedRecording {
-    /// Cuts `recording` into segments of about `duration` s, all of the same length, never across a gap of the clock,
-    /// after thinning it to about `sample_rate` samples per second.
+    /// Thins `recording` to about `sample_rate` samples per second and cuts it into segments of about `duration` s.
+    /// None crosses a gap in the sample times, and all between two gaps have the same length.
     ///
     /// # Errors
-    /// [`SignalError`] when inputs or initial states are missing.
+    /// [`SignalError`] if inputs or initial states are missing.
     pub fn new(model: &Model, recording: &Recording, duration: f64, sample_rate: f64) -> Result<Self, SignalError> {
         let stride = (1.0 / (recording.sample_interval() * sample_rate)).round().max(1.0);
         let stride = if stride.is_finite() { stride as usize } else { 1 };
-        // Inputs are freed of noise at the full rate, then thinned.
+        // Noise is removed from inputs at the full rate, before thinning.
         let full_inputs = InputSignals::from_recording(model, recording)?;
         let kept = full_inputs.needed_samples(stride);
         let inputs = full_inputs.at(&kept);
@@ -107,7 +107,7 @@ impl SegmentedRecording {
             };
             for piece in 0..pieces {
                 let (from, to) = (end(piece), end(piece + 1));
-                // A hole in a displacement at the start costs no more than itself.
+                // A hole in a displacement at the start only moves the start to the end of the hole.
                 let from = first_known_position(model, &recording, from).unwrap_or(from);
                 if to < from + FEWEST_SAMPLES {
                     continue;
@@ -116,7 +116,7 @@ impl SegmentedRecording {
                     (0..model.machine.cylinders.len()).map(|c| inputs.orifice_area(c)[from]).collect();
                 match initial_state(&system, full, kept[from], &spool, inputs.tank_pressure()[from]) {
                     Ok(state) => segments.push(Segment { first: from, last: to, state }),
-                    // A segment that starts in a hole of the displacement cannot be simulated; the others can.
+                    // A segment that starts in a hole of the displacement cannot be simulated. The others can.
                     Err(SignalError::NoInitialState { .. }) => {}
                     Err(error) => return Err(error),
                 }

@@ -1,21 +1,23 @@
-//! How a fit is done.
+//! Settings of a fit.
 
 use excavator_model::machine::Size;
 
-/// Settings of an output-error fit, on a machine of [`Size::REFERENCE`]; a fit stretches them to the time of its machine.
+/// Settings of an output-error fit, on a machine of [`Size::REFERENCE`]. A fit scales them to the time scale of its
+/// machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitSettings {
-    /// Length of one shooting segment, s. Long enough that slow effects (leakage, drift) show as displacement, short
-    /// enough that a wrong model cannot run away from the data: a wrong model is what we want to look at.
+    /// Length of one shooting segment, s. It is long enough for slow effects (leakage, drift) to show in the
+    /// displacement. It is short enough that a wrong model, which is what the fit has to assess, cannot diverge far
+    /// from the data.
     pub segment_duration: f64,
-    /// Samples per second that are compared; faster recordings are thinned to about this. Errors of a model are slower
-    /// than that, and thinning saves time in proportion. Not where a valve moves too fast for it.
+    /// Samples per second that are compared. Faster recordings are thinned to about this rate, except where a valve
+    /// moves too fast for it. Model errors are slower than that, and the computation time is proportional to the rate.
     pub sample_rate: f64,
-    /// A fit whose loss (see [`crate::fit::Fit::loss`]) is still above this after four steps is given up.
+    /// A fit whose loss (see [`crate::fit::Fit::loss`]) is still above this after four steps is abandoned.
     pub give_up_above: f64,
-    /// Most Gauss-Newton steps.
+    /// Largest number of Gauss-Newton steps.
     pub maximum_steps: usize,
-    /// A step that improves the loss by less than this fraction ends the fit.
+    /// The fit ends when a step improves the loss by less than this fraction.
     pub least_improvement: f64,
 }
 

@@ -1,9 +1,9 @@
-//! A step of a fit, tried: simulated, and mended where it has led the initial states of a few segments astray.
+//! Tries a step of a fit: simulates it, and refits the initial states of a few segments if the step made them worse.
 //!
-//! A segment that begins at rest with closed valves answers a small change of its initial pressures by a motion that the
-//! sensitivities do not foresee: friction holds until it holds no more. One such segment would have the step of all others
-//! refused, again and again with more damping. Its initial state is an unknown of its own, so it is found anew at the new
-//! parameters, from where it was, while the others wait.
+//! A segment that begins at rest with closed valves can respond to a small change of its initial pressures with a
+//! motion that the sensitivities do not predict: friction holds up to a limit. One such segment would cause the step of
+//! all others to be rejected repeatedly, with growing damping. Its initial state is a separate unknown, so it is found
+//! again at the new parameters, starting from its previous value. The other segments are left as they are.
 
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -12,14 +12,14 @@ use super::Segment;
 use super::normal_equations::{RawSums, SegmentSums};
 use super::problem::Problem;
 
-/// Of all segments, the share that may be mended: where more of them got worse, the step is too long.
+/// Largest share of segments that may be refitted. If more of them got worse, the step is too long.
 const MOST_ASTRAY: f64 = 0.25;
 /// Steps of one segment's own fit.
 const STEPS: usize = 6;
-/// A fall of a segment's loss by less, relative, ends its own fit.
+/// A smaller relative decrease of a segment's loss ends its own fit.
 const LEAST_IMPROVEMENT: f64 = 0.01;
 
-/// What a fit has reached: initial states of all segments, and the sums there.
+/// Present point of a fit: initial states of all segments, and the sums there.
 pub(super) struct Reached {
     /// The segments, each with its initial state.
     pub segments: Vec<Segment>,
@@ -40,8 +40,9 @@ pub(super) fn loss_of<'s>(sums: impl IntoIterator<Item = &'s SegmentSums>, weigh
 }
 
 impl Problem<'_, '_> {
-    /// Simulates all segments at `values` from their states in `trial`; where a few are worse than before the step, theirs
-    /// are found anew. `before` holds the segments and their sums, those of the priors last, before the step. None where the loss grows.
+    /// Simulates all segments at `values` from their states in `trial`. If a few segments got worse than before the
+    /// step, their states are found again. `before` holds the segments and their sums before the step, those of the
+    /// priors last. Returns `None` if the loss grows.
     pub fn tried(
         &self,
         values: &[f64],
@@ -78,7 +79,8 @@ impl Problem<'_, '_> {
         Some(Reached { segments: trial, raw: raw.into_iter().collect::<Option<_>>()?, loss: loss + prior_loss })
     }
 
-    /// The initial state of one segment that fits best at these parameter values, sought from `start`, and the sums there.
+    /// Finds the initial state of one segment that fits best at these parameter values, starting from `start`. Returns
+    /// it with the sums there.
     fn segment_refit(
         &self,
         values: &[f64],
@@ -118,8 +120,9 @@ impl Problem<'_, '_> {
     }
 }
 
-/// The segments whose losses have grown most: so many that without their growth the sum would not have grown. None where
-/// those are too many; empty where the sum has not grown. `further` is by how much the loss grows elsewhere.
+/// The segments whose losses have grown most: the fewest whose removal keeps the total from growing. Returns `None` if
+/// there are too many of them, and an empty list if the total has not grown. `further` is the growth of the loss
+/// elsewhere.
 fn astray(losses: &[f64], before: &[f64], further: f64) -> Option<Vec<usize>> {
     let growth = |&number: &usize| losses[number] - before[number];
     let mut worst: Vec<usize> = (0..losses.len()).collect();
@@ -179,7 +182,7 @@ mod tests {
         let before = problem.weighed(&problem.sums_at(&off, &segments).unwrap(), &weights);
         let allowed = loss_of(&before, &weights);
 
-        // To the right values, but the cap side of one cylinder starts a hundred bar too high.
+        // A step to the right values, but in one segment the cap side pressure starts a hundred bar too high.
         let cap = system.layout().cap_pressure(0).unwrap();
         let mut trial = segments.clone();
         trial[1].state[cap] += 1e7;
@@ -190,7 +193,7 @@ mod tests {
         assert!((reached.segments[1].state[cap] - segments[1].state[cap]).abs() < 1e5);
         assert_eq!(reached.segments[0], trial[0], "the others are where the step put them");
 
-        // All of them, and the step is a bad one.
+        // With this error in all segments the step itself is rejected.
         trial.iter_mut().for_each(|segment| segment.state[cap] += 1e7);
         assert!(problem.tried(&right, trial, (&segments, &before), &weights).is_none());
     }

@@ -1,4 +1,4 @@
-//! Laws that would reverse an opening beyond what was recorded.
+//! Finds laws that would reverse an opening beyond the recorded range, and bounds them.
 
 use std::sync::Arc;
 
@@ -11,14 +11,17 @@ use super::merits::{law_of, times};
 use super::proposals::situations_of;
 use crate::search::{Addition, Pool, Trial};
 
-/// How much stronger than recorded a law is looked at: valves of mobile machines see 25 MPa, and recordings of light work have two or three.
+/// Factor beyond the recorded range at which a law is checked: valves of mobile machines see 25 MPa, and recordings of
+/// light work have two or three.
 const STRONGEST: f64 = 10.0;
 
-/// A law whose opening would have the wrong sign where everything is [`STRONGEST`] times as strong as recorded, in the form that closes instead, with
-/// the number of the trial that it was added to. `None` where there is no such law.
+/// Converts a law whose opening would have the wrong sign if everything were [`STRONGEST`] times as strong as recorded.
+/// Returns the form that closes instead, with the number of the trial that it extends. Returns `None` if the law does
+/// not need it.
 ///
-/// What reduces an opening in proportion to a pressure or a speed closes it at some size of that, and a product goes on: the valve would
-/// meter to the other side. The recording cannot tell, because it ends before.
+/// A law that reduces an opening in proportion to a pressure or a speed closes it at some value. A product continues
+/// beyond that, so that the valve would meter to the other side. The recording cannot show this, because it ends
+/// before.
 pub(super) fn bounded(pool: &Pool<'_>, number: usize, recordings: &[&Recording]) -> Option<(usize, Addition)> {
     let trial = pool.trials.get(number)?;
     let (addition, before) = trial.additions.split_last()?;
@@ -30,7 +33,8 @@ pub(super) fn bounded(pool: &Pool<'_>, number: usize, recordings: &[&Recording])
     Some((base, Addition { physics: Arc::new(law), site: addition.site }))
 }
 
-/// Whether the last law of a trial gives an opening another sign where everything is [`STRONGEST`] times as strong as recorded.
+/// Whether the last law of a trial reverses the sign of an opening if everything is [`STRONGEST`] times as strong as
+/// recorded.
 pub(super) fn reverses_an_opening(trial: &Trial, situations: &[Situation<'_, f64>]) -> bool {
     let Some(effect) = trial.additions.last().and_then(|addition| trial.effect(addition)) else { return false };
     let Some(law) = law_of(effect).filter(|law| law.row().is_an_opening()) else { return false };
@@ -42,7 +46,7 @@ pub(super) fn reverses_an_opening(trial: &Trial, situations: &[Situation<'_, f64
     })
 }
 
-/// The law that closes where the given one would reverse the opening.
+/// The law that closes the opening where the given one would reverse it.
 fn closing(text: &FormulaText) -> FormulaText {
     let formula = match text.formula.strip_prefix("u - k*u*") {
         Some(rest) if !has_sum(rest) => format!("u*max(1 - k*{rest}, 0)"),

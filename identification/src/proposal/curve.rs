@@ -1,4 +1,4 @@
-//! What is missing as a curve that nobody understands yet: a table.
+//! Describes the missing physics as a curve without an explanation: a table.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,10 @@ use excavator_model::formula::{FormulaText, ParameterText};
 use super::grammar::rounded;
 use crate::diagnosis::Unexplained;
 
-/// Knots of a table: enough for a dead zone and a fall, few enough that each has many samples.
+/// Number of knots in a table: enough for a dead zone and a drop, few enough that each has many samples.
 const KNOTS: usize = 12;
 
-/// The curve of a residual as a law. `None` where no row of the equations takes it.
+/// The curve of a residual as a law. Returns `None` if no row of the equations accepts it.
 pub(super) fn table_law(left: &Unexplained) -> Option<FormulaText> {
     let (place, equation) = left.equation.split_once('.')?;
     let (row, sign) = match equation {
@@ -71,7 +71,7 @@ fn words(variable: &str) -> String {
     variable.replace('_', " ")
 }
 
-/// Neighbouring points of the curve, put together to so many knots, which rise.
+/// Merges neighbouring points of the curve into `KNOTS` knots in rising order.
 fn knots(curve: &[[f64; 3]]) -> Vec<(f64, f64)> {
     let points: Vec<[f64; 3]> =
         curve.iter().copied().filter(|point| point.iter().all(|value| value.is_finite())).collect();
@@ -84,7 +84,7 @@ fn knots(curve: &[[f64; 3]]) -> Vec<(f64, f64)> {
     knots
 }
 
-/// As a formula writes a number.
+/// Formats a number for a formula.
 fn number(value: f64) -> String {
     let value = rounded(value);
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }

@@ -1,4 +1,4 @@
-//! The quick part of a search for laws: what single terms promise, before any is fitted.
+//! Quick part of a search for laws: predictions for single terms before any is fitted.
 
 use excavator_model::formula::FormulaText;
 use excavator_model::recording::Recording;
@@ -12,21 +12,21 @@ use crate::diagnosis::{Diagnosis, DiagnosisSettings};
 use crate::fit::{Fit, FitSettings};
 use crate::regression::RegressionError;
 
-/// The law of one term that promises most. It was not fitted, and not judged.
+/// The most promising law of one term. It was neither fitted nor judged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guess {
-    /// The law, its coefficient after a first step.
+    /// The law, with its coefficient after a first step.
     pub text: FormulaText,
     /// Name of its place.
     pub place: String,
-    /// Fall of the loss of the identification recordings that it promises; see [`Fit::loss`].
+    /// Predicted decrease of the loss on the identification recordings; see [`Fit::loss`].
     pub improvement: f64,
 }
 
-/// What a fitted model lacks, as the law of one term that promises most. `None` where no term promises anything.
+/// What a fitted model lacks, as the most promising law of one term. Returns `None` if no term promises an improvement.
 ///
 /// # Errors
-/// [`RegressionError`] when a recording lacks inputs.
+/// [`RegressionError`] if a recording lacks inputs.
 pub fn first_guess(
     given: &Fit,
     identification: &[&Recording],
@@ -44,8 +44,9 @@ pub fn first_guess(
     }))
 }
 
-/// Where nothing of the catalogue explains the recordings of a diagnosis: the law of one term that promises most. `None` for any other
-/// verdict, and where a recording lacks the signals of an equation: the verdict stands without a guess.
+/// The most promising law of one term, if nothing in the catalogue explains the recordings of a diagnosis. Returns
+/// `None` for any other verdict, and if a recording lacks the signals of an equation. The verdict then stands without a
+/// guess.
 pub fn guess_for(diagnosis: &Diagnosis, identification: &[&Recording], validation: &[&Recording]) -> Option<Guess> {
     if diagnosis.verdict.kind != Kind::Unexplained {
         return None;

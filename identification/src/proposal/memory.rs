@@ -1,11 +1,11 @@
-//! The memory of a law along what was seen.
+//! Computes the states of a law with memory along a recording.
 
 use excavator_model::effects::{Physics, Site};
 use excavator_model::equations::Situation;
 use excavator_model::formula::Law;
 
-/// States of a law with memory at each sample; nothing of a law without. Each step is linearised and implicit (Rosenbrock and Euler), so that a
-/// bristle that follows within a fraction of a sample does not swing.
+/// States of a law with memory at each sample; empty for a law without memory. Each step is linearised and implicit
+/// (Rosenbrock and Euler), so that a bristle that follows within a fraction of a sample does not oscillate.
 pub(super) fn memory_along(
     law: &Law,
     site: Site,
@@ -31,7 +31,7 @@ pub(super) fn memory_along(
             let damping = 1.0 - step * slope.min(0.0);
             states[state] += step * rates[state] / damping;
         }
-        // Where something was not measured the memory begins anew.
+        // The states are reset after a sample that was not measured.
         if states.iter().any(|state| !state.is_finite()) {
             law.begin(site, parameters, now, &mut states);
         }

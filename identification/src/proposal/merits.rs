@@ -1,4 +1,4 @@
-//! What speaks for a law and against it, beside its error.
+//! Merits and drawbacks of a law, besides its error.
 
 use excavator_model::ModelEffect;
 
@@ -8,24 +8,24 @@ use excavator_model::effects::Site;
 use excavator_model::equations::Situation;
 use excavator_model::formula::{Law, Row};
 
-/// What is to be known of a law before it is used.
+/// Properties of a law to check before it is used.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Merits {
-    /// Whether it takes energy out of the machine, or none, but never puts any in.
+    /// Whether it never puts energy into the machine.
     pub dissipates: bool,
-    /// The power of the speed, pressure, ... with which it grows beyond what was recorded, where that is more than a square.
+    /// Exponent with which it grows beyond the recorded speed, pressure, ..., if it is more than a square.
     pub steep: Option<f64>,
-    /// Coefficients whose 95 % interval holds zero, and so both signs.
+    /// Coefficients whose 95 % interval contains zero, and so both signs.
     pub unsure_signs: Vec<String>,
 }
 
-/// Share of the energy that a law takes out which it may put in, by noise in what is measured.
+/// A law may put in this share of the energy that it takes out, because of measurement noise.
 const LEAST_SHARE: f64 = 0.01;
 
-/// Power beyond which a law is steep: laws of friction and flow are at most squares.
+/// Exponent beyond which a law is steep: laws of friction and flow are at most squares.
 const STEEP: f64 = 2.2;
 
-/// Merits of a fitted law along the recordings on which `situations` were seen.
+/// Merits of a fitted law along the recordings that `situations` come from.
 pub(super) fn merits(law: &Law, effect: &ModelEffect, situations: &[Situation<'_, f64>]) -> Merits {
     let parameters: Vec<f64> = effect.parameters.iter().map(|parameter| parameter.value).collect();
     let (mut given, mut taken) = (0.0, 0.0);
@@ -60,7 +60,7 @@ pub(super) fn merits(law: &Law, effect: &ModelEffect, situations: &[Situation<'_
     }
 }
 
-/// What a law adds to its row: for an opening, by how much it changes it.
+/// What a law adds to its row; for an opening, its change.
 pub(super) fn change(law: &Law, site: Site, parameters: &[f64], states: &[f64], now: &Situation<'_, f64>) -> f64 {
     let value = law.value(site, parameters, states, now);
     match (law.row(), site) {
@@ -69,7 +69,7 @@ pub(super) fn change(law: &Law, site: Site, parameters: &[f64], states: &[f64], 
     }
 }
 
-/// Power that a law of this value gives to the machine, W. None where it acts on an opening or an instrument.
+/// Power that a law with this value puts into the machine, W. Zero if it acts on an opening or an instrument.
 fn power(row: Row, site: Site, value: f64, now: &Situation<'_, f64>) -> f64 {
     let (pump, tank) = (now.pump_pressure, now.tank_pressure);
     if row == Row::PumpLeak {
@@ -93,7 +93,7 @@ fn power(row: Row, site: Site, value: f64, now: &Situation<'_, f64>) -> f64 {
     if power.is_finite() { power } else { 0.0 }
 }
 
-/// Everything so many times as far, as fast and as strong.
+/// Scales the distances, speeds, pressures and openings by `factor`.
 pub(super) fn times<'m>(factor: f64, now: &Situation<'m, f64>) -> Situation<'m, f64> {
     let mut stronger = now.clone();
     for piston in &mut stronger.pistons {

@@ -1,8 +1,8 @@
-//! From a curve to a law: formulas for physics that no catalogue has.
+//! Proposes formulas for physics that is missing in every catalogue.
 //!
-//! Where nothing in the catalogue explains what a model leaves, terms of a grammar are tried on the equations (`screening`), put together
-//! (`shortlist`), fitted like effects of the catalogue, and judged by the same decision. Where no law holds, the curve itself is one
-//! (`curve`), and says so.
+//! If nothing in the catalogue explains the residual of a model, terms of a grammar are tried on the equations
+//! (`screening`) and combined (`shortlist`). The resulting laws are fitted like effects of the catalogue, and judged by
+//! the same decision. If no law holds, the curve itself is proposed as one (`curve`), and is labelled as a curve.
 
 mod bounded;
 mod curve;

@@ -1,10 +1,10 @@
-//! What the parameters of a model leave of its residual, and of further terms.
+//! Projects a model's own parameters out of its residual and out of further terms.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::regression::{EquationKind, WeakTerms};
 
-/// Rows of the weak form with the model's own parameters taken out: on recordings that are fitted, and on others that are predicted.
+/// Rows of the weak form with the model's own parameters projected out, on fitted recordings and on predicted ones.
 pub(super) struct Projection {
     fitted: Rows,
     predicted: Rows,
@@ -12,7 +12,7 @@ pub(super) struct Projection {
     normal: Option<Cholesky<f64, Dyn>>,
 }
 
-/// One kind of recordings.
+/// The rows of one kind of recordings.
 struct Rows {
     kinds: Vec<usize>,
     weights: Vec<f64>,
@@ -23,21 +23,23 @@ struct Rows {
     counts: Vec<f64>,
 }
 
-/// A term with the model's own parameters taken out.
+/// A term with the model's own parameters projected out.
 #[derive(Debug, Clone)]
 pub(super) struct Column {
     pub fitted: Vec<f64>,
     pub predicted: Vec<f64>,
 }
 
-/// The least part of a term that the model's own parameters may leave: what leaves less is one of them.
+/// Smallest part of a term that may remain. A term with a smaller rest is a combination of the model's own parameters.
 const LEAST_REST: f64 = 1e-5;
 
-/// How much the diagonal of the normal equations is raised, beside columns of length one: two parameters that show together share.
+/// Increase of the diagonal of the normal equations, for columns of length one. Two parameters that the rows cannot
+/// separate then share their effect.
 const RIDGE: f64 = 1e-9;
 
 impl Projection {
-    /// Takes the parameters out of the residuals. Equations that are met worse than noise explains weigh less.
+    /// Projects the parameters out of the residuals. Equations with residuals larger than noise explains have less
+    /// weight.
     pub fn new(fitted: &WeakTerms<'_>, predicted: &WeakTerms<'_>) -> Projection {
         let mut equations: Vec<EquationKind> = fitted.kinds.iter().chain(&predicted.kinds).copied().collect();
         equations.sort();
@@ -60,7 +62,7 @@ impl Projection {
         projection
     }
 
-    /// The model's own parameters that come nearest to a weighed column.
+    /// The model's own parameters that fit a weighted column best.
     fn own_parameters(&self, weighed: &[f64]) -> DVector<f64> {
         let columns = self.fitted.regressors.column_iter().map(|column| {
             let products = column.iter().zip(&self.fitted.weights).zip(weighed);
@@ -70,7 +72,7 @@ impl Projection {
         self.normal.as_ref().map_or_else(|| DVector::zeros(right.len()), |normal| normal.solve(&right))
     }
 
-    /// A term with the model's own parameters taken out; `None` for one that is a mixture of these.
+    /// A term with the model's own parameters projected out; `None` for a combination of these.
     pub fn column(&self, fitted: &[f64], predicted: &[f64]) -> Option<Column> {
         let own = self.own_parameters(&weighed(fitted, &self.fitted.weights));
         let column = Column { fitted: self.fitted.rest(fitted, &own), predicted: self.predicted.rest(predicted, &own) };
@@ -78,8 +80,8 @@ impl Projection {
         is_left.then_some(column)
     }
 
-    /// Coefficient of a term, and by how much the logarithm of the likelihood grows with it: on fitted and on predicted recordings, each
-    /// equation with a variance of its own.
+    /// Coefficient of a term, and the growth of the log-likelihood with it on fitted and on predicted recordings. Each
+    /// equation has its own variance.
     pub fn gain(&self, column: &Column) -> Option<(f64, f64)> {
         let coefficient =
             self.product(&column.fitted, &self.fitted.left) / self.product(&column.fitted, &column.fitted);
@@ -98,7 +100,7 @@ impl Projection {
         one.iter().zip(other).zip(&self.fitted.weights).map(|((a, b), weight)| a * b * weight * weight).sum()
     }
 
-    /// Cosine of the angle between two terms, without sign.
+    /// Absolute cosine of the angle between two terms.
     pub fn likeness(&self, one: &Column, other: &Column) -> f64 {
         let lengths = self.product(&one.fitted, &one.fitted) * self.product(&other.fitted, &other.fitted);
         self.product(&one.fitted, &other.fitted).abs() / lengths.sqrt()
@@ -110,7 +112,7 @@ impl Projection {
     }
 }
 
-/// Least mean square of an equation, in units of what sensor noise explains.
+/// Smallest mean square of an equation, in units of what sensor noise explains.
 const LEAST_SPREAD: f64 = 1e-3;
 
 impl Rows {
@@ -119,7 +121,7 @@ impl Rows {
         let mut counts = vec![0.0; equations.len()];
         kinds.iter().for_each(|&kind| counts[kind] += terms.independent);
         let mut regressors = terms.regressors.clone();
-        // A parameter without a finite slope somewhere is left as it is.
+        // A parameter with a slope that is not finite somewhere is not fitted.
         for mut column in regressors.column_iter_mut() {
             if column.iter().any(|slope| !slope.is_finite()) {
                 column.fill(0.0);
@@ -128,13 +130,13 @@ impl Rows {
         Rows { weights: vec![1.0; kinds.len()], left: Vec::new(), regressors, kinds, counts }
     }
 
-    /// A column without the model's own parameters.
+    /// A column with the model's own parameters projected out.
     fn rest(&self, column: &[f64], own: &DVector<f64>) -> Vec<f64> {
         let explained = &self.regressors * own;
         column.iter().zip(explained.iter()).map(|(value, explained)| value - explained).collect()
     }
 
-    /// Mean square in each equation, in units of what sensor noise explains. What is far below that is rounding.
+    /// Mean square in each equation, in units of what sensor noise explains. Much smaller values are rounding.
     fn spreads(&self, left: &[f64]) -> Vec<f64> {
         let mut sums = vec![(0.0, 0.0); self.counts.len()];
         for (&kind, value) in self.kinds.iter().zip(left) {
@@ -145,7 +147,7 @@ impl Rows {
     }
 }
 
-/// What terms have to explain.
+/// The residuals that terms have to explain.
 fn residuals(terms: &WeakTerms<'_>) -> Vec<f64> {
     terms.residuals.iter().map(|residual| -residual).collect()
 }
@@ -161,7 +163,7 @@ fn normal(rows: &Rows) -> Option<Cholesky<f64, Dyn>> {
     }
     let mut matrix = weighed.transpose() * &weighed;
     for index in 0..matrix.nrows() {
-        // Beside its own size, so that every unit is treated alike; a column of zeros gets a parameter of zero.
+        // Relative to its own size, so that units do not matter. A column of zeros gets a parameter of zero.
         let own = matrix[(index, index)];
         matrix[(index, index)] = if own > 0.0 { own * (1.0 + RIDGE) } else { 1.0 };
     }

@@ -1,7 +1,8 @@
-//! Which laws would lower the error of simulated outputs, before any is fitted.
+//! Predicts which laws would lower the error of simulated outputs, before any is fitted.
 //!
-//! The equations take derivatives of what was measured, and where an effect is small what noise does to them looks like another one. Outputs
-//! that were simulated have no noise: one simulation with sensitivities tells what a small coefficient would do, for many laws at once.
+//! The equations use derivatives of measured signals. If an effect is small, the noise in these resembles another
+//! effect. Simulated outputs have no noise: one simulation with sensitivities shows the result of a small coefficient,
+//! for many laws at once.
 
 use std::sync::Arc;
 
@@ -15,19 +16,20 @@ use super::grammar::{Sized, law_text};
 use super::shortlist::Candidate;
 use crate::fit::{FitSettings, Linearised};
 
-/// Laws that are simulated together. Each costs its evaluation in every direction, all together the directions of the model's own.
+/// Number of laws that are simulated together. Each law is evaluated in every direction. All laws together pay once for
+/// the directions of the model's own parameters.
 const TOGETHER: usize = 20;
 
-/// A law with what a step in its coefficients promises.
+/// A law with the predicted result of a step in its coefficients.
 #[derive(Debug, Clone)]
 pub(super) struct Promised {
-    /// The law, its coefficients after the step.
+    /// The law, with its coefficients after the step.
     pub candidate: Candidate,
-    /// By how much the loss falls.
+    /// Predicted decrease of the loss.
     pub improvement: f64,
 }
 
-/// Foretells what laws of one term bring, the best first. Those that cannot be simulated are left out.
+/// Predicts the improvement by laws of one term, the best first. Laws that cannot be simulated are left out.
 pub(super) fn promised(
     model: &Model,
     singles: &[Candidate],
@@ -54,7 +56,7 @@ pub(super) fn promised(
     promised
 }
 
-/// Laws of one, two and three of these terms in one row, with what each promises.
+/// Laws of two and three of these terms in one row, with their predictions.
 pub(super) fn combined(
     model: &Model,
     singles: &[Candidate],
@@ -97,21 +99,22 @@ pub(super) fn combined(
     laws
 }
 
-/// A term after a step of its coefficient to `value`, which has the sign that its text gives it.
+/// A term after a step of its coefficient to `value`, which is relative to the sign in its text.
 fn stepped(term: &Sized, value: f64) -> Sized {
     Sized { coefficient: value.copysign(value * term.coefficient), ..term.clone() }
 }
 
-/// Most terms of all laws together: more are a curve.
+/// Largest number of terms in all laws together. More terms would only describe a curve.
 pub(super) const MOST_TERMS: usize = 3;
 
-/// Laws of one number of terms that are kept, and extended.
+/// Number of laws that are kept and extended for each number of terms.
 const KEPT: usize = 6;
 
-/// Fall of the loss that a further term must promise.
+/// Smallest predicted decrease of the loss for a further term.
 const LEAST_STEP: f64 = 0.03;
 
-/// Whether terms can be one law: products in one row, of different kinds, and no two of them forces of pressures.
+/// Whether terms can form one law: products in one row, of different kinds, with at most one force that depends on a
+/// pressure.
 fn fits(singles: &[Candidate], numbers: &[usize]) -> bool {
     let terms: Vec<&Sized> = numbers.iter().filter_map(|&number| singles[number].terms.first()).collect();
     let first = &singles[numbers[0]];
@@ -122,7 +125,7 @@ fn fits(singles: &[Candidate], numbers: &[usize]) -> bool {
         && terms.iter().filter(|term| term.term.is_a_force_of_pressure()).count() < 2
 }
 
-/// The model with all of these laws, their coefficients zero and everything else about them held.
+/// The model with all of these laws. Their coefficients are zero; their other parameters are held.
 fn linearised(
     model: &Model,
     singles: &[Candidate],

@@ -1,4 +1,4 @@
-//! What comes of a search for laws.
+//! Results of a search for laws.
 
 use excavator_model::equations::Situation;
 use excavator_model::formula::FormulaText;
@@ -42,10 +42,10 @@ impl ProposalVerdict {
     }
 }
 
-/// A law with what it is worth.
+/// A law with its assessment.
 #[derive(Debug, Clone)]
 pub struct Proposal {
-    /// The law as a catalogue holds it, its parameters starting at the fitted values.
+    /// The law in the form of a catalogue. Its start values are the fitted values.
     pub text: FormulaText,
     /// Name of its place.
     pub place: String,
@@ -57,11 +57,11 @@ pub struct Proposal {
     pub beside: Vec<String>,
     /// Mean normalised squared error on the validation recordings.
     pub validation_error: f64,
-    /// Fall of the log error ratio on the validation recordings.
+    /// Decrease of the log error ratio on the validation recordings.
     pub evidence: f64,
-    /// Whether it explains the recordings: the first proposal of a law, and those that cannot be told from it.
+    /// Whether it explains the recordings: the first proposal of a law, and those that cannot be distinguished from it.
     pub is_in_set: bool,
-    /// Whether it is a table of the curve, and no law.
+    /// Whether it is a table of the curve instead of a law.
     pub is_a_curve: bool,
     /// What speaks for it and against it.
     pub merits: Merits,
@@ -70,29 +70,29 @@ pub struct Proposal {
 /// Proposed laws and all that was tried.
 #[derive(Debug, Clone)]
 pub struct Proposals {
-    /// What comes of it.
+    /// The verdict.
     pub kind: ProposalVerdict,
-    /// Proposals, the best first; none where there is nothing to propose for.
+    /// Proposals, the best first. Empty if nothing is missing or the catalogue explains it.
     pub proposals: Vec<Proposal>,
     /// Mean normalised squared error of the refitted model on the validation recordings.
     pub error_before: f64,
     /// The refitted model on each validation recording.
     pub before: Vec<Comparison>,
-    /// Everything that was tried, the laws among the hypotheses.
+    /// Everything that was tried. The laws are among the hypotheses.
     pub diagnosis: Diagnosis,
-    /// Where something is missing and what it depends on, by what single terms promise.
+    /// Where something is missing and what it depends on, from the predictions for single terms.
     pub survey: Survey,
-    /// What the given model lacks, as a curve; none where its catalogue explains it.
+    /// What the given model lacks, as a curve; `None` if its catalogue explains it.
     pub lacking: Option<Unexplained>,
 }
 
-/// Most proposals.
+/// Largest number of proposals.
 const MOST: usize = 10;
 
-/// Puts together what was found.
+/// Collects the results.
 ///
 /// # Errors
-/// [`DiagnosisError::Regression`] when the recordings lack inputs.
+/// [`DiagnosisError::Regression`] if the recordings lack inputs.
 pub(super) fn proposals(
     kind: ProposalVerdict,
     pool: Pool<'_>,
@@ -111,14 +111,14 @@ pub(super) fn proposals(
     for number in numbers {
         proposals.extend(of_trial(&diagnosis, number, identification, validation)?);
     }
-    // A coefficient that may be zero says that its law is another one of the list with something more.
+    // A law with a coefficient that may be zero is another law of the list with an extra term.
     let is_sure =
         |proposal: &Proposal| proposal.is_in_set || proposal.is_a_curve || proposal.merits.unsure_signs.is_empty();
     proposals.retain(is_sure);
     Ok(Proposals { kind, survey, proposals, error_before, before, diagnosis, lacking })
 }
 
-/// Trials with laws that improve on the given model: those of the verdict first, then by what they leave; curves last.
+/// Trials with laws that improve on the given model: those of the verdict first, then by remaining error, curves last.
 fn ranked(diagnosis: &Diagnosis) -> Vec<usize> {
     let standings = &diagnosis.verdict.standings;
     let has_law = |trial: &Trial| trial.additions.iter().any(|addition| addition.physics.formula().is_some_and(is_new));
@@ -145,15 +145,15 @@ fn ranked(diagnosis: &Diagnosis) -> Vec<usize> {
     numbers
 }
 
-/// Whether a formula was proposed, and is not one that the user has given.
+/// Whether a formula was proposed, not given by the user.
 pub(super) fn is_new(text: &FormulaText) -> bool {
     text.source == PROPOSED || text.source == CURVE
 }
 
-/// What a proposed law says of its source.
+/// Source text of a proposed law.
 pub(super) const PROPOSED: &str = "proposed from recordings";
 
-/// What a table of a curve says of its source.
+/// Source text of a table of a curve.
 pub(super) const CURVE: &str = "curve of a residual";
 
 fn is_curve(trial: &Trial) -> bool {
@@ -203,12 +203,13 @@ pub(super) fn laws_dissipate(trial: &Trial, situations: &[Situation<'_, f64>]) -
     laws.all(|(law, effect)| merits(&law, effect, situations).dissipates)
 }
 
-/// What the fitted model of a trial sees along the recordings; nothing of one that it cannot be simulated on.
+/// The situations of a trial's fitted model along the recordings. Recordings without the signals that it needs are
+/// skipped.
 pub(super) fn situations_of<'t>(trial: &'t Trial, recordings: &[&Recording]) -> Vec<Situation<'t, f64>> {
     recordings.iter().flat_map(|recording| situations_along(&trial.fit.model, recording)).flatten().collect()
 }
 
-/// A formula that starts where the fit has ended.
+/// A formula with the fitted values as start values.
 fn fitted_text(text: &FormulaText, effect: &ModelEffect) -> FormulaText {
     let mut text = text.clone();
     for parameter in &effect.parameters {
@@ -221,7 +222,7 @@ fn fitted_text(text: &FormulaText, effect: &ModelEffect) -> FormulaText {
     text
 }
 
-/// A trial on each validation recording; nothing of one that it cannot be simulated on.
+/// Comparisons of a trial with each validation recording. Recordings that it cannot be simulated on are skipped.
 fn comparisons(trial: &Trial, validation: &[&Recording]) -> Vec<Comparison> {
     let model = trial.model_on_validation();
     validation.iter().filter_map(|recording| compare(&model, recording).ok()).collect()

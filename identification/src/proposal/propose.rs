@@ -20,11 +20,13 @@ use crate::decision::{Kind, Policy, Reason, Verdict};
 use crate::diagnosis::{DiagnosisError, DiagnosisSettings, unexplained};
 use crate::search::{Addition, Effort, Pool, Trial, search, try_laws};
 
-/// Times that laws are added to the best hypothesis so far. Two laws that nobody knows are more than recordings of one machine tell apart.
+/// Rounds in which laws are added to the best hypothesis so far. Recordings of one machine can hardly separate two
+/// unknown laws, let alone more.
 const ROUNDS: usize = 2;
 
-/// Proposes laws for what `model` is missing, if it is nothing in its catalogue. Parameters are fitted to `identification`, evidence comes from
-/// `validation`. `progress` is told what is being done, in words, with the fraction done.
+/// Proposes laws for what `model` is missing, if no effect of its catalogue explains it. Parameters are fitted to
+/// `identification`; evidence comes from `validation`. `progress` is called with a description of the current activity
+/// and the fraction done.
 ///
 /// # Errors
 /// [`DiagnosisError`].
@@ -64,11 +66,11 @@ pub fn propose(
     proposals(kind, pool, verdict, survey, identification, validation)
 }
 
-/// Share of the misfit that a first law may leave for a second one to be looked for beside it.
+/// Largest share of the misfit that a first law may leave if a second one is to be searched.
 const LARGEST_REST: f64 = 0.5;
 
-/// Whether the favoured hypothesis leaves little. A machine that is built otherwise may explain the recordings as well; a law says so in its
-/// own way.
+/// Whether the favoured hypothesis leaves little. A different construction of the machine may explain the recordings as
+/// well; a law expresses that in another form.
 fn is_explained(verdict: &Verdict) -> bool {
     verdict.reasons.iter().any(|reason| matches!(reason, Reason::Explained { .. }))
 }
@@ -82,8 +84,8 @@ struct Trials<'a> {
 }
 
 impl Trials<'_> {
-    /// Laws from the equations, added to the given model, then to the best hypothesis so far, until one explains the recordings.
-    /// Gives what single terms promise beside the given model.
+    /// Adds laws from the equations to the given model, then to the best hypothesis so far, until one explains the
+    /// recordings. Returns the predictions for single terms added to the given model.
     fn of_laws(&self, pool: &mut Pool<'_>) -> Result<Survey, DiagnosisError> {
         let (mut base, mut survey) = (0, Survey::default());
         for round in 0..ROUNDS {
@@ -121,7 +123,7 @@ impl Trials<'_> {
         Ok(survey)
     }
 
-    /// Beside each favoured law that would reverse an opening, the one that closes instead.
+    /// Also tries, for each favoured law that would reverse an opening, the form that closes it instead.
     fn bounded(&self, pool: &mut Pool<'_>) {
         let progress = |what: &str, _: f64| (self.progress)(what, 0.9);
         for number in pool.verdict(self.policy).set {
@@ -131,7 +133,7 @@ impl Trials<'_> {
         }
     }
 
-    /// The curve of what is left, so that the error falls where nobody understands it yet.
+    /// Tries the curve of the residual as a law, which lowers the error without an explanation.
     fn of_the_curve(&self, pool: &mut Pool<'_>) -> Result<(), DiagnosisError> {
         let model = &pool.given().fit.model;
         let Some(left) = unexplained(model, self.identification)? else { return Ok(()) };
@@ -153,7 +155,7 @@ fn terms_of(trial: &Trial) -> usize {
     proposed.flat_map(|effect| &effect.parameters).filter(|parameter| parameter.card.meaning == COEFFICIENT).count()
 }
 
-/// The laws of a shortlist as effects with names of their own.
+/// The laws of a shortlist as effects with unique names.
 fn additions(listed: &[Candidate], pool: &Pool<'_>) -> Vec<Addition> {
     let mut names: Vec<String> =
         pool.given().fit.model.catalogue.iter().map(|effect| effect.card().name.to_string()).collect();
@@ -171,15 +173,15 @@ fn additions(listed: &[Candidate], pool: &Pool<'_>) -> Vec<Addition> {
     laws
 }
 
-/// The name, with a number where it is taken.
+/// The name, with a number if it is taken.
 fn free_name(name: &str, taken: &[String]) -> String {
     let stem: String = name.chars().take(LONGEST_STEM).collect();
     let numbered = (2..).map(|number| format!("{stem}_{number}"));
     std::iter::once(name.to_string()).chain(numbered).find(|name| !taken.contains(name)).unwrap_or_default()
 }
 
-/// What a proposed law says of itself.
+/// Summary text of a proposed law.
 const SUMMARY: &str = "A law that was proposed for what a model left unexplained.";
 
-/// Most letters of a name that gets a number.
+/// Largest number of letters in a name before a number is appended.
 const LONGEST_STEM: usize = 55;

@@ -1,4 +1,4 @@
-//! What speaks against a law, in words.
+//! Remarks on what speaks against a law.
 
 use super::Proposal;
 

@@ -1,4 +1,4 @@
-//! Which terms explain what a model leaves: a regression on the equations, before any simulation.
+//! Finds terms that explain the residual of a model, by a regression on the equations before any simulation.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use super::merits::change;
 use super::projection::{Column, Projection};
 use crate::regression::{RegressionError, WeakFormSettings, WeakTerms, weak_terms};
 
-/// A place where terms enter: a row at a site, with the number of its probe.
+/// A place where terms enter: a row at a site, with the index of its probe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Entry {
     row: Row,
@@ -40,20 +40,20 @@ pub(super) struct Screened {
     pub site: Site,
     /// The term with its best numbers.
     pub sized: Sized,
-    /// By how much the logarithm of the likelihood grows with it, less what its parameters and the size of the search cost.
+    /// Growth of the log-likelihood with this term, less a penalty for its parameters and the size of the search.
     pub evidence: f64,
-    /// It in the rows of the regression.
+    /// Its column in the regression.
     pub column: Column,
 }
 
 impl Screened {
-    /// Whether it is this term with these shapes, whatever the coefficient.
+    /// Whether it is this term with these shapes and any coefficient.
     pub fn is(&self, sized: &Sized) -> bool {
         self.sized.term == sized.term && self.sized.shapes == sized.shapes && self.sized.cylinder == sized.cylinder
     }
 }
 
-/// All terms at all places of a machine, tried; the best first.
+/// Result of trying all terms at all places of a machine, the best first.
 pub(super) struct Screening {
     /// The rows of the regression.
     pub projection: Projection,
@@ -61,16 +61,16 @@ pub(super) struct Screening {
     pub best: Vec<Screened>,
 }
 
-/// Terms that are kept.
+/// Number of terms that are kept.
 const KEPT: usize = 480;
 
-/// Choices of the shapes of a term that are kept for each sign: noise in the equations may favour a wrong one.
+/// Number of shape choices of a term that are kept for each sign: noise in the equations may favour a wrong one.
 const KEPT_SHAPES: usize = 3;
 
-/// Tries all terms on what `model` leaves.
+/// Tries all terms on the residual of `model`.
 ///
 /// # Errors
-/// [`RegressionError`] when a recording lacks inputs.
+/// [`RegressionError`] if a recording lacks inputs.
 pub(super) fn screen(
     model: &Model,
     identification: &[&Recording],
@@ -90,7 +90,7 @@ pub(super) fn screen(
             &predicted.regressor(entry.probe, &law.values(&predicted))?,
         )
     };
-    // Without their columns: those of all together would fill the memory.
+    // Columns are not kept here: those of all terms would fill the memory.
     let mut tried: Vec<(Entry, Sized, f64)> = tries
         .par_iter()
         .filter_map(|(entry, term, shapes)| {
@@ -148,12 +148,12 @@ fn probe(row: Row) -> Option<AnyEffect> {
     Some(Arc::new(Law::read(&text).ok()?))
 }
 
-/// Every term at every place, with all starts of its shapes.
+/// Every term at every place, with all start values of its shapes.
 fn tries(entries: &[Entry], terms_of: &WeakTerms<'_>) -> Vec<(Entry, Term, Vec<f64>)> {
     let terms = terms();
     let mut tries = Vec::new();
     for entry in entries {
-        // A term that names no cylinder is tried once.
+        // A term without a cylinder in its formula is tried once.
         let is_first =
             |term: &&Term| term.names_a_cylinder() || matches!(entry.site, Site::Cylinder(_)) || entry.cylinder == 0;
         for term in terms.iter().filter(|term| term.row == entry.row).filter(is_first) {
@@ -198,7 +198,7 @@ impl Evaluated {
         Some(Evaluated { law, entry, sized, parameters })
     }
 
-    /// Its value for each recording, for each sample.
+    /// Its values, by recording and by sample.
     pub(super) fn values(&self, terms: &WeakTerms<'_>) -> Vec<Vec<f64>> {
         let of_recording = |situations: &Vec<Situation<'_, f64>>| {
             let states = self.states(situations);
@@ -211,7 +211,7 @@ impl Evaluated {
         terms.situations.iter().map(of_recording).collect()
     }
 
-    /// States of a law with memory along a recording; nothing of a law without.
+    /// States of a law with memory along a recording; empty for a law without memory.
     fn states(&self, situations: &[Situation<'_, f64>]) -> Vec<Vec<f64>> {
         memory_along(&self.law, self.entry.site, &self.parameters, situations)
     }

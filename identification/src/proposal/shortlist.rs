@@ -1,4 +1,4 @@
-//! From terms to the laws that are worth a fit.
+//! Selects the laws that are worth a fit from the screened terms.
 
 use excavator_model::Model;
 use excavator_model::effects::Site;
@@ -21,48 +21,51 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// Whether it is a law of its own and no sum of products.
+    /// Whether it is a whole law, not a sum of products.
     fn is_whole(&self) -> bool {
         self.terms.iter().any(|sized| sized.term.is_whole())
     }
 }
 
-/// Most laws of one term by what they promise, by evidence of the equations, and of several terms. The equations are right where an effect is
-/// large and its outputs far from linear; the outputs where it is small.
+/// Largest number of laws: of one term by prediction, of one term by evidence of the equations, and of several terms.
+/// The equations are right where an effect is large and the outputs far from linear in it. The predictions for the
+/// outputs are right where it is small.
 const MOST: [usize; 3] = [12, 4, 4];
 
-/// Share of the loss that the best term promises from which on the promises are believed.
+/// If the best term is predicted to remove at least this share of the loss, the predictions are trusted.
 const LARGE_SHARE: f64 = 0.5;
 
-/// Most laws that resist the motion, in any case: what pushes it where the rest of the friction became too large often promises more.
+/// Largest number of laws that resist the motion. They are always included: if the fitted friction became too large, a
+/// law that pushes the motion often has the better prediction.
 const RESISTING: usize = 4;
 
-/// Share of the best promise from which on a law that is no product is fitted: a step from zero foretells less of it than it brings.
+/// A whole law is fitted if its prediction is at least this share of the best one. A step from zero predicts less than
+/// such a law achieves.
 const BENT_SHARE: f64 = 0.3;
 
-/// Terms from which laws of several are made.
+/// Number of terms from which laws of several terms are combined.
 const COMBINED: usize = 24;
 
-/// Terms more alike than this differ by what one recording hardly shows.
+/// Terms more similar than this are hardly separable in one recording.
 const ALIKE: f64 = 0.98;
 
-/// So many of these are fitted in any case, and beside them whatever is simpler than they are.
+/// Number of similar terms that are always fitted. Beyond that only terms that are simpler than all of these are added.
 const MOST_ALIKE: usize = 3;
 
-/// Terms more alike than this are the same, written in two ways.
+/// Terms more similar than this are the same term in two notations.
 const SAME: f64 = 0.999_999;
 
-/// What is worth a fit.
+/// Laws that are worth a fit.
 pub(super) struct Shortlist<'a> {
     screening: &'a Screening,
-    /// What every term promises, the best first.
+    /// Predictions for all terms, the best first.
     pub foretold: Vec<Promised>,
     /// Laws of one term.
     pub singles: Vec<Candidate>,
 }
 
 impl<'a> Shortlist<'a> {
-    /// Of the terms of a screening, where the fitted `model` has this loss.
+    /// Selects from the terms of a screening; `loss` is that of the fitted `model`.
     pub fn new(
         model: &Model,
         loss: f64,
@@ -90,7 +93,7 @@ impl<'a> Shortlist<'a> {
         Shortlist { screening, foretold, singles }
     }
 
-    /// Laws of several terms in one row that promise more than any term alone.
+    /// Laws of several terms in one row with a better prediction than any single term.
     pub fn several(&self, model: &Model, identification: &[&Recording], settings: &FitSettings) -> Vec<Candidate> {
         let best = distinct(self.screening, self.foretold.iter().map(|one| &one.candidate), COMBINED);
         let best: Vec<Candidate> = best.into_iter().cloned().collect();
@@ -101,7 +104,7 @@ impl<'a> Shortlist<'a> {
     }
 }
 
-/// Fall of the loss that several terms must promise beyond the best single one.
+/// Predicted decrease of the loss by which several terms must exceed the best single one.
 const LEAST_GAIN: f64 = 0.05;
 
 fn extend(listed: &mut Vec<Candidate>, more: Vec<&Candidate>) {
@@ -113,8 +116,8 @@ fn extend(listed: &mut Vec<Candidate>, more: Vec<&Candidate>) {
     }
 }
 
-/// Terms beside the best products that differ in what they multiply by the same, with the same sign: speed, its sign and its root look alike as long as a model
-/// is far off.
+/// Siblings of the best products: terms with another first factor, the same second factor and the same sign. Speed, its
+/// sign and its root look alike as long as a model is far off.
 fn siblings<'a>(singles: &[Candidate], foretold: &'a [Promised]) -> Vec<&'a Candidate> {
     let products = singles.iter().filter(|one| one.terms.first().is_some_and(|sized| sized.term.is_product()));
     let of_one = |one: &Candidate| {
@@ -136,23 +139,23 @@ fn siblings<'a>(singles: &[Candidate], foretold: &'a [Promised]) -> Vec<&'a Cand
     products.take(WITH_SIBLINGS).flat_map(of_one).collect()
 }
 
-/// Best products whose siblings are fitted too.
+/// Number of best products whose siblings are fitted too.
 const WITH_SIBLINGS: usize = 5;
 
-/// Siblings of each, itself among them.
+/// Number of siblings of each product, including itself.
 const SIBLINGS: usize = 4;
 
 fn single(one: &Screened) -> Candidate {
     Candidate { site: one.site, terms: vec![one.sized.clone()], evidence: one.evidence }
 }
 
-/// Whether two laws have the same terms with the same signs, whatever their numbers.
+/// Whether two laws have the same terms with the same signs, apart from their numbers.
 fn is_same_kind(one: &Candidate, other: &Candidate) -> bool {
     one.terms.len() == other.terms.len()
         && one.terms.iter().zip(&other.terms).all(|(one, other)| one.is_same_kind(other))
 }
 
-/// Terms that differ, each with the numbers with which it comes first: of those that are alike only the first few.
+/// Distinct terms, each with the numbers of its first occurrence. Of similar terms only the first few are kept.
 fn distinct<'a>(screening: &Screening, terms: impl Iterator<Item = &'a Candidate>, most: usize) -> Vec<&'a Candidate> {
     let column = |one: &Candidate| {
         let is_it =
@@ -169,7 +172,7 @@ fn distinct<'a>(screening: &Screening, terms: impl Iterator<Item = &'a Candidate
         if kept.iter().any(|other| other.site == term.site && is_same_kind(other, term)) {
             continue;
         }
-        // A law that is no product is like one only where it is small.
+        // A whole law resembles a product only where it is small.
         let is_same = |other: &Candidate| likeness(other, term) > SAME && other.is_whole() == term.is_whole();
         if let Some(same) = kept.iter_mut().find(|other| is_same(other)) {
             if complexity(term) < complexity(same) {

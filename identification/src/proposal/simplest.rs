@@ -1,15 +1,17 @@
-//! Of laws that predict equally well, the simplest.
+//! Selects the simplest of the laws that predict equally well.
 
 use crate::decision::{Reason, Verdict};
 use crate::search::Trial;
 
-/// Log error ratio by which a law may be worse than one with more parameters and still be preferred, 1 % of the squared error. A threshold of
-/// nearly nothing may be better by a hundredth of that in every block of time, and then no test takes the two for equal.
+/// Log error ratio by which a law may be worse than one with more parameters and still be preferred: 1 % of the squared
+/// error. A threshold close to zero may be better by a hundredth of that in every block of time. No test then takes the
+/// two laws as equal.
 const NEGLIGIBLE: f64 = 0.01;
 
-/// The verdict with the simplest hypothesis of its set first, and those away that predict no better with more parameters: a coefficient
-/// that may be zero, a threshold where nothing is. Of equally simple ones those come first that are possible beyond what was recorded: they
-/// never put energy into the machine and reverse no opening.
+/// Reduces the verdict's set to its simplest hypotheses. Those that predict no better with more parameters are removed,
+/// for example a coefficient that may be zero, or a threshold without an effect. Of equally simple hypotheses those
+/// come first that remain physically possible beyond the recorded range: they never put energy into the machine and
+/// reverse no opening.
 pub(super) fn simplest_first(mut verdict: Verdict, trials: &[Trial], is_possible: &dyn Fn(&Trial) -> bool) -> Verdict {
     let complexity = |number: &usize| trials.get(*number).map_or(usize::MAX, Trial::added_parameters);
     let (own, error) = (complexity(&verdict.best), verdict.standings[verdict.best].log_error_ratio);

@@ -1,4 +1,4 @@
-//! Where something is missing and what it depends on, by what single terms promise.
+//! Shows where something is missing and what it depends on, from the predictions for single terms.
 
 use std::collections::BTreeMap;
 
@@ -6,33 +6,34 @@ use excavator_model::{Model, site_name};
 
 use super::promise::Promised;
 
-/// A row of the equations, or a variable, with the share of the error that terms there, or with it, would take away.
+/// A row of the equations, or a variable, with the share of the error that terms in that row, or with that variable,
+/// would remove.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// `piston_force@arm`, or `v`.
     pub name: String,
-    /// Of a row: the fall of the loss that its best term promises. Of a variable: the part of the fall that the best term without it does
-    /// not bring, as a share of the best.
+    /// Share of the largest predicted decrease of the loss. For a row: the decrease predicted for its best term. For a
+    /// variable: the part that the best term without it does not reach.
     pub share: f64,
 }
 
-/// What single terms promise, put together.
+/// Summary of the predictions for single terms.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Survey {
-    /// Rows, the one whose best term promises most first; as shares of that.
+    /// Rows, the most promising first. Shares are relative to the best term of all.
     pub rows: Vec<Finding>,
-    /// Variables, the one that is needed most first.
+    /// Variables, the most needed first.
     pub variables: Vec<Finding>,
 }
 
-/// Least share that is worth a line.
+/// Smallest share that is listed.
 const LEAST: f64 = 0.02;
 
-/// Variables as formulas write them, with what people call them.
+/// Names of variables in formulas.
 const VARIABLES: [&str; 8] = ["v", "s", "p_cap", "p_rod", "p_pump", "u", "t", "z"];
 
 impl Survey {
-    /// Of the promises of single terms, the best first.
+    /// Summarises the predictions for single terms, which are sorted best first.
     pub(super) fn of(model: &Model, foretold: &[Promised]) -> Survey {
         let Some(best) = foretold.first().map(|one| one.improvement).filter(|best| *best > 0.0) else {
             return Survey::default();

@@ -1,4 +1,4 @@
-//! Terms of the grammar against the model that has them as laws.
+//! Compares terms of the grammar with a model that has them as laws.
 #![allow(clippy::unwrap_used)]
 
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use crate::regression::{WeakFormSettings, weak_terms};
 
 const SITE: Site = Site::Cylinder(0);
 
-/// The arm with a term as a law, its coefficient `value` and free, its shapes held.
+/// The arm with a term as a law. Its coefficient is `value` and free, its shapes are held.
 fn with_law(model: &Model, sized: &Sized, value: f64) -> Model {
     let law = Law::read(&law_text(std::slice::from_ref(sized), "").unwrap()).unwrap();
     let mut extended = model.with_effect(&(Arc::new(law) as _), SITE).unwrap();
@@ -31,7 +31,7 @@ fn with_law(model: &Model, sized: &Sized, value: f64) -> Model {
     extended
 }
 
-/// Six seconds of the arm of `model`, steered by two sines, without noise.
+/// Six noise-free seconds of the arm of `model`, driven by two sines.
 fn swing(model: &Model) -> Recording {
     let time: Vec<f64> = (0..3000).map(|index| f64::from(index) * 2e-3).collect();
     let mut recording = Recording::unmeasured("swing", time, &["arm"]);

@@ -1,4 +1,4 @@
-//! Each equation of motion as sampled terms, with derivatives by the parameters.
+//! Samples the terms of each equation of motion, with derivatives by the parameters.
 
 use excavator_model::Model;
 use excavator_model::equations::{Inputs, Rows, System, Workspace};
@@ -39,13 +39,13 @@ impl EquationKind {
 pub struct Term {
     /// Order of the derivative, 1 or 2.
     pub order: usize,
-    /// The sensor whose noise the quantity carries; a joint's or a piston's position goes by [`Sensor::Velocity`].
+    /// The sensor whose noise the quantity carries; [`Sensor::Velocity`] for the position of a joint or a piston.
     pub sensor: Sensor,
     /// The quantity at each sample, as measured.
     pub quantity: Vec<f64>,
     /// Storage c at each sample.
     pub storage: Vec<f64>,
-    /// Its derivative by each fitted parameter; empty where it is zero throughout.
+    /// Its derivative by each fitted parameter; empty if it is zero throughout.
     pub by_parameter: Vec<Vec<f64>>,
 }
 
@@ -58,13 +58,13 @@ pub struct Equation {
     pub terms: Vec<Term>,
     /// Forces (torques) or flows at each sample.
     pub rest: Vec<f64>,
-    /// Their derivative by each fitted parameter; empty where it is zero throughout.
+    /// Their derivative by each fitted parameter; empty if it is zero throughout.
     pub rest_by_parameter: Vec<Vec<f64>>,
-    /// Their derivative by what each sensor measures, in the order of [`Sensor::all`]: how noise enters.
+    /// Their derivative by each sensor's reading, in the order of [`Sensor::all`]. Noise enters through it.
     pub rest_by_sensor: Vec<Vec<f64>>,
 }
 
-/// What a sensor measures that enters an equation's forces or flows.
+/// A sensor whose reading enters an equation's forces or flows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sensor {
     /// Velocity of a cylinder's piston, from its displacement sensor.
@@ -87,10 +87,10 @@ impl Sensor {
     }
 }
 
-/// A quantity of [`Rows`] at all samples, with its derivatives in the directions of one pass or more.
+/// A quantity of [`Rows`] at all samples, with its derivatives in the directions of one or more passes.
 struct Track {
     value: Vec<f64>,
-    /// Empty where the derivative is zero throughout.
+    /// Empty if the derivative is zero throughout.
     slopes: Vec<Vec<f64>>,
 }
 
@@ -143,7 +143,7 @@ impl Tracks {
         self.mass.iter_mut().chain(&mut self.torque).chain(sides).chain(lines)
     }
 
-    /// With the derivatives of a later pass.
+    /// Appends the derivatives of a later pass.
     fn merged(mut self, mut later: Tracks) -> Self {
         for (own, other) in self.each().zip(later.each()) {
             own.slopes.append(&mut other.slopes);
@@ -151,8 +151,8 @@ impl Tracks {
         self
     }
 
-    /// The quantities along an observation, with the derivatives in the directions from `first` up to `last`: by the parameters with
-    /// indices `fitted`, then by what each sensor measures.
+    /// The quantities along an observation, with the derivatives in the directions from `first` up to `last`: by the
+    /// parameters with indices `fitted`, then by each sensor's reading.
     fn along(
         system: &System<'_>,
         observation: &Observation,
@@ -227,8 +227,8 @@ impl Tracks {
 }
 
 /// All equations of a model along an observation, with derivatives by the parameters with indices `fitted`. States of
-/// effects (a lagging spool) are taken from `effect_states`, sample by sample. Samples where something is not measured
-/// are `NaN` in the equations that need it.
+/// effects (a lagging spool) are taken from `effect_states`, sample by sample. Equations are `NaN` at samples where a
+/// signal that they need is not measured.
 pub fn equations(
     system: &System<'_>,
     observation: &Observation,

@@ -8,10 +8,10 @@ use crate::fit::FitError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RegressionError {
-    /// The recordings do not give what the model needs.
+    /// The recordings lack signals that the model needs.
     #[error(transparent)]
     Signal(#[from] SignalError),
-    /// The simulation that makes the instruments failed.
+    /// The simulation for the instruments failed.
     #[error(transparent)]
     Fit(#[from] FitError),
     /// No equation has all its signals.
@@ -39,7 +39,7 @@ pub enum RegressionError {
         /// Rows needed.
         needed: usize,
     },
-    /// A combination of parameters does not show in the data.
+    /// The data do not determine a combination of parameters.
     #[error("{source_name}: these recordings determine only a combination of these parameters: {}; vary speed, load and opening more, or mark one of them as known", names.join(", "))]
     NotIdentifiable {
         /// The recordings.

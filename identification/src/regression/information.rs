@@ -1,4 +1,4 @@
-//! What a stretch of a recording tells of the parameters, before any fit.
+//! Information that a stretch of a recording contains about the parameters, before any fit.
 
 use excavator_model::Model;
 use excavator_model::effects::Family;
@@ -15,11 +15,11 @@ use super::weak_rows::{moves, sensor_noise};
 use super::window::windows;
 use super::{RegressionError, WeakFormSettings, observe};
 
-/// Samples per second from which information is worked out, on a machine of the reference size. An order of magnitude is enough to
-/// choose between stretches, and a recorder's full rate would cost ten times as much.
+/// Sample rate at which information is computed, on a machine of the reference size. An order of magnitude is enough to
+/// choose between stretches, and the full rate of a recorder would cost ten times as much.
 const RATE: f64 = 100.0;
 
-/// What does not change from stretch to stretch.
+/// Data that are the same for all stretches.
 pub(crate) struct Gauge<'m> {
     model: &'m Model,
     unknown: Vec<usize>,
@@ -29,13 +29,14 @@ pub(crate) struct Gauge<'m> {
     noise: SensorNoise,
 }
 
-/// No instrument's noise is less than this share of the stroke, or of the full opening.
+/// Lower bound of an instrument's noise, as a share of the stroke or of the full opening.
 const LEAST_SHARE: f64 = 1e-4;
 
-/// No pressure sensor's noise is less, Pa.
+/// Lower bound of a pressure sensor's noise, Pa.
 const LEAST_PRESSURE: f64 = 1e3;
 
-/// Noise that is at least that of good instruments: what a simulation, or a machine at rest, shows without noise is not infinitely certain.
+/// Raises noise to at least that of good instruments. The noise-free signals of a simulation, or of a machine at rest,
+/// are not infinitely certain.
 fn at_least(mut noise: SensorNoise, model: &Model) -> SensorNoise {
     noise.pump_pressure = noise.pump_pressure.max(LEAST_PRESSURE);
     for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
@@ -48,10 +49,11 @@ fn at_least(mut noise: SensorNoise, model: &Model) -> SensorNoise {
 }
 
 impl<'m> Gauge<'m> {
-    /// For the parameters of `model` that are not known. Noise is that of `recording`: a stretch in which nothing moves has less.
+    /// A gauge for the unknown parameters of `model`. Noise is estimated from `recording`: a stretch in which nothing
+    /// moves shows less.
     ///
     /// # Errors
-    /// [`RegressionError`] when the recording lacks a cylinder of the model.
+    /// [`RegressionError`] if the recording lacks a cylinder of the model.
     pub fn new(model: &'m Model, recording: &Recording) -> Result<Self, RegressionError> {
         let cards: Vec<_> = model.parameters().collect();
         let is_told = |index: &usize| model.effects[cards[*index].0].physics.card().family != Family::Rounding;
@@ -74,11 +76,11 @@ impl<'m> Gauge<'m> {
         self.unknown.len()
     }
 
-    /// Information matrix of a stretch about the parameters, each in units of its size: the inverse is the covariance of relative errors,
-    /// as far as sensor noise goes.
+    /// Information matrix of a stretch about the parameters, each in units of its size. Its inverse is the covariance
+    /// of relative errors from sensor noise.
     ///
     /// # Errors
-    /// [`RegressionError`] when the stretch lacks inputs.
+    /// [`RegressionError`] if the stretch lacks inputs.
     pub fn information(&self, stretch: &Recording) -> Result<DMatrix<f64>, RegressionError> {
         let model = self.model;
         let rate = RATE / model.machine.size().time();
@@ -92,7 +94,7 @@ impl<'m> Gauge<'m> {
         let settings = WeakFormSettings::default();
         let (half_width, _) = settings.widths(model, &[&thin]);
         let mut information = DMatrix::zeros(self.parameters(), self.parameters());
-        // Windows side by side: those between them add rows but hardly information.
+        // Adjacent windows only: those in between add rows but hardly any information.
         for window in windows(&thin.time, thin.sample_interval(), half_width, half_width) {
             for equation in &equations {
                 if !moves(equation.kind, &window, &observation, settings.velocity_guard) {

@@ -1,4 +1,4 @@
-//! The paper's own recipe (\[A\] Section 3): differences, moving averages, ordinary least squares on every sample.
+//! The method of the paper (\[A\] Section 3): differences, moving averages, ordinary least squares on every sample.
 
 use excavator_model::Model;
 use excavator_model::effects::Kind;
@@ -15,8 +15,8 @@ use super::{EquationGauge, Regression, RegressionError, observe};
 const MOVING_AVERAGE: usize = 43;
 
 /// Identifies the linear coefficients of `model` by ordinary least squares on first differences smoothed by a moving
-/// average of 43 samples. Kept as the baseline: noise in regressors biases it, and its standard errors assume white
-/// residuals, which they are not (`docs/how-it-works.md` has the figures).
+/// average of 43 samples. It is kept as the baseline: noise in regressors biases it, and its standard errors assume
+/// white residuals, which is not the case (`docs/how-it-works.md` has the figures).
 ///
 /// # Errors
 /// [`RegressionError`].
@@ -144,7 +144,7 @@ pub fn least_squares(model: &Model, recordings: &[&Recording]) -> Result<Regress
     })
 }
 
-/// Regressors and residual of an equation at each sample where everything is measured.
+/// Regressors and residual of an equation at each sample where all signals are measured.
 fn samples(equation: &Equation, time: &[f64], parameters: usize) -> Vec<(DVector<f64>, f64)> {
     let derivatives: Vec<Vec<f64>> = equation
         .terms
@@ -171,7 +171,7 @@ fn samples(equation: &Equation, time: &[f64], parameters: usize) -> Vec<(DVector
         .collect()
 }
 
-/// The observation with signals smoothed the paper's way.
+/// The observation with signals smoothed as in the paper.
 fn averaged(mut observation: super::Observation) -> super::Observation {
     let time = observation.time.clone();
     for cylinder in &mut observation.cylinders {

@@ -1,8 +1,8 @@
 //! Regression on the equations themselves: the paper's least squares, and the weak form with instruments.
 //!
 //! Every equation has the form `sum of c(t) x^(n)(t) = rest(t)`: storage (inertia, compliance, piston area) times a
-//! derivative of a measured quantity, against forces or flows. What stands in `c` and `rest`, and its derivative by each
-//! parameter, comes from the model's effects, so that a new effect needs no code here.
+//! derivative of a measured quantity equals forces or flows. The model's effects provide `c` and `rest` and their
+//! derivatives by each parameter, so that a new effect needs no code here.
 
 mod equation;
 mod error;

@@ -1,15 +1,15 @@
-//! The state along a recording, sample by sample.
+//! Computes the state along a recording, sample by sample.
 
 use excavator_model::Model;
 use excavator_model::recording::{CylinderSignals, Recording, denoised};
 use excavator_model::simulation::InputSignals;
 
-/// What is known of the state at each sample: raw where an equation differentiates it, smooth where it enters a formula.
+/// The known part of the state at each sample: raw signals for differentiation, smooth ones for formulas.
 #[derive(Debug, Clone)]
 pub struct Observation {
     /// Sample times, s.
     pub time: Vec<f64>,
-    /// Inputs on the same clock.
+    /// Inputs at the same times.
     pub inputs: InputSignals,
     /// One entry per cylinder.
     pub cylinders: Vec<CylinderObservation>,
@@ -19,7 +19,7 @@ pub struct Observation {
     pub smooth_pump_pressure: Vec<f64>,
 }
 
-/// What is known of one cylinder at each sample.
+/// The known state of one cylinder at each sample.
 #[derive(Debug, Clone)]
 pub struct CylinderObservation {
     /// Joint coordinate from the displacement (or joint angle) as measured, rad or m.
@@ -30,14 +30,14 @@ pub struct CylinderObservation {
     pub pressures: [Vec<f64>; 2],
     /// Displacement without noise, m.
     pub smooth_displacement: Vec<f64>,
-    /// Piston velocity, m/s: slope of the displacement unless measured.
+    /// Piston velocity, m/s; the slope of the displacement if it is not measured.
     pub velocity: Vec<f64>,
     /// Pressures without noise, Pa.
     pub smooth_pressures: [Vec<f64>; 2],
 }
 
-/// Half width of the parabola whose slope is the velocity, s. Averages 21 samples at 500 Hz; shorter than the fastest
-/// swing of an arm (0.1 s).
+/// Half width of the parabola whose slope is the velocity, s. It averages 21 samples at 500 Hz and is shorter than the
+/// fastest swing of an arm (0.1 s).
 const SLOPE_HALF_WIDTH: f64 = 0.02;
 
 /// The same in sample intervals, for slow recordings: five samples for three coefficients.
@@ -46,18 +46,18 @@ const SLOPE_HALF_WIDTH_SAMPLES: f64 = 2.5;
 /// The state along `recording`, as far as it is measured.
 ///
 /// # Errors
-/// [`excavator_model::SignalError`] when the model's inputs are missing.
+/// [`excavator_model::SignalError`] if the model's inputs are missing.
 pub fn observe(model: &Model, recording: &Recording) -> Result<Observation, excavator_model::SignalError> {
     observe_against(model, recording, None)
 }
 
-/// As [`observe`], with noise taken off the difference between pressures and their simulation rather than off the
-/// pressures themselves. Smoothing a signal flattens its peaks; the difference has few, and where the simulation is right
-/// it is nothing but noise. Velocities stay slopes of what was measured: on a real drive (EMPS) the velocity of a model
-/// with too simple friction moved the friction it was to identify by 2 %.
+/// Like [`observe`], but removes noise from the difference between pressures and their simulation, not from the
+/// pressures themselves. Smoothing a signal flattens its peaks. The difference has few, and is only noise if the
+/// simulation is right. Velocities remain slopes of the measured signals: on a real drive (EMPS) the simulated velocity
+/// of a model with too simple friction shifted the identified friction by 2 %.
 ///
 /// # Errors
-/// [`excavator_model::SignalError`] when the model's inputs are missing.
+/// [`excavator_model::SignalError`] if the model's inputs are missing.
 pub fn observe_guided(
     model: &Model,
     recording: &Recording,
@@ -82,7 +82,7 @@ fn observe_against(
         let half_width = (SLOPE_HALF_WIDTH * model.machine.size().time())
             .max(SLOPE_HALF_WIDTH_SAMPLES * recording.sample_interval());
         let (mut smooth_displacement, mut slope) = (Vec::new(), Vec::new());
-        // What lies beyond a pause is no neighbour.
+        // Samples across a pause are not neighbours.
         for piece in recording.pieces() {
             let (values, slopes) = parabolas(&recording.time[piece.clone()], &displacement[piece], half_width);
             smooth_displacement.extend(values);
@@ -114,9 +114,10 @@ fn displacement(signals: &CylinderSignals, from_joint: impl Fn(f64) -> f64) -> V
     pairs.map(|(&s, &q)| if s.is_finite() { s } else { from_joint(q) }).collect()
 }
 
-/// Without noise where all is measured, as it is where there are holes: windows with holes are left out anyway.
+/// Removes noise from a signal without holes. A signal with holes is returned unchanged, because windows with holes are
+/// left out anyway.
 fn smooth(signal: &[f64], guide: Option<&Vec<f64>>) -> Vec<f64> {
-    // A corrected delay leaves a hole at the end; that is no reason to leave noise in the rest.
+    // A corrected delay leaves a hole at the end. The rest is still smoothed.
     let last = signal.iter().rposition(|value| value.is_finite()).map_or(0, |index| index + 1);
     let (measured, rest) = signal.split_at(last);
     if measured.iter().any(|value| !value.is_finite()) {
@@ -149,7 +150,7 @@ fn parabolas(time: &[f64], signal: &[f64], half_width: f64) -> (Vec<f64>, Vec<f6
         let (value, slope) =
             parabola(&time[first..last], &signal[first..last], centre, half_width).unwrap_or((f64::NAN, f64::NAN));
         values.push(value);
-        // One-sided slopes at the ends are several times noisier; what needs them is left out there.
+        // One-sided slopes at the ends are several times noisier, so there are no slopes there.
         let whole = centre - half_width >= start && centre + half_width <= end;
         slopes.push(if whole { slope } else { f64::NAN });
     }

@@ -1,4 +1,4 @@
-//! What a regression sees of a recording before it asks for parameters.
+//! Data that a regression derives from a recording before it solves for parameters.
 
 use excavator_model::Model;
 use excavator_model::effects::Effect;
@@ -18,10 +18,11 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
-    /// Noise is taken off what is measured against `guide`, or where there is none against what the model simulates.
+    /// Removes noise from the measured signals relative to `guide`, or relative to the simulation of the model if there
+    /// is no guide.
     ///
     /// # Errors
-    /// [`RegressionError`] when inputs or initial states are missing.
+    /// [`RegressionError`] if inputs or initial states are missing.
     pub(super) fn of(model: &Model, recording: &Recording, guide: Option<&Recording>) -> Result<Self, RegressionError> {
         let noise = sensor_noise(recording, model)?;
         let truth = undistorted(model, recording);
@@ -31,7 +32,7 @@ impl Seen {
     }
 }
 
-/// Recordings as one model sees them, for first regressions of models that have one more effect.
+/// Recordings as one model sees them, for the first regression of models with one more effect.
 pub(crate) struct Ground {
     /// The recordings.
     pub recordings: Vec<Recording>,
@@ -42,14 +43,14 @@ impl Ground {
     /// The recordings as `model` sees them.
     ///
     /// # Errors
-    /// [`RegressionError`] when inputs or initial states are missing.
+    /// [`RegressionError`] if inputs or initial states are missing.
     pub fn new(model: &Model, recordings: Vec<Recording>) -> Result<Self, RegressionError> {
         let seen = recordings.iter().map(|recording| Seen::of(model, recording, None)).collect::<Result<_, _>>()?;
         Ok(Ground { recordings, seen })
     }
 
-    /// Whether a model with this effect besides sees the same: one that changes what instruments or the input mean, or that has states of
-    /// its own, does not.
+    /// Whether the data stay valid for a model with this additional effect. They do not if the effect has states of its
+    /// own, or changes the meaning of instruments or of the input.
     pub fn holds_for(effect: &dyn Effect) -> bool {
         effect.states() == 0 && !effect.reads_course() && !effect.is_an_instruments()
     }

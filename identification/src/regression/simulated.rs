@@ -1,4 +1,4 @@
-//! A recording as the model would have produced it, piece by piece.
+//! Simulates a recording with the model, piece by piece.
 
 use excavator_model::Model;
 use excavator_model::equations::{Channel, System};
@@ -11,17 +11,17 @@ use crate::fit::{FitSettings, SegmentedRecording};
 
 /// A recording as the model would have produced it, simulated in pieces from measured states.
 pub(super) struct Simulated {
-    /// True values of the simulated signals, without what instruments make of them, on the recording's clock; as in the
-    /// recording where a simulation ended early.
+    /// True values of the simulated signals, without instrument effects, at the recording's sample times. After an
+    /// early end of a simulation they are those of the recording.
     pub recording: Recording,
     /// States of effects (a lagging spool), sample by sample.
     pub effect_states: Vec<Vec<f64>>,
 }
 
-/// Simulates `recording` with `model`. `truth` is the recording without what the model's instruments add.
+/// Simulates `recording` with `model`. `truth` is the recording without the effects of the model's instruments.
 ///
 /// # Errors
-/// [`RegressionError`] when inputs or initial states are missing.
+/// [`RegressionError`] if inputs or initial states are missing.
 pub(super) fn simulated(model: &Model, recording: &Recording, truth: &Recording) -> Result<Simulated, RegressionError> {
     let system = System::new(model);
     let duration = FitSettings::default().segment_duration_for(&model.machine.size());
@@ -40,7 +40,8 @@ pub(super) fn simulated(model: &Model, recording: &Recording, truth: &Recording)
                 piece.values.push(channels.iter().map(|channel| channel.value(&system, &state)).collect());
                 piece.effect_states.push(state[state.len() - own_states..].to_vec());
                 if index < segment.last && integrator.advance(&segmented.inputs, index, &mut state, None).is_err() {
-                    // The rest of the segment stays as measured: worse instruments, but still valid rows.
+                    // The rest of the segment keeps the measured values. They are worse instruments, but the rows stay
+                    // valid.
                     break;
                 }
             }
@@ -60,10 +61,10 @@ pub(super) fn simulated(model: &Model, recording: &Recording, truth: &Recording)
     Ok(Simulated { recording: copy, effect_states })
 }
 
-/// What was simulated of one segment, sample by sample.
+/// The simulation of one segment, sample by sample.
 struct Piece {
     first: usize,
-    /// Of each channel.
+    /// Values of each channel.
     values: Vec<Vec<f64>>,
     effect_states: Vec<Vec<f64>>,
 }

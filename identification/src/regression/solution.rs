@@ -18,14 +18,14 @@ pub struct Regression {
     pub condition_numbers: Vec<ConditionNumber>,
     /// Rows of the regression.
     pub rows: usize,
-    /// How well each equation is met.
+    /// Goodness of fit of each equation.
     pub equations: Vec<EquationGauge>,
-    /// Parameters that take part in no equation whose signals are measured, with the reason.
+    /// Parameters that occur in no equation whose signals are measured, with the reason.
     pub not_identified: Vec<(usize, String)>,
 }
 
 impl Regression {
-    /// Without the nuisance effects that `given` has not and that do not differ from nothing.
+    /// Removes the nuisance effects that `given` lacks and that do not differ from their neutral value.
     #[must_use]
     pub fn simplified(self, given: &Model) -> Self {
         let simple = Simplified::of(given, &self.model);
@@ -44,26 +44,26 @@ impl Regression {
 pub struct ConditionNumber {
     /// "mechanical", "hydraulic".
     pub group: &'static str,
-    /// Of the regressor matrix as it is, in SI units.
+    /// Condition number of the unscaled regressor matrix, in SI units.
     pub unscaled: f64,
-    /// Of the regressor matrix with columns scaled to length one: what matters numerically.
+    /// Condition number with columns scaled to length one, which is the numerically relevant one.
     pub scaled: f64,
 }
 
-/// How well an equation is met.
+/// Goodness of fit of an equation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EquationGauge {
     /// Name: `arm.motion`, `pump.continuity`.
     pub equation: String,
-    /// Mean squared residual over what sensor noise explains; 1 when nothing is missing.
+    /// Mean squared residual relative to sensor noise; 1 if nothing is missing.
     pub chi_squared_per_row: f64,
-    /// Share of the equation's own size that its residual has, root mean square.
+    /// Root mean square of the residual relative to the size of the equation.
     pub relative_residual: f64,
     /// Rows.
     pub rows: usize,
 }
 
-/// Ratio of largest to smallest singular value of a matrix, as it is and with columns scaled to length one.
+/// Ratio of largest to smallest singular value of a matrix, unscaled and with columns scaled to length one.
 pub(super) fn condition_numbers(matrix: &DMatrix<f64>) -> (f64, f64) {
     let ratio = |singular: &nalgebra::DVector<f64>| singular.max() / singular.min();
     let plain = matrix.clone().svd(false, false).singular_values;

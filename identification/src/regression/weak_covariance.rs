@@ -1,15 +1,15 @@
-//! How far the parameters of a weak-form regression are spread by noise that is correlated in time.
+//! Spread of the parameters of a weak-form regression under noise that is correlated in time.
 
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::weak_rows::Row;
 
-/// Length of the stretches that are left out in turn, s: twice as long as errors of the spool estimate last, and short
-/// enough for a recording of half a minute to have many.
+/// Length of the stretches that are left out in turn, s. It is twice the duration of errors of the spool estimate, and
+/// short enough for many stretches in half a minute.
 pub(super) const STRETCH: f64 = 1.0;
 
-/// How far noise spreads parameters.
+/// Spread of the parameters due to noise.
 pub(super) struct Spread {
     pub covariance: DMatrix<f64>,
     /// Half widths of 95 % intervals in standard errors.
@@ -20,14 +20,15 @@ pub(super) struct Spread {
 /// jackknife, the CR3 estimate of Bell and McCaffrey 2002), for instruments Z, regressors A and residuals `remaining`
 /// after the step.
 ///
-/// Right where noise is coloured and of unequal size, and where few transients carry most of what is known about a
-/// parameter (a bulk modulus shows in the moments when a valve opens): estimates that multiply residuals as they are
-/// (Newey and West) come out too small there, because the fit has bent to just these rows.
+/// This holds for coloured noise of unequal size, and if few transients carry most of the information about a parameter
+/// (a bulk modulus shows in the moments when a valve opens). Estimates from the plain residuals (Newey and West) are
+/// too small there, because the fit has adapted to just these rows.
 ///
-/// Where a few stretches carry nearly everything, their spread is itself badly known: intervals are those of a t
-/// distribution. Its degrees of freedom are the stretches that would count if noise were white (Bell and McCaffrey), or, where
-/// that is less, those that did count (Satterthwaite): noise is largest in the very transients that tell most. With 1.96
-/// standard errors 80 % of the intervals of a pump line's bulk modulus held the truth.
+/// If a few stretches carry nearly all information, their spread is itself uncertain, so the intervals are those of a t
+/// distribution. Its degrees of freedom are the effective number of stretches for white noise (Bell and McCaffrey), or
+/// the observed effective number (Satterthwaite) if that is smaller: noise is largest in the very transients that carry
+/// most information. With 1.96 standard errors only 80 % of the intervals of a pump line's bulk modulus contained the
+/// truth.
 pub(super) fn jackknife(
     rows: &[Row],
     instruments: &DMatrix<f64>,
@@ -52,7 +53,7 @@ pub(super) fn jackknife(
         let own_instruments = instruments.rows(first, end - first);
         let score = own_instruments.transpose() * remaining.rows(first, end - first);
         let without = &matrix - own_instruments.transpose() * regressors.rows(first, end - first);
-        // What cannot be told without a stretch is not made up: such a parameter's spread is infinite.
+        // A parameter that is not determined without this stretch gets an infinite spread.
         let without = without.lu();
         let shift = without.solve(&score).unwrap_or_else(|| DVector::from_element(order, f64::INFINITY));
         if let Some(by_row) = without.solve(&own_instruments.transpose()) {
@@ -66,11 +67,11 @@ pub(super) fn jackknife(
     Spread { covariance: covariance * ((stretches - 1.0) / stretches), quantiles: shares.quantiles() }
 }
 
-/// What the stretches contribute to the variance of each parameter.
+/// Contributions of the stretches to the variance of each parameter.
 struct Shares {
-    /// Sums over stretches of what it would be if noise were white, and of the square of that.
+    /// Sums over stretches of the contribution for white noise, and of its square.
     white: [DVector<f64>; 2],
-    /// Sums over stretches of the second and fourth power of the shift that it was.
+    /// Sums over stretches of the second and fourth power of the observed shift.
     real: [DVector<f64>; 2],
 }
 
@@ -80,7 +81,7 @@ impl Shares {
         Shares { white: zeros(), real: zeros() }
     }
 
-    /// A stretch that moves the parameters by `by_row` times the noise of its rows.
+    /// Adds a stretch that shifts the parameters by `by_row` times the noise of its rows.
     fn would_be(&mut self, by_row: &DMatrix<f64>) {
         for (parameter, row) in by_row.row_iter().enumerate() {
             let share = row.norm_squared();
@@ -89,7 +90,7 @@ impl Shares {
         }
     }
 
-    /// A stretch that moves the parameters by `shift`.
+    /// Adds a stretch that shifts the parameters by `shift`.
     fn took_place(&mut self, shift: &DVector<f64>) {
         for (parameter, shift) in shift.iter().enumerate() {
             self.real[0][parameter] += shift.powi(2);
@@ -102,9 +103,9 @@ impl Shares {
         let quantile = |parameter: usize| {
             let [[sum, squares], [second, fourth]] =
                 [&self.white, &self.real].map(|of| of.each_ref().map(|sums| sums[parameter]));
-            // Of a normal shift the mean fourth power is three times the square of its variance.
+            // The mean fourth power of a normal shift is three times the square of its variance.
             let (white, real) = (sum * sum / squares, 3.0 * second * second / fourth - 2.0);
-            // Fewer than one stretch there cannot be, and of what no stretch shows nothing is known anyway.
+            // There is at least one degree of freedom. A parameter that no stretch shows is unknown anyway.
             match StudentsT::new(0.0, 1.0, white.min(real).max(1.0)) {
                 Ok(distribution) => distribution.inverse_cdf(0.975),
                 Err(_) => f64::NAN,

@@ -2,8 +2,9 @@
 //!
 //! Each equation is multiplied by test functions and integrated by parts, so that no measurement is differentiated
 //! (conservation form for chambers). Residuals are linearised in the parameters, which is exact for linear coefficients
-//! and a Gauss-Newton step for shape parameters. Instruments are the same regressors on the simulated state, whose errors
-//! have nothing to do with sensor noise, so that noise in regressors does not bias the result (`docs/how-it-works.md`).
+//! and a Gauss-Newton step for shape parameters. Instruments are the same regressors on the simulated state, whose
+//! errors are independent of sensor noise, so that noise in regressors does not bias the result
+//! (`docs/how-it-works.md`).
 
 use std::ops::ControlFlow;
 
@@ -20,23 +21,24 @@ use crate::fit::{FitError, Watch};
 /// Settings of the weak form.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeakFormSettings {
-    /// Half width of a test function, s. With instruments the noise in short windows does no harm, while long ones
-    /// average the fast transients that tell inertia and compressibility from friction and flow: on measured and
+    /// Half width of a test function, s. With instruments the noise in short windows does no harm. Long windows average
+    /// out the fast transients that separate inertia and compressibility from friction and flow. On measured and
     /// simulated recordings 0.03 s gave the smallest errors of 0.02 s to 0.15 s.
     pub half_width: f64,
-    /// Fewest samples in half a window; widens windows of slow recordings, whose quadrature would be coarse.
+    /// Smallest number of samples in half a window. It widens windows of slow recordings, whose quadrature would be
+    /// coarse.
     pub least_half_width_samples: f64,
-    /// Distance between test functions as a fraction of the half width; closer ones add rows but no information.
+    /// Distance between test functions as a fraction of the half width. Closer ones add rows but no information.
     pub step_fraction: f64,
-    /// Windows of motion equations in which the piston is slower than this, m/s, are left out: there the sign of the
-    /// estimated velocity is noise, and dry friction makes a regressor of it.
+    /// Windows of motion equations in which the piston is slower than this, m/s, are left out. The sign of the
+    /// estimated velocity is noise there, and it is the regressor of dry friction.
     pub velocity_guard: f64,
-    /// Rounds; the first has no instruments, the others those of the model that the round before found.
+    /// Number of rounds. The first has no instruments. The others use those of the model from the previous round.
     pub rounds: usize,
-    /// Whether standard errors and condition numbers are wanted; they cost more than the values.
+    /// Whether standard errors and condition numbers are computed. They cost more than the values.
     pub with_errors: bool,
-    /// Whether a parameter that comes out where it cannot be (a friction below zero) is held at the nearest possible
-    /// value, and the others are identified with it there. A start of a search needs no second solution for that.
+    /// Whether a parameter with an impossible result (a friction below zero) is held at the nearest possible value
+    /// while the others are identified again. The start of a search does not need this second solution.
     pub hold_at_bounds: bool,
 }
 
@@ -63,9 +65,10 @@ impl WeakFormSettings {
     }
 }
 
-/// The first round whose instruments are those of a model that these recordings were fitted by, which all later rounds take noise
-/// off against too. A model that is fitted again and again to what was smoothed against it believes its own noise: with three
-/// rounds 91 % of the 95 % intervals of a pump line's bulk modulus held the truth, with six 90 %; now 97 %, nearer to it.
+/// The first round with instruments of a model that was fitted to these recordings. All later rounds also remove noise
+/// relative to its simulation. A model that is fitted repeatedly to signals smoothed relative to itself fits its own
+/// noise: with three rounds 91 % of the 95 % intervals of a pump line's bulk modulus contained the truth, with six 90
+/// %. Now it is 97 %, which is nearer to 95 %.
 const FIRST_WITH_INSTRUMENTS: usize = 1;
 
 /// Identifies the unknown parameters of `model` from `recordings`, starting from its values.
@@ -101,10 +104,10 @@ pub fn weak_form(
     weak_form_watched(model, recordings, settings, &|_| ControlFlow::Continue(()))
 }
 
-/// [`weak_form`] that tells `watch` before each round and ends when that says so.
+/// Like [`weak_form`], but calls `watch` before each round and stops when it returns a break.
 ///
 /// # Errors
-/// [`RegressionError`]; [`FitError::Stopped`] in it when it was ended.
+/// [`RegressionError`], with [`FitError::Stopped`] in it if `watch` stopped it.
 pub fn weak_form_watched(
     model: &Model,
     recordings: &[&Recording],
@@ -114,7 +117,7 @@ pub fn weak_form_watched(
     identified(model, recordings, settings, None, watch)
 }
 
-/// [`weak_form`] of a model that sees its recordings as `ground` says, in its first round.
+/// Like [`weak_form`], but the first round uses the data in `ground`.
 ///
 /// # Errors
 /// [`RegressionError`].
@@ -134,7 +137,7 @@ fn identified(
     first_seen: Option<&[Seen]>,
     watch: Watch<'_>,
 ) -> Result<Regression, RegressionError> {
-    // A velocity that is smoothed turns round slower than its piston: how widely corners are rounded stays as it is.
+    // A smoothed velocity reverses more slowly than its piston, so the rounding of corners is held.
     let families: Vec<Family> =
         model.parameters().map(|(effect, _)| model.effects[effect].physics.card().family).collect();
     let is_rounding = |index: &usize| families[*index] == Family::Rounding;
@@ -204,8 +207,8 @@ fn identified(
     }
 }
 
-/// Takes one of the parameters that show together only out of `unknown`: the last in the model, which was added to the
-/// others. Gives its index and what to say of it; `None` where there are no others.
+/// Removes from `unknown` one of the parameters that show only in combination: the last in the model, which was added
+/// to the others. Returns its index and the reason, or `None` if there are no others.
 fn one_of(model: &Model, names: &[String], unknown: &mut Vec<usize>) -> Option<(usize, String)> {
     let all = model.parameter_names();
     let held = unknown.iter().copied().filter(|&index| names.len() > 1 && names.contains(&all[index])).max()?;
@@ -220,7 +223,7 @@ fn one_of(model: &Model, names: &[String], unknown: &mut Vec<usize>) -> Option<(
     Some((held, reason))
 }
 
-/// Identified parameters beyond what they can be, the nearest possible value, and what to say of them.
+/// Identified parameters outside their possible range, with the nearest possible value and the reason.
 fn outside(solution: &Regression) -> Vec<(usize, f64, String)> {
     solution
         .model

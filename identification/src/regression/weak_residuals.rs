@@ -15,16 +15,16 @@ pub struct WeakResidual {
     pub kind: EquationKind,
     /// Sample in the middle of the window.
     pub sample: usize,
-    /// Residual in units of what sensor noise explains.
+    /// Residual in units of its standard deviation from sensor noise.
     pub in_noise_units: f64,
     /// Mean residual over the window, N m (N) or m³/s.
     pub mean: f64,
 }
 
-/// Residuals of all equations of `model` along a recording, its parameters as they are.
+/// Residuals of all equations of `model` along a recording at the present parameters.
 ///
 /// # Errors
-/// [`RegressionError`] when the recording lacks inputs.
+/// [`RegressionError`] if the recording lacks inputs.
 pub fn weak_residuals(
     model: &Model,
     recording: &Recording,

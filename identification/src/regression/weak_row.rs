@@ -1,4 +1,4 @@
-//! One equation against one test function.
+//! Integrates one equation against one test function.
 
 use excavator_model::machine::Linkage;
 use nalgebra::DVector;
@@ -24,16 +24,16 @@ pub(super) struct SensorNoise {
 pub(super) struct WeakRow {
     /// `sum of terms - rest`.
     pub residual: f64,
-    /// Standard deviation that sensor noise gives it.
+    /// Standard deviation of the residual due to sensor noise.
     pub noise: f64,
-    /// Size of its parts, for a relative gauge.
+    /// Size of its parts, for a relative residual.
     pub size: f64,
     /// Derivative by each fitted parameter.
     pub regressors: DVector<f64>,
 }
 
-/// Half width, in samples, of the difference that gives a storage's rate of change; wide, because storage moves slowly
-/// with the stroke and noise does not.
+/// Half width, in samples, of the difference quotient for a storage's rate of change. It is wide because storage
+/// changes slowly with the stroke, but noise is fast.
 const STORAGE_SLOPE: usize = 10;
 
 /// Weights that integrate `bump * storage * d^order quantity` by parts, per sample of the window.
@@ -66,12 +66,13 @@ fn parts(term_order: usize, window: &Window, storage: &[f64], time: &[f64]) -> V
 }
 
 fn integral(weights: &[f64], window: &Window, quantity: &[f64]) -> f64 {
-    // Any constant may be taken off before a derivative; the middle of the window keeps rounding and quadrature small.
+    // A constant may be subtracted before a derivative. The value in the middle of the window keeps errors of rounding
+    // and quadrature small.
     let reference = quantity[window.first + weights.len() / 2];
     weights.iter().zip(&quantity[window.first..]).map(|(weight, value)| weight * (value - reference)).sum()
 }
 
-/// The row of `equation` for `window`, or `None` where something it needs is not measured inside the window.
+/// The row of `equation` for `window`, or `None` if a signal that it needs is not measured inside the window.
 pub(super) fn weak_row(
     equation: &Equation,
     window: &Window,
@@ -118,7 +119,8 @@ pub(super) fn weak_row(
         }
         total.resize(window.weights.len(), 0.0);
         for ((slot, [value, first, _]), slope) in total.iter_mut().zip(&window.weights).zip(&column[samples.clone()]) {
-            // A velocity is the derivative of a displacement: by parts its noise enters with the test function's slope.
+            // A velocity is the derivative of a displacement. After integration by parts its noise enters with the test
+            // function's slope.
             *slot += if matches!(sensor, Sensor::Velocity(_)) { first * slope } else { -value * slope };
         }
     }
@@ -136,7 +138,7 @@ pub(super) fn weak_row(
             deviation * deviation * weights.iter().map(|weight| weight * weight).sum::<f64>()
         })
         .sum();
-    // Rates of storage look beyond the window, where a signal may have ended.
+    // Rates of storage use samples beyond the window, where a signal may have ended.
     let whole = residual.is_finite()
         && variance > 0.0
         && variance.is_finite()
@@ -155,7 +157,8 @@ fn add_noise(
     sensors: &[Sensor],
     by_sensor: &mut [Vec<f64>],
 ) {
-    // Storage terms of motion are in joint coordinates of some cylinder; continuity's displacement is the piston's own.
+    // Storage terms of motion are in joint coordinates of a cylinder. Continuity uses the displacement of the piston
+    // itself.
     let cylinder = match (equation.kind, term.sensor) {
         (EquationKind::Motion(_), Sensor::Velocity(c)) => Some(c),
         _ => None,

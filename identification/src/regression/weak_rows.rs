@@ -1,4 +1,4 @@
-//! The rows of the weak form: every equation against every test function, with its instruments.
+//! Builds the rows of the weak form: every equation against every test function, with its instruments.
 
 use excavator_model::Model;
 use excavator_model::effects::{Corner, Site};
@@ -13,7 +13,7 @@ use super::weak_row::{SensorNoise, weak_row};
 use super::window::{Window, windows};
 use super::{Observation, RegressionError, WeakFormSettings, observe};
 
-/// One row, divided by what sensor noise puts into its residual.
+/// One row, divided by the noise of its residual.
 pub(super) struct Row {
     pub kind: EquationKind,
     pub recording: usize,
@@ -25,7 +25,7 @@ pub(super) struct Row {
     pub instruments: DVector<f64>,
 }
 
-/// The rows of `recordings`, which the model sees as `seen`.
+/// The rows of `recordings`; `seen` holds their data for the model.
 pub(super) fn rows(
     model: &Model,
     recordings: &[&Recording],
@@ -98,11 +98,12 @@ pub(super) fn moves(kind: EquationKind, window: &Window, observation: &Observati
     speeds.iter().all(|speed| speed.abs() > slowest)
 }
 
-/// Share of the stroke at each end within which the force of a stop is a guess: it is stiff, and nobody measured where it begins.
+/// Share of the stroke at each end within which the force of a stop is uncertain: the stop is stiff, and its start was
+/// not measured.
 const AT_THE_END: f64 = 0.005;
 
 pub(super) fn sensor_noise(recording: &Recording, model: &Model) -> Result<SensorNoise, RegressionError> {
-    // A noiseless (simulated) signal would weigh its rows infinitely; rounding alone is of this size.
+    // A noiseless (simulated) signal would give its rows infinite weight. Rounding alone is of this size.
     let level = |signal: &[f64]| noise_level(signal).max(1e-6 * standard_deviation(signal)).max(1e-15);
     let mut noise = SensorNoise {
         displacement: vec![],

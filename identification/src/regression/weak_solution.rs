@@ -1,4 +1,4 @@
-//! One round of the weak form: parameters and their covariance from rows and instruments.
+//! Solves one round of the weak form: parameters and their covariance from rows and instruments.
 
 use excavator_model::Model;
 use excavator_model::effects::Kind;
@@ -13,7 +13,7 @@ use super::weak_rows::Row;
 use super::{EquationGauge, Regression, RegressionError, WeakFormSettings};
 use crate::fit::ParameterPriors;
 
-/// Parameters that meet the rows best, from instruments times residuals.
+/// Solves for the parameters that fit the rows best, with instruments.
 pub(super) fn solve(
     model: &Model,
     recordings: &[&Recording],
@@ -24,7 +24,7 @@ pub(super) fn solve(
 ) -> Result<Regression, RegressionError> {
     let cards: Vec<_> = model.parameters().map(|(_, parameter)| &*parameter.card).collect();
     let values = model.parameter_values();
-    // Regression is on coefficients: one over the parameter where rows are linear in that.
+    // The regression solves for coefficients, which are one over the parameter if rows are linear in that.
     let slope_to_coefficient = |index: usize| match cards[index].kind {
         Kind::Reciprocal => -values[index] * values[index],
         Kind::Linear | Kind::Shape => 1.0,
@@ -55,7 +55,7 @@ pub(super) fn solve(
     kinds.sort();
     kinds.dedup();
     let gauges = gauges(model, &kinds, rows);
-    // An equation that is met worse than noise explains is weighed by how well it is met.
+    // An equation with residuals larger than noise explains gets a weight according to its residuals.
     let trust = |kind: EquationKind| {
         let position = kinds.iter().position(|candidate| *candidate == kind).unwrap_or(0);
         1.0 / gauges[position].chi_squared_per_row.max(1.0).sqrt()
@@ -83,7 +83,7 @@ pub(super) fn solve(
     }
     let mut matrix = instruments.transpose() * &regressors;
     let mut right = instruments.transpose() * &residuals;
-    // What is known of nuisance parameters counts as one more row of each.
+    // The prior of each nuisance parameter counts as one more row.
     let fitted: Vec<usize> = seen.iter().map(|&index| unknown[index]).collect();
     let priors = ParameterPriors::of(model, &fitted, recordings, 0);
     let equations = priors.equations(&values, &vec![1.0; fitted.len()]);
@@ -93,7 +93,7 @@ pub(super) fn solve(
         matrix[(column, column)] += information * scale * instrument_scale;
         right[column] -= gradient * instrument_scale;
     }
-    // Bounded: on a matrix with a value that is not a number the plain decomposition never ends.
+    // The iterations are bounded: on a matrix with a NaN the plain decomposition never ends.
     let Some(svd) = matrix.clone().try_svd(true, true, f64::EPSILON, 10_000) else {
         let names = seen.iter().map(|&index| names[unknown[index]].clone()).collect();
         return Err(RegressionError::NotIdentifiable { source_name: sources(recordings), names });

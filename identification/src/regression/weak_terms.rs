@@ -1,8 +1,9 @@
-//! The weak form of a model with room for terms that it does not have.
+//! The weak form of a model, prepared for terms that it does not have.
 //!
-//! A term enters an equation through a row: a force, a flow, an opening. How much an equation feels of one unit in a row follows from the
-//! model, sample by sample. A probe, an effect that adds a constant to a row, has this as its regressor. The regressor of any term is then a
-//! product of the probe's and the term's value, so that a thousand terms cost little more than their evaluation.
+//! A term enters an equation through a row: a force, a flow, an opening. The sensitivity of an equation to one unit in
+//! a row follows from the model, sample by sample. It is the regressor of a probe, an effect that adds a constant to a
+//! row. The regressor of any term is then the product of the probe's regressor and the term's value, so that a thousand
+//! terms cost little more than their evaluation.
 
 use excavator_model::Model;
 use excavator_model::equations::{Inputs, Situation, System};
@@ -18,25 +19,26 @@ use super::weak_rows::{moves, sensor_noise};
 use super::window::{Window, windows};
 use super::{Observation, RegressionError, WeakFormSettings, observe_guided};
 
-/// Rows of the weak form along some recordings, and what further terms would do in them.
+/// Rows of the weak form along some recordings, and the data for the regressors of further terms.
 pub(crate) struct WeakTerms<'m> {
     /// Equation of each row.
     pub kinds: Vec<EquationKind>,
-    /// Residual of each row, in units of what sensor noise explains.
+    /// Residual of each row, in units of its standard deviation from sensor noise.
     pub residuals: Vec<f64>,
-    /// Its derivative by each unknown parameter of the model but those of the probes.
+    /// Its derivative by each unknown parameter of the model, except those of the probes.
     pub regressors: DMatrix<f64>,
-    /// Everything that a term may look at: for each recording, for each sample.
+    /// All quantities that a term may use, by recording and by sample.
     pub situations: Vec<Vec<Situation<'m, f64>>>,
-    /// Share of the rows that says something new: neighbouring windows overlap.
+    /// Share of the rows that are independent: neighbouring windows overlap.
     pub independent: f64,
     places: Vec<Place>,
     windows: Vec<Vec<Window>>,
-    /// For each recording, for each equation in the order of the first: how much it feels of one unit of each probe, by sample.
+    /// For each recording and each equation, in the order of the first: its sensitivity to one unit of each probe, by
+    /// sample.
     gains: Vec<Vec<Vec<Vec<f64>>>>,
 }
 
-/// Where a row comes from.
+/// Origin of a row.
 struct Place {
     recording: usize,
     window: usize,
@@ -44,10 +46,11 @@ struct Place {
     scale: f64,
 }
 
-/// The weak form of `probed`, whose last `probes` effects are probes: each with one parameter, that is zero, for what it adds to its row.
+/// The weak form of `probed`. Its last `probes` effects are probes: each has one parameter, which is zero, for the
+/// value that it adds to its row.
 ///
 /// # Errors
-/// [`RegressionError`] when a recording lacks inputs.
+/// [`RegressionError`] if a recording lacks inputs.
 pub(crate) fn weak_terms<'m>(
     probed: &'m Model,
     probes: usize,
@@ -104,10 +107,10 @@ pub(crate) fn weak_terms<'m>(
     Ok(terms)
 }
 
-/// What effects of `model` see along a recording, at each sample.
+/// The situation that effects of `model` act in, at each sample of a recording.
 ///
 /// # Errors
-/// [`RegressionError`] when the recording lacks inputs.
+/// [`RegressionError`] if the recording lacks inputs.
 pub(crate) fn situations_along<'m>(
     model: &'m Model,
     recording: &Recording,
@@ -153,8 +156,8 @@ fn situations<'m>(
 const MOST_UNKNOWN: f64 = 0.02;
 
 impl WeakTerms<'_> {
-    /// The regressor of a term that enters where probe number `probe` does: `values` are the term's, for each recording, for each sample.
-    /// `None` where the term cannot be evaluated in many rows that feel it.
+    /// The regressor of a term in the row of probe number `probe`. `values` are those of the term, by recording and by
+    /// sample. Returns `None` if the term cannot be evaluated in many rows that depend on it.
     pub fn regressor(&self, probe: usize, values: &[Vec<f64>]) -> Option<Vec<f64>> {
         let row = |place: &Place| {
             let gains = &self.gains[place.recording][place.equation][probe];

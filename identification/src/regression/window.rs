@@ -1,7 +1,7 @@
 //! Test functions of the weak form.
 
-/// A smooth bump `(1 - x²)^4` on `[-1, 1]`, zero with its first three derivatives at both ends, so that two partial
-/// integrations leave no boundary terms.
+/// A smooth bump `(1 - x²)^4` on `[-1, 1]`. It and its first three derivatives are zero at both ends, so that two
+/// partial integrations leave no boundary terms.
 fn bump(x: f64) -> [f64; 3] {
     let y = 1.0 - x * x;
     if y <= 0.0 {
@@ -11,7 +11,7 @@ fn bump(x: f64) -> [f64; 3] {
     [y2 * y2, -8.0 * x * y2 * y, -8.0 * y2 * y + 48.0 * x * x * y2]
 }
 
-/// One window on a clock: samples `first..last` with quadrature weights of the bump and its two derivatives.
+/// One window of samples, starting at `first`, with quadrature weights of the bump and its two derivatives.
 #[derive(Debug, Clone)]
 pub(super) struct Window {
     pub first: usize,
@@ -21,7 +21,7 @@ pub(super) struct Window {
     pub weights: Vec<[f64; 3]>,
 }
 
-/// A gap in the clock longer than this many median intervals inside a window spoils its quadrature.
+/// A time gap longer than this many median intervals inside a window spoils its quadrature.
 const LARGEST_GAP: f64 = 4.0;
 
 /// Windows of half width `half_width` every `step` s along `time`, without those across gaps.
@@ -33,7 +33,7 @@ pub(super) fn windows(time: &[f64], interval: f64, half_width: f64, step: f64) -
         let first = time.partition_point(|&t| t <= centre - half_width);
         let last = time.partition_point(|&t| t < centre + half_width);
         let inside = &time[first..last];
-        // In a gap of the clock: on to the last window before the next sample, in whole steps. A gap can be years long.
+        // In a time gap, skip to the last window before the next sample, in whole steps. A gap can be years long.
         let skipped =
             time.get(last).filter(|_| inside.is_empty()).map_or(0.0, |next| (next - half_width - centre) / step);
         if skipped > 1.0 {
@@ -41,8 +41,8 @@ pub(super) fn windows(time: &[f64], interval: f64, half_width: f64, step: f64) -
             continue;
         }
         let largest_gap = LARGEST_GAP * interval;
-        // A gap at an end is none between two samples inside, but it cuts off the bump all the same. At the ends of the recording a
-        // window begins or ends with a sample.
+        // A gap at an end of the window is not between two samples inside, but it still cuts off the bump. At the ends
+        // of the recording a window begins or ends with a sample.
         let is_near = |before: usize, after: usize| match (time.get(before), time.get(after)) {
             (Some(before), Some(after)) => after - before <= largest_gap,
             _ => true,
@@ -55,7 +55,8 @@ pub(super) fn windows(time: &[f64], interval: f64, half_width: f64, step: f64) -
                 .iter()
                 .enumerate()
                 .map(|(index, &t)| {
-                    // Trapezoidal weights on the clock as it is; the bump vanishes at the ends, where it is exact.
+                    // Trapezoidal weights at the actual sample times. The bump vanishes at the ends, so they are exact
+                    // there.
                     let before = if index > 0 { t - inside[index - 1] } else { interval };
                     let after = inside.get(index + 1).map_or(interval, |next| next - t);
                     let weight = (before + after) / 2.0;
@@ -89,7 +90,7 @@ mod tests {
 
     #[test]
     fn a_gap_of_years_takes_no_longer_and_leaves_the_windows_as_they_are() {
-        // Powers of two: the clock is exact on both sides of the gap, which is a whole number of steps.
+        // Powers of two keep the times exact on both sides of the gap, which is a whole number of steps.
         let (interval, step) = (1.0 / 512.0, 1.0 / 128.0);
         let clock = |gap: f64| -> Vec<f64> {
             (0..2000).map(|index| f64::from(index) * interval + if index < 1000 { 0.0 } else { gap }).collect()

@@ -1,4 +1,4 @@
-//! What can be added to a model.
+//! Additions to a model.
 
 use excavator_model::effects::{AnyEffect, Family, Site};
 use excavator_model::recording::Recording;
@@ -30,12 +30,13 @@ impl Addition {
     }
 }
 
-/// Every candidate effect, and every loss of the given model, at every place of the machine where it can act and is not yet.
+/// Every candidate effect, and every loss of the given model, at every place of the machine where it can act and is not
+/// present yet.
 pub fn additions(model: &Model) -> Vec<Addition> {
     of_families(model, Family::is_candidate)
 }
 
-/// Every structural effect at every place where it can act and is not yet.
+/// Every structural effect at every place where it can act and is not present yet.
 pub(super) fn structural_additions(model: &Model) -> Vec<Addition> {
     of_families(model, |family| family == Family::Construction)
 }
@@ -62,7 +63,7 @@ pub enum AdditionError {
     Fit(#[from] FitError),
 }
 
-/// Fits `model` with one more effect, from the start that promises most.
+/// Fits `model` with one more effect, from the most promising start.
 ///
 /// # Errors
 /// [`AdditionError`].
@@ -80,11 +81,12 @@ pub(crate) fn fit_addition(
 pub(super) struct PromisingStart {
     /// The model with the effect, at the start.
     pub model: Model,
-    /// What one step from there promises.
+    /// Prediction of one step from there.
     pub promise: Prediction,
 }
 
-/// The start of an addition whose first step promises most. `ground` is what the model without it sees, if that is known.
+/// The start of an addition whose first step is predicted to reach the lowest loss. `ground` holds the recordings as
+/// seen by the model without the addition, if known.
 ///
 /// # Errors
 /// [`AdditionError`].
@@ -99,7 +101,8 @@ pub(super) fn best_start(
     most_promising(starts(&extended, recordings, ground), recordings, settings)
 }
 
-/// Of some starts of one addition, and of those that its window could also have, the one whose first step promises most.
+/// Selects, from some starts of one addition and from those with its other possible windows, the one whose first step
+/// is predicted to reach the lowest loss.
 ///
 /// # Errors
 /// [`AdditionError`].

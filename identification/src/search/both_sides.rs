@@ -1,4 +1,4 @@
-//! Whether recordings have seen an effect come and go, which acts only beyond a threshold or in a window of time.
+//! Whether recordings show both sides of an effect that acts only beyond a threshold or in a window of time.
 
 use excavator_model::ModelEffect;
 use excavator_model::effects::Start;
@@ -6,15 +6,15 @@ use excavator_model::recording::Recording;
 
 use super::starts::pump_pressure;
 
-/// Quantile of the pump pressure below which a threshold has not been seen from both sides: a relief valve that is open for three
-/// quarters of the time is a leak of the pump under another name.
+/// Quantile of the pump pressure. The recordings do not show both sides of a threshold below it: a relief valve that is
+/// open three quarters of the time cannot be distinguished from a leak of the pump.
 const VISITED: f64 = 0.25;
 
-/// Part of the recordings that a window may fill and still be one: of 40 s, 2 s are outside.
+/// Largest share of the recordings that a window may fill: of 40 s, 2 s are outside.
 const MOST_OF_THE_TIME: f64 = 0.95;
 
-/// Whether the recordings have been on both sides of where the effect begins to act. A relief valve that is open at all pressures
-/// is a leak of the pump, a contact that never ends a constant force.
+/// Whether the recordings show both sides of the point where the effect begins to act. A relief valve that is always
+/// open is equivalent to a leak of the pump, and a contact that never ends to a constant force.
 pub(super) fn is_seen_from_both_sides(effect: &ModelEffect, recordings: &[&Recording]) -> bool {
     let mut thresholds =
         effect.parameters.iter().filter(|parameter| matches!(parameter.card.start, Start::PumpPressureQuantiles(_)));
@@ -23,7 +23,7 @@ pub(super) fn is_seen_from_both_sides(effect: &ModelEffect, recordings: &[&Recor
     is_visited && share_inside(effect, recordings).is_none_or(|share| share <= MOST_OF_THE_TIME)
 }
 
-/// Part of the time of the recordings that lies inside the effect's window; `None` for an effect without one, or that acts
+/// Share of the recorded time inside the effect's window. Returns `None` for an effect that has no window or acts
 /// always.
 fn share_inside(effect: &ModelEffect, recordings: &[&Recording]) -> Option<f64> {
     if effect.acts_always() {
@@ -60,7 +60,7 @@ mod tests {
         is_seen_from_both_sides(model.effects.last().unwrap(), recordings)
     }
 
-    /// 20 s, the pump pressure from 50 to 150 bar.
+    /// 20 s with a pump pressure from 50 to 150 bar.
     fn recording() -> Recording {
         let time: Vec<f64> = (0..201).map(|index| f64::from(index) * 0.1).collect();
         let mut recording = Recording::unmeasured("bag", time, &["arm"]);

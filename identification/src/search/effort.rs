@@ -1,51 +1,58 @@
-//! How much a search tries. More effort finds more; it never changes how what was found is judged.
+//! How much a search tries. More effort can find more. It never changes the criteria of the decision.
 
 use crate::fit::FitSettings;
 
-/// Limits of a search. Improvements here are falls of the fit's own loss ([`crate::fit::Fit::loss`]) on the identification recordings.
+/// Limits of a search. Improvements here are decreases of the fit's own loss ([`crate::fit::Fit::loss`]) on the
+/// identification recordings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
-    /// Fits of all hypotheses.
+    /// Settings of the fits of all hypotheses.
     pub fit: FitSettings,
-    /// Most further steps of the fit of the favoured hypothesis, where those of `fit` were not enough.
+    /// Largest number of further steps in the fit of the favoured hypothesis, if those of `fit` were not enough.
     pub settling_steps: usize,
-    /// Most effects of one hypothesis: \[B\] adds five to its preliminary model.
+    /// Largest number of effects in one hypothesis: \[B\] adds five to its preliminary model.
     pub most_effects: usize,
-    /// Most hypotheses that are extended beside the best, where that does not explain the recordings.
+    /// Largest number of hypotheses that are extended besides the best one, if that does not explain the recordings.
     pub most_second_beginnings: usize,
-    /// Steps of a fit in the screening.
+    /// Steps of each fit in the screening.
     pub screening_steps: usize,
-    /// Share of the recordings on which candidates are screened, the stretches in which the model without them fails most. Half of
-    /// them costs half the time and leads to the same verdicts on the practice recordings.
+    /// Share of the recordings on which candidates are screened: the stretches in which the model without them fails
+    /// most. Half of the recordings costs half the time and leads to the same verdicts on the practice recordings.
     pub screening_share: f64,
-    /// So many candidates, the best of the screening, are fitted to the end.
+    /// Number of candidates, the best of the screening, that are fitted to convergence.
     pub finalists: usize,
-    /// And all others whose improvement in the screening is within this of the best.
+    /// All other candidates whose improvement in the screening is within this margin of the best are fitted too.
     pub finalist_margin: f64,
-    /// So many more, the next best that have not converged in the screening, where the best of them leaves something unexplained.
+    /// Number of further candidates, the next best that have not converged in the screening, that are fitted if the
+    /// best one leaves something unexplained.
     pub further_finalists: usize,
-    /// The first step of a candidate is trusted to foretell its improvement only where its start is no further than this from the model
-    /// without it. Of 627 effects that ran on 40 blind machines this would have dropped 211: none was hidden in its machine.
+    /// The predicted improvement of a candidate's first step is trusted only if the loss of its start is within this
+    /// distance of the model without it. Of 627 effects that were simulated on 40 blind machines this would have
+    /// dropped 211. None of them was hidden in its machine.
     pub trusted_distance: f64,
-    /// So many starts of an addition, the most promising by one simulation of the model without any, are simulated themselves.
+    /// Number of starts of an addition that are simulated individually: the most promising ones according to one
+    /// simulation of the model without additions.
     pub promised_starts: usize,
-    /// Where the best of these brings less than this share of what was promised, all starts are tried: the addition is too large for the
-    /// straight line that the promise was read from.
+    /// If the best of these reaches less than this share of the predicted improvement, all starts are tried: the
+    /// addition is too large for the linear prediction.
     pub borne_out: f64,
-    /// Share of the misfit below which the best finalist does not end the screening: then all others are fitted too.
+    /// If the best finalist explains less than this share of the misfit, all others are fitted too.
     pub little_share: f64,
-    /// Share of the misfit from which on it does, where little more than noise remains. A twin of the right effect can reach this.
+    /// If the best finalist explains at least this share of the misfit and little more than noise remains, the
+    /// screening ends. An effect similar to the right one can reach this share.
     pub most_share: f64,
-    /// A rival is tried in the place of a selected effect where it improved at least this share of what that did.
+    /// A rival is tried in place of a selected effect if it improved the fit by at least this share of that effect's
+    /// improvement.
     pub rival_share: f64,
-    /// Most rivals that are tried in the place of one effect.
+    /// Largest number of rivals that are tried in place of one effect.
     pub most_rivals: usize,
-    /// Times that a better fit of the given model begins the search anew.
+    /// Largest number of times that a better fit of the given model restarts the search.
     pub most_restarts: usize,
-    /// Fall of the loss that makes another fit of the given model a better one.
+    /// Decrease of the loss from which another fit of the given model counts as better.
     pub restart_improvement: f64,
-    /// A structural alternative is fitted where its first step promises a loss at most this much above that of the model in whose place
-    /// it stands, or half of what that explains, where that is more: a first step does not promise all.
+    /// A structural alternative is fitted if the predicted loss of its first step exceeds that of the replaced model by
+    /// at most this much, or by half of what the replaced effect explains if that is more. A first step does not
+    /// predict the full improvement.
     pub structural_distance: f64,
 }
 

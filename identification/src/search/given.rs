@@ -1,4 +1,4 @@
-//! The given model, fitted.
+//! Fits the given model.
 
 use std::time::Instant;
 
@@ -11,14 +11,15 @@ use super::{Effort, Trial};
 use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, with_nuisances};
 use crate::regression::{WeakFormSettings, weak_form};
 
-/// Trials of which the next one is looked at for a better fit of the given model.
+/// Number of trials that are checked for a better fit of the given model.
 const LOOKED_AT: usize = 3;
 
-/// Loss up to which a fit that a regression has started is trusted: 1.2 times the noise variance. Above it something may be missing, or an
-/// instrument that is far off may have led the regression astray, and the given values are tried as a start too.
+/// Loss up to which a fit that was started from a regression is trusted: 1.2 times the noise variance. Above it
+/// something may be missing, or an instrument with a large error may have biased the regression. The given values are
+/// then tried as a start too.
 const TRUSTED_LOSS: f64 = 0.2;
 
-/// Fits a model's unknown parameters and its nuisances, starting from a regression where one is possible.
+/// Fits a model's unknown parameters and its nuisances, starting from a regression if one is possible.
 ///
 /// # Errors
 /// [`FitError`].
@@ -43,7 +44,7 @@ pub(crate) fn fit_given(model: &Model, identification: &[&Recording], settings: 
 /// A fit of the given model as the first trial.
 ///
 /// # Errors
-/// [`FitError`] when it cannot be evaluated on the validation recordings.
+/// [`FitError`] if it cannot be evaluated on the validation recordings.
 pub(super) fn given_trial(fit: Fit, validation: &[&Recording], settings: &FitSettings) -> Result<Trial, FitError> {
     let begin = Instant::now();
     let evaluated = evaluate(&fit.model, validation, settings)?;
@@ -51,9 +52,9 @@ pub(super) fn given_trial(fit: Fit, validation: &[&Recording], settings: &FitSet
     Ok(Trial { additions: Vec::new(), fit, validation: evaluated, seconds })
 }
 
-/// A better fit of the given model, to which an addition has led. Where the fit of the given model ended in the wrong valley, whatever is
-/// added improves it by leaving that valley, an effect of size zero too. Such an addition without its effect is the better fit, and
-/// no evidence for the effect.
+/// A better fit of the given model that was found through an addition. If the fit of the given model ended in a local
+/// minimum, any addition can improve it by leaving that minimum, even an effect of size zero. Such a model without its
+/// addition is the better fit, and no evidence for the effect.
 pub(super) fn better_given(pool: &Pool<'_>, effort: &Effort) -> Option<Fit> {
     let identification = pool.identification();
     let largest = pool.given().fit.loss() - effort.restart_improvement;
@@ -65,7 +66,7 @@ pub(super) fn better_given(pool: &Pool<'_>, effort: &Effort) -> Option<Fit> {
         .take(LOOKED_AT)
         .filter_map(|trial| {
             let without = trial.model_without(trial.additions.first()?);
-            // Of a real effect nothing good is left without it.
+            // Without a real effect the loss would not stay this low.
             let start = evaluate(&without, identification, &effort.fit).ok()?;
             (start.loss() < largest).then_some(())?;
             fit(&without, identification, &effort.fit).ok()

@@ -4,10 +4,10 @@ use excavator_model::recording::Recording;
 
 use crate::fit::Fit;
 
-/// Parts of `recordings`, of `duration` s or several of these in a row, in which `fit`, a fit to them, fails most: about
-/// `share` of their time. `None` where they are too short to choose from.
+/// Parts of `recordings`, each of `duration` s or a multiple of it, in which `fit`, a fit to them, fails most. They
+/// cover about `share` of the time. Returns `None` if the recordings are too short to choose from.
 ///
-/// An effect that acts in a few moments only is in these, or it explains nothing.
+/// An effect that acts only briefly acts in these parts, or it explains nothing.
 pub(super) fn hard_stretches(
     fit: &Fit,
     recordings: &[&Recording],
@@ -54,7 +54,7 @@ pub(super) fn hard_stretches(
     Some(stretches.iter().map(|piece| recordings[piece.recording].part(piece.begin, piece.end)).collect())
 }
 
-/// With fewer pieces than this there are hardly more readings than a race needs.
+/// With fewer pieces than this there are hardly more readings than a screening needs.
 const FEWEST: usize = 4;
 
 #[derive(Debug, Clone, Copy)]

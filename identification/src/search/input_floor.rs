@@ -1,4 +1,4 @@
-//! What inputs that are known at samples only, and by sensors with noise, leave open.
+//! Error that the uncertainty of the inputs leaves: they are known only at samples and with sensor noise.
 
 use excavator_model::Model;
 use excavator_model::equations::{Channel, System};
@@ -10,13 +10,13 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::fit::{Fit, FitSettings, Instrument, evaluate};
 
-/// Error variance that the readings of the inputs alone leave in each instrument of `evaluated`, a model on `recordings`, over the
-/// variance of the instrument's noise; `None` when that cannot be simulated.
+/// Error variance that the readings of the inputs alone cause in each instrument of `evaluated`, a model on
+/// `recordings`, over the variance of the instrument's noise. Returns `None` if that cannot be simulated.
 ///
-/// When a valve moved between two samples is not known: anywhere in the interval, each time anew. Where it was, its sensor knows but for
-/// noise, which a pump that feeds two nearly open valves magnifies. How far outputs go wrong by that is found by fitting the model to its
-/// own outputs for inputs that were read once more: with another moment for each move, as far as it is more than its neighbours', and
-/// with noise once more.
+/// The time at which a valve moved between two samples is not known: it can be anywhere in the interval, independently
+/// each time. Its position is known except for sensor noise, which is magnified by a pump that feeds two nearly open
+/// valves. The resulting output error is found by fitting the model to its own outputs for inputs that were read again:
+/// with another time for each move, as far as the move is larger than its neighbours, and with new noise.
 pub(super) fn input_floor(evaluated: &Fit, recordings: &[&Recording], settings: &FitSettings) -> Option<Vec<f64>> {
     let model = &evaluated.model;
     let disturbed: Option<Vec<Recording>> =
@@ -30,7 +30,7 @@ pub(super) fn input_floor(evaluated: &Fit, recordings: &[&Recording], settings: 
     evaluated.instruments.iter().map(floor).collect()
 }
 
-/// What the model's instruments report for inputs that were read once more, beside the inputs as they are.
+/// The readings of the model's instruments for inputs that were read again, together with the original inputs.
 fn answer_to_other_readings(model: &Model, recording: &Recording) -> Option<Recording> {
     let simulated = simulate(model, &with_other_readings(model, recording)).ok()?;
     let mut answer = recording.clone();
@@ -53,7 +53,7 @@ fn with_other_readings(model: &Model, recording: &Recording) -> Recording {
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let (imposed, chambers) = (model.machine.has_imposed_motion(), model.machine.has_chambers());
     for cylinder in &mut again.cylinders {
-        // Nobody measures a command.
+        // A command is not measured, so it has no sensor noise.
         move_within_intervals(&mut cylinder.orifice_command, &mut random);
         read_again(&mut cylinder.orifice_area, &mut random);
         if imposed {
@@ -75,14 +75,14 @@ fn read_again(signal: &mut [f64], random: &mut ChaCha8Rng) {
     }
 }
 
-/// Any: the same recordings get the same verdict.
+/// Arbitrary but fixed, so that the same recordings get the same verdict.
 const SEED: u64 = 1;
 
-/// Noise levels below which a change of a signal is none.
+/// A change of a signal below this number of noise levels counts as none.
 const DOUBT: f64 = 5.0;
 
-/// Lets each move of one interval happen sooner or later: by half an interval over the square root of three, the standard
-/// deviation of a moment that can be anywhere in it.
+/// Shifts the time of each move within its interval. The shift is half an interval over the square root of three, the
+/// standard deviation of a uniformly distributed time in it.
 fn move_within_intervals(signal: &mut [f64], random: &mut ChaCha8Rng) {
     let least = DOUBT * noise_level(signal);
     let changes: Vec<f64> = signal.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -90,7 +90,7 @@ fn move_within_intervals(signal: &mut [f64], random: &mut ChaCha8Rng) {
         let before = interval.checked_sub(1).map_or(here, |before| changes[before]);
         let after = changes.get(interval + 1).copied().unwrap_or(here);
         let more = if (here - before).abs() < (here - after).abs() { here - before } else { here - after };
-        // Of a move into or out of a hole nothing is known, which is no number.
+        // A move into or out of a hole is NaN, and the comparison rejects it.
         if more.abs() > least {
             let by = 0.5 / 3.0_f64.sqrt() * more;
             if random.random() { signal[interval] += by } else { signal[interval + 1] -= by }

@@ -1,4 +1,4 @@
-//! Proposes hypotheses: the given model with some effects added, each fitted and scored. Judges nothing.
+//! Proposes hypotheses: the given model with some effects added, each fitted and scored. It makes no decision.
 
 mod addition;
 mod both_sides;

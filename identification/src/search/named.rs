@@ -1,4 +1,4 @@
-//! Scores of effects that somebody named.
+//! Scores of effects that the user named.
 
 use excavator_model::recording::Recording;
 
@@ -9,10 +9,10 @@ use super::{Addition, AdditionError, Effort, Trial};
 use crate::decision::{Policy, Scores};
 use crate::fit::{Fit, FitSettings};
 
-/// Scores of `given` and of each model that `added` makes of it, one after the other.
+/// Scores of `given` and of the models that result from adding `added` one after the other.
 ///
 /// # Errors
-/// [`AdditionError`] when a model cannot be evaluated on the validation recordings.
+/// [`AdditionError`] if a model cannot be evaluated on the validation recordings.
 pub(crate) fn score_named(
     given: &Fit,
     added: &[(Addition, Fit)],

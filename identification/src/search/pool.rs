@@ -1,4 +1,4 @@
-//! Everything that was tried so far.
+//! The pool of all trials so far.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use super::trial::key_of;
 use super::{Addition, AdditionError, Effort, Trial, scoring};
 use crate::decision::{Policy, Scores, Verdict, decide, log_error_ratio};
 
-/// An effect that was not worth a fit to the end.
+/// An effect that was not promising enough for a full fit.
 #[derive(Debug, Clone)]
 pub struct Unpromising {
     /// `effect@place`.
@@ -19,7 +19,8 @@ pub struct Unpromising {
     pub effect: Text,
     /// Name of its place.
     pub place: String,
-    /// Fall of the loss on the identification recordings that its first step promised, or its first steps brought.
+    /// Decrease of the loss on the identification recordings that its first step predicted, or that its first steps
+    /// reached.
     pub promised_improvement: f64,
 }
 
@@ -28,17 +29,17 @@ pub struct Unpromising {
 pub(super) enum Move {
     /// Fit it until it converges.
     Settle,
-    /// Take out each of its effects in turn.
+    /// Remove each of its effects in turn.
     Prune,
     /// Add every other effect to it.
     Extend,
-    /// Put rivals in the place of its effects.
+    /// Replace its effects by rivals.
     Exchange,
-    /// Put structural effects in the place of its effects.
+    /// Replace its effects by structural effects.
     Structural,
 }
 
-/// Trials, their scores (one each, in the same order), and what was done with them.
+/// Trials, their scores (one each, in the same order), and the moves already made with them.
 pub struct Pool<'a> {
     identification: &'a [&'a Recording],
     validation: &'a [&'a Recording],
@@ -54,7 +55,7 @@ pub struct Pool<'a> {
 }
 
 impl<'a> Pool<'a> {
-    /// With the given model, fitted.
+    /// Creates a pool with the fitted given model.
     pub(super) fn new(given: Trial, identification: &'a [&'a Recording], validation: &'a [&'a Recording]) -> Self {
         let scores = scoring::begin(&given, identification, validation);
         Pool {
@@ -68,7 +69,7 @@ impl<'a> Pool<'a> {
         }
     }
 
-    /// Asks what the readings of the inputs leave open, where the given model leaves more than noise.
+    /// Computes the error floor of the input readings, if the given model leaves more than noise.
     pub(super) fn look_at_inputs(&mut self, effort: &Effort, policy: &Policy) {
         let (given, settings) = (&self.trials[0], &effort.fit);
         if log_error_ratio(&self.scores.validation, &self.scores.given().validation) <= policy.noise_margin {
@@ -94,7 +95,7 @@ impl<'a> Pool<'a> {
         self.validation
     }
 
-    /// Adds a trial, or puts it in the place of one with the same additions where its fit is better.
+    /// Adds a trial, or replaces the one with the same additions if the new fit is better.
     pub(super) fn put(&mut self, trial: Trial) {
         let key = trial.key();
         match self.find(&key) {
@@ -119,17 +120,17 @@ impl<'a> Pool<'a> {
         self.trials.iter().position(|trial| trial.key() == key)
     }
 
-    /// Number of the trial with these additions, in whatever order.
+    /// Number of the trial with these additions, in any order.
     pub(super) fn find_additions(&self, additions: &[Addition]) -> Option<usize> {
         self.find(&key_of(additions, &self.given().fit.model))
     }
 
-    /// Marks that this is done with the trial.
+    /// Marks this move of the trial as done.
     pub(super) fn mark_done(&mut self, what: Move, number: usize) {
         self.done.insert((what, self.trials[number].key()));
     }
 
-    /// Whether this was done with the trial.
+    /// Whether this move of the trial was done.
     pub(super) fn was_done(&self, what: Move, number: usize) -> bool {
         self.done.contains(&(what, self.trials[number].key()))
     }

@@ -1,12 +1,13 @@
-//! How far a search has come.
+//! Progress of a search.
 
 use std::sync::Mutex;
 
-/// Share of what is left that one milestone takes. How many moves a search makes is not known before; most make two to four.
+/// Share of the remaining progress that one milestone takes. The number of moves of a search is not known beforehand;
+/// most searches make two to four.
 const SHARE: f64 = 0.4;
 
-/// Passes on what is done, with a fraction that never falls. How many steps there will be is not known: each milestone takes a share of
-/// what is left.
+/// Reports progress with a fraction that never decreases. The number of steps is not known, so each milestone takes a
+/// share of the remainder.
 pub(super) struct Milestones<'a> {
     progress: &'a (dyn Fn(&str, f64) + Sync),
     /// Fraction at the last milestone, and the largest reported.
@@ -18,7 +19,7 @@ impl<'a> Milestones<'a> {
         Milestones { progress, reached: Mutex::new((0.0, 0.0)) }
     }
 
-    /// What is being done, and the fraction of it that is done.
+    /// Reports the current activity and its completed fraction.
     pub fn tell(&self, what: &str, done: f64) {
         let Ok(mut reached) = self.reached.lock() else { return };
         let now = reached.0 + done.clamp(0.0, 1.0) * SHARE * (1.0 - reached.0);
@@ -26,7 +27,7 @@ impl<'a> Milestones<'a> {
         (self.progress)(what, reached.1);
     }
 
-    /// One more step is done.
+    /// Completes a step.
     pub fn pass(&self) {
         if let Ok(mut reached) = self.reached.lock() {
             reached.0 += SHARE * (1.0 - reached.0);

@@ -1,8 +1,8 @@
-//! What the first step of many additions promises, from one simulation.
+//! Predicts the first step of many additions from one simulation.
 //!
-//! An effect that vanishes where its coefficients are zero changes the outputs of the model that it is added to in proportion to them, at
-//! first. One simulation with sensitivities to the coefficients of all such effects tells how far each could lower the error, and with
-//! which values. What promises nothing there needs no simulation of its own.
+//! The outputs respond in proportion to small coefficients of an effect that vanishes at zero coefficients. One
+//! simulation with sensitivities to the coefficients of all such effects predicts how far each could lower the error,
+//! and with which values. An addition without a predicted improvement needs no simulation of its own.
 
 use excavator_model::effects::Kind;
 use excavator_model::equations::{Inputs, Instruments, Reach, System};
@@ -13,22 +13,23 @@ use super::Addition;
 use super::starts::{plain_starts, within_bounds};
 use crate::fit::{FitSettings, Linearised, SegmentedRecording};
 
-/// What is foretold of one addition.
+/// Prediction for one addition.
 pub(super) struct Promised {
-    /// Fall of the loss that the best of its starts promises.
+    /// Predicted decrease of the loss for the best of its starts.
     pub improvement: f64,
     /// Its starts, the most promising first.
     pub starts: Vec<PromisedStart>,
-    /// Whether its outputs go on as they begin: it adds to its own rows in proportion to its coefficients, or to what instruments report.
-    /// What shifts an opening may promise nothing at first, and explain much where it is large.
+    /// Whether the linear prediction also holds for large coefficients: the addition acts on its own rows in proportion
+    /// to its coefficients, or on the readings of instruments. An effect that shifts an opening may have no predicted
+    /// improvement at first, and explain much when it is large.
     pub is_straight: bool,
 }
 
-/// A start, and what it promises.
+/// A start with its prediction.
 pub(super) struct PromisedStart {
     /// The model with the addition.
     pub model: Model,
-    /// Loss that the step to there promises; see [`crate::fit::Fit::loss`].
+    /// Predicted loss at this start; see [`crate::fit::Fit::loss`].
     pub loss: f64,
 }
 
@@ -37,13 +38,14 @@ struct Vanished {
     /// The model with it at its start values.
     start: Model,
     effect: ModelEffect,
-    /// Which of its parameters are its coefficients.
+    /// Indices of its coefficients among its parameters.
     coefficients: Vec<usize>,
     is_straight: bool,
 }
 
-/// Foretells what each of the `wanted` additions to `base` brings; `None` for one that vanishes nowhere, of which a simulation of its own
-/// has to tell. `None` where that holds for all, or the model cannot be simulated on these recordings.
+/// Predicts the effect of each of the `wanted` additions to `base`. An entry is `None` for an addition that does not
+/// vanish at zero coefficients and needs a simulation of its own. The result is `None` if that is true for all, or if
+/// the model cannot be simulated on these recordings.
 pub(super) fn promises(
     base: &Model,
     wanted: &[Addition],
@@ -57,7 +59,7 @@ pub(super) fn promises(
             let extended = base.with_effect(&addition.physics, addition.site).ok()?;
             let starts = plain_starts(&extended, recordings).into_iter();
             let vanished: Vec<Vanished> = starts.map(|start| probes.vanished(start)).collect::<Option<_>>()?;
-            // Where no window is known in which it may act, nothing is foretold either.
+            // Without a window in which the addition may act there is no prediction either.
             (!vanished.is_empty()).then_some(vanished)
         })
         .collect();
@@ -92,8 +94,8 @@ pub(super) fn promises(
     Some(each.collect())
 }
 
-/// The start to which a step of the coefficients leads, which are in these `columns`: of those of them with which none becomes less than it
-/// can be, in the best choice.
+/// The start after a step of the coefficients, which are in these `columns`. Uses the best choice of coefficients in
+/// which none falls below its minimum.
 fn promised_start(linearised: &Linearised, vanished: Vanished, columns: &[usize], own: &[usize]) -> PromisedStart {
     let Vanished { start: mut model, mut effect, coefficients, .. } = vanished;
     let promise_of = |chosen: Vec<usize>| {
@@ -124,10 +126,10 @@ fn promised_start(linearised: &Linearised, vanished: Vanished, columns: &[usize]
     PromisedStart { model: within_bounds(model), loss }
 }
 
-/// Most coefficients of which every choice is tried: a valve leaks past four edges.
+/// Largest number of coefficients for which every subset is tried: a valve leaks past four edges.
 const MOST_CHOSEN_FROM: usize = 4;
 
-/// Choices of some of so many coefficients: every one, or of many all of them and each alone.
+/// Subsets of `count` coefficients: all subsets, or for a large number the full set and each coefficient alone.
 fn choices(count: usize) -> Vec<Vec<usize>> {
     if count > MOST_CHOSEN_FROM {
         return std::iter::once((0..count).collect()).chain((0..count).map(|number| vec![number])).collect();
@@ -136,13 +138,13 @@ fn choices(count: usize) -> Vec<Vec<usize>> {
     (1..1 << count).map(chosen).collect()
 }
 
-/// Where it is tried whether an effect vanishes: the beginnings of all segments.
+/// Points at which it is checked whether an effect vanishes: the starts of all segments.
 struct Probes {
     at: Vec<(Vec<f64>, Inputs<f64>, Vec<f64>)>,
     instruments: Instruments<f64>,
 }
 
-/// A rate that differs by less, relative to the largest, is the same.
+/// Rates that differ by less, relative to the largest, are equal.
 const SAME: f64 = 1e-9;
 
 impl Probes {
@@ -165,8 +167,8 @@ impl Probes {
         Probes { at, instruments: system.instruments(&parameters) }
     }
 
-    /// The last effect of a model with its coefficients at zero: those that are linear, or all that can be zero. `None` where it is still
-    /// there then, or has states.
+    /// The last effect of a model with its coefficients at zero: the linear ones, or all that can be zero. Returns
+    /// `None` if the effect still acts then, or has states.
     fn vanished(&self, start: Model) -> Option<Vanished> {
         let effect = start.effects.last()?;
         let can_be_zero = |index: &usize| {

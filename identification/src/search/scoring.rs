@@ -1,4 +1,4 @@
-//! A trial as a row of scores.
+//! Converts a trial into a row of scores.
 
 use excavator_model::effects::Family;
 use excavator_model::recording::{Recording, standard_deviation};
@@ -12,7 +12,7 @@ use crate::decision::scores::{
 };
 use crate::fit::{Fit, nuisances_shown};
 
-/// Scores that hold the given model only, as it was tried without additions on recordings that it was fitted to and on others.
+/// Scores with the given model only, tried without additions on the recordings that it was fitted to and on others.
 pub fn begin(given: &Trial, identification: &[&Recording], validation: &[&Recording]) -> Scores {
     Scores {
         format: FORMAT,
@@ -23,7 +23,7 @@ pub fn begin(given: &Trial, identification: &[&Recording], validation: &[&Record
     }
 }
 
-/// What was compared on some recordings.
+/// The compared signals on some recordings.
 pub(crate) fn side(fit: &Fit, recordings: &[&Recording]) -> Side {
     let scale = |instrument: &crate::fit::Instrument| InstrumentScale {
         name: instrument.name.clone(),
@@ -48,8 +48,8 @@ pub(crate) fn side(fit: &Fit, recordings: &[&Recording]) -> Side {
     }
 }
 
-/// The row of scores of a trial: errors on both sides, and what is known of each added effect. `given` is the model without additions,
-/// `identification` the recordings that the trial was fitted to.
+/// The row of scores of a trial: errors on both sides, and the properties of each added effect. `given` is the model
+/// without additions, `identification` the recordings that the trial was fitted to.
 pub fn score(trial: &Trial, given: &Model, identification: &[&Recording]) -> Hypothesis {
     let model = &trial.fit.model;
     let effect = |effect: &ModelEffect| EffectScore {
@@ -77,7 +77,7 @@ pub fn score(trial: &Trial, given: &Model, identification: &[&Recording]) -> Hyp
 pub(crate) fn misfit(fit: &Fit) -> Misfit {
     let ratio = |(&(squares, count), instrument): (&(f64, usize), &crate::fit::Instrument)| {
         let ratio = squares / (count.max(1) as f64 * instrument.noise * instrument.noise);
-        // What cannot be stored is as wrong as can be.
+        // An error that cannot be stored counts as the largest possible one.
         if ratio.is_finite() { (ratio as f32).min(f32::MAX) } else { f32::MAX }
     };
     let blocks = fit.block_errors.iter();

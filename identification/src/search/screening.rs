@@ -1,8 +1,9 @@
 //! Successive halving of the additions to one hypothesis.
 //!
-//! A full fit of every effect at every place would take minutes. One simulation with sensitivities to all of them tells which promise
-//! nothing, and where the others start; three steps of a fit on the hardest stretches tell how much of the error the others can explain. The best are fitted to
-//! the end, on everything. Evidence is from full fits only.
+//! A full fit of every effect at every place would take minutes. One simulation with sensitivities to all effects shows
+//! which of them cannot improve the fit, and where the others start. Three steps of a fit on the hardest stretches show
+//! how much of the error these can explain. The best are fitted to convergence on all recordings. Evidence comes from
+//! full fits only.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -20,26 +21,26 @@ use crate::fit::{Fit, fit, fit_predicted};
 
 /// The screening of additions to `base`.
 pub(super) struct Screening<'a> {
-    /// What they are added to.
+    /// The trial that they are added to.
     pub base: &'a Trial,
     /// Recordings that are fitted.
     pub identification: &'a [&'a excavator_model::recording::Recording],
     /// Recordings that evidence is taken from.
     pub validation: &'a [&'a excavator_model::recording::Recording],
-    /// Improvement that an attribution needs; a quarter of it is what a first step must promise.
+    /// Improvement that an attribution needs. A first step must predict a quarter of it.
     pub least_improvement: f64,
     /// How much is tried.
     pub effort: &'a Effort,
 }
 
-/// What became of all additions.
+/// Results of the screening of all additions.
 #[derive(Default)]
 pub(super) struct Screened {
     /// Best first, after a few steps.
     pub candidates: Vec<Screen>,
-    /// Those not worth a fit to the end.
+    /// Additions that are not promising enough for a full fit.
     pub unpromising: Vec<Unpromising>,
-    /// Those that could not be fitted, with the reason.
+    /// Additions that could not be fitted, with the reason.
     pub failed: Vec<(String, AdditionError)>,
 }
 
@@ -48,7 +49,7 @@ pub(super) struct Screen {
     addition: Addition,
     name: String,
     fit: Fit,
-    /// Fall of the loss on the stretches it was screened on.
+    /// Decrease of the loss on the stretches that it was screened on.
     pub improvement: f64,
 }
 
@@ -58,7 +59,7 @@ impl Screen {
         !self.fit.converged
     }
 
-    /// The candidate as one that is not fitted to the end.
+    /// Converts the candidate into one without a full fit.
     pub fn left_behind(self) -> Unpromising {
         let place = site_name(&self.fit.model.machine, self.addition.site).to_string();
         let (name, effect) = (self.name, self.addition.physics.card().name.clone());
@@ -73,7 +74,8 @@ enum Outcome {
 }
 
 impl Screening<'_> {
-    /// A few steps of every addition, the best first. `advance` is told each name when it is done.
+    /// Fits every addition for a few steps and returns the best first. `advance` is called with each name when it is
+    /// done.
     pub fn run(&self, mut wanted: Vec<Addition>, advance: &(dyn Fn(&str, f64) + Sync)) -> Screened {
         let hard = Track::hard(self.base, self.identification, self.effort);
         // A transient effect acts in a window of a whole recording.
@@ -81,7 +83,7 @@ impl Screening<'_> {
         let machine = &self.base.fit.model.machine;
         let needs_all = |one: &Addition| can_be_transient(&*one.physics, machine, one.site);
         let (done, total) = (AtomicUsize::new(0), wanted.len().max(1) as f64);
-        // The longest first, or one core ends with it alone.
+        // The longest fits start first. Otherwise one core would finish them alone at the end.
         wanted.sort_by_key(|addition| !needs_all(addition));
         let of_whole = wanted.iter().take_while(|one| needs_all(one)).count();
         let track = |number: usize| hard.as_ref().filter(|_| number >= of_whole).unwrap_or(&whole);
@@ -111,7 +113,7 @@ impl Screening<'_> {
         screened
     }
 
-    /// Number of the first candidates that are fitted to the end in any case.
+    /// Number of the leading candidates that always get a full fit.
     pub fn finalists(&self, candidates: &[Screen]) -> usize {
         let best = candidates.first().map_or(0.0, |screen| screen.improvement);
         let is_finalist = |(position, screen): (usize, &Screen)| {
@@ -121,7 +123,7 @@ impl Screening<'_> {
         candidates.iter().enumerate().filter(|&entry| is_finalist(entry)).count()
     }
 
-    /// Candidates fitted to the end and evaluated on the validation recordings.
+    /// Fits candidates to convergence and evaluates them on the validation recordings.
     pub fn to_the_end(
         &self,
         candidates: Vec<Screen>,
@@ -139,7 +141,7 @@ impl Screening<'_> {
             .collect()
     }
 
-    /// A few steps from the start that promises most.
+    /// Takes a few steps from the most promising start.
     fn screened(
         &self,
         addition: Addition,
@@ -159,7 +161,7 @@ impl Screening<'_> {
         }
         let start = track.start(&addition, promised, least, self.effort)?;
         let promised_improvement = track.base.loss() - start.promise.loss_after;
-        // Only from a start next to the base can the promise of one step be trusted.
+        // The prediction of one step is reliable only if the start is close to the base.
         let is_trusted =
             (start.promise.loss_before - track.start_loss(&self.effort.fit)).abs() < self.effort.trusted_distance;
         if is_trusted && promised_improvement < least {

@@ -1,9 +1,10 @@
-//! From a model and its recordings to hypotheses with scores.
+//! Searches for hypotheses, with scores, for what a model is missing.
 //!
-//! A local search over sets of effects. It asks [`crate::decision::decide`] which hypothesis the scores so far favour, and tries its
-//! neighbours: one effect more, one effect less, one effect exchanged. It ends when all neighbours of the favoured one were tried, or when
-//! nothing is left that another effect could explain. The effect that lowers the error most need not be one that is missing: where
-//! two are, something in between may look better than either. That is why effects are taken out and exchanged, too.
+//! A local search over sets of effects. [`crate::decision::decide`] selects the hypothesis that the scores so far
+//! favour. The search then tries its neighbours: one effect more, one effect less, one effect exchanged. It ends when
+//! all neighbours of the favoured one were tried, or when nothing is left that another effect could explain. The effect
+//! that lowers the error most need not be a missing one: if two effects are missing, a third one may look better than
+//! either. That is why effects are also removed and exchanged.
 
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -15,11 +16,11 @@ use super::{Effort, progress::Milestones};
 use crate::decision::{Kind, Policy, Verdict, leaves_nothing};
 use crate::fit::FitError;
 
-/// Tries what `model` may be missing. Parameters are fitted to `identification`, scores are also of `validation`. `progress` is told
-/// what is being done, with the fraction done.
+/// Tries effects that `model` may be missing. Parameters are fitted to `identification`; scores also cover
+/// `validation`. `progress` is called with the current activity and the fraction done.
 ///
 /// # Errors
-/// [`FitError`] when the given model cannot be fitted or evaluated.
+/// [`FitError`] if the given model cannot be fitted or evaluated.
 pub fn search<'a>(
     model: &Model,
     identification: &'a [&'a Recording],
@@ -59,7 +60,7 @@ pub fn search<'a>(
     }
 }
 
-/// What to try next, and of which hypothesis; none when all was tried that could change the verdict.
+/// The next move and its hypothesis. Returns `None` when every move that could change the verdict was tried.
 fn next_move(pool: &Pool<'_>, effort: &Effort, policy: &Policy) -> Option<(Move, usize)> {
     let verdict = pool.verdict(policy);
     let wanted = moves_of(&verdict, pool, effort, policy);

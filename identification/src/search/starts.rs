@@ -1,4 +1,4 @@
-//! Where the fit of a candidate effect starts.
+//! Start values for the fit of a candidate effect.
 
 use excavator_model::Model;
 use excavator_model::effects::{Effect, Kind, Site, Start};
@@ -8,9 +8,10 @@ use excavator_model::recording::Recording;
 use super::worst_stretch::worst_stretches;
 use crate::regression::{Ground, WeakFormSettings, weak_form, weak_form_on};
 
-/// The model with the last effect's parameters at each combination of their start values, each also as a regression on
-/// the equations improves it: that finds linear coefficients without a search, however far they are from any start.
-/// Regressed starts come first. `ground` is what the model without its last effect sees of the recordings, if that is known.
+/// The model with the last effect's parameters at each combination of their start values. Each combination is also
+/// improved by a regression on the equations, which finds linear coefficients without a search, however far they are
+/// from any start. Regressed starts come first. `ground` holds the recordings as seen by the model without its last
+/// effect, if known.
 pub(super) fn starts(model: &Model, recordings: &[&Recording], ground: Option<&Ground>) -> Vec<Model> {
     let plain = plain_starts(model, recordings);
     let sees_the_same = model.effects.last().is_some_and(|last| Ground::holds_for(&*last.physics));
@@ -28,12 +29,13 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording], ground: Option<&G
     };
     let last = model.effects.last();
     if last.is_some_and(|last| can_be_transient(&*last.physics, &model.machine, last.site)) {
-        // There are many windows, and how strong something is follows from when it is.
+        // There are many windows, and the strength of an effect follows from its window.
         let with_strength = |start: &Model| Some(with_shape_of(start, regressed(&with_shape_held(start))?));
         return plain.into_iter().map(|start| with_strength(&start).unwrap_or(start)).collect();
     }
     if last.is_some_and(|last| last.physics.formula().is_some()) {
-        // One step in the coefficient of an opening and in the gains behind it leads astray; each gain for a given coefficient is right.
+        // A joint step in the coefficient of an opening and in the gains behind it diverges. Each gain for a given
+        // coefficient is right.
         let with_others = |start: &Model| Some(with_shape_of(start, regressed(&with_shape_held(start))?));
         let has_shape = |start: &&Model| {
             start.effects.last().is_some_and(|law| law.parameters.iter().any(|one| one.card.kind == Kind::Shape))
@@ -44,8 +46,9 @@ pub(super) fn starts(model: &Model, recordings: &[&Recording], ground: Option<&G
     plain.iter().filter_map(regressed).chain(plain.iter().cloned()).collect()
 }
 
-/// The model with everything of its last effect held but how strong it is. A regression sees an edge in a few windows only, and
-/// its one step from there can be years long; a light load it moves to where it weighs nothing, from where no fit returns.
+/// The model with its last effect held, except for its strength. A regression sees an edge in a few windows only, and
+/// one step of it from there can be years long. It can also move a light load to where it has no effect, and no fit
+/// returns from there.
 fn with_shape_held(model: &Model) -> Model {
     let mut held = model.clone();
     let last = held.effects.last_mut().into_iter().flat_map(|effect| &mut effect.parameters);
@@ -53,7 +56,7 @@ fn with_shape_held(model: &Model) -> Model {
     held
 }
 
-/// `model` with the parameters of its last effect held or free as those of `start` are.
+/// `model` with the parameters of its last effect held or free as in `start`.
 fn with_shape_of(start: &Model, mut model: Model) -> Model {
     let last = model.effects.last_mut().into_iter().flat_map(|effect| &mut effect.parameters);
     let same = start.effects.last().into_iter().flat_map(|effect| &effect.parameters);
@@ -61,10 +64,11 @@ fn with_shape_of(start: &Model, mut model: Model) -> Model {
     model
 }
 
-/// Samples per second of the regressions that give starts, on a machine of the reference size. At 170 Hz the start of a contact that lasts seconds is lost.
+/// Samples per second of the regressions that provide starts, on a machine of the reference size. At 170 Hz the start
+/// value of a contact that lasts seconds is lost.
 const START_RATE: f64 = 250.0;
 
-/// Thinned to this rate a regression still sees what starts a fit, in half the time.
+/// Thins recordings to this rate. A regression still finds useful starts, in half the time.
 fn thinned(model: &Model, recordings: &[&Recording]) -> Vec<Recording> {
     let rate = START_RATE / model.machine.size().time();
     let stride = |recording: &Recording| (1.0 / (recording.sample_interval() * rate)).round();
@@ -72,12 +76,12 @@ fn thinned(model: &Model, recordings: &[&Recording]) -> Vec<Recording> {
     recordings.iter().map(|recording| recording.thinned(whole(stride(recording)))).collect()
 }
 
-/// What `model` sees of recordings that have been thinned for [`starts`]; `None` where it cannot be simulated.
+/// The recordings as `model` sees them, thinned for [`starts`]. Returns `None` if it cannot be simulated.
 pub(super) fn ground(model: &Model, recordings: &[&Recording]) -> Option<Ground> {
     Ground::new(model, thinned(model, recordings)).ok()
 }
 
-/// Unknown parameters moved to the nearest possible value.
+/// Moves unknown parameters to the nearest possible value.
 pub(super) fn within_bounds(mut model: Model) -> Model {
     for parameter in model.parameters_mut().filter(|parameter| !parameter.known) {
         parameter.value = parameter.value.clamp(parameter.card.minimum, parameter.card.maximum);
@@ -85,17 +89,18 @@ pub(super) fn within_bounds(mut model: Model) -> Model {
     model
 }
 
-/// Whether an effect can act in a window of time, which belongs to one recording and says nothing about another.
+/// Whether an effect can act in a window of time. A window belongs to one recording and is not valid for another.
 pub(super) fn can_be_transient(physics: &dyn Effect, machine: &Machine, site: Site) -> bool {
     physics.parameters(machine, site).iter().any(|card| card.start.is_a_time())
 }
 
-/// Windows of time that are tried as starts.
+/// Number of worst stretches that are used for start windows.
 const WINDOWS: usize = 2;
 
-/// The model with the last effect in windows of time in which it may have acted. What is there all the time but for a stretch
-/// makes the model without it fail in that stretch, its weight being in the gravity that was fitted: so it may be a stretch in which
-/// that model fails most, all that comes before or after, or what lies between two of them; or always, for what may be that.
+/// The model with the last effect in windows of time in which it may have acted. If an effect acts all the time except
+/// in a stretch, the fitted gravity absorbs its weight, and the model without it fails in that stretch. So the window
+/// may be a stretch in which that model fails most, all that comes before or after it, or the time between two such
+/// stretches. It may also be the whole time, if the effect can act always.
 fn windows(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     let mut without = model.clone();
     let Some(last) = without.effects.pop() else { return Vec::new() };
@@ -119,8 +124,8 @@ fn windows(model: &Model, recordings: &[&Recording]) -> Vec<Model> {
     windows
 }
 
-/// The model with the window of its last effect open to either side. A load that was not put down but lay still for a while looks
-/// like one that was, and a fit moves an edge no further than to where it is seen.
+/// The model with the window of its last effect open to either side. A load that was never put down, but lay still for
+/// a while, looks like one that was put down. A fit moves an edge only as far as the recording shows it.
 pub(super) fn half_open(model: &Model) -> Vec<Model> {
     match model.effects.last().and_then(|last| last.window()) {
         Some((begin, duration)) if !begin.known && !duration.known => {
@@ -131,8 +136,8 @@ pub(super) fn half_open(model: &Model) -> Vec<Model> {
     }
 }
 
-/// The model with the last effect from `begin` to `end`, s; an edge that is not given lies outside every recording and is not
-/// looked for.
+/// The model with the last effect from `begin` to `end`, s; an edge that is not given lies outside every recording and
+/// is held.
 fn in_window(model: &Model, begin: Option<f64>, end: Option<f64>) -> Model {
     let mut start = model.clone();
     let mut first = 0.0;
@@ -167,7 +172,7 @@ pub(super) fn plain_starts(model: &Model, recordings: &[&Recording]) -> Vec<Mode
     };
     for (number, parameter) in last.parameters.iter().enumerate() {
         let values: Vec<f64> = match &parameter.card.start {
-            // Set by the windows.
+            // The windows set these.
             Start::WorstStretchBegin | Start::WorstStretchDuration => continue,
             Start::Known(_) => continue,
             Start::At(values) => values.to_vec(),

@@ -15,18 +15,18 @@ use super::{Addition, Effort, Trial};
 use crate::decision::{Policy, log_error_ratio};
 use crate::fit::{FitSettings, fit, fit_predicted, predict};
 
-/// How moves are made.
+/// Settings and callbacks for making moves.
 pub(super) struct Stepwise<'a> {
     /// How much is tried.
     pub effort: &'a Effort,
-    /// Only to ask which hypothesis is favoured.
+    /// Used only to find the favoured hypothesis.
     pub policy: &'a Policy,
-    /// Told what is being done.
+    /// Receives progress reports.
     pub milestones: &'a Milestones<'a>,
 }
 
 impl Stepwise<'_> {
-    /// Makes a move of trial `number`; what it leads to joins the pool.
+    /// Makes a move of trial `number`, and adds the resulting trials to the pool.
     pub fn take(&self, what: Move, number: usize, pool: &mut Pool<'_>) {
         pool.mark_done(what, number);
         match what {
@@ -38,8 +38,8 @@ impl Stepwise<'_> {
         }
     }
 
-    /// Fits on where the most steps of a fit were not enough. Whatever is added to a fit that has not converged goes on with it, and looks
-    /// as if it explained something.
+    /// Continues a fit that reached its step limit. Otherwise any addition would continue the unconverged fit and
+    /// appear to explain something.
     fn settle(&self, number: usize, pool: &mut Pool<'_>) {
         let begin = Instant::now();
         let trial = pool.trials[number].clone();
@@ -57,8 +57,9 @@ impl Stepwise<'_> {
         }
     }
 
-    /// Number of the trial that has all additions of another but one. It is fitted if need be: if nobody has, or if it promises to fit
-    /// better from here. A fit that ended in a local minimum would otherwise make the addition look needed.
+    /// Number of the trial that has all additions of another except one. It is fitted if it does not exist yet, or if a
+    /// fit from here is predicted to be better. A fit that ended in a local minimum would otherwise make the addition
+    /// look necessary.
     fn without(&self, number: usize, addition: &Addition, pool: &mut Pool<'_>) -> Option<usize> {
         let begin = Instant::now();
         let trial = &pool.trials[number];
@@ -86,7 +87,7 @@ impl Stepwise<'_> {
         self.screen(number, wanted, pool);
     }
 
-    /// Screens additions to a trial and fits the best to the end.
+    /// Screens additions to a trial and fits the best to convergence.
     pub(super) fn screen(&self, number: usize, wanted: Vec<Addition>, pool: &mut Pool<'_>) {
         let base = pool.trials[number].clone();
         let screening = Screening {
@@ -104,8 +105,8 @@ impl Stepwise<'_> {
         let mut fitted = screening.to_the_end(candidates, &advance(0.6, 0.8));
         let mut failed: Vec<(String, AdditionError)> = failed;
         self.put_all(&mut fitted, &mut failed, pool);
-        // An effect with a threshold may need a dozen steps until it explains what it can: before another is attributed in its place, or
-        // nothing is said to explain the error, those that were not finished are.
+        // An effect with a threshold may need a dozen steps before it explains what it can. So unfinished candidates
+        // are fitted before another effect is attributed in their place, or before the error is declared unexplained.
         let (mut unfinished, finished): (Vec<Screen>, Vec<Screen>) =
             others.into_iter().partition(Screen::is_unfinished);
         let left = unfinished.split_off(self.further_finalists(number, &unfinished, best, pool));
@@ -133,7 +134,8 @@ impl Stepwise<'_> {
         }
     }
 
-    /// How many more candidates deserve a full fit: of the `unfinished`, best first, in a screening whose best improved by `best`.
+    /// Number of further candidates for a full fit. They are the first of `unfinished`, which is sorted best first, in
+    /// a screening whose best candidate improved by `best`.
     fn further_finalists(&self, number: usize, unfinished: &[Screen], best: f64, pool: &Pool<'_>) -> usize {
         let (effort, verdict) = (self.effort, pool.verdict(self.policy));
         let misfit = |number: usize| {
@@ -158,8 +160,8 @@ impl Stepwise<'_> {
         }
     }
 
-    /// Puts rivals in the place of each effect: single effects that improved nearly as much as the one that is there. They were compared
-    /// with it while the other effects still spoiled the picture.
+    /// Replaces each effect by rivals: single effects that improved nearly as much. They were compared with it while
+    /// the other missing effects still distorted the comparison.
     fn exchange(&self, number: usize, pool: &mut Pool<'_>) {
         let verdict = pool.verdict(self.policy);
         let trial = pool.trials[number].clone();
@@ -167,7 +169,7 @@ impl Stepwise<'_> {
             // Its rivals were additions to the same model.
             return;
         }
-        // Of every effect that was fitted alone: by how much it improved. Trials of single effects stay what they are here.
+        // Improvement of every effect that was fitted alone. The list is not updated here.
         let alone: Vec<(Addition, f64)> = pool
             .trials
             .iter()
@@ -200,8 +202,8 @@ impl Stepwise<'_> {
         self.without(number, addition, pool).map(|without| pool.trials[without].clone())
     }
 
-    /// Puts trials with one more addition each, fitted to the end, into the pool; none where a first step promises a loss above `worst`.
-    /// Whoever watches is told `what` is tried, or the name of each.
+    /// Adds trials with one more addition each, fully fitted, to the pool. An addition is skipped if the predicted loss
+    /// of its first step is above `worst`. Progress is reported as `what`, or as the name of each addition.
     fn put_added(&self, base: &Trial, wanted: Vec<Addition>, worst: f64, what: Option<&str>, pool: &mut Pool<'_>) {
         let (identification, validation, effort) = (pool.identification(), pool.validation(), self.effort);
         let track = Track::whole(base, identification);
@@ -225,7 +227,7 @@ impl Stepwise<'_> {
         trials.into_iter().for_each(|trial| pool.put(trial));
     }
 
-    /// Puts structural effects in the place of each effect, at its site; of the given model, at every site.
+    /// Replaces each effect by structural effects at its site. For the given model they are added at every site.
     fn structural(&self, number: usize, pool: &mut Pool<'_>) {
         let trial = pool.trials[number].clone();
         if trial.additions.is_empty() {
@@ -246,7 +248,7 @@ impl Stepwise<'_> {
         self.put_added(base, wanted, worst, Some("how the machine is built"), pool);
     }
 
-    /// Fits what is missing on the way from the given model to the favoured hypothesis, one effect after the other.
+    /// Fits the missing trials on the path from the given model to the favoured hypothesis, one effect after the other.
     pub fn complete_path(&self, pool: &mut Pool<'_>) {
         let mut number = pool.verdict(self.policy).best;
         while pool.trials[number].additions.len() > 1 {

@@ -12,10 +12,10 @@ use super::{Effort, Trial};
 use crate::fit::{Fit, FitSettings, fit, predict};
 use crate::regression::Ground;
 
-/// Recordings, or parts of them, and a model on them that something is added to.
+/// Recordings, or parts of them, and the base model on them to which effects are added.
 pub(super) struct Track<'a> {
     whole: &'a [&'a Recording],
-    /// In place of them.
+    /// Used instead of the whole recordings.
     parts: Option<Vec<Recording>>,
     /// The model without additions, fitted to them.
     pub base: Fit,
@@ -24,7 +24,7 @@ pub(super) struct Track<'a> {
 }
 
 impl<'a> Track<'a> {
-    /// All that is fitted.
+    /// Uses all fitted recordings.
     pub fn whole(base: &Trial, recordings: &'a [&'a Recording]) -> Self {
         Track::new(recordings, None, base.fit.clone())
     }
@@ -33,12 +33,13 @@ impl<'a> Track<'a> {
         Track { whole, parts, base, start_loss: OnceLock::new(), ground: OnceLock::new() }
     }
 
-    /// The stretches in which the model without additions fails most; `None` where there is little to choose from, or the
-    /// model cannot be fitted to them.
+    /// Uses the stretches in which the model without additions fails most. Returns `None` if there is little to choose
+    /// from, or the model cannot be fitted to them.
     pub fn hard(base: &Trial, recordings: &'a [&'a Recording], effort: &Effort) -> Option<Self> {
         let duration = effort.fit.segment_duration_for(&base.fit.model.machine.size());
         let parts = hard_stretches(&base.fit, recordings, duration, effort.screening_share)?;
-        // As many steps as the candidates get: an improvement that comes from fewer readings is none of theirs.
+        // The base gets as many steps as the candidates, so that an improvement from fewer readings is not credited to
+        // them.
         let base = fit(&base.fit.model, &parts.iter().collect::<Vec<_>>(), &few_steps(effort)).ok()?;
         Some(Track::new(recordings, Some(parts), base))
     }
@@ -51,21 +52,21 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// Loss of the model without additions where its segments start as measured.
+    /// Loss of the model without additions with measured initial states.
     pub fn start_loss(&self, settings: &FitSettings) -> f64 {
-        // A model that cannot be simulated from its measured starts is judged where its fit has brought it.
+        // If the model cannot be simulated from its measured initial states, the loss of its fit is used.
         let simulated = || predict(&self.base.model, &self.recordings(), settings);
         *self.start_loss.get_or_init(|| simulated().map_or_else(|_| self.base.loss(), |promise| promise.loss_before))
     }
 
-    /// What one simulation of the model without additions promises of each.
+    /// Predictions for each addition from one simulation of the model without additions.
     pub fn promised(&self, wanted: &[Addition], settings: &FitSettings) -> Vec<Option<Promised>> {
         promises(&self.base.model, wanted, &self.recordings(), settings)
             .unwrap_or_else(|| wanted.iter().map(|_| None).collect())
     }
 
-    /// The most promising start of an addition: of those that were `promised` where the promise is borne out, else of all. One that
-    /// promised less than `least` has to be tried everywhere.
+    /// The most promising start of an addition: one of the `promised` starts if its simulation confirms the prediction,
+    /// otherwise the best of all. All starts are tried too if the predicted improvement is less than `least`.
     ///
     /// # Errors
     /// [`AdditionError`].

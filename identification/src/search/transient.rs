@@ -1,7 +1,7 @@
-//! Transient effects, on recordings that they were not fitted to.
+//! Evaluates transient effects on recordings that they were not fitted to.
 //!
-//! A contact at 21 s of one recording says nothing about another. A model with a transient effect is judged with the active window
-//! that the other recording shows itself.
+//! A contact at 21 s of one recording is not evidence about another. A model with a transient effect is judged with an
+//! active window that is found in the other recording itself.
 
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelEffect};
@@ -9,8 +9,8 @@ use excavator_model::{Model, ModelEffect};
 use super::addition::{Addition, AdditionError, best_start};
 use crate::fit::{Fit, FitError, FitSettings, evaluate, fit, fit_predicted};
 
-/// `model` on `recordings`, nothing fitted but the windows of its effects. Where these are says `known`, the model of an
-/// evaluation on the same recordings; the window of a last effect that it does not have is looked for.
+/// Evaluates `model` on `recordings`, with only the windows of its effects fitted. Start values come from `known`, the
+/// model of an evaluation on the same recordings. The window of a last effect that `known` lacks is searched.
 ///
 /// # Errors
 /// [`AdditionError`].
@@ -31,7 +31,7 @@ pub(super) fn evaluate_on_others(
     Ok(fit_predicted(&start.model, start.promise, recordings, settings)?)
 }
 
-/// The same for a model whose effects with windows are all in `known`.
+/// The same for a model whose transient effects are all in `known`.
 ///
 /// # Errors
 /// [`FitError`].
@@ -45,7 +45,7 @@ pub(super) fn evaluate_in_windows_of(
     if any_transient { fit(&model, recordings, settings) } else { evaluate(&model, recordings, settings) }
 }
 
-/// `model` with the windows of `known`, nothing but these effects free; and whether there are any.
+/// `model` with the windows of `known` and only these effects free, and whether there are any.
 fn in_windows_of(model: &Model, known: &Model) -> (Model, bool) {
     let mut in_windows = model.clone();
     in_windows.parameters_mut().for_each(|parameter| parameter.known = true);
@@ -62,7 +62,7 @@ fn in_windows_of(model: &Model, known: &Model) -> (Model, bool) {
     (in_windows, any)
 }
 
-/// Whether the effect acts in a window that was looked for.
+/// Whether the effect acts in a window that was searched.
 pub(super) fn is_transient(effect: &ModelEffect) -> bool {
     effect.parameters.iter().any(|parameter| parameter.card.start.is_a_time() && !parameter.known)
 }

@@ -13,7 +13,7 @@ use crate::fit::{Fit, FitSettings};
 /// validation recordings.
 #[derive(Debug, Clone)]
 pub struct Trial {
-    /// What the given model has not, in the order in which it was selected.
+    /// Effects that the given model lacks, in the order in which they were selected.
     pub additions: Vec<Addition>,
     /// Fitted to the identification recordings.
     pub fit: Fit,
@@ -24,10 +24,11 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// This trial with one more addition, whose fit began at `begin` and ended in `fit`, evaluated on the validation recordings.
+    /// This trial with one more addition, whose fit `fit` began at time `begin`, evaluated on the validation
+    /// recordings.
     ///
     /// # Errors
-    /// [`AdditionError`] when it cannot be evaluated.
+    /// [`AdditionError`] if it cannot be evaluated.
     pub(super) fn extended(
         &self,
         addition: Addition,
@@ -52,18 +53,18 @@ impl Trial {
         self.additions.contains(addition)
     }
 
-    /// The effect of the fitted model that `addition` is.
+    /// The effect of the fitted model for `addition`.
     pub fn effect(&self, addition: &Addition) -> Option<&ModelEffect> {
         self.fit.model.effect(&addition.physics.card().name, addition.site)
     }
 
-    /// Number of free parameters that its additions bring.
+    /// Number of free parameters of its additions.
     pub fn added_parameters(&self) -> usize {
         let effects = self.additions.iter().filter_map(|addition| self.effect(addition));
         effects.flat_map(|effect| &effect.parameters).filter(|parameter| !parameter.known).count()
     }
 
-    /// The fitted model without one of its additions, nothing fitted again.
+    /// The fitted model without one of its additions, not refitted.
     pub fn model_without(&self, addition: &Addition) -> Model {
         let mut model = self.fit.model.clone();
         model.effects.retain(|effect| !effect.is(&addition.physics.card().name, addition.site));

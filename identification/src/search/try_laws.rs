@@ -1,4 +1,4 @@
-//! Laws that somebody proposes, tried like the effects of a catalogue.
+//! Tries proposed laws like the effects of a catalogue.
 
 use super::pool::Pool;
 use super::progress::Milestones;
@@ -6,8 +6,8 @@ use super::stepwise::Stepwise;
 use super::{Addition, Effort};
 use crate::decision::Policy;
 
-/// Tries `laws` as additions to trial `number` of the pool: a few steps of each, then the best to the end. What they lead to joins the
-/// pool, under the rules by which effects of a catalogue do.
+/// Tries `laws` as additions to trial `number` of the pool: a few steps of each, then full fits of the best. The
+/// results join the pool under the same rules as effects of a catalogue.
 pub(crate) fn try_laws(
     pool: &mut Pool<'_>,
     number: usize,
@@ -17,7 +17,7 @@ pub(crate) fn try_laws(
     progress: &(dyn Fn(&str, f64) + Sync),
 ) {
     let milestones = Milestones::new(progress);
-    // What is said about the catalogue stays.
+    // The results for the catalogue are kept.
     let (unpromising, failed) = (std::mem::take(&mut pool.unpromising), std::mem::take(&mut pool.failed));
     Stepwise { effort, policy, milestones: &milestones }.screen(number, laws, pool);
     (pool.unpromising, pool.failed) = (unpromising, failed);

@@ -1,4 +1,4 @@
-//! The stretch of time in which the equation of motion fails most, whatever the motion.
+//! Finds the stretch of time in which the equation of motion fails most, whatever the motion.
 
 use excavator_model::Model;
 use excavator_model::effects::Site;
@@ -13,11 +13,11 @@ pub(super) struct Stretch {
     pub duration: f64,
 }
 
-/// Shortest stretch that counts, s: shorter than a push by hand, longer than a shock.
+/// Shortest stretch, s: shorter than a push by hand, longer than a shock.
 const SHORTEST: f64 = 0.2;
 
-/// The stretches, at most `count`, none inside another, in which a constant force explains most of the residual of
-/// motion that `model` leaves; best first. Scan statistic: squared sum of residuals over their number.
+/// At most `count` stretches, none inside another, in which a constant force explains most of the motion residual of
+/// `model`, best first. Scan statistic: squared sum of residuals over their number.
 pub(super) fn worst_stretches(model: &Model, site: Site, recordings: &[&Recording], count: usize) -> Vec<Stretch> {
     let Site::Cylinder(cylinder) = site else { return Vec::new() };
     let settings = WeakFormSettings { velocity_guard: 0.0, ..WeakFormSettings::default() };

@@ -1,9 +1,10 @@
-//! Parts of one recording put together again.
+//! Joins parts of one recording.
 
 use excavator_model::recording::{CylinderSignals, Recording};
 
-/// Parts of a recording, in the order of their starts, as one recording with gaps in its clock. Signals of a cylinder that a part lacks are
-/// `NaN` there. Samples that are not after those of the part before are left out.
+/// Joins parts of a recording, in the order of their starts, into one recording with gaps in its sample times. Signals
+/// of a cylinder that a part lacks are `NaN` there. Samples that are not later than those of the previous part are left
+/// out.
 pub fn joined(source: &str, parts: &[Recording]) -> Recording {
     let Some(first) = parts.first() else { return Recording { source: source.to_string(), ..Recording::default() } };
     let mut names: Vec<&str> = Vec::new();

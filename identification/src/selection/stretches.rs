@@ -1,4 +1,4 @@
-//! Stretches chosen one after the other, as a recording goes by.
+//! Selects stretches one after the other while a recording is read.
 
 use excavator_model::Model;
 use excavator_model::recording::Recording;
@@ -8,13 +8,14 @@ use rayon::prelude::*;
 use super::joined;
 use crate::regression::{Gauge, RegressionError};
 
-/// How much of a recording is kept, on a machine of the reference size.
+/// Limits for the kept part of a recording, on a machine of the reference size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelectionSettings {
     /// Length of a stretch, s: two shooting segments of a fit.
     pub stretch: f64,
-    /// Most stretches that are kept. Twelve are a minute and a half, which a fit takes a few seconds for. Of eight minutes of which a fifth
-    /// moves far they leave the interval of the damping 1.6 to 3.2 times as wide as all of it would.
+    /// Largest number of kept stretches. Twelve are a minute and a half, which a fit processes in a few seconds. For
+    /// eight minutes of which a fifth moves far, the interval of the damping is 1.6 to 3.2 times as wide as with the
+    /// whole recording.
     pub most: usize,
 }
 
@@ -24,7 +25,7 @@ impl Default for SelectionSettings {
     }
 }
 
-/// A choice that goes on as blocks of the recording are offered.
+/// A running selection, updated with each block of the recording.
 pub struct Selection<'m> {
     model: &'m Model,
     settings: SelectionSettings,
@@ -33,9 +34,9 @@ pub struct Selection<'m> {
     /// Information of all stretches so far.
     all: DMatrix<f64>,
     offered: usize,
-    /// Stamp of the first sample, ns.
+    /// Timestamp of the first sample, ns.
     start: Option<i64>,
-    /// Time that was offered, s.
+    /// Duration of all offered blocks, s.
     duration: f64,
 }
 
@@ -44,33 +45,34 @@ struct Stretch {
     information: DMatrix<f64>,
 }
 
-/// What was chosen.
+/// The selected stretches.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Chosen {
-    /// The stretches as one recording with gaps in its clock.
+    /// The stretches as one recording with gaps in its sample times.
     pub recording: Recording,
-    /// When each begins, s after the first sample that was offered.
+    /// Start of each stretch, s after the first offered sample.
     pub starts: Vec<f64>,
     /// Length of a stretch, s.
     pub stretch: f64,
-    /// Length of what was offered, s.
+    /// Duration of all offered blocks, s.
     pub duration: f64,
-    /// By how much wider the intervals of the parameters would be, on the geometric mean, with as many stretches at random.
+    /// Factor by which the intervals of the parameters, as a geometric mean, would be wider with as many random
+    /// stretches.
     pub gain: f64,
 }
 
 impl<'m> Selection<'m> {
-    /// For fits of `model`.
+    /// A selection for fits of `model`.
     pub fn new(model: &'m Model, settings: SelectionSettings) -> Self {
         let (gauge, kept, all) = (None, Vec::new(), DMatrix::zeros(0, 0));
         Selection { model, settings, gauge, kept, all, offered: 0, start: None, duration: 0.0 }
     }
 
-    /// Takes the next block of the recording.
+    /// Processes the next block of the recording.
     ///
     /// # Errors
-    /// [`RegressionError`] when it lacks a cylinder of the model, or all of its stretches lack inputs.
+    /// [`RegressionError`] if it lacks a cylinder of the model, or all of its stretches lack inputs.
     pub fn offer(&mut self, block: &Recording) -> Result<(), RegressionError> {
         self.start.get_or_insert(block.start_nanoseconds);
         self.duration += block.recorded_time();
@@ -99,7 +101,7 @@ impl<'m> Selection<'m> {
                 Err(error) => failure = Some(error),
             }
         }
-        // A hole in the inputs costs its stretch; inputs that are never there are an error.
+        // A hole in the inputs only loses its stretch. Inputs that are always missing are an error.
         failure.filter(|_| taken == 0).map_or(Ok(()), Err)
     }
 
@@ -107,7 +109,7 @@ impl<'m> Selection<'m> {
         self.settings.stretch * self.model.machine.size().time()
     }
 
-    /// Keeps a stretch, and drops the one without which most is left where there are too many.
+    /// Adds a stretch. If there are too many, drops the one whose removal leaves the most information.
     fn consider(&mut self, stretch: Stretch) {
         self.all += &stretch.information;
         self.offered += 1;
@@ -127,7 +129,7 @@ impl<'m> Selection<'m> {
         self.kept.iter().fold(DMatrix::zeros(self.all.nrows(), self.all.ncols()), |sum, kept| sum + &kept.information)
     }
 
-    /// What was chosen, under the name `source`.
+    /// Returns the selected stretches, with `source` as the name of the recording.
     pub fn finish(self, source: &str) -> Chosen {
         let parameters = self.all.nrows().max(1) as f64;
         let share = self.kept.len() as f64 / self.offered.max(1) as f64;
@@ -146,7 +148,7 @@ impl<'m> Selection<'m> {
     }
 }
 
-/// Begin and end of each stretch of about this length, s: none goes across a gap between pieces.
+/// Start and end of each stretch of about this length, s. None crosses a gap between pieces.
 fn stretches(block: &Recording, length: f64) -> Vec<[f64; 2]> {
     let mut stretches = Vec::new();
     for piece in block.pieces().into_iter().filter(|piece| piece.len() >= FEWEST_SAMPLES) {
@@ -158,16 +160,16 @@ fn stretches(block: &Recording, length: f64) -> Vec<[f64; 2]> {
     stretches
 }
 
-/// Fewer samples have no window of the weak form.
+/// Fewer samples contain no window of the weak form.
 const FEWEST_SAMPLES: usize = 8;
 
-/// Logarithm of the determinant of what is known with this information (in units of the parameters' sizes) besides that a parameter is of
-/// its size; without it a parameter that no stretch shows would make all stretches alike.
+/// Logarithm of the determinant of this information (in units of the parameters' sizes) plus a prior of one size for
+/// each parameter. Without the prior a parameter that no stretch shows would make all stretches equal.
 fn log_determinant(mut information: DMatrix<f64>) -> f64 {
     for number in 0..information.nrows() {
         information[(number, number)] += 1.0;
     }
-    // Differences of sums may fall below zero by rounding: then nothing is known.
+    // Rounding can make differences of sums negative. They then count as no information.
     information
         .cholesky()
         .map_or(f64::NEG_INFINITY, |factor| 2.0 * factor.l().diagonal().iter().map(|root| root.ln()).sum::<f64>())
@@ -180,7 +182,7 @@ mod tests {
     use excavator_model::document::built_in;
     use excavator_model::simulation::{Tolerances, simulate_from_rest};
 
-    /// `seconds` of the arm at 250 Hz: at rest but for one fast stretch and one slow one.
+    /// `seconds` of the arm at 250 Hz, at rest except for one fast stretch and one slow one.
     fn mostly_at_rest(model: &Model, seconds: u32) -> Recording {
         let time: Vec<f64> = (0..seconds * 250).map(|index| f64::from(index) * 4e-3).collect();
         let mut recording = Recording::unmeasured("day", time, &["arm"]);
@@ -193,7 +195,7 @@ mod tests {
         };
         recording.cylinders[0].orifice_area = recording.time.iter().map(area).collect();
         let mut run = simulate_from_rest(model, &recording, &[0.0], Tolerances::default()).unwrap();
-        // Two steps of a converter, one after the other, are noise enough.
+        // Two alternating steps of a converter are sufficient noise.
         let add = |column: &mut Vec<f64>, size: f64| {
             column
                 .iter_mut()
@@ -218,12 +220,12 @@ mod tests {
             assert!(selection.kept.len() <= 2);
         }
         let chosen = selection.finish("day");
-        // It sinks slowly at first, which tells of leaks; then the fast stretch.
+        // The arm first sinks slowly, which shows leaks. The fast stretch follows.
         assert_eq!(chosen.starts, [0.0, 40.0]);
         assert!((chosen.duration - 160.0).abs() < 0.1 && chosen.gain > 1.5, "{} {}", chosen.duration, chosen.gain);
         let parts = chosen.recording.pieces();
         assert_eq!(parts.len(), 2);
-        // Samples are those of the recording, at their times.
+        // Samples and their times are those of the recording.
         let first = recording.time.partition_point(|time| *time < 40.0);
         let own = chosen.recording.cylinders[0].cap_pressure[parts[1].start + 7];
         assert_eq!(own, recording.cylinders[0].cap_pressure[first + 7]);

@@ -1,4 +1,4 @@
-//! A linear model without physics: what the simplest identification of the same recording reaches.
+//! A linear model without physics, as a baseline: the simplest identification of the same recording.
 //!
 //! Ljung, *System Identification*, 2nd ed., Section 4.2: `y(t) = a1 y(t-1) + ... + b11 u1(t-1) + ... + c`, by least squares, then
 //! simulated from its first measured outputs with the inputs alone.
@@ -7,13 +7,13 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-/// Orders that are tried: the fourth has two resonances, an arm with its pump line.
+/// Orders that are tried. The fourth has two resonances, as an arm with its pump line.
 const ORDERS: [usize; 4] = [1, 2, 3, 4];
-/// Weight on the size of the scaled coefficients: keeps columns that are all but the same from cancelling each other.
+/// Weight on the magnitude of the scaled coefficients. It keeps nearly equal columns from cancelling each other.
 const RIDGE: f64 = 1e-9;
 
-/// Outputs of the ARX model that comes nearest to `output` when it is simulated with `inputs`, all of the same length, piece by
-/// piece. `None` where no model of these orders can be determined.
+/// Outputs of the ARX model that fits `output` best when it is simulated with `inputs`, piece by piece. All signals
+/// have the same length. Returns `None` if no model of these orders can be determined.
 pub(super) fn simulated_arx(output: &[f64], inputs: &[Vec<f64>], pieces: &[Range<usize>]) -> Option<Vec<f64>> {
     let (offset, scale) = offset_and_scale(output)?;
     let scaled = |values: &[f64], offset: f64, scale: f64| -> Vec<f64> {
@@ -43,7 +43,8 @@ fn offset_and_scale(values: &[f64]) -> Option<(f64, f64)> {
 
 struct Arx {
     order: usize,
-    /// Of the outputs before, latest first; of each input before, latest first; the constant.
+    /// Coefficients of previous outputs, latest first, then of previous values of each input, latest first, then the
+    /// constant.
     coefficients: DVector<f64>,
 }
 
@@ -69,7 +70,7 @@ impl Arx {
         Some(Arx { order, coefficients })
     }
 
-    /// Simulated from the first measured outputs of each piece.
+    /// Simulates from the first measured outputs of each piece.
     fn simulated(&self, output: &[f64], inputs: &[Vec<f64>], pieces: &[Range<usize>]) -> Vec<f64> {
         let mut simulated = output.to_vec();
         for piece in pieces {

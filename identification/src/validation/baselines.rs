@@ -1,4 +1,4 @@
-//! How good is good: what noise, habit and a model without physics reach on the same signals.
+//! Baselines for errors: those of sensor noise, of a held value and of a model without physics on the same signals.
 
 use excavator_model::Model;
 use excavator_model::recording::{Recording, noise_level, standard_deviation};
@@ -9,20 +9,21 @@ use super::{Comparison, normalised_mean_squared_error};
 
 /// Time over which a signal is held for [`Baseline::held`], on a machine of the reference size, s.
 const HELD: f64 = 1.0;
-/// Time between the samples of the ARX models, on a machine of the reference size, s: a tenth of an arm's fastest swing is 10 ms.
+/// Sample interval of the ARX models, on a machine of the reference size, s. A tenth of an arm's fastest swing is 10
+/// ms.
 const ARX_INTERVAL: f64 = 0.02;
 
-/// Rounding of times, s.
+/// Tolerance for the rounding of times, s.
 const ROUNDING: f64 = 1e-7;
 
-/// Normalised mean squared errors to compare a model's with, for one signal. `NaN` where there is none.
+/// Normalised mean squared errors that a model's error is compared with, for one signal. `NaN` if there is none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Baseline {
-    /// That of sensor noise alone: no model comes below it for long. `NaN` for a velocity that is derived.
+    /// Error of sensor noise alone, a lower bound for any model in the long run. `NaN` for a derived velocity.
     pub noise: f64,
-    /// That of the value so long before ([`Baselines::held`]).
+    /// Error of the value from [`Baselines::held`] seconds before.
     pub held: f64,
-    /// That of a linear ARX model, simulated, which was fitted to this same recording.
+    /// Error of a simulated linear ARX model that was fitted to this same recording.
     pub arx: f64,
 }
 
@@ -37,7 +38,7 @@ pub struct Baselines {
 }
 
 impl Baselines {
-    /// Of the signals of `comparison`, measured as in `recording`.
+    /// The baselines for the signals of `comparison`, as measured in `recording`.
     pub fn of(model: &Model, recording: &Recording, comparison: &Comparison) -> Baselines {
         let unit = model.machine.size().time();
         let held = HELD * unit;
@@ -60,7 +61,7 @@ impl Baselines {
         Baselines { signals, held }
     }
 
-    /// Mean over the signals for which there is one; `NaN` without.
+    /// Mean over the signals that have this baseline; `NaN` if none has.
     pub fn mean(&self, of: impl Fn(&Baseline) -> f64) -> f64 {
         let known: Vec<f64> = self.signals.iter().map(of).filter(|value| value.is_finite()).collect();
         known.iter().sum::<f64>() / known.len() as f64
@@ -87,7 +88,7 @@ fn held_error(time: &[f64], signal: &[f64], held: f64) -> f64 {
     normalised_mean_squared_error(signal, &past)
 }
 
-/// Inputs at every so many samples, in pieces without a gap.
+/// Thinned inputs, in pieces without a gap.
 struct Thinned {
     kept: Vec<usize>,
     pieces: Vec<std::ops::Range<usize>>,
@@ -119,7 +120,7 @@ impl Thinned {
     }
 
     fn arx_error(&self, measured: &[f64]) -> f64 {
-        // Slopes have holes at the ends of the recording: the nearest value stands in.
+        // Slopes have holes at the ends of the recording. The nearest value replaces them.
         let mut own: Vec<f64> =
             self.kept.iter().map(|&index| measured.get(index).copied().unwrap_or(f64::NAN)).collect();
         fill_ends(&mut own);
@@ -175,7 +176,7 @@ mod tests {
     fn a_held_value_is_the_one_so_long_before() {
         let time: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.01).collect();
         let signal: Vec<f64> = time.iter().map(|t| (std::f64::consts::TAU * t).sin()).collect();
-        // A period of one second comes back as it was, half of one upside down.
+        // After one second the signal has the same value, after half a second the opposite sign.
         assert!(held_error(&time, &signal, 1.0) < 1e-9);
         assert!((held_error(&time, &signal, 0.5) - 4.0).abs() < 0.1);
     }

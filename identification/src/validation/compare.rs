@@ -1,4 +1,4 @@
-//! Simulate with a recording's input from its initial state, and compare every output.
+//! Simulates a model with the input of a recording from its initial state, and compares every output.
 
 use excavator_model::Model;
 use excavator_model::machine::Machine;
@@ -14,15 +14,15 @@ use crate::regression::observe;
 /// A measurement and its simulation.
 #[derive(Debug, Clone)]
 pub struct Comparison {
-    /// What was measured; velocities that were not measured are derived from displacement.
+    /// The measured signals. Velocities that were not measured are derived from displacement.
     pub measured: Recording,
-    /// What the model does with the same input.
+    /// The simulation with the same input.
     pub simulated: Recording,
     /// One entry per signal that both have.
     pub signals: Vec<SignalComparison>,
-    /// Frequency of the excitation, Hz, where one stands out.
+    /// Dominant frequency of the excitation, Hz, if there is one.
     pub excitation_frequency: Option<f64>,
-    /// The machine, which says in which units its signals are.
+    /// The machine, which determines the units of its signals.
     pub machine: Machine,
 }
 
@@ -37,13 +37,13 @@ pub struct SignalComparison {
     pub fit: f64,
     /// Lag of the model behind the measurement at the excitation frequency, degrees.
     pub phase_delay_degrees: Option<f64>,
-    /// What the error has of its own past; none of it where only noise is left.
+    /// Correlation of the error with its own past. It is not significant if only noise is left.
     pub autocorrelation: Option<Correlation>,
-    /// What the error has of the machine's input: the valve opening of its cylinder (for the pump pressure the sum of all),
-    /// the velocity of an imposed motion, or the force on the load.
+    /// Correlation of the error with the machine's input: the valve opening of its cylinder (for the pump pressure the
+    /// sum of all), the velocity of an imposed motion, or the force on the load.
     pub input_correlation: Option<Correlation>,
-    /// How the squared error spreads over what the piston of its cylinder does; for the pump line, over what all do: moving where one
-    /// moves, at an end only where no other is elsewhere.
+    /// Distribution of the squared error over the motion phases of its cylinder's piston. For the pump line all pistons
+    /// count: it is moving if one moves, and at an end only if no piston is elsewhere.
     pub phases: Vec<PhaseShare>,
 }
 
@@ -54,10 +54,10 @@ impl Comparison {
     }
 }
 
-/// Piston velocity of a cylinder, m/s: as measured, else the slope of the displacement.
+/// Piston velocity of each cylinder, m/s: the measured one, or the slope of the displacement.
 ///
 /// # Errors
-/// [`RunError::Signal`] when inputs of the model are missing.
+/// [`RunError::Signal`] if inputs of the model are missing.
 pub fn measured_velocity(model: &Model, recording: &Recording) -> Result<Vec<Vec<f64>>, RunError> {
     Ok(observe(model, recording)?.cylinders.into_iter().map(|cylinder| cylinder.velocity).collect())
 }
@@ -88,15 +88,15 @@ pub fn measured_velocity(model: &Model, recording: &Recording) -> Result<Vec<Vec
 /// ```
 ///
 /// # Errors
-/// [`RunError`] when the recording lacks inputs or the simulation fails.
+/// [`RunError`] if the recording lacks inputs or the simulation fails.
 pub fn compare(model: &Model, recording: &Recording) -> Result<Comparison, RunError> {
     beside(model, recording, simulate(model, recording)?)
 }
 
-/// A recording beside other signals on its clock.
+/// Compares a recording with other signals at the same sample times.
 ///
 /// # Errors
-/// [`RunError`] when the recording lacks inputs.
+/// [`RunError`] if the recording lacks inputs.
 pub(super) fn beside(model: &Model, recording: &Recording, simulated: Recording) -> Result<Comparison, RunError> {
     let mut measured = recording.clone();
     for (cylinder, velocity) in model.machine.cylinders.iter().zip(measured_velocity(model, recording)?) {
@@ -105,7 +105,7 @@ pub(super) fn beside(model: &Model, recording: &Recording, simulated: Recording)
         }
     }
     let inputs = InputSignals::from_recording(model, recording)?;
-    // Lags and frequencies are those of a machine of the reference size.
+    // The constants for lags and frequencies are for a machine of the reference size.
     let unit = model.machine.size().time();
     let time: Vec<f64> = recording.time.iter().map(|time| time / unit).collect();
     let frequency = |signal: &[f64]| Some(dominant_frequency(&time, signal)? / unit);
@@ -129,7 +129,7 @@ pub(super) fn beside(model: &Model, recording: &Recording, simulated: Recording)
     let together: Vec<MotionPhase> = (0..measured.len())
         .filter_map(|sample| own_phases.iter().filter_map(|phases| phases.get(sample)).min().copied())
         .collect();
-    // Each output with the number of the cylinder whose input drives it; the pump line has none of its own.
+    // Each output with the number of the cylinder whose input drives it; the pump line has no input of its own.
     let mut names = Vec::new();
     for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
         if cylinder.imposed_motion.is_some() {
@@ -180,7 +180,7 @@ pub fn mean_error(model: &Model, recordings: &[&Recording]) -> Result<f64, RunEr
     Ok(errors.iter().sum::<f64>() / errors.len() as f64)
 }
 
-/// What drives a cylinder, or all of them.
+/// The input of a cylinder, or the sum over all.
 fn driving_input(model: &Model, inputs: &InputSignals, measured: &Recording, cylinder: Option<usize>) -> Vec<f64> {
     match cylinder {
         Some(number) if model.machine.cylinders[number].chambers.is_some() => inputs.orifice_area(number).to_vec(),

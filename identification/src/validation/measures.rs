@@ -1,7 +1,7 @@
 //! Measures of fit (\[A\] Section 4.2, \[B\] Table I).
 
-/// Normalised mean squared error `sum (y - yhat)² / sum (y - mean y)²` over samples where both are finite; `NaN` when
-/// nothing can be compared or the measurement never changes.
+/// Normalised mean squared error `sum (y - yhat)² / sum (y - mean y)²` over samples where both are finite. Returns
+/// `NaN` if nothing can be compared or the measurement never changes.
 pub fn normalised_mean_squared_error(measured: &[f64], simulated: &[f64]) -> f64 {
     let pairs = || measured.iter().zip(simulated).filter(|(m, s)| m.is_finite() && s.is_finite());
     let count = pairs().count() as f64;

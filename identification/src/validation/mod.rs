@@ -1,4 +1,4 @@
-//! How far a model is from a measurement.
+//! Measures the error of a model against a measurement.
 
 mod arx;
 mod baselines;

@@ -1,10 +1,10 @@
-//! What a piston is doing: a model can be right while it moves and wrong at a stop.
+//! Motion phases of a piston. A model can be right while the piston moves and wrong at a stop.
 
 use std::fmt;
 
 use excavator_model::machine::Cylinder;
 
-/// What a piston is doing at one moment.
+/// Motion phase of a piston at one time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MotionPhase {
     /// It moves.
@@ -16,7 +16,7 @@ pub enum MotionPhase {
 }
 
 impl MotionPhase {
-    /// All of them.
+    /// All phases.
     pub const ALL: [MotionPhase; 3] = [MotionPhase::Moving, MotionPhase::Standing, MotionPhase::AtAnEnd];
 }
 
@@ -41,14 +41,14 @@ pub struct PhaseShare {
     pub of_error: f64,
 }
 
-/// Share of its largest speed below which a piston stands.
+/// Share of its largest speed below which a piston counts as standing.
 const STANDING: f64 = 0.05;
 
 /// Share of the stroke within which a piston is at its end.
 const AT_AN_END: f64 = 0.02;
 
-/// What the piston of this cylinder does, sample by sample, from its displacement (m) and velocity (m/s). What was not
-/// measured is taken for moving.
+/// Motion phase of this cylinder's piston at each sample, from its displacement (m) and velocity (m/s). Samples that
+/// were not measured count as moving.
 pub fn motion_phases(displacement: &[f64], velocity: &[f64], cylinder: &Cylinder) -> Vec<MotionPhase> {
     let fastest = velocity.iter().filter(|speed| speed.is_finite()).fold(0.0_f64, |most, speed| most.max(speed.abs()));
     let phase = |(position, speed): (&f64, &f64)| {
@@ -63,7 +63,7 @@ pub fn motion_phases(displacement: &[f64], velocity: &[f64], cylinder: &Cylinder
     displacement.iter().zip(velocity).map(phase).collect()
 }
 
-/// How an error spreads over the phases, in their order; those that take no time are left out.
+/// Distribution of an error over the phases, in their order. Phases without a sample are left out.
 pub fn phase_shares(phases: &[MotionPhase], error: &[f64]) -> Vec<PhaseShare> {
     let of = |wanted: Option<MotionPhase>| {
         let chosen = phases.iter().zip(error).filter(|(phase, _)| wanted.is_none_or(|wanted| wanted == **phase));

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use excavator_model::recording::closed_gaps;
 
-/// Frequencies searched for the excitation, Hz: an arm is moved between once in ten seconds and ten times a second.
-/// Below that, what is strongest is drift.
+/// Frequency range of the search for the excitation, Hz: an arm is moved between once in five seconds and ten times a
+/// second. Below that, drift dominates.
 const FREQUENCY_RANGE: (f64, f64) = (0.2, 10.0);
 
 /// Complex amplitude (cosine, sine part) of a signal at `frequency` Hz under a Hann window, mean removed.
@@ -28,10 +28,10 @@ fn amplitude(time: &[f64], signal: &[f64], frequency: f64) -> (f64, f64) {
     })
 }
 
-/// Frequency in Hz at which `signal` is strongest between 0.2 Hz and 10 Hz; `None` for less than a period of the
-/// slowest or a signal that does not change.
+/// Frequency in Hz at which `signal` is strongest between 0.2 Hz and 10 Hz. Returns `None` for less than one period of
+/// the slowest frequency, or for a signal that does not change.
 pub fn dominant_frequency(time: &[f64], signal: &[f64]) -> Option<f64> {
-    // The grid of frequencies is as fine as the recording is long, but not as a gap in its clock.
+    // The resolution of the frequency grid follows from the duration of the recording without time gaps.
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len().checked_sub(1)? / 2;
     let interval = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
@@ -40,7 +40,7 @@ pub fn dominant_frequency(time: &[f64], signal: &[f64]) -> Option<f64> {
     if duration * FREQUENCY_RANGE.0 < 1.0 {
         return None;
     }
-    // Fifty samples a second carry everything up to 10 Hz.
+    // Fifty samples per second are sufficient up to 10 Hz.
     let stride = ((time.len() as f64 / duration / 50.0) as usize).max(1);
     let thin = |values: &[f64]| values.iter().copied().step_by(stride).collect::<Vec<f64>>();
     let (time, signal) = (thin(time), thin(signal));
@@ -53,14 +53,14 @@ pub fn dominant_frequency(time: &[f64], signal: &[f64]) -> Option<f64> {
             (real * real + imaginary * imaginary, frequency)
         })
         .collect();
-    // Only a peak counts: the strongest at the edge of the range is the foot of drift outside it.
+    // Only a peak inside the range counts. A maximum at the edge of the range belongs to drift outside it.
     let peaks = powers.windows(3).filter(|three| three[1].0 > three[0].0 && three[1].0 >= three[2].0);
     let strongest = peaks.map(|three| three[1]).max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(strongest.1)
 }
 
-/// By how many degrees the simulated signal lags behind the measured one at `frequency` Hz, between -180 and 180;
-/// `None` where either has no component there.
+/// Lag of the simulated signal behind the measured one at `frequency` Hz, in degrees between -180 and 180. Returns
+/// `None` if either has no component there.
 pub fn phase_delay_degrees(time: &[f64], measured: &[f64], simulated: &[f64], frequency: f64) -> Option<f64> {
     let measured = amplitude(time, measured, frequency);
     let simulated = amplitude(time, simulated, frequency);

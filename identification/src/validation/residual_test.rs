@@ -1,39 +1,40 @@
-//! Is there anything left in the error of a model that its own past or the machine's input would have told?
+//! Tests whether the error of a model is correlated with its own past or with the machine's input.
 //!
-//! The error of a model that lacks nothing is sensor noise: white, and with nothing of the input in it. These are the two
-//! classical tests of residuals (Ljung, *System Identification*, Section 16.6), with the bound of the second for errors
-//! that are not white.
+//! The error of a complete model is sensor noise: white, and not correlated with the input. These are the two classical
+//! tests of residuals (Ljung, *System Identification*, Section 16.6). The bound of the second holds for coloured
+//! errors.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// A correlation, where it is largest over all lags looked at.
+/// A correlation at the lag where it is largest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Correlation {
     /// Correlation coefficient, -1 to 1.
     pub value: f64,
-    /// By how much the error comes after what it is correlated with, s.
+    /// Delay of the error after the signal that it is correlated with, s.
     pub lag: f64,
-    /// Size that chance alone exceeds at any lag in one of a hundred recordings.
+    /// Magnitude that chance alone exceeds at any lag in one of a hundred recordings.
     pub bound: f64,
 }
 
 impl Correlation {
-    /// Whether chance alone does not explain it.
+    /// Whether it is larger than chance explains.
     pub fn is_significant(&self) -> bool {
         self.value.abs() > self.bound
     }
 }
 
-/// Longest lag, s: an arm has forgotten its input after that but for drift.
+/// Longest lag, s. After it an arm no longer depends on its input, except for drift.
 const LONGEST_LAG: f64 = 2.0;
-/// Errors are averaged over so much time, s, before: nothing in a machine's error is faster, and noise is smaller.
+/// Errors are first averaged over this time, s. Nothing in a machine's error is faster, and averaging reduces noise.
 const BIN: f64 = 0.02;
-/// Chance that a recording of noise is called correlated at some lag.
+/// Probability that a recording of noise is called correlated at some lag.
 const FALSE_ALARMS: f64 = 0.01;
-/// Fewest bins; below that nothing can be said.
+/// Smallest number of bins for a test.
 const FEWEST: usize = 100;
 
-/// Correlation of an error with its own past; lags from one bin on. `None` for recordings too short, or no error.
+/// Correlation of an error with its own past; lags from one bin on. Returns `None` if the recording is too short, or if
+/// there is no error.
 pub fn autocorrelation(time: &[f64], error: &[f64]) -> Option<Correlation> {
     let binned = centred(&binned(time, error))?;
     let lags = longest(binned.len());
@@ -42,13 +43,13 @@ pub fn autocorrelation(time: &[f64], error: &[f64]) -> Option<Correlation> {
     largest(&own[1..], 1, bound)
 }
 
-/// Correlation of an error with an input that came at the same time or before. `None` for recordings too short, no error,
-/// or an input that does not change.
+/// Correlation of an error with the input at the same time or before. Returns `None` if the recording is too short, if
+/// there is no error, or if the input does not change.
 pub fn input_correlation(time: &[f64], error: &[f64], input: &[f64]) -> Option<Correlation> {
     let (error, input) = (centred(&binned(time, error))?, centred(&binned(time, input))?);
     let lags = longest(error.len());
     // Bartlett: the variance of a correlation between two independent signals is the sum of the products of their own
-    // correlations over their length; errors that are not white correlate with anything by chance.
+    // correlations over their length; errors that are not white correlate with any signal by chance.
     let (own, of_input) = (correlations(&error, &error, lags), correlations(&input, &input, lags));
     let products: f64 = own.iter().zip(&of_input).skip(1).map(|(a, b)| 2.0 * a * b).sum();
     let bound = deviations(lags) * ((1.0 + products).max(1.0) / error.len() as f64).sqrt();
@@ -59,7 +60,8 @@ fn longest(bins: usize) -> usize {
     ((LONGEST_LAG / BIN) as usize).min(bins / 4)
 }
 
-/// Standard deviations that normal noise exceeds at any of the lags with [`FALSE_ALARMS`] (Bonferroni).
+/// Number of standard deviations that normal noise exceeds at any of the lags with probability [`FALSE_ALARMS`]
+/// (Bonferroni).
 fn deviations(lags: usize) -> f64 {
     Normal::standard().inverse_cdf(1.0 - FALSE_ALARMS / (2.0 * (lags as f64 + 1.0)))
 }
@@ -72,7 +74,7 @@ fn largest(correlations: &[f64], first_lag: usize, bound: f64) -> Option<Correla
 /// Means over bins; `NaN` for a bin without a finite sample.
 fn binned(time: &[f64], signal: &[f64]) -> Vec<f64> {
     let (Some(&start), Some(&end)) = (time.first(), time.last()) else { return Vec::new() };
-    // A clock that is broken has more time than samples.
+    // A faulty clock may span more bins than there are samples.
     let bins = (((end - start) / BIN) as usize + 1).min(time.len());
     let (mut sums, mut counts) = (vec![0.0; bins], vec![0.0; bins]);
     for (t, value) in time.iter().zip(signal).filter(|(_, value)| value.is_finite()) {
@@ -85,7 +87,7 @@ fn binned(time: &[f64], signal: &[f64]) -> Vec<f64> {
     sums.iter().zip(&counts).map(|(sum, count)| sum / count).collect()
 }
 
-/// Divided by its size, without its mean; gaps are zero.
+/// Subtracts the mean and divides by the norm. Gaps are zero.
 fn centred(signal: &[f64]) -> Option<Vec<f64>> {
     let known = || signal.iter().filter(|value| value.is_finite());
     let count = known().count();
@@ -94,7 +96,7 @@ fn centred(signal: &[f64]) -> Option<Vec<f64>> {
     }
     let mean = known().sum::<f64>() / count as f64;
     let size = known().map(|value| (value - mean).powi(2)).sum::<f64>().sqrt();
-    // What varies by rounding only does not vary.
+    // A signal that varies only by rounding counts as constant.
     let varies = size > 1e-12 * (mean.abs() * (count as f64).sqrt()).max(f64::MIN_POSITIVE);
     varies.then(|| signal.iter().map(|value| if value.is_finite() { (value - mean) / size } else { 0.0 }).collect())
 }
@@ -123,7 +125,7 @@ mod tests {
         (0..SAMPLES).map(|_| StandardNormal.sample(&mut random)).collect()
     }
 
-    /// Noise that remembers for 0.2 s.
+    /// Noise with a correlation time of 0.2 s.
     fn slow_noise(seed: u64) -> Vec<f64> {
         let mut level = 0.0;
         let remember = |step| {

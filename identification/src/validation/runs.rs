@@ -1,4 +1,4 @@
-//! Two runs of one machine beside each other: how well it repeats itself is the best that any model can do.
+//! Compares two runs of one machine. Their difference is a lower bound for the error of any model.
 
 use excavator_model::Model;
 use excavator_model::recording::{Recording, linear};
@@ -9,25 +9,25 @@ use super::{Comparison, measured_velocity, normalised_mean_squared_error};
 
 /// Points of the grid on which two runs are aligned: with a run of a minute, one every 15 ms.
 const GRID: usize = 4000;
-/// Least share of the shorter run that both must have.
+/// Smallest overlap, as a share of the shorter run.
 const LEAST_OVERLAP: f64 = 0.5;
 
-/// Difference of commands, normalised, below which they are the same: a hand on a lever, or another clock.
+/// Normalised difference below which commands count as the same. It allows for a hand on a lever, or another clock.
 const SAME_COMMANDS: f64 = 0.05;
 
-/// A run beside another one.
+/// Two runs, aligned and compared.
 #[derive(Debug, Clone)]
 pub struct Repeat {
-    /// The first run as measured, the second one as if it were a simulation.
+    /// The first run as the measurement, the second one as the simulation.
     pub comparison: Comparison,
-    /// Time that was added to the stamps of the second run, s.
+    /// Time that was added to the timestamps of the second run, s.
     pub shift: f64,
     /// Normalised mean squared difference of the commands.
     pub command_error: f64,
 }
 
 impl Repeat {
-    /// Whether the second run had the same commands, so that it shows how well the machine repeats itself.
+    /// Whether both runs had the same commands, so that their difference shows the repeatability of the machine.
     pub fn has_same_commands(&self) -> bool {
         self.command_error < SAME_COMMANDS
     }
@@ -36,7 +36,7 @@ impl Repeat {
 /// Compares two runs, the second one shifted so that the commands agree best.
 ///
 /// # Errors
-/// [`RunError`] when a recording lacks the inputs of the model.
+/// [`RunError`] if a recording lacks the inputs of the model.
 pub fn compare_runs(model: &Model, run: &Recording, again: &Recording) -> Result<Repeat, RunError> {
     let (first, second) = (command(model, run)?, command(model, again)?);
     let shift = alignment(&first, &second);
@@ -53,13 +53,13 @@ pub fn compare_runs(model: &Model, run: &Recording, again: &Recording) -> Result
     Ok(Repeat { comparison: beside(model, run, aligned)?, shift, command_error })
 }
 
-/// Value at a time; `NaN` outside.
+/// Value at a time; `NaN` outside the recording.
 fn inside((time, values): &(Vec<f64>, Vec<f64>), at: f64) -> f64 {
     let range = time.first().copied().unwrap_or(0.0)..=time.last().copied().unwrap_or(0.0);
     if range.contains(&at) { linear(time, values, at) } else { f64::NAN }
 }
 
-/// Time and what drives the first cylinder: its opening, or its displacement where the model has no valve.
+/// Times and the input of the first cylinder: its opening, or its displacement if the model has no chambers.
 fn command(model: &Model, recording: &Recording) -> Result<(Vec<f64>, Vec<f64>), RunError> {
     let values = if model.machine.has_chambers() {
         InputSignals::from_recording(model, recording)?.orifice_area(0).to_vec()
@@ -69,7 +69,8 @@ fn command(model: &Model, recording: &Recording) -> Result<(Vec<f64>, Vec<f64>),
     Ok((recording.time.clone(), values))
 }
 
-/// The shift of the second signal that brings it closest to the first one, s: coarse on a grid, then on one that is ten times finer.
+/// The shift of the second signal that brings it closest to the first one, s. It is searched on a coarse grid, then on
+/// finer ones.
 fn alignment(first: &(Vec<f64>, Vec<f64>), second: &(Vec<f64>, Vec<f64>)) -> f64 {
     let duration = |signal: &(Vec<f64>, Vec<f64>)| signal.0.last().copied().unwrap_or(0.0);
     let shorter = duration(first).min(duration(second));
@@ -84,13 +85,13 @@ fn alignment(first: &(Vec<f64>, Vec<f64>), second: &(Vec<f64>, Vec<f64>)) -> f64
         let distances = candidates.map(|shift| (shift, distance(first, second, shift)));
         distances.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(around, |best| best.0)
     };
-    // Half of the width of the coarse steps on either side, so that the fine grid holds the best of all.
+    // Each finer grid covers one step of the coarser one on either side, so that it contains the best shift.
     let coarse = nearest(0.0, most, 4.0 * step);
     let middle = nearest(coarse, 4.0 * step, step);
     nearest(middle, step, 0.1 * step)
 }
 
-/// Mean squared difference where both runs are; infinite where they hardly meet.
+/// Mean squared difference in the overlap of both runs; infinite if they hardly overlap.
 fn distance(first: &(Vec<f64>, Vec<f64>), second: &(Vec<f64>, Vec<f64>), shift: f64) -> f64 {
     let (time, values) = first;
     let stride = time.len().div_ceil(GRID).max(1);

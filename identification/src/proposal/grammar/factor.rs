@@ -1,4 +1,4 @@
-//! What terms are products of.
+//! Factors that terms are products of.
 
 use super::quantity::{Levels, Quantity};
 use super::unit::{PURE, Unit};
@@ -6,9 +6,9 @@ use super::unit::{PURE, Unit};
 /// A factor of a term.
 #[derive(Debug, PartialEq)]
 pub(in crate::proposal) struct Factor {
-    /// What it is, as a part of a name; empty for the factor one.
+    /// Word for it in a name; empty for the factor one.
     pub word: &'static str,
-    /// As a formula writes it, its shape parameters and states in braces; empty for the factor one.
+    /// Its formula, with shape parameters and states in braces; empty for the factor one.
     pub text: &'static str,
     /// Its unit.
     pub unit: Unit,
@@ -16,8 +16,8 @@ pub(in crate::proposal) struct Factor {
     pub shapes: &'static [Shape],
     /// Its states.
     pub memory: &'static [Memory],
-    /// Whether its text is the whole law with the coefficient `{k}` inside, and nothing where that is zero. The law is no product then, and
-    /// what it adds is only to first order linear in the coefficient.
+    /// Whether its text is a whole law with the coefficient `{k}` inside, which is zero at a coefficient of zero. Such
+    /// a law is not a product. Its contribution is linear in the coefficient only to first order.
     pub is_whole: bool,
 }
 
@@ -26,26 +26,26 @@ pub(in crate::proposal) struct Factor {
 pub(in crate::proposal) struct Memory {
     /// Its name in the factor.
     pub name: &'static str,
-    /// Where it begins, as a formula.
+    /// Initial value, as a formula.
     pub start: &'static str,
-    /// How fast it changes, as a formula.
+    /// Rate of change, as a formula.
     pub rate: &'static str,
     /// Its unit.
     pub unit: &'static str,
 }
 
-/// A parameter in which a factor is not linear.
+/// A parameter in which a factor is nonlinear.
 #[derive(Debug, PartialEq)]
 pub(in crate::proposal) struct Shape {
     /// Its name in the factor.
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// What it is measured by.
+    /// The quantity that scales it.
     pub quantity: Quantity,
-    /// Where a search begins.
+    /// Start values of the search.
     pub levels: Levels,
-    /// Whether it may be below zero.
+    /// Whether it may be negative.
     pub is_signed: bool,
     /// What it is.
     pub meaning: &'static str,
@@ -58,7 +58,7 @@ pub(super) const fn plain(word: &'static str, text: &'static str, unit: Unit) ->
     Factor { word, text, unit, shapes: &[], memory: &[], is_whole: false }
 }
 
-/// A law that is no product; `unit` is that of one over its coefficient, times that of its row.
+/// A law that is not a product. `unit` is the unit of its row divided by that of its coefficient.
 pub(super) const fn whole(word: &'static str, text: &'static str, unit: Unit) -> Factor {
     Factor { is_whole: true, ..plain(word, text, unit) }
 }

@@ -24,7 +24,7 @@ static FROM_CAP: &[Factor] = &[
     plain("laminar", "(p_cap - p_tank)", PRESSURE),
     plain("turbulent", "root(p_cap - p_tank)", ROOT_OF_PRESSURE),
     plain("square", "(p_cap - p_tank)*abs(p_cap - p_tank)", PRESSURE_2),
-    // To the open air.
+    // To ambient air.
     plain("outwards", "p_cap", PRESSURE),
     plain("square_outwards", "p_cap*abs(p_cap)", PRESSURE_2),
     shaped("above", "max(p_cap - p_tank - {p0}, 0)", PRESSURE, &[threshold(Quantity::CapPressure, HIGH)]),
@@ -48,7 +48,7 @@ static FROM_ROD: &[Factor] = &[
     plain("area_along_stroke", "v*s", SPEED_TIMES_LENGTH),
 ];
 
-/// Oil that walls take up when the pressure has risen for a while, and give back.
+/// Flow into the delayed elastic expansion of walls, which take up oil under pressure and give it back.
 static CAP_WALL: Factor =
     remembering("lag", "(p_cap - {z})", PRESSURE, &[LAG], &[memory("p_cap", "(p_cap - {z})/{tau}", "Pa")]);
 static ROD_WALL: Factor =
@@ -59,7 +59,7 @@ static PUMP_WALL: &[Factor] = &[
     remembering("lag", "(p_pump - {z})", PRESSURE, &[LAG], &[memory("p_pump", "(p_pump - {z})/{tau}", "Pa")]),
     remembering("lag_of_speed", "({c}.v - {z})", SPEED, &[LAG], &[memory("{c}.v", "({c}.v - {z})/{tau}", "m/s")]),
     remembering("lag_of_opening", "({c}.u - {z})", AREA, &[LAG], &[memory("{c}.u", "({c}.u - {z})/{tau}", "m2")]),
-    // A drive that answers to acceleration, whatever its direction.
+    // A drive that responds to acceleration in either direction.
     remembering(
         "lag_of_acceleration",
         "{z}",
@@ -80,7 +80,7 @@ static AT_CYLINDER: &[Factor] = &[
     plain("load", "({c}.p_cap - {c}.p_rod)", PRESSURE),
 ];
 
-/// Speed without its sign, which drags oil along.
+/// Absolute speed, which drags oil along.
 static ABS_SPEED: Factor = plain("abs_speed", "abs(v)", SPEED);
 
 /// How a flow out of the pump line depends on its pressure.
@@ -94,7 +94,7 @@ static FROM_PUMP: &[Factor] = &[
     shaped("square_above", "max(p_pump - p_tank - {p0}, 0)^2", PRESSURE_2, &[threshold(Quantity::PumpPressure, HIGH)]),
 ];
 
-/// Terms of flows that pass no edge of a valve.
+/// Terms of flows that do not pass a valve edge.
 pub(super) fn flows(terms: &mut Vec<Term>) {
     with_products(terms, Row::PistonLeak, PAST_THE_PISTON, GROWING);
     let chambers = [(Row::CapFlow, FROM_CAP, &CAP_WALL), (Row::RodFlow, FROM_ROD, &ROD_WALL)];

@@ -47,7 +47,7 @@ static PUSHING: &[Factor] = &[
     plain("opening", "u", AREA),
 ];
 
-/// What a force or a leak may grow with besides.
+/// What else a force or a leak may grow with.
 pub(in crate::proposal) static GROWING: &[Factor] = &[
     plain("position", "s", LENGTH),
     plain("abs_position", "abs(s)", LENGTH),
@@ -72,7 +72,7 @@ pub(in crate::proposal) static GROWING: &[Factor] = &[
     plain("root_of_rod_pressure", "sqrt(abs(p_rod))", ROOT_OF_PRESSURE),
     plain("sum_of_pressures", "(p_cap + p_rod)", PRESSURE),
     plain("pump_pressure", "p_pump", PRESSURE),
-    // What presses on pins and guides.
+    // Load on pins and guides.
     plain("abs_force", "abs(area_cap*p_cap - area_rod*p_rod)", FORCE),
     plain("abs_opening", "abs(u)", AREA),
     plain("extending", "step(v)", PURE),

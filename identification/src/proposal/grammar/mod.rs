@@ -1,4 +1,4 @@
-//! All terms that are tried: products of physical factors in one row of the equations.
+//! Generates all terms that are tried: products of physical factors in one row of the equations.
 
 mod factor;
 mod flows;
@@ -29,7 +29,7 @@ pub(super) fn terms() -> Vec<Term> {
     terms
 }
 
-/// Each factor alone, and times each other one.
+/// Adds each factor alone, and its product with each of the others.
 fn with_products(terms: &mut Vec<Term>, row: Row, own: &'static [Factor], others: &'static [Factor]) {
     for one in own {
         terms.push(Term::of(row, one));
@@ -38,7 +38,8 @@ fn with_products(terms: &mut Vec<Term>, row: Row, own: &'static [Factor], others
     }
 }
 
-/// Whether no more than one of two factors has a shape: both cost a search in several numbers, which no start on a grid replaces.
+/// Whether at most one of two factors has a shape. Two shapes need a search in several parameters, which a grid of
+/// start values cannot replace.
 fn one_shape_at_most(one: &Factor, other: &Factor) -> bool {
     one.shapes.is_empty() || other.shapes.is_empty()
 }

@@ -1,8 +1,8 @@
-//! What the shapes of terms are measured by: how far, how fast, how strong things were in the recordings.
+//! Quantities that scale the shape parameters of terms: how far, how fast and how strong things were in the recordings.
 
 use excavator_model::equations::Situation;
 
-/// A quantity of a machine whose course gives starts for a parameter.
+/// A quantity of a machine. Its values in the recordings provide start values for a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(in crate::proposal) enum Quantity {
     Position,
@@ -15,12 +15,12 @@ pub(in crate::proposal) enum Quantity {
     Time,
 }
 
-/// The values from which a search for a shape parameter begins.
+/// Start values of the search for a shape parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::proposal) enum Levels {
     /// Quantiles of the quantity.
     Quantiles(&'static [f64]),
-    /// Shares of its size: of the 95 % quantile without sign.
+    /// Shares of its magnitude: the 95 % quantile of its absolute value.
     OfSize(&'static [f64]),
     /// Shares of its range from the 5 % to the 95 % quantile.
     OfRange(&'static [f64]),
@@ -45,7 +45,8 @@ impl Quantity {
         }
     }
 
-    /// Starts for a parameter that is measured by this quantity at `cylinder`; none where it was not measured or stood still.
+    /// Start values for a parameter that is scaled by this quantity at `cylinder`. There are none if the quantity was
+    /// not measured or did not change.
     pub fn starts(self, levels: Levels, situations: &[Vec<Situation<'_, f64>>], cylinder: usize) -> Vec<f64> {
         if let Levels::Values(values) = levels {
             return values.to_vec();

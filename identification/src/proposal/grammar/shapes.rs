@@ -1,4 +1,4 @@
-//! Shape parameters of factors, and where a search for each begins.
+//! Shape parameters of factors, and their start values.
 
 use super::factor::Shape;
 use super::quantity::{Levels, Quantity};
@@ -52,7 +52,7 @@ pub(super) const WAVE_LENGTH: Shape = Shape {
     name: "l",
     unit: "m",
     quantity: Quantity::Position,
-    // From half a wave to six waves along the way.
+    // From half a wave to six waves along the travel.
     levels: Levels::OfRange(&[0.32, 0.16, 0.106, 0.08, 0.053, 0.04, 0.0265]),
     is_signed: false,
     meaning: "length of a wave over 2 pi",
@@ -62,13 +62,13 @@ pub(super) const PHASE: Shape = Shape {
     name: "f",
     unit: "-",
     quantity: Quantity::Position,
-    // Together with the sign of the coefficient these are four.
+    // Together with the sign of the coefficient these are four phases.
     levels: Levels::Values(&[0.0, 1.57]),
     is_signed: true,
     meaning: "phase of the wave at mid-stroke",
 };
 
-/// A pressure over the tank's from which on, or up to which, something opens; none below the tank's.
+/// A pressure above the tank pressure from which, or up to which, something opens. It is never below the tank pressure.
 pub(super) const fn threshold(quantity: Quantity, levels: &'static [f64]) -> Shape {
     Shape {
         name: "p0",

@@ -13,7 +13,7 @@ use super::unit;
 pub(in crate::proposal) struct Term {
     /// The row that it enters.
     pub row: Row,
-    /// What it is a product of; the second may be one.
+    /// Its factors; the second may be one.
     pub factors: [&'static Factor; 2],
 }
 
@@ -26,12 +26,12 @@ pub(in crate::proposal) struct Sized {
     pub shapes: Vec<f64>,
     /// The coefficient, SI.
     pub coefficient: f64,
-    /// Name of the cylinder that it names, where its row is not a cylinder's own.
+    /// Name of the cylinder in its formula, if its row does not belong to a cylinder.
     pub cylinder: String,
 }
 
 impl Sized {
-    /// Whether it differs in its numbers only: it is the same term, with the same sign.
+    /// Whether both are the same term with the same sign, apart from their numbers.
     pub fn is_same_kind(&self, other: &Sized) -> bool {
         self.term == other.term
             && self.cylinder == other.cylinder
@@ -47,12 +47,12 @@ impl Sized {
 }
 
 impl Term {
-    /// Of one factor.
+    /// A term of one factor.
     pub fn of(row: Row, factor: &'static Factor) -> Term {
         Term { row, factors: [factor, &ONE] }
     }
 
-    /// Of two factors.
+    /// A term of two factors.
     pub fn product(row: Row, one: &'static Factor, other: &'static Factor) -> Term {
         Term { row, factors: [one, other] }
     }
@@ -62,7 +62,8 @@ impl Term {
         1 + self.factors.iter().map(|factor| factor.shapes.len()).sum::<usize>()
     }
 
-    /// Whether a variable is in its formula; `z` is its memory. Coordinate and rate of the joint say what position and speed of the piston say.
+    /// Whether a variable is in its formula; `z` is its memory. The coordinate and rate of the joint count as position
+    /// and speed of the piston.
     pub fn uses(&self, variable: &str) -> bool {
         let is_word = |part: &str| part == variable || matches!((variable, part), ("v", "qd") | ("s", "q"));
         self.factors.iter().any(|factor| {
@@ -71,17 +72,17 @@ impl Term {
         })
     }
 
-    /// Whether it names a cylinder.
+    /// Whether its formula names a cylinder.
     pub fn names_a_cylinder(&self) -> bool {
         self.factors.iter().any(|factor| factor.text.contains("{c}"))
     }
 
-    /// Whether both of its factors say something.
+    /// Whether neither of its factors is one.
     pub fn is_product(&self) -> bool {
         self.factors.iter().all(|factor| !factor.text.is_empty())
     }
 
-    /// Whether it is a law of its own and no product.
+    /// Whether it is a whole law, not a product.
     pub fn is_whole(&self) -> bool {
         self.factors[0].is_whole
     }
@@ -91,8 +92,8 @@ impl Term {
         self.factors.iter().map(|factor| factor.text.len()).sum()
     }
 
-    /// Whether it is a force of a pressure. Beside others it can take the place of the areas that the model knows, and make all that the
-    /// equation of motion says nothing.
+    /// Whether it is a force that depends on a pressure. Together with others it can compensate for the known areas, so
+    /// that the equation of motion determines nothing.
     pub fn is_a_force_of_pressure(&self) -> bool {
         self.row == Row::PistonForce && self.factors[0].text.contains("p_")
     }
@@ -103,8 +104,8 @@ impl Term {
     }
 }
 
-/// A law of these terms, which enter one row, as a text. `None` where a law that is no product stands beside others or has a coefficient
-/// below zero.
+/// The text of a law of these terms, which enter one row. Returns `None` if a whole law is combined with others or has
+/// a negative coefficient.
 pub(in crate::proposal) fn law_text(terms: &[Sized], summary: &str) -> Option<FormulaText> {
     let row = terms.first()?.term.row;
     let is_whole = |sized: &&Sized| sized.term.is_whole();
@@ -172,11 +173,11 @@ pub(in crate::proposal) fn law_text(terms: &[Sized], summary: &str) -> Option<Fo
     })
 }
 
-/// What a coefficient is, in the words of its card.
+/// Meaning of a coefficient on its card.
 pub(in crate::proposal) const COEFFICIENT: &str = "coefficient";
 
-/// Where the search for a coefficient begins. A flow is not linear in a change of the opening: what a regression says of that is too large
-/// where the change is.
+/// Start values for a coefficient. A flow is not linear in a change of the opening. If that change is large, the
+/// regression overestimates the coefficient.
 fn starts(row: Row, coefficient: f64) -> Vec<f64> {
     let shares: &[f64] = if row.is_an_opening() { &[1.0, 0.5, 0.25] } else { &[1.0] };
     shares.iter().map(|share| rounded(share * coefficient)).collect()
@@ -190,7 +191,7 @@ fn shape_text(shape: &super::factor::Shape, value: f64) -> ParameterText {
     let size = value.abs().max(f64::MIN_POSITIVE);
     ParameterText {
         unit: shape.unit.to_string(),
-        // Far enough for every fit, and no further than a fit that has lost its way should go.
+        // Wide enough for every fit, and a limit for one that diverges.
         minimum: Some(if shape.is_signed { -FAR * size.max(LEAST) } else { size / FAR }),
         maximum: Some(FAR * size.max(LEAST)),
         start: vec![value],
@@ -199,10 +200,10 @@ fn shape_text(shape: &super::factor::Shape, value: f64) -> ParameterText {
     }
 }
 
-/// How many times its start a shape parameter may become.
+/// Largest ratio of a shape parameter to its start value.
 const FAR: f64 = 100.0;
 
-/// Least size of a signed shape parameter whose start may be zero, SI: a centimetre, a hundredth of a radian.
+/// Smallest magnitude of a signed shape parameter whose start may be zero, SI: a centimetre, a hundredth of a radian.
 const LEAST: f64 = 0.01;
 
 fn blank() -> ParameterText {
@@ -217,7 +218,7 @@ fn blank() -> ParameterText {
     }
 }
 
-/// To four digits: a start says no more.
+/// Rounds to four digits, which is enough for a start value.
 pub(in crate::proposal) fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

@@ -25,7 +25,7 @@ pub(super) const ACCELERATION: Unit = &[("m", 1.0), ("s", -2.0)];
 pub(super) const FORCE: Unit = &[("N", 1.0)];
 pub(super) const TIME: Unit = &[("s", 1.0)];
 
-/// Unit of a coefficient that makes a product of `factors` what `row` is.
+/// Unit of the coefficient that gives a product of `factors` the unit of `row`.
 pub(super) fn of_coefficient(row: Row, factors: &[Unit]) -> String {
     let whole: Unit = match row {
         Row::PistonForce => &[("N", 1.0)],

@@ -1,4 +1,4 @@
-//! Flows along the four ways of a valve, and the openings of its edges.
+//! Flows through the four paths of a valve, and the openings of its edges.
 
 use excavator_model::formula::Row;
 
@@ -8,7 +8,7 @@ use super::term::Term;
 use super::unit::{AREA, AREA_2, AREA_3, LENGTH, PRESSURE, PURE, ROOT_OF_PRESSURE, SPEED, TIME};
 use super::with_products;
 
-/// How a flow along one way of the valve depends on the pressure drop.
+/// How the flow through one path of the valve depends on the pressure drop.
 static PUMP_TO_CAP: &[Factor] =
     &[plain("laminar", "(p_pump - p_cap)", PRESSURE), plain("turbulent", "root(p_pump - p_cap)", ROOT_OF_PRESSURE)];
 static PUMP_TO_ROD: &[Factor] =
@@ -24,7 +24,7 @@ static EDGE: &[Factor] = &[
     plain("towards_rod", "max(-u, 0)", AREA),
     plain("square_opening", "u^2", AREA_2),
     plain("abs_opening", "abs(u)", AREA),
-    // What a resistance in series takes: the first power of a series in it.
+    // Effect of a resistance in series: the first term of a power series in it.
     plain("cube_towards_cap", "max(u, 0)^3", AREA_3),
     plain("cube_towards_rod", "max(-u, 0)^3", AREA_3),
 ];
@@ -40,10 +40,11 @@ pub(in crate::proposal) static OPENING: &[Factor] = &[
     plain("abs_gain", "abs(u)", AREA),
 ];
 
-/// The opening with a second orifice in series, whose drops add up: k is one over the square of its opening.
+/// The opening with a second orifice in series. The pressure drops add up, and k is one over the square of the second
+/// opening.
 static IN_SERIES: Factor = whole("in_series", "u/sqrt(1 + {k}*u^2)", AREA_3);
 
-/// What an opening may depend on besides.
+/// What else an opening may depend on.
 pub(in crate::proposal) static SHIFTING: &[Factor] = &[
     plain("pump_pressure", "p_pump", PRESSURE),
     plain("cap_pressure", "p_cap", PRESSURE),
@@ -59,7 +60,7 @@ pub(in crate::proposal) static SHIFTING: &[Factor] = &[
     plain("time", "t", TIME),
 ];
 
-/// What the edge to the tank may depend on besides: the pressure drop over it among others.
+/// What else the edge to the tank may depend on, including its pressure drop.
 static BACK: &[Factor] = &[
     plain("cap_pressure", "p_cap", PRESSURE),
     plain("rod_pressure", "p_rod", PRESSURE),
