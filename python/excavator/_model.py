@@ -234,9 +234,11 @@ class Model:
         - arrays by name with their times: `{"time": t, "arm.orifice_command": u}`, starting at rest;
         - a profile of sines, sweeps, trapezoids and holds: a file (TOML), or a `dict` with the same keys, starting at rest.
 
-        `start` is the displacement of each cylinder at rest, m from mid-stroke; it is not used for a `Recording` or a profile file.
+        `start` is the displacement of each cylinder at rest, m from mid-stroke. A `Recording` and a profile file have a start of their own.
         `accept` overrules checks of a recording, by name.
         """
+        if start and isinstance(inputs, (Recording, str, os.PathLike)):
+            raise ModelError("start= is for arrays and for profiles as a dict: a recording starts from its first state, a profile file from its own start")
         if isinstance(inputs, Recording):
             usage = {"accept": list(accept), "conditions": [], "whole": True}
             simulated, remarks = _native.simulate(self._native, inputs._native, usage)

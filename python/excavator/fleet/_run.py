@@ -106,7 +106,7 @@ def run(
     - `results` is an address in any store. `store` contains options for all addresses.
     - `verb` is `diagnose` or `identify`, with its `options` (`accept`, `where`, `whole`).
     - `address` is the address of a Ray cluster. By default, Ray runs on this machine with `workers` processes, or one for each processor. On
-      a cluster, at most twice `workers` jobs are submitted at a time.
+      a cluster, at most `workers` jobs run at a time.
     - A job that raises an error or kills its worker is retried `retries` times and then added to the poison list. A job with unusable data is
       added immediately. `retry_poisoned` retries the jobs on the list.
     - `progress` is `True` for a progress line on standard error, or a function that is called with the current `Report`.
@@ -151,10 +151,12 @@ class _Ray:
             self.ray.shutdown()
 
     @property
-    def workers(self) -> int:
-        """Number of available processors, at most the requested number of workers."""
-        found = int(self.ray.cluster_resources().get("CPU", 1))
-        return max(1, found if self._workers is None else min(found, self._workers))
+    def in_flight(self) -> int:
+        """Number of jobs that are submitted at a time."""
+        processors = max(1, int(self.ray.cluster_resources().get("CPU", 1)))
+        if self._workers is not None and self._workers < processors:
+            return max(1, self._workers)  # Ray would run as many as the cluster has processors
+        return AHEAD * processors
 
 
 class _Driver:
@@ -187,7 +189,7 @@ class _Driver:
         while self.queue or flight or self.waiting:
             while self.waiting and self.waiting[0][0] <= time.monotonic():
                 self.queue.append(heapq.heappop(self.waiting)[2])
-            while self.queue and len(flight) < AHEAD * self.engine.workers:
+            while self.queue and len(flight) < self.engine.in_flight:
                 job = self.queue.popleft()
                 self.report.starts += 1
                 flight[self.task.remote(job, shared)] = job

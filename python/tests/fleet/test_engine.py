@@ -7,9 +7,11 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from excavator import fleet
+from excavator.fleet import _run
 
 from . import cheap
 
@@ -33,6 +35,13 @@ def test_everything_is_done_once_and_not_again(places):
     # A renamed machine is the same job; changed content is a new one.
     (folder / "0-validation.csv").write_text("changed")
     assert fleet.run([pairs[0] | {"machine": "renamed"}, pairs[1] | {"machine": "renamed"}], results, work=cheap.work_of(log)).starts == 1
+
+
+@pytest.mark.parametrize(("workers", "wanted"), [(2, 2), (16, 16 * _run.AHEAD), (None, 16 * _run.AHEAD)])
+def test_a_cluster_runs_no_more_jobs_than_there_are_workers(workers, wanted):
+    engine = _run._Ray("ray://elsewhere", workers)
+    engine.ray = SimpleNamespace(cluster_resources=lambda: {"CPU": 16.0})
+    assert engine.in_flight == wanted
 
 
 def test_results_are_what_the_work_gave(places):
