@@ -20,17 +20,17 @@ class Topic:
     """A topic of a bag."""
 
     name: str
-    """Name: `/joint_states`."""
+    """Name, such as `/joint_states`."""
     type: str
-    """Type of the messages: `sensor_msgs/msg/JointState`."""
+    """Message type, such as `sensor_msgs/msg/JointState`."""
     count: int
-    """Number of messages that can be read."""
+    """Number of readable messages."""
     rate: float | None
     """Mean number of messages per second, Hz; `None` for fewer than two messages."""
 
 
 class Bag:
-    """A bag: a rosbag2 folder, or a bare `.mcap` or `.db3` file. Any type of message is decoded by the definition in the bag::
+    """A bag: a rosbag2 folder, or a bare `.mcap` or `.db3` file. Messages of any type are decoded with the definitions in the bag::
 
         bag = excavator.Bag("my-bag")
         bag.topics
@@ -49,17 +49,17 @@ class Bag:
 
     @property
     def path(self) -> FilePath:
-        """Where the bag is."""
+        """Path of the bag."""
         return self._native.path
 
     @property
     def topics(self) -> list[Topic]:
-        """The topics, by name. The first time the whole bag is read, because indexes can promise more than there is."""
+        """The topics, sorted by name. The first access reads the whole bag, because an index can list messages that the bag does not contain."""
         return self._info()[0]
 
     @property
     def problems(self) -> list[str]:
-        """What is wrong with the bag, one line each."""
+        """Problems of the bag, one line each."""
         return self._info()[1]
 
     @property
@@ -71,11 +71,11 @@ class Bag:
         return iter(self.topics)
 
     def read(self, topic: str, fields: Sequence[str] | None = None) -> dict[str, NDArray[Any]]:
-        """One topic as columns, one entry for each message.
+        """Returns one topic as columns, with one entry for each message.
 
-        `fields` are paths like `pose.position.x`, `data[3]` or `position[name=arm]`; without, every number of the first message is read,
-        at most 16 elements of an array. Numbers are `float64`; `NaN` where a message has no such element. Times are `int64`, ns since the
-        epoch: `log_time`, `publish_time`, and `header_time` where the type has a header.
+        `fields` are paths like `pose.position.x`, `data[3]` or `position[name=arm]`. By default, every number of the first message is
+        read, with at most 16 elements of each array. Numbers are `float64`, and `NaN` where a message lacks the element. Times are
+        `int64`, ns since the epoch: `log_time`, `publish_time`, and `header_time` if the type has a header.
         """
         if isinstance(fields, str):
             fields = [fields]

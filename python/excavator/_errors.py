@@ -11,10 +11,10 @@ __all__ = ["CheckError", "ComputationError", "ExcavatorError", "ModelError", "Re
 
 
 class Remark(UserWarning):
-    """What the program remarks on standard error: nothing is wrong enough to stop, and a person should know it."""
+    """A remark, which the program prints on standard error: worth knowing, but no reason to stop."""
 
 
 def remark(lines: Iterable[str], depth: int = 3) -> None:
-    """Warns of each line, at the place `depth` calls above."""
+    """Issues a warning for each line, with the stack level `depth`."""
     for line in lines:
         warnings.warn(line, Remark, stacklevel=depth)

@@ -1,4 +1,4 @@
-"""Python functions as physical laws: a function is called once with symbols, and what it computes is written down as a formula."""
+"""Converts Python functions to physical laws: a function is called once with symbols, and its computation is recorded as a formula."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from ._errors import ModelError
 
-# How tightly an operation binds; a formula gets parentheses only where they are needed.
+# Operator precedence. Formulas contain parentheses only where they are needed.
 SUM, PRODUCT, SIGN, POWER, ATOM = range(1, 6)
 
-# Functions of NumPy and what a formula calls them.
+# NumPy functions and their names in formulas.
 CALLS = {
     np.absolute: "abs",
     np.fabs: "abs",
@@ -38,7 +38,7 @@ CALLS = {
 
 
 class Symbol(NDArrayOperatorsMixin):
-    """A quantity of a law: Python's arithmetic and NumPy's functions on it build a formula."""
+    """A quantity of a law. Python arithmetic and NumPy functions on it build a formula."""
 
     __slots__ = ("binds", "text")
     __hash__ = object.__hash__
@@ -48,7 +48,7 @@ class Symbol(NDArrayOperatorsMixin):
         self.binds = binds
 
     def within(self, least: int) -> str:
-        """The text, in parentheses where an operation around it binds tighter."""
+        """Returns the text, in parentheses if the surrounding operation has a higher precedence."""
         return self.text if self.binds >= least else f"({self.text})"
 
     def __bool__(self) -> bool:
@@ -58,7 +58,7 @@ class Symbol(NDArrayOperatorsMixin):
         raise ModelError(f'"{self.text}" has no value yet: use functions of NumPy (numpy.tanh in place of math.tanh)')
 
     def __array_ufunc__(self, function: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
-        # `x += 1` asks for the result in x, which is another symbol from then on.
+        # `x += 1` passes x as `out`. The result is a new symbol, bound to the same name.
         into = options.pop("out", ())
         if method != "__call__" or options or not all(isinstance(one, Symbol) for one in into):
             raise ModelError(f"a formula has no numpy.{function.__name__}.{method}")
@@ -100,32 +100,32 @@ def _numpy_function(function: Callable[..., Any], args: tuple[Any, ...]) -> Symb
 
 
 def _equality(left: Any, right: Any) -> Any:
-    # Two symbols are never the same number for certain: a silent "not equal" would choose a branch.
+    # Equality of two symbols cannot be decided here. A silent "not equal" would select a branch.
     told = left if isinstance(left, Symbol) else right
     raise ModelError(f'a formula has no "==", as with "{told}": compare with < or >, in numpy.where')
 
 
 def call(function: str, *arguments: Any) -> Symbol:
-    """A function of the language of formulas, by its name there."""
+    """Returns a call of a function of the formula language, by its name there."""
     return Symbol(f"{function}({', '.join(_symbol(one).text for one in arguments)})")
 
 
 def where(condition: Condition, holds: Any, otherwise: Any) -> Symbol:
-    """`holds` where the condition holds, else `otherwise`; rounded at the change like all corners of a formula."""
+    """Returns `holds` where the condition holds, else `otherwise`. The transition is smoothed, as at every corner of a formula."""
     if not isinstance(condition, Condition):
         raise ModelError("numpy.where in a law needs one comparison, as in numpy.where(v > 0, a, b)")
     return Symbol(f"if({condition.text}, {_symbol(holds).text}, {_symbol(otherwise).text})")
 
 
 def root(x: Any) -> Any:
-    """sign(x) sqrt(abs(x)) with a finite slope at zero, like the flow through an orifice."""
+    """Returns sign(x) sqrt(abs(x)), like the flow through an orifice. In a formula, the slope at zero is finite."""
     if isinstance(x, Symbol):
         return call("root", x)
     return np.sign(x) * np.sqrt(np.abs(x))
 
 
 def table(x: Any, knots: Sequence[float], values: Sequence[float]) -> Symbol:
-    """A monotone cubic through its knots. `knots` are in the SI unit of `x`, and the result is a pure number."""
+    """Returns a monotone cubic through the given points. `knots` are in the SI unit of `x`; the result is dimensionless."""
     lists = (f"[{', '.join(_number(one) for one in row)}]" for row in (knots, values))
     return Symbol(f"table({_symbol(x).text}, {', '.join(lists)})")
 
@@ -139,11 +139,11 @@ def law(
     name: str | None = None,
     summary: str | None = None,
 ) -> dict[str, Any]:
-    """A Python function as a law, in the form that `Model.with_effect` and `Model.with_catalogue` take.
+    """Converts a Python function to a law, in the form that `Model.with_effect` and `Model.with_catalogue` accept.
 
-    The function is called once, with symbols in place of numbers, and its result becomes the formula. So a law in Python is as fast as
-    one in text, has exact derivatives and is stored in the model file. Its arguments are variables of the machine, parameters and
-    states, by name; an argument whose default is a text means the variable of that name (`boom_speed="boom.v"`)::
+    The function is called once, with symbols in place of numbers, and its result becomes the formula. A law in Python is therefore as
+    fast as one in text, has exact derivatives and is stored in the model file. Arguments are machine variables, parameters and states,
+    by name. An argument with a string default refers to the variable of that name (`boom_speed="boom.v"`)::
 
         def load_damping(v, p_cap, p_rod, k):
             \"\"\"Damping that grows with the load.\"\"\"
@@ -155,19 +155,19 @@ def law(
             parameters={"k": {"unit": "N s/(m Pa)", "maximum": 1.0, "start": [1e-3]}},
         )
 
-    The function may use arithmetic and those functions of NumPy that formulas have, among them `numpy.where`, `numpy.clip` and
-    `numpy.tanh`, and `excavator.root` and `excavator.table`. It may loop over a fixed count, but not branch on a quantity.
+    The function may use arithmetic, the NumPy functions that formulas support (including `numpy.where`, `numpy.clip` and `numpy.tanh`),
+    `excavator.root` and `excavator.table`. It may loop a fixed number of times, but not branch on a quantity.
 
     Args:
         function: the law, in the SI unit of what it acts on.
-        acts_on: what the law enters; it sets the unit. `excavator effects --language` lists all.
-        parameters: unit, limits, start values and meaning of each parameter, with the keys of a catalogue file.
+        acts_on: the equation that the law enters; it sets the unit. `excavator effects --language` lists all of them.
+        parameters: unit, limits, start values and meaning of each parameter, with the same keys as in a catalogue file.
         states: start, rate and unit of each state, for laws with memory. `rate` and `start` are formulas or functions.
-        name: name of the effect; that of the function by default.
-        summary: what the effect is, in a sentence; the first line of the function's docstring by default.
+        name: name of the effect; by default, the name of the function.
+        summary: description of the effect in one sentence; by default, the first line of the function's docstring.
 
     Raises:
-        ModelError: when the function does what a formula cannot.
+        ModelError: if the function does something that a formula cannot express.
     """
     told = name or function.__name__
     if not told.isidentifier():
@@ -212,7 +212,7 @@ def _traced(function: Callable[..., Any], told: str) -> str:
 
 
 def _number(value: Any) -> str:
-    # repr gives the shortest text that reads back as the same number.
+    # repr returns the shortest text that parses to the same number.
     number = float(value)
     if not math.isfinite(number):
         raise ModelError(f"a formula has no number {number}")
@@ -232,7 +232,7 @@ def _symbol(value: Any) -> Symbol:
 
 def _binary(left: Any, operator: str, right: Any, binds: int) -> Symbol:
     first, second = _symbol(left), _symbol(right)
-    # Behind "-" and "/", an operation of the same kind needs parentheses. A sign there gets them to be readable.
+    # After "-" and "/", an operand of the same precedence needs parentheses. A signed operand gets them for readability.
     behind = ATOM if second.binds == SIGN else binds + 1 if operator in "-/" else binds
     return Symbol(f"{first.within(binds)} {operator} {second.within(behind)}", binds)
 

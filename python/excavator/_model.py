@@ -26,9 +26,9 @@ class Effect:
     name: str
     """Name in the catalogue."""
     at: str
-    """The cylinder where it acts, `pump` or `machine`."""
+    """Where it acts: a cylinder, `pump` or `machine`."""
     summary: str
-    """What it is, in a sentence."""
+    """Description in one sentence."""
     equation: str
     """Its formula."""
 
@@ -43,23 +43,23 @@ class Parameter:
     value: float
     """Value in `unit`."""
     unit: str
-    """SI unit, `-` for a pure number."""
+    """SI unit; `-` if dimensionless."""
     known: bool
-    """Whether it is a constant, which identification leaves alone."""
+    """Whether it is a constant that identification does not change."""
     standard_error: float | None
     """Standard error of an identified value."""
     margin_95: float | None
-    """Half width of the 95 % interval of an identified value."""
+    """Half the width of the 95 % interval of an identified value."""
     meaning: str
-    """What it means."""
+    """Meaning of the parameter."""
     source: str
-    """Where the value comes from."""
+    """Source of the value."""
     minimum: float
-    """Least plausible value."""
+    """Smallest plausible value."""
     maximum: float
     """Largest plausible value."""
     effect: str
-    """The effect that it belongs to."""
+    """Effect to which it belongs."""
 
     def __float__(self) -> float:
         return self.value
@@ -68,7 +68,7 @@ class Parameter:
 class Model:
     """A machine plus a list of physical effects.
 
-    `set` changes a value in place. Every method whose name begins with `with` gives another model and leaves this one as it is.
+    `set` changes a value in place. Methods whose names begin with `with` return a new model and leave this one unchanged.
     """
 
     __slots__ = ("_native",)
@@ -78,21 +78,21 @@ class Model:
 
     @classmethod
     def load(cls, path: Path, *, catalogue: Catalogue | Sequence[Path] | None = None) -> Model:
-        """A built-in model by its name (`Model.built_in()` lists them), or a model file (TOML).
+        """Loads a built-in model by name (`Model.built_in()` lists them), or a model file (TOML).
 
-        `catalogue` adds effects of your own, as in `with_catalogue`.
+        `catalogue` adds your own effects, as in `with_catalogue`.
         """
         model = cls(_native.Model.load(path))
         return model if catalogue is None else model.with_catalogue(catalogue)
 
     @classmethod
     def from_toml(cls, text: str, *, name: str = "model") -> Model:
-        """From the text of a model file. `name` is for messages."""
+        """Creates a model from the text of a model file. `name` is used in messages."""
         return cls(_native.Model.from_toml(text, name))
 
     @classmethod
     def template(cls, name: str) -> Model:
-        """A machine of a kind that no built-in model has, from an example data sheet; `Model.templates()` lists them."""
+        """Returns a model from an example data sheet, for a kind of machine that no built-in model covers. `Model.templates()` lists the names."""
         known = dict(_native.Model.templates())
         if name not in known:
             raise ModelError(f'no template "{name}"; there are {", ".join(known)}')
@@ -100,12 +100,12 @@ class Model:
 
     @staticmethod
     def templates() -> list[str]:
-        """Names of the templates."""
+        """Returns the names of the templates."""
         return [name for name, _ in _native.Model.templates()]
 
     @staticmethod
     def built_in() -> list[str]:
-        """Names of the built-in models."""
+        """Returns the names of the built-in models."""
         return _native.Model.built_in()
 
     @property
@@ -115,7 +115,7 @@ class Model:
 
     @property
     def description(self) -> str:
-        """What the machine is."""
+        """Description of the machine."""
         return self._native.description
 
     @property
@@ -130,34 +130,34 @@ class Model:
 
     @property
     def catalogue(self) -> dict[str, str]:
-        """Every effect that the model may have, with a sentence on what it is."""
+        """Every effect that can be added to the model, by name, with a description in one sentence."""
         return dict(self._native.catalogue())
 
     @property
     def parameters(self) -> dict[str, Parameter]:
-        """The parameters by name (`arm.inertia`)."""
+        """The parameters, by name (`arm.inertia`)."""
         return {name: Parameter(*row, effect) for name, effect, row in self._native.parameters()}
 
     @property
     def history(self) -> list[tuple[str, str]]:
-        """What was done to the model: when (ISO 8601) and what."""
+        """Changes to the model: time (ISO 8601) and description of each."""
         return self._native.history()
 
     def __getitem__(self, name: str) -> float:
-        """The value of a parameter, in its SI unit."""
+        """Returns the value of a parameter, in its SI unit."""
         return self.parameters[name].value
 
     def set(self, name: str, value: float, *, known: bool | None = None, source: str | None = None) -> None:
-        """Sets a parameter, in its SI unit. `known=True` makes it a constant that identification leaves alone, `False` one that it looks
-        for."""
+        """Sets a parameter, in its SI unit. `known=True` makes it a constant that identification does not change; `known=False` makes it
+        unknown, so that identification estimates it."""
         self._native = self._native.with_value(name, float(value), known, source)
 
     def copy(self) -> Model:
-        """The same model once more."""
+        """Returns a copy of the model."""
         return Model(self._native)
 
     def with_values(self, values: Mapping[str, float]) -> Model:
-        """A model with other values of parameters, in their SI units."""
+        """Returns a model with other parameter values, in their SI units."""
         other = self.copy()
         for name, value in values.items():
             other.set(name, value)
@@ -166,10 +166,10 @@ class Model:
     def with_effect(
         self, effect: str | Mapping[str, Any], at: str | None = None, *, values: Mapping[str, float] | None = None
     ) -> Model:
-        """A model with one more effect.
+        """Returns a model with one more effect.
 
-        `effect` is a name of the catalogue (`"pump_leakage"`, `"load_damping@arm"`), or a formula as a `dict` with the keys of a catalogue
-        file (`name`, `acts_on`, `formula`, `parameters`, ...)::
+        `effect` is a name from the catalogue (`"pump_leakage"`, `"load_damping@arm"`), or a formula as a `dict` with the keys of a
+        catalogue file (`name`, `acts_on`, `formula`, `parameters`, ...)::
 
             model.with_effect(
                 {
@@ -181,10 +181,10 @@ class Model:
                 at="arm",
             )
 
-        `excavator.law` makes such a `dict` from a Python function.
+        `excavator.law` creates such a `dict` from a Python function.
 
-        `at` is a cylinder, `pump` or `machine`; without, the effect acts at each place where it can. Its parameters have their start values
-        unless `values` says otherwise (`{"k": 2e-3}`).
+        `at` is a cylinder, `pump` or `machine`. By default, the effect acts at every possible place. Its parameters have their start
+        values unless `values` overrides them (`{"k": 2e-3}`).
         """
         model = self
         if isinstance(effect, Mapping):
@@ -206,11 +206,11 @@ class Model:
         return other
 
     def without_effect(self, name: str) -> Model:
-        """A model without an effect: `EFFECT@PLACE`, or `EFFECT` wherever it is."""
+        """Returns a model without an effect: `EFFECT@PLACE`, or `EFFECT` at every place."""
         return Model(self._native.without_effect(name))
 
     def with_catalogue(self, catalogue: Catalogue | Sequence[Path]) -> Model:
-        """A model that may have effects of your own; it does not have them yet. They compete in `diagnose` and can be added by name.
+        """Returns a model whose catalogue includes your own effects. They are not yet active: `diagnose` tries them, and you can add them by name.
 
         `catalogue` is a file (TOML) or a folder with such files, a formula as a `dict`, or a list of these.
         """
@@ -230,12 +230,15 @@ class Model:
 
         `inputs` is one of:
 
-        - a `Recording`, whose inputs are used, from the state measured at its start;
-        - arrays by name with their times: `{"time": t, "arm.orifice_command": u}`, from rest;
-        - a profile of sines, sweeps, trapezoids and holds: a file (TOML), or a `dict` with the same keys, from rest.
+        - a `Recording`: its inputs are used, and the simulation starts from its first measured state;
+        - arrays by name with their times: `{"time": t, "arm.orifice_command": u}`, starting at rest;
+        - a profile of sines, sweeps, trapezoids and holds: a file (TOML), or a `dict` with the same keys, starting at rest.
 
-        `start` is the displacement of each cylinder at rest, m from mid-stroke. `accept` overrules checks of a recording, by name.
+        `start` is the displacement of each cylinder at rest, m from mid-stroke. A `Recording` and a profile file have a start of their own.
+        `accept` overrules checks of a recording, by name.
         """
+        if start and isinstance(inputs, (Recording, str, os.PathLike)):
+            raise ModelError("start= is for arrays and for profiles as a dict: a recording starts from its first state, a profile file from its own start")
         if isinstance(inputs, Recording):
             usage = {"accept": list(accept), "conditions": [], "whole": True}
             simulated, remarks = _native.simulate(self._native, inputs._native, usage)
@@ -248,11 +251,11 @@ class Model:
         return Recording(self._native.simulate_commands(_commands(inputs)._native, dict(start or {})))
 
     def to_toml(self) -> str:
-        """The text of a model file. It brings its formulas along."""
+        """Returns the text of a model file, including the formulas of your own effects."""
         return self._native.to_toml()
 
     def save(self, path: Path, *, replace: bool = False) -> None:
-        """Writes a model file, which the program reads."""
+        """Writes a model file that the program can read."""
         with open(path, "w" if replace else "x", encoding="utf-8") as file:
             file.write(self.to_toml())
 
@@ -281,7 +284,7 @@ def _commands(inputs: Mapping[str, ArrayLike]) -> Recording:
 
 
 def _catalogues(catalogue: Catalogue | Sequence[Path]) -> list[tuple[str, str]]:
-    """Texts of catalogue files with their names."""
+    """Returns the text and name of each catalogue file."""
     if isinstance(catalogue, (str, os.PathLike)):
         path = FilePath(catalogue)
         files = sorted(path.glob("*.toml")) if path.is_dir() else [path]
@@ -289,7 +292,7 @@ def _catalogues(catalogue: Catalogue | Sequence[Path]) -> list[tuple[str, str]]:
             raise ModelError(f"{path}: the folder has no catalogue files (.toml)")
         return [(file.read_text(encoding="utf-8"), str(file)) for file in files]
     if isinstance(catalogue, Mapping):
-        # In the content of a file, "formula" is the list of laws; in one law, it is its formula.
+        # In a catalogue file, "formula" is the list of laws. In a single law, it is the text of the formula.
         laws = [catalogue] if isinstance(catalogue.get("formula"), str) else catalogue.get("formula", [])
         return [(_native.to_toml({"formula": list(laws)}), "the catalogue")]
     texts = []

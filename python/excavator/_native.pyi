@@ -1,4 +1,4 @@
-"""The part of the package in Rust. Use the names of `excavator`: they say more, and stay as they are."""
+"""The Rust part of the package. Use the public names of `excavator` instead: they are documented and stable."""
 
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
@@ -18,19 +18,19 @@ _Tell = Callable[[str, float], object] | None
 _Told = tuple[Outcome, list[str]]
 
 class ExcavatorError(Exception):
-    """Something that excavator cannot do, in one line."""
+    """An operation that failed, with the reason in one line."""
 
 class ReadError(ExcavatorError):
     """A bag, table or map that cannot be read or written."""
 
 class ModelError(ExcavatorError):
-    """A model, effect, formula or parameter that cannot be."""
+    """A model, effect, formula or parameter that is not valid."""
 
 class CheckError(ExcavatorError):
-    """A recording that a check refuses. `accept=["NAME"]` with the name in the text overrules it."""
+    """A recording that a check rejects. `accept=["NAME"]`, with the name from the message, overrules the check."""
 
 class ComputationError(ExcavatorError):
-    """A computation that has no result."""
+    """A computation without a result."""
 
 class Recording:
     @staticmethod

@@ -1,4 +1,4 @@
-"""Packages that only some functions need."""
+"""Optional packages."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def needed(package: str, what: str) -> Any:
-    """The module `package`, or an error that says how to get it."""
+    """Imports and returns the module `package`. If it is missing, the `ImportError` contains the command that installs it."""
     try:
         return importlib.import_module(package)
     except ImportError as error:

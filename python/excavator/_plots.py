@@ -1,4 +1,4 @@
-"""Pictures with Matplotlib."""
+"""Plots with Matplotlib."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from ._recording import Recording
 
 WIDTH, HEIGHT = 9.0, 1.9
-"""Size of one axis, inches."""
+"""Width and height of one axis, in inches."""
 
 
 def of_recording(recording: Recording, names: Sequence[str]) -> Figure:
-    """Signals over time, one axis for each unit."""
+    """Plots signals over time, with one axis for each unit."""
     units = recording.signals
     chosen = list(names) or list(units)
     by_unit: dict[str, list[str]] = {}
@@ -34,7 +34,7 @@ def of_recording(recording: Recording, names: Sequence[str]) -> Figure:
 
 
 def of_comparison(measured: Recording, simulated: Mapping[str, Recording], signals: Sequence[str]) -> Figure:
-    """Measured and simulated signals over time, one axis for each signal."""
+    """Plots measured and simulated signals over time, with one axis for each signal."""
     figure, axes = _axes(len(signals))
     units = measured.signals
     for axis, name in zip(axes, signals):
@@ -48,7 +48,7 @@ def of_comparison(measured: Recording, simulated: Mapping[str, Recording], signa
 
 
 def of_parameters(parameters: Sequence[Mapping[str, Any]]) -> Figure:
-    """Identified values divided by themselves, with their 95 % intervals."""
+    """Plots the 95 % intervals of identified parameters, relative to their values."""
     figure, (axis,) = _axes(1, rows=len(parameters))
     known = [one for one in parameters if one["margin_95"] is not None and one["value"]]
     places = range(len(known))
@@ -60,7 +60,7 @@ def of_parameters(parameters: Sequence[Mapping[str, Any]]) -> Figure:
 
 
 def of_candidates(candidates: Sequence[Mapping[str, Any]]) -> Figure:
-    """Errors on the validation recordings without and with each effect."""
+    """Plots the errors on the validation recordings without and with each effect."""
     figure, (axis,) = _axes(1, rows=len(candidates))
     places = range(len(candidates))
     after = [one["validation_error_after"] for one in candidates]
@@ -76,7 +76,7 @@ def of_candidates(candidates: Sequence[Mapping[str, Any]]) -> Figure:
 
 
 def of_bars(values: Mapping[str, float], label: str) -> Figure:
-    """A bar for each value."""
+    """Plots a bar for each value."""
     figure, (axis,) = _axes(1, rows=len(values))
     axis.barh(range(len(values)), list(values.values()), height=0.6)
     axis.set_yticks(range(len(values)), list(values), fontsize="small")
@@ -86,13 +86,13 @@ def of_bars(values: Mapping[str, float], label: str) -> Figure:
 
 
 def _axes(count: int, rows: int = 0) -> tuple[Figure, Sequence[Any]]:
-    """Axes below each other; one with so many rows is as high as these."""
+    """Returns a figure and `count` axes, one below the other, high enough for `rows` rows."""
     pyplot = needed("matplotlib.pyplot", "plot")
     height = max(HEIGHT * max(count, 1), 1.0 + 0.25 * rows)
     figure, axes = pyplot.subplots(
         max(count, 1), 1, sharex=True, squeeze=False, figsize=(WIDTH, height), layout="constrained"
     )
     if "inline" in needed("matplotlib", "plot").get_backend():
-        # A notebook shows what a cell gives; it would show an open figure once more.
+        # A notebook shows the return value of a cell. It would show an open figure a second time.
         pyplot.close(figure)
     return figure, axes[:, 0]

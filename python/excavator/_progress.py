@@ -1,4 +1,4 @@
-"""Progress of long work."""
+"""Progress of long computations."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 WIDTH = 30
-"""Length of the bar, characters."""
+"""Length of the bar, in characters."""
 
 
 @contextmanager
 def teller(progress: bool | Callable[[str, float], object] | None) -> Iterator[Callable[[str, float], object] | None]:
-    """The function that is told of progress: none, the caller's, or a line on standard error that goes away at the end."""
+    """Yields the progress function: `None`, the one from the caller, or one that prints a line on standard error and clears it at the end."""
     if progress is None or progress is False:
         yield None
     elif progress is True:

@@ -24,7 +24,7 @@ Path = str | os.PathLike[str]
 Map = Path | Mapping[str, Any]
 
 TIME = "time"
-"""Name of the column of times in tables."""
+"""Name of the time column in tables."""
 
 
 def read(
@@ -37,12 +37,12 @@ def read(
 ) -> Recording:
     """Reads a recording.
 
-    `path` is a rosbag2 folder, an `.mcap` or `.db3` file, or a table (CSV, XLSX, Parquet, MATLAB). Data with names of its own needs a
-    topic `map`: a file, or a `dict` with the same keys. Without, `map.toml` in the folder of the bag or `FILE.map.toml` beside the file
-    is used, if there is one. `namespace` chooses a machine in a bag that has several. `start` and `stop` (s after the first sample)
-    choose a part.
+    `path` is a rosbag2 folder, an `.mcap` or `.db3` file, or a table (CSV, XLSX, Parquet, MATLAB). Data with custom names needs a topic
+    `map`: a file, or a `dict` with the same keys. By default, `map.toml` in the folder of the bag or `FILE.map.toml` next to the file is
+    used, if it exists. `namespace` selects a machine in a bag with several machines. `start` and `stop` (s after the first sample) select
+    a part.
 
-    What is not perfect in the data is a warning of the category `Remark`.
+    Flaws in the data are reported as warnings of the category `Remark`.
     """
     given = dict(map) if isinstance(map, Mapping) else map
     recording = Recording(_native.read(path, given, namespace, start, stop))
@@ -51,9 +51,9 @@ def read(
 
 
 def guess_map(path: Path, cylinder: str = "arm") -> str:
-    """A first topic map for data with names of its own, as TOML with a reason on each line. Check every line.
+    """Returns a draft topic map for data with custom names, as TOML with a reason on each line. Check every line.
 
-    `cylinder` is the one that signals belong to where their names do not say.
+    `cylinder` is the cylinder for signals whose names do not identify one.
     """
     return _native.guess_map(path, cylinder)
 
@@ -61,8 +61,8 @@ def guess_map(path: Path, cylinder: str = "arm") -> str:
 class Recording:
     """Signals of one machine on one clock, in SI units; `NaN` means "not measured".
 
-    `rec.time` and `rec["arm.cap_pressure"]` are NumPy arrays without a copy. They are read-only: `rec["x"].copy()` can be changed.
-    `rec.with_signals(...)` is a recording with other values.
+    `rec.time` and `rec["arm.cap_pressure"]` are NumPy arrays that share memory with the recording. They are read-only; use
+    `rec["x"].copy()` for an array that you can modify. `rec.with_signals(...)` returns a recording with other values.
     """
 
     __slots__ = ("_native",)
@@ -79,7 +79,7 @@ class Recording:
         source: str = "arrays",
         start_nanoseconds: int = 0,
     ) -> Recording:
-        """A recording from arrays: times in s (strictly increasing; moved so that the first is 0), and values in SI units by signal name
+        """Creates a recording from times in s (strictly increasing; shifted so that the first is 0) and values in SI units by signal name
         (`arm.displacement`, `pump_pressure`)."""
         times = _column(time)
         if len(times) and np.isfinite(times[0]):
@@ -90,7 +90,7 @@ class Recording:
 
     @property
     def source(self) -> str:
-        """Where the signals come from."""
+        """Source of the signals."""
         return self._native.source
 
     @property
@@ -100,7 +100,7 @@ class Recording:
 
     @property
     def start_nanoseconds(self) -> int:
-        """Stamp of the first sample, ns since the Unix epoch."""
+        """Timestamp of the first sample, ns since the Unix epoch."""
         return self._native.start_nanoseconds
 
     @property
@@ -120,7 +120,7 @@ class Recording:
 
     @property
     def remarks(self) -> list[str]:
-        """What was not perfect in the data, one line each."""
+        """Flaws in the data, one line each."""
         return self._native.remarks
 
     def __len__(self) -> int:
@@ -136,38 +136,38 @@ class Recording:
         return iter(self.signals)
 
     def keys(self) -> list[str]:
-        """Names of the measured signals; with it, `dict(rec)` works."""
+        """Names of the measured signals. Required for `dict(rec)`."""
         return list(self.signals)
 
     def part(self, start: float | None = None, stop: float | None = None) -> Recording:
-        """The samples from `start` to `stop`, s after the first."""
+        """Returns the samples from `start` to `stop`, s after the first sample."""
         return Recording(self._native.part(start, stop))
 
     def with_signals(self, signals: Mapping[str, ArrayLike]) -> Recording:
-        """A recording on the same clock with these signals added or replaced (SI units)."""
+        """Returns a recording on the same clock with these signals added or replaced (SI units)."""
         columns = {name: self[name] for name in self} | dict(signals)
         return Recording.from_arrays(self.time, columns, source=self.source, start_nanoseconds=self.start_nanoseconds)
 
     def write(self, folder: Path, *, namespace: str = "/", replace: bool = False) -> None:
-        """Writes a bag (MCAP, with the topics of this project in `namespace`), which the program and ROS 2 read."""
+        """Writes a bag that the program and ROS 2 can read (MCAP, with the topics of this project in `namespace`)."""
         self._native.write(folder, namespace, replace)
 
     def _table(self) -> dict[str, NDArray[np.float64]]:
         return {TIME: self.time} | {name: self[name] for name in self}
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Measured signals as columns, times in s as index. Needs pandas."""
+        """Returns measured signals as columns, with times in s as the index. Requires pandas."""
         pandas = needed("pandas", "to_pandas")
         table = self._table()
         return pandas.DataFrame(table, index=pandas.Index(table.pop(TIME), name=TIME))
 
     def to_polars(self) -> polars.DataFrame:
-        """Times (`time`, s) and measured signals as columns. Needs Polars."""
+        """Returns times (`time`, s) and measured signals as columns. Requires Polars."""
         return needed("polars", "to_polars").DataFrame(self._table())
 
     def to_arrow(self) -> pyarrow.Table:
-        """Times (`time`, s) and measured signals as columns, which share memory with the recording; units are in the metadata of the
-        fields. Needs PyArrow."""
+        """Returns times (`time`, s) and measured signals as columns that share memory with the recording. Field metadata contains the
+        units. Requires PyArrow."""
         pyarrow = needed("pyarrow", "to_arrow")
         units = {TIME: "s"} | self.signals
         table = self._table()
@@ -175,7 +175,7 @@ class Recording:
         return pyarrow.table([pyarrow.array(values) for values in table.values()], schema=pyarrow.schema(fields))
 
     def plot(self, *names: str) -> Figure:
-        """Signals over time, one axis for each unit; without names, all of them. Needs Matplotlib."""
+        """Plots signals over time, with one axis for each unit. By default, plots all signals. Requires Matplotlib."""
         from ._plots import of_recording
 
         return of_recording(self, names)

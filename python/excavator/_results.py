@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 HEIGHT = 720
-"""Height of a page in a notebook, pixels."""
+"""Height of a page in a notebook, in pixels."""
 
 
 class Result:
-    """The result of a verb: the content of the program's `--json` and `--report`."""
+    """Result of a verb: the content of the `--json` and `--report` files of the program."""
 
     def __init__(self, native: _native.Outcome) -> None:
         self._native = native
@@ -31,24 +31,24 @@ class Result:
         return json.loads(self._native.json())
 
     def to_dict(self) -> dict[str, Any]:
-        """The content of the program's `--json`; what is not a number is `None`."""
+        """Returns the content of the `--json` file of the program. Non-finite numbers are `None`."""
         return json.loads(self._native.json())
 
     def to_json(self) -> str:
-        """The same as text."""
+        """Returns the same content as text."""
         return self._native.json()
 
     def __getitem__(self, key: str) -> Any:
-        """One entry of `to_dict()`."""
+        """Returns one entry of `to_dict()`."""
         return self._content[key]
 
     @property
     def sentence(self) -> str:
-        """The result in a sentence or two."""
+        """The result in one or two sentences."""
         return self._native.sentence()
 
     def html(self) -> str:
-        """The page of the program's `--report`: everything is in it, and it needs no network. For verbs without a page, the tables."""
+        """Returns the `--report` page of the program, which is self-contained and needs no network. For verbs without a page, returns the tables."""
         page = self._native.page()
         return page if page is not None else f"<!DOCTYPE html><meta charset=utf-8>{self._tables()}"
 
@@ -67,7 +67,7 @@ class Result:
         page = self._native.page()
         if page is None:
             return self._tables()
-        # A frame of its own: the page has its own styles and draws its own plots.
+        # A separate frame, because the page has its own styles and draws its own plots.
         frame = f'<iframe srcdoc="{html.escape(page)}" width="100%" height="{HEIGHT}" style="border:0"></iframe>'
         return f"<p>{html.escape(self.sentence)}</p>{frame}"
 
@@ -75,7 +75,7 @@ class Result:
 class _WithModel(Result):
     @property
     def model(self) -> Model:
-        """The model that was found."""
+        """The resulting model."""
         found = self._native.model()
         assert found is not None
         return Model(found)
@@ -84,21 +84,21 @@ class _WithModel(Result):
 class _WithSignals(Result):
     @cached_property
     def recordings(self) -> dict[str, Recording]:
-        """Signals over time: `measured`, `simulated`, and those beside them."""
+        """Recordings by name: `measured`, `simulated`, and any others in the comparison."""
         return {what: Recording(one) for what, one in self._native.recordings()}
 
     @property
     def measured(self) -> Recording:
-        """What was measured; velocities that were not measured are derived from displacement."""
+        """Measured signals. Velocities that were not measured are derived from displacement."""
         return self.recordings["measured"]
 
     @property
     def simulated(self) -> Recording:
-        """What the model does with the same input."""
+        """Signals that the model predicts for the same input."""
         return self.recordings["simulated"]
 
     def plot(self, *signals: str) -> Figure:
-        """Measured and simulated signals over time; without names, all that were compared. Needs Matplotlib."""
+        """Plots measured and simulated signals over time. By default, plots all compared signals. Requires Matplotlib."""
         from ._plots import of_comparison
 
         others = {what: one for what, one in self.recordings.items() if what != "measured"}
@@ -109,16 +109,16 @@ class _WithSignals(Result):
 
 
 class Comparison(_WithSignals):
-    """A model beside a recording."""
+    """Comparison of a model with a recording."""
 
     @property
     def mean_nmse(self) -> float | None:
-        """Mean over the signals of the squared error divided by the variance: 0 is perfect, 1 is no better than a constant."""
+        """Mean NMSE of the signals (mean squared error divided by the variance): 0 is a perfect match; 1 is no better than a constant."""
         return self._content["mean_nmse"]
 
     @property
     def nmse(self) -> dict[str, float | None]:
-        """The same by signal."""
+        """NMSE by signal."""
         return {name: one["nmse"] for name, one in self._content["signals"].items()}
 
     def _compared(self) -> list[str]:
@@ -126,7 +126,7 @@ class Comparison(_WithSignals):
 
 
 class Identification(_WithModel):
-    """Parameters from recordings. `model` has the identified values."""
+    """Parameters identified from recordings. `model` has the identified values."""
 
     @property
     def parameters(self) -> dict[str, dict[str, Any]]:
@@ -135,15 +135,15 @@ class Identification(_WithModel):
 
     @property
     def not_identified(self) -> dict[str, str]:
-        """Parameters without a value, with the reason."""
+        """Reason for each parameter that was not identified, by name."""
         return {one["name"]: one["reason"] for one in self._content["not_identified"]}
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Identified parameters as a table. Needs pandas."""
+        """Returns the identified parameters as a table. Requires pandas."""
         return _frame(self._content["parameters"])
 
     def plot(self) -> Figure:
-        """Identified values relative to themselves, with their 95 % intervals. Needs Matplotlib."""
+        """Plots the 95 % interval of each identified parameter, relative to its value. Requires Matplotlib."""
         from ._plots import of_parameters
 
         return of_parameters(self._content["parameters"])
@@ -156,7 +156,7 @@ class Identification(_WithModel):
 
 
 class Diagnosis(_WithModel):
-    """Which physical effect a model is missing. `model` is the one that the verdict supports."""
+    """Diagnosis of the physical effect that a model is missing. `model` is the model that the verdict supports."""
 
     @property
     def verdict(self) -> str:
@@ -165,24 +165,24 @@ class Diagnosis(_WithModel):
 
     @property
     def candidates(self) -> list[dict[str, Any]]:
-        """Effects of the verdict, best first."""
+        """Effects with evidence, best first."""
         return self._content["candidates"]
 
     def to_pandas(self) -> pandas.DataFrame:
-        """All effects that were tried, as a table. Needs pandas."""
+        """Returns all effects that were tried, as a table. Requires pandas."""
         nested = ("parameters", "refitted", "bootstrap")
         all_tried = self._content["candidates"] + self._content["rejected"]
         return _frame([{key: value for key, value in one.items() if key not in nested} for one in all_tried])
 
     def plot(self) -> Figure:
-        """Error on the validation recordings without and with each effect. Needs Matplotlib."""
+        """Plots the error on the validation recordings without and with each effect. Requires Matplotlib."""
         from ._plots import of_candidates
 
         return of_candidates(self._content["candidates"] + self._content["rejected"])
 
 
 class Proposals(Result):
-    """Laws for what a model is missing and no catalogue has, best first."""
+    """Laws for effects that a model is missing and that no catalogue contains, best first."""
 
     @property
     def laws(self) -> list[dict[str, Any]]:
@@ -190,7 +190,7 @@ class Proposals(Result):
         return self._content["proposals"]
 
     def to_toml(self) -> str:
-        """The laws as a catalogue file, with fitted values."""
+        """Returns the laws as the text of a catalogue file, with fitted values."""
         return self._native.file() or ""
 
     def save(self, path: Path, *, replace: bool = False) -> None:
@@ -199,14 +199,14 @@ class Proposals(Result):
             file.write(self.to_toml())
 
     def plot(self) -> Figure:
-        """Error on the validation recordings without and with each law. Needs Matplotlib."""
+        """Plots the error on the validation recordings without and with each law. Requires Matplotlib."""
         from ._plots import of_candidates
 
         return of_candidates([law | {"effect": law["formula"], "cylinder": law["at"]} for law in self.laws])
 
 
 class Refinement(_WithSignals, _WithModel):
-    """A model with more effects, fitted and measured again. `model` is the refined one."""
+    """A model with added effects, fitted and compared again. `model` is the refined model."""
 
     @property
     def verdict(self) -> str:
@@ -215,7 +215,7 @@ class Refinement(_WithSignals, _WithModel):
 
     @property
     def steps(self) -> list[dict[str, Any]]:
-        """What was added at each step, and the errors of the signals then."""
+        """The effects added at each step, and the resulting error of each signal."""
         return self._content["steps"]
 
     def _compared(self) -> list[str]:
@@ -223,11 +223,11 @@ class Refinement(_WithSignals, _WithModel):
 
 
 class Design(Result):
-    """A manoeuvre that separates effects, or shows a parameter."""
+    """A manoeuvre that separates effects, or makes a parameter identifiable."""
 
     @property
     def profile(self) -> str | None:
-        """The profile file (TOML), for `Model.simulate` and the program; `None` where no manoeuvre is expected to be enough."""
+        """Text of the profile file (TOML), for `Model.simulate` and the program. `None` if no manoeuvre is expected to be sufficient."""
         return self._native.file()
 
     def save(self, path: Path, *, replace: bool = False) -> None:
@@ -248,34 +248,34 @@ class Design(Result):
 
 
 class Energy(Result):
-    """Where the energy of a recording went, and whether the ledger of the model closes."""
+    """Where the energy of a recording went, and whether the energy ledger of the model closes."""
 
     @property
     def closes(self) -> bool:
-        """Whether noise explains the rest of every equation."""
+        """Whether noise explains the residual of every equation."""
         return self._content["ledger_closes"]
 
     @property
     def losses(self) -> dict[str, float]:
         """Energy that each effect took from the cylinders and the pump line, J."""
         effects = self._content["energy"]["effects"]
-        # What is not known is None in JSON.
+        # Unknown values are None.
         taken = [-((one["into_cylinders"] or 0.0) + (one["into_pump_line"] or 0.0)) for one in effects]
         return {f"{one['effect']}@{one['at']}": energy for one, energy in zip(effects, taken, strict=True)}
 
     def plot(self) -> Figure:
-        """Energy that each effect took, J. Needs Matplotlib."""
+        """Plots the energy that each effect took, J. Requires Matplotlib."""
         from ._plots import of_bars
 
         return of_bars(self.losses, "energy, J")
 
 
 class Characterisation(Result):
-    """Valve and friction, read off recordings without a simulation."""
+    """Valve and friction properties, determined from recordings without a simulation."""
 
     @property
     def cylinders(self) -> dict[str, dict[str, Any]]:
-        """What was found of each cylinder."""
+        """Properties of each cylinder, by name."""
         return _by_name(self._content["cylinders"])
 
 

@@ -1,11 +1,11 @@
 """The verbs of the program as functions.
 
-Options that several of them have:
+Common options:
 
-- `accept`: names of checks that may refuse a recording and are overruled, as a refusal says them;
+- `accept`: names of checks to overrule, as given in the error of a check that rejects a recording;
 - `where`: conditions such as `"abs(v) > 0.002"`; a recording is compared with the model only where all of them hold;
-- `whole`: use all of a recording of more than three minutes, not only its most informative stretches;
-- `progress`: `True` for a line on standard error, or a function that is called with what is done and the fraction done (0 to 1).
+- `whole`: use all of a recording longer than three minutes, not only its most informative stretches;
+- `progress`: `True` for a progress line on standard error, or a function that is called with the current step and the fraction done (0 to 1).
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ def compare(
 ) -> Comparison:
     """Simulates `model` with the input of `recording` and compares every output with the measurement.
 
-    `against` is another model for the same recording. `repeat` is another run of the same commands; it shows how well the machine repeats
-    itself.
+    `against` is a second model, compared with the same recording. `repeat` is another run with the same commands; it shows the
+    repeatability of the machine.
     """
     other = None if against is None else against._native
     again = None if repeat is None else repeat._native
@@ -67,7 +67,7 @@ def identify(
     """Identifies the unknown parameters of `model`.
 
     `method` is `weak-form` (not biased by sensor noise), `least-squares` (smoothed differences; biased by noise) or `output-error` (weak
-    form, then simulated outputs fitted to the measured ones).
+    form, followed by a fit of simulated outputs to the measured ones).
     """
     return Identification(_told(_native.identify(model._native, _all(recordings), method, _usage(accept, where, whole))))
 
@@ -75,12 +75,12 @@ def identify(
 def characterise(
     model: Model, recordings: Recordings, *, accept: str | Sequence[str] = (), where: Where = ()
 ) -> Characterisation:
-    """Reads valve and friction off recordings without a simulation: gains, dead zone and hysteresis, leakage, friction against speed."""
+    """Determines valve and friction properties without a simulation: gains, dead zone, hysteresis, leakage, and friction against speed."""
     return Characterisation(_told(_native.characterise(model._native, _all(recordings), _usage(accept, where, True))))
 
 
 def energy(model: Model, recording: Recording, *, accept: str | Sequence[str] = (), where: Where = ()) -> Energy:
-    """Where the energy went, and whether the ledger of the model closes."""
+    """Computes where the energy of a recording went, and whether the energy ledger of the model closes."""
     return Energy(_told(_native.energy(model._native, recording._native, _usage(accept, where, True))))
 
 
@@ -94,9 +94,9 @@ def diagnose(
     where: Where = (),
     whole: bool = False,
 ) -> Diagnosis:
-    """Finds out which physical effect `model` is missing.
+    """Determines which physical effect `model` is missing.
 
-    Parameters are fitted to the recordings `identification`. Evidence comes from the recordings `validation`, which are never fitted.
+    Parameters are fitted to the `identification` recordings. Evidence comes from the `validation` recordings, which are never fitted.
     """
     usage = _usage(accept, where, whole)
     with teller(progress) as tell:
@@ -114,7 +114,7 @@ def propose(
     where: Where = (),
     whole: bool = False,
 ) -> Proposals:
-    """Proposes laws, as formulas, for what `model` is missing and no catalogue has."""
+    """Proposes laws, as formulas, for effects that `model` is missing and that no catalogue contains."""
     usage = _usage(accept, where, whole)
     with teller(progress) as tell:
         found = _native.propose(model._native, _all(identification), _all(validation), usage, tell)
@@ -133,10 +133,10 @@ def refine(
     where: Where = (),
     whole: bool = False,
 ) -> Refinement:
-    """Adds effects, fits the model again, and measures the error again.
+    """Adds effects to the model, fits it again, and computes the new errors.
 
-    `add` names the effects (`"pump_leakage"`, `"seal_friction@load"`). Without, a diagnosis finds them; with `laws=True` it may also propose
-    laws that no catalogue has.
+    `add` names the effects (`"pump_leakage"`, `"seal_friction@load"`). By default, a diagnosis selects them; with `laws=True` it may also
+    propose laws that no catalogue contains.
     """
     names, usage = _listed(add), _usage(accept, where, whole)
     with teller(progress) as tell:
@@ -155,11 +155,11 @@ def design(
     highest_pressure: float = 20e6,
     progress: Progress = None,
 ) -> Design:
-    """Designs a manoeuvre that separates the effects `between` (`"none"` is the model as it is), or that shows a `parameter`.
+    """Designs a manoeuvre that separates the effects `between` (`"none"` is the unchanged model), or that makes a `parameter` identifiable.
 
-    `diagnosis` is a result of `diagnose`, or a file of `excavator diagnose --json`: tied effects, fitted values and the noise of the sensors
-    are taken from there. The profile lasts `duration` (s) at most, keeps the share `stroke_margin` of the stroke free at each end, and stays
-    below `highest_pressure` (Pa).
+    `diagnosis` is a result of `diagnose`, or a file from `excavator diagnose --json`. It supplies tied effects, fitted values and sensor
+    noise. The profile lasts at most `duration` (s), keeps the fraction `stroke_margin` of the stroke free at each end, and stays below
+    `highest_pressure` (Pa).
     """
     is_file = isinstance(diagnosis, (str, os.PathLike))
     order = {

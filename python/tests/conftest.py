@@ -1,4 +1,4 @@
-"""Samples, and the program to compare with."""
+"""Fixtures: the samples, and the program as reference."""
 
 import json
 import os
@@ -12,13 +12,13 @@ SAMPLES = Path(__file__).parents[2] / "bags" / "samples"
 
 @pytest.fixture
 def samples():
-    """Folder of the samples of the repository."""
+    """Folder with the samples of the repository."""
     return SAMPLES
 
 
 @pytest.fixture
 def program(tmp_path):
-    """Runs a verb of the program and gives its JSON."""
+    """Function that runs a verb of the program and returns its JSON."""
     binary = os.environ.get("EXCAVATOR_BINARY")
     if not binary:
         pytest.skip("EXCAVATOR_BINARY is not set: results are not compared with those of the program")

@@ -1,4 +1,4 @@
-"""Python functions become formulas, and the formulas compute what the functions compute."""
+"""Laws from Python functions: the formulas compute the same values as the functions."""
 
 import math
 
@@ -27,9 +27,9 @@ def test_a_function_is_the_law_in_text():
     commands = {"time": np.linspace(0.0, 1.0, 101), "arm.orifice_command": np.full(101, 30e-6)}
     traced, written = (model.with_effect(one, at="arm").simulate(commands) for one in (law, text))
     assert np.array_equal(traced["arm.displacement"], written["arm.displacement"])
-    # The law acts: without it the arm is elsewhere.
+    # The law has an effect: without it, the arm ends at a different position.
     assert not np.array_equal(traced["arm.displacement"], model.simulate(commands)["arm.displacement"])
-    # It travels in the model file.
+    # The model file contains it.
     again = excavator.Model.from_toml(model.with_effect(law, at="arm").to_toml())
     assert "load_damping" in [effect.name for effect in again.effects]
 
@@ -57,7 +57,7 @@ SHAPES = [
 
 @pytest.mark.parametrize("function", SHAPES, ids=range(len(SHAPES)))
 def test_a_formula_computes_what_the_function_computes(function):
-    """Python reads the formula again, with `^` as its power and the functions of formulas by name; both give the same numbers."""
+    """Evaluates the formula in Python, with `^` as the power and formula functions by name. Both return the same numbers."""
     formula = excavator.law(function, acts_on="piston_force", name="shape")["formula"]
     names = {"clamp": np.clip, "ln": math.log, "atan": math.atan, "choice": lambda c, a, b: a if c else b}
     names |= {name: getattr(np, name) for name in ("tanh", "exp", "sqrt", "abs")}
@@ -106,7 +106,7 @@ def test_what_a_formula_cannot_say_is_refused_in_one_line():
     refused(lambda v: None, "returns nothing")
     with pytest.raises(excavator.ModelError, match="needs a name"):
         excavator.law(lambda v: v, acts_on="piston_force")
-    # An own fault of the function is its own.
+    # Errors in the function itself are passed on unchanged.
     with pytest.raises(ZeroDivisionError):
         excavator.law(lambda v: v / (1 // 0), acts_on="piston_force", name="mine")
     assert repr(Symbol("v") / 3) == "v / 3"

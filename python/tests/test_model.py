@@ -107,3 +107,5 @@ def test_recordings_are_simulated(samples):
     np.testing.assert_array_equal(simulated.time, rec.time)
     found = excavator.compare(model, rec)
     np.testing.assert_array_equal(simulated["arm.cap_pressure"], found.simulated["arm.cap_pressure"])
+    with pytest.raises(excavator.ModelError, match="start"):
+        model.simulate(rec, start={"arm": 0.1})

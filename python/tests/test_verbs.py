@@ -1,4 +1,4 @@
-"""Verbs: the same results as the program, progress, interruption, pictures."""
+"""Verbs: agreement with the program, progress, interruption, plots."""
 
 import os
 import signal
@@ -22,7 +22,7 @@ LAW = {
 
 @pytest.fixture(scope="module")
 def hidden():
-    """Model and recordings of the sample with a law that the catalogue lacks."""
+    """Model and recordings of the sample with a law that is not in the catalogue."""
     from conftest import SAMPLES
 
     folder = SAMPLES / "hidden-law"
@@ -34,7 +34,7 @@ LONG = bool(os.environ.get("EXCAVATOR_LONG"))
 
 @pytest.fixture(scope="module")
 def pair(hidden):
-    """Two recordings for what takes long; unless time does not matter, halves of one."""
+    """Model and two recordings for slow tests: the halves of one recording, or both recordings if EXCAVATOR_LONG is set."""
     from conftest import SAMPLES
 
     path = SAMPLES / "hidden-law/validation"
@@ -43,7 +43,7 @@ def pair(hidden):
 
 @pytest.fixture(scope="module")
 def diagnosis(pair):
-    """A diagnosis, with what was told of its progress."""
+    """A diagnosis, and the reported progress."""
     told = []
     found = excavator.diagnose(*pair, progress=lambda what, done: told.append((what, done)))
     return found, told
@@ -201,7 +201,7 @@ def test_other_threads_run_meanwhile(hidden):
 
 
 def test_ctrl_c_ends_the_work(hidden):
-    # A shell starts what runs in its background deaf to SIGINT, and Python leaves it so.
+    # A shell starts background processes with SIGINT ignored, and Python keeps this setting.
     usual = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         begin = time.perf_counter()

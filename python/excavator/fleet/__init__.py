@@ -1,4 +1,4 @@
-"""Fleets: a verb on the recordings of many machines, each pair done once.
+"""Fleets: runs a verb on the recordings of many machines, once for each pair.
 
     from excavator import fleet
 
@@ -6,7 +6,7 @@
     print(fleet.run(pairs, "s3://results/spring"))
     tables = fleet.Results("s3://results/spring").collect()
 
-The work runs on Ray, on this machine or on a cluster. Recordings and results may be in object storage.
+Jobs run on Ray, on this machine or on a cluster. Recordings and results may be in object storage.
 """
 
 from ._page import page

@@ -1,4 +1,4 @@
-"""`python -m excavator.fleet MANIFEST --results URL`: a fleet from the shell."""
+"""Runs a fleet from the shell: `python -m excavator.fleet MANIFEST --results URL`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from . import Results, Store, page, read_manifest, run
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Runs a fleet; 0 when everything is done, 1 when something is on the poison list or left, 2 for wrong words."""
+    """Runs a fleet. Returns 0 if all work is done, 1 if any is poisoned, failed, refused or left, and 2 for an error in the arguments or input."""
     words = argparse.ArgumentParser(prog="python -m excavator.fleet", description="A verb on the recordings of many machines.")
     words.add_argument("manifest", metavar="MANIFEST", help="CSV or Parquet: machine, model, identification, validation, map, recorded")
     words.add_argument("--results", required=True, metavar="URL", help="where results go: a folder, or s3://, gs:// or az://")

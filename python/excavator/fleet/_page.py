@@ -1,4 +1,4 @@
-"""A page that draws a fleet: plain HTML with drawings in it, no scripts, and nothing from a network."""
+"""Page with charts of a fleet: plain HTML with inline SVG, without scripts or network access."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ if TYPE_CHECKING:
     import pyarrow
 
 WIDTH, ROW_HEIGHT, LEFT, RIGHT = 900, 26, 190, 20
-"""Sizes of drawings, pixels: `LEFT` is for names of machines."""
+"""Sizes of the charts, in pixels. `LEFT` is the margin for names of machines."""
 
 DRIFT_HEIGHT = 260
-"""Height of the drawing of a drift, pixels."""
+"""Height of the drift chart, in pixels."""
 
 VERDICTS = {
     "adequate": ("ok", "the model is adequate", "with an adequate model"),
     "missing_effect": ("effect", "an effect is missing", "with a missing effect"),
     "unexplained": ("open", "unexplained", "unexplained"),
 }
-"""Class of each verdict, its words, and its words behind a number."""
+"""CSS class of each verdict, its text, and its text after a number."""
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 LINES = 8
-"""Machines that a drawing of a drift shows apart; the others are grey."""
+"""Number of machines with their own colour in a drift chart; the others are grey."""
 
 _STYLE = """
 :root{color-scheme:light dark;--ink:#1c2128;--dim:#68717d;--rule:#d4d9df;--paper:#fff;--ok:#2b8a57;--effect:#c2570c;--open:#9b2c7e;
@@ -47,9 +47,9 @@ vertical-align:top;overflow-wrap:anywhere}td.number{text-align:right}
 
 
 def page(tables: dict[str, pyarrow.Table], poison: Sequence[Poison] = (), *, parameter: str | None = None, title: str = "Fleet") -> str:
-    """The page of a fleet, from the tables of `Results.collect()` and the poison list.
+    """Returns the page of a fleet, from the tables of `Results.collect()` and the poison list.
 
-    `parameter` is the one whose drift is drawn; without, the one that most recordings have.
+    `parameter` is the parameter in the drift chart. By default, it is the one that most recordings have.
     """
     results = tables["results"].to_pylist()
     parts = [
@@ -65,7 +65,7 @@ def page(tables: dict[str, pyarrow.Table], poison: Sequence[Poison] = (), *, par
 
 
 def _text(value: object) -> str:
-    """A text for HTML. Addresses in it are no links, and nothing looks like one."""
+    """Escapes text for HTML. Addresses are masked so that no client turns them into links."""
     return html.escape(str(value)).replace("://", ":&#47;&#47;")
 
 
@@ -91,7 +91,7 @@ def _count(number: int, thing: str) -> str:
 
 
 def _places(moments: Iterable[datetime | None], left: float, right: float) -> tuple[Callable[[datetime], float], list[datetime]]:
-    """Where times are drawn, and the first and last of them."""
+    """Returns the function from time to x coordinate, and the first and last time."""
     known = sorted(one for one in moments if one is not None)
     if not known:
         return (lambda _: (left + right) / 2), []
@@ -118,7 +118,7 @@ def _shortened(name: str) -> str:
 
 
 def _verdicts(results: list[dict[str, Any]]) -> str:
-    """Machines below each other, time to the right. Verdicts differ in form as well as in colour."""
+    """Draws one row for each machine, with time to the right. Verdicts differ in shape as well as in colour."""
     judged = [row for row in results if row["verdict"] in VERDICTS]
     if not judged:
         return ""
@@ -170,7 +170,7 @@ def _effects(results: list[dict[str, Any]]) -> str:
 
 
 def _ticks(low: float, high: float) -> tuple[list[float], int]:
-    """Round numbers from `low` or below to `high` or above, and the power of ten that they are written in."""
+    """Returns ticks at round numbers that span `low` to `high`, and the power of ten by which the labels are scaled."""
     if high <= low:
         reach = 0.05 * abs(low) or 1.0
         low, high = low - reach, high + reach
@@ -184,7 +184,7 @@ def _ticks(low: float, high: float) -> tuple[list[float], int]:
 
 
 def _drift(parameters: list[dict[str, Any]], wanted: str | None) -> str:
-    """A parameter over time, with its 95 % intervals; a line for each machine."""
+    """Draws a parameter over time with its 95 % intervals, with one line for each machine."""
     usable = [row for row in parameters if row["value"] is not None and row["recorded"] is not None]
     given = [row for row in usable if wanted in (None, row["parameter"])]
     if not given:

@@ -1,4 +1,4 @@
-"""What is to be done: pairs of recordings, and the key of the work on each."""
+"""Pairs of recordings, and a job with a unique key for each pair."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ from .._errors import ExcavatorError
 from ._store import Store, is_url, joined
 
 AT_A_TIME = 8
-"""How many addresses are looked at at a time. An object costs one request, a folder one more."""
+"""Number of addresses that are read concurrently. An object costs one request, a folder one more."""
 
 SEPARATOR = ";"
-"""What is between several recordings in a cell of a CSV manifest."""
+"""Separator between several recordings in a cell of a CSV manifest."""
 
 
 @dataclass(frozen=True)
 class Pair:
-    """The recordings of one machine at one time: the unit of work of a fleet."""
+    """The recordings of one machine at one time: one unit of work of a fleet."""
 
     machine: str
-    """Name of the machine, as results have it."""
+    """Name of the machine in the results."""
     model: str
-    """A built-in model, or the address of a model file (`.toml`)."""
+    """Name of a built-in model, or address of a model file (`.toml`)."""
     identification: tuple[str, ...]
-    """Addresses of the recordings that parameters are fitted to."""
+    """Addresses of the recordings to which parameters are fitted."""
     validation: tuple[str, ...]
-    """Addresses of the recordings that judge; `identify` needs none."""
+    """Addresses of the validation recordings; `identify` needs none."""
     map: str | None = None
-    """Address of a topic map, for data with names of its own. Without, `map.toml` in the folder of a bag is used."""
+    """Address of a topic map, for data with custom names. By default, `map.toml` in the folder of a bag is used."""
     recorded: str | None = None
-    """When it was recorded, ISO 8601 (`2026-05-01T12:00:00Z`). Without, the stamp of the first sample is used."""
+    """Time of the recording, ISO 8601 (`2026-05-01T12:00:00Z`). By default, the timestamp of the first sample is used."""
 
     @classmethod
     def of(cls, row: Mapping[str, Any]) -> Pair:
-        """A pair from a row of a manifest, with these names. Several recordings are a list, or a text with `;` between them."""
+        """Creates a pair from a row of a manifest, with the fields of `Pair` as keys. Several recordings are a list, or a text separated by `;`."""
         unknown = sorted(set(row) - set(cls.__dataclass_fields__))
         if unknown:
             raise ValueError(f"a manifest has no column {', '.join(unknown)}; there are {', '.join(cls.__dataclass_fields__)}")
@@ -61,16 +61,16 @@ class Pair:
 
     @property
     def recordings(self) -> tuple[str, ...]:
-        """All its recordings."""
+        """All recordings of the pair."""
         return self.identification + self.validation
 
 
 @dataclass(frozen=True)
 class Job:
-    """A pair with everything that its result depends on."""
+    """A pair with everything on which its result depends."""
 
     key: str
-    """Which work this is: SHA-256 over the contents of its recordings, model, map, verb, options and the version of the program."""
+    """Identity of the job: SHA-256 of the contents of its recordings, model and map, of verb and options, and of the version of the program."""
     pair: Pair
     verb: str
     options: Mapping[str, Any]
@@ -82,7 +82,7 @@ class Job:
 
 
 def read_manifest(address: str | os.PathLike[str], store: Store | None = None) -> list[Pair]:
-    """Pairs from a CSV or Parquet file, with a column for each field of `Pair`. Paths are relative to the manifest."""
+    """Reads pairs from a CSV or Parquet file with a column for each field of `Pair`. Paths are relative to the manifest."""
     address, store = os.fspath(address), store or Store()
     content = store.get(address)
     if address.endswith((".parquet", ".pq")):
@@ -110,16 +110,16 @@ def _beside(pair: Pair, folder: str) -> Pair:
 
 
 def pairs_of(given: Iterable[Pair | Mapping[str, Any]]) -> list[Pair]:
-    """Pairs, some of which may be a `dict`."""
+    """Converts every `dict` to a `Pair`."""
     return [one if isinstance(one, Pair) else Pair.of(one) for one in given]
 
 
 def resolve(
     pairs: Sequence[Pair], store: Store, *, verb: str = "diagnose", options: Mapping[str, Any] | None = None
 ) -> tuple[list[Job], list[tuple[Pair, str]]]:
-    """Jobs of the pairs in their order, each key once, and the pairs that cannot be done, with the reason.
+    """Returns the jobs of the pairs in order, without duplicate keys, and the pairs that cannot be run, with the reason.
 
-    Every address is looked at once, however many pairs have it.
+    Every address is read once, even if several pairs contain it.
     """
     documents = {pair.model for pair in pairs if _is_file(pair.model)} | {pair.map for pair in pairs if pair.map}
     recordings = {address for pair in pairs for address in pair.recordings}
@@ -155,13 +155,13 @@ def resolve(
 
 
 def key_of(identity: Mapping[str, Any]) -> str:
-    """SHA-256 of a canonical JSON: sorted names, no spaces."""
+    """Returns the SHA-256 of the canonical JSON form: sorted names, no spaces."""
     text = json.dumps(identity, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _kept(function):  # type: ignore[no-untyped-def]
-    """The function, with errors of ours as results."""
+    """Wraps `function` to return an `ExcavatorError` instead of raising it."""
 
     def kept(given: str) -> Any:
         try:

@@ -1,4 +1,4 @@
-"""Where results are, and results as tables.
+"""Storage of results, and results as tables.
 
     RESULTS/done/KEY.json        the program's --json, written once
     RESULTS/rows/KEY.json        one row: machine, times, seconds, bytes
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import pyarrow
 
 AT_A_TIME = 16
-"""How many small objects are read at a time."""
+"""Number of small objects that are read concurrently."""
 
 ROW = {
     "key": "string",
@@ -43,8 +43,8 @@ ROW = {
     "bytes_total": "int64",
     "program": "string",
 }
-"""Columns of `results.parquet`. Errors are those on the validation recordings, as the JSON has them; `effects` are those of the verdict, as
-`EFFECT@PLACE`; `seconds` is the time that the work took."""
+"""Columns of `results.parquet`. `error_before` and `error_after` are the errors on the validation recordings, as in the JSON; `effects` are
+the effects of the verdict, as `EFFECT@PLACE`; `seconds` is the duration of the work."""
 
 PARAMETER = {
     "key": "string",
@@ -57,8 +57,8 @@ PARAMETER = {
     "margin_95": "double",
     "unit": "string",
 }
-"""Columns of `parameters.parquet`. `effect` is empty for parameters of the model as it was given, refitted; else it is the effect that the
-verdict added. Values and margins are in `unit`, an SI unit."""
+"""Columns of `parameters.parquet`. `effect` is empty for refitted parameters of the given model; otherwise it is the effect that the verdict
+added. Values and margins are in `unit`, an SI unit."""
 
 EFFECT = {
     "key": "string",
@@ -71,7 +71,7 @@ EFFECT = {
     "error_after": "double",
     "evidence": "double",
 }
-"""Columns of `effects.parquet`: every effect that was tried. Errors are those on the validation recordings without and with it."""
+"""Columns of `effects.parquet`, with a row for every effect that was tried. Errors are on the validation recordings, without and with it."""
 
 TABLES = {"results": ROW, "parameters": PARAMETER, "effects": EFFECT}
 """The tables with their columns and types."""
@@ -79,24 +79,24 @@ TABLES = {"results": ROW, "parameters": PARAMETER, "effects": EFFECT}
 
 @dataclass(frozen=True)
 class Poison:
-    """Work that cannot be done."""
+    """Work that failed permanently."""
 
     key: str
-    """Which work."""
+    """Key of the job."""
     machine: str
     """Name of the machine."""
     kind: str
-    """`data` (a recording, map or model that cannot be used), `fault` (an error that it caused each time), or `death` (it killed its worker each time)."""
+    """Cause of the last failure: `data` (an unusable recording, map or model), `fault` (another error), or `death` (the worker died)."""
     error: str
-    """What was said."""
+    """Error message."""
     attempts: int
-    """How often it was tried."""
+    """Number of failed attempts."""
     recordings: tuple[str, ...] = ()
-    """Addresses of its recordings."""
+    """Addresses of the recordings."""
 
 
 class Results:
-    """A folder with results, in any store. Every write is one object, so that nothing is half written."""
+    """A folder with results, in any store. Every write is a single object, so there are no partial writes."""
 
     def __init__(self, address: str, store: Store | None = None) -> None:
         self.address, self.store = address.rstrip("/"), store or Store()
@@ -110,35 +110,35 @@ class Results:
         return {name.removesuffix(".json") for name in names if name.endswith(".json")}
 
     def done(self) -> set[str]:
-        """Keys of all work that is done: one listing."""
+        """Returns the keys of all completed jobs, with a single listing."""
         return self._keys("done")
 
     def poisoned(self) -> set[str]:
-        """Keys of all work that could not be done when it was tried last."""
+        """Returns the keys of all jobs on the poison list that have not been completed since."""
         return self._keys("poison") - self.done()
 
     def save(self, job: Job, done: Done) -> bool:
-        """Writes a result; false where it was written before. The row goes first: what is in `done` has everything."""
+        """Writes a result. Returns false if it already existed. The row is written first, so that every key in `done` is complete."""
         row = json.dumps(done.row | {"remarks": done.remarks}, ensure_ascii=False)
         self.store.put(self._at("rows", job.key), row.encode())
         return self.store.put_if_absent(self._at("done", job.key), done.json.encode())
 
     def refuse(self, poison: Poison) -> None:
-        """Puts work on the poison list."""
+        """Adds an entry to the poison list."""
         self.store.put(self._at("poison", poison.key), json.dumps(vars(poison), ensure_ascii=False).encode())
 
     def json(self, key: str) -> str:
-        """The program's `--json` of a result."""
+        """Returns a result as the `--json` text of the program."""
         return self.store.get(self._at("done", key)).decode()
 
     def poison(self) -> list[Poison]:
-        """The poison list, by machine."""
+        """Returns the poison list, sorted by machine."""
         texts = self._read("poison", self.poisoned())
         found = [Poison(**(row | {"recordings": tuple(row["recordings"])})) for row in map(json.loads, texts)]
         return sorted(found, key=lambda one: (one.machine, one.key))
 
     def collect(self) -> dict[str, pyarrow.Table]:
-        """Writes `results.parquet`, `parameters.parquet` and `effects.parquet` of all that is done, and gives them. Needs PyArrow."""
+        """Writes `results.parquet`, `parameters.parquet` and `effects.parquet` of all completed jobs, and returns the tables. Requires PyArrow."""
         from .._optional import needed
 
         pyarrow, parquet = needed("pyarrow", "collect"), needed("pyarrow.parquet", "collect")
@@ -169,7 +169,7 @@ class Results:
 
 
 def moment(text: str | None) -> datetime | None:
-    """A time of ISO 8601 in UTC; without a zone it is UTC already."""
+    """Parses an ISO 8601 time and converts it to UTC. A time without a zone is taken as UTC."""
     if not text:
         return None
     found = datetime.fromisoformat(text.replace("Z", "+00:00"))
@@ -177,7 +177,7 @@ def moment(text: str | None) -> datetime | None:
 
 
 def summary_of(text: dict[str, Any]) -> dict[str, Any]:
-    """Verdict, effects and errors of a result."""
+    """Returns verdict, effects and errors of a result."""
     errors = text.get("validation_error") or {}
     return {
         "verdict": text.get("verdict"),
@@ -188,7 +188,7 @@ def summary_of(text: dict[str, Any]) -> dict[str, Any]:
 
 
 def parameters_of(text: dict[str, Any]) -> list[dict[str, Any]]:
-    """Parameters of a result: those of the model as it was given, and those of effects that the verdict added."""
+    """Returns the parameters of a result: those of the given model, and those of effects that the verdict added."""
     own = [("", one) for one in text.get("refitted") or text.get("parameters") or []]
     for effect in _in_verdict(text):
         own += [(f"{effect['effect']}@{effect['cylinder']}", one) for one in effect.get("parameters") or []]
@@ -206,7 +206,7 @@ def parameters_of(text: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def effects_of(text: dict[str, Any]) -> list[dict[str, Any]]:
-    """Effects that were tried."""
+    """Returns the effects that were tried."""
     named = {(one["effect"], one["cylinder"]) for one in _in_verdict(text)}
     tried = [*(text.get("candidates") or []), *(text.get("rejected") or [])]
     return [

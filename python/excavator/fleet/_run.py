@@ -1,4 +1,4 @@
-"""A fleet on Ray: many pairs, each done once."""
+"""Runs a fleet on Ray: many pairs, each once."""
 
 from __future__ import annotations
 
@@ -21,51 +21,51 @@ from ._unit import Done, work
 Work = Callable[[Job, Store], Done]
 
 STORE_ATTEMPTS = 6
-"""How often a job is tried while the store fails. Requests inside were tried again already: this is for an outage of a minute."""
+"""Number of attempts at a job while the store fails. Single requests are already retried; these attempts cover an outage of about a minute."""
 
 FIRST_WAIT = 1.0
-"""Wait before a job is tried again after the store failed, s; it doubles each time."""
+"""Wait before the first retry after a store failure, s. It doubles with each retry."""
 
 AHEAD = 2
-"""Jobs that are handed to Ray, for each worker: one is computed, and one waits, so that no worker does."""
+"""Jobs submitted to Ray for each worker: one runs and one is queued, so that no worker is idle."""
 
 OBJECT_STORE = 100 << 20
-"""Memory for objects of a local Ray, bytes: jobs and answers are small, and bags never go through it."""
+"""Object store memory of a local Ray, bytes. Jobs and results are small, and bags never pass through it."""
 
 EVERY = 0.5
-"""How often waiting jobs are looked at, s."""
+"""Interval between checks of waiting jobs, s."""
 
 
 @dataclass
 class Report:
-    """What a run did."""
+    """Summary of a run."""
 
     pairs: int = 0
-    """Pairs that were given."""
+    """Number of given pairs."""
     keys: int = 0
-    """Different pieces of work among them."""
+    """Number of distinct jobs among them."""
     skipped: int = 0
-    """Those that were done before."""
+    """Jobs that were completed in an earlier run."""
     poisoned_before: int = 0
-    """Those that were on the poison list and were not tried."""
+    """Jobs that were already on the poison list and were not tried."""
     done: list[str] = field(default_factory=list)
-    """Keys that are done now."""
+    """Keys of the jobs completed in this run."""
     poisoned: dict[str, str] = field(default_factory=dict)
-    """Keys that were put on the poison list, with the reason."""
+    """Keys added to the poison list, with the reason."""
     failed: dict[str, str] = field(default_factory=dict)
-    """Keys that the store kept from being done, with the reason; the next run tries them again."""
+    """Keys of jobs that failed because of the store, with the reason; the next run tries them again."""
     refused: list[tuple[Pair, str]] = field(default_factory=list)
-    """Pairs with a recording, map or model that is not there, with the reason."""
+    """Pairs whose recording, map or model cannot be read, with the reason."""
     starts: int = 0
-    """How often work was begun."""
+    """Number of job starts."""
     deaths: int = 0
-    """How often a worker died during work."""
+    """Number of workers that died during a job."""
     seconds: float = 0.0
-    """Time that the run took, s."""
+    """Duration of the run, s."""
 
     @property
     def left(self) -> int:
-        """Pieces of work that are neither done nor given up."""
+        """Number of jobs that are neither done nor given up."""
         return self.keys - self.skipped - self.poisoned_before - len(self.done) - len(self.poisoned) - len(self.failed)
 
     def __str__(self) -> str:
@@ -98,18 +98,18 @@ def run(
     progress: Progress = None,
     work: Work = work,
 ) -> Report:
-    """Does the work on all pairs that is not done yet, and writes results.
+    """Runs all jobs that are not done yet, writes their results, and returns a report.
 
-    Work is known by the content of everything it depends on: to call `run` again goes on where it stopped. Its result is written once, even if
-    it was begun twice because a worker or this process was killed. Needs Ray.
+    A job is identified by the content of everything on which it depends, so a second call of `run` continues where the first one stopped. A
+    result is written once, even if its job was started twice because a worker or this process was killed. Requires Ray.
 
-    - `results` is an address, in any store. `store` are options for all addresses.
+    - `results` is an address in any store. `store` contains options for all addresses.
     - `verb` is `diagnose` or `identify`, with its `options` (`accept`, `where`, `whole`).
-    - `address` is that of a Ray cluster. Without, Ray runs on this machine with `workers` processes, one for each processor if not given. On
-      a cluster `workers` bounds the jobs that run at a time.
-    - Work that raises an error or kills its worker is begun `retries` times more, then it goes on the poison list. Data that cannot be used goes
-      there at once. `retry_poisoned` tries the list again.
-    - `progress` is `True` for a line on standard error, or a function that gets the `Report` so far.
+    - `address` is the address of a Ray cluster. By default, Ray runs on this machine with `workers` processes, or one for each processor. On
+      a cluster, at most `workers` jobs run at a time.
+    - A job that raises an error or kills its worker is retried `retries` times and then added to the poison list. A job with unusable data is
+      added immediately. `retry_poisoned` retries the jobs on the list.
+    - `progress` is `True` for a progress line on standard error, or a function that is called with the current `Report`.
     """
     began = time.monotonic()
     own = store if isinstance(store, Store) else Store(dict(store or {}))
@@ -131,7 +131,7 @@ def run(
 
 
 class _Ray:
-    """Ray, begun here if nobody did before, and then ended here."""
+    """Context manager that starts Ray unless it is already running, and stops only what it started."""
 
     def __init__(self, address: str | None, workers: int | None) -> None:
         self.ray = needed("ray", "excavator.fleet")
@@ -151,14 +151,16 @@ class _Ray:
             self.ray.shutdown()
 
     @property
-    def workers(self) -> int:
-        """How many jobs can run at a time."""
-        found = int(self.ray.cluster_resources().get("CPU", 1))
-        return max(1, found if self._workers is None else min(found, self._workers))
+    def in_flight(self) -> int:
+        """Number of jobs that are submitted at a time."""
+        processors = max(1, int(self.ray.cluster_resources().get("CPU", 1)))
+        if self._workers is not None and self._workers < processors:
+            return max(1, self._workers)  # Ray would run as many as the cluster has processors
+        return AHEAD * processors
 
 
 class _Driver:
-    """Hands out jobs and sees what becomes of them."""
+    """Submits jobs and handles their outcomes."""
 
     def __init__(
         self,
@@ -176,18 +178,18 @@ class _Driver:
         self.outages: Counter[str] = Counter()
         self.waiting: list[tuple[float, str, Job]] = []
         self.queue: deque[Job] = deque()
-        # Ray's own retries are off: they would not be counted.
+        # Retries by Ray are disabled, because they would not be counted.
         self.task = self.ray.remote(max_retries=0, num_cpus=1)(_task)
 
     def drive(self, todo: Iterable[Job]) -> None:
         self.queue.extend(todo)
         flight: dict[Any, Job] = {}
-        # Known to all workers, and sent once.
+        # Shared by all workers, and sent once.
         shared = self.ray.put((self.work, self.results, self.store))
         while self.queue or flight or self.waiting:
             while self.waiting and self.waiting[0][0] <= time.monotonic():
                 self.queue.append(heapq.heappop(self.waiting)[2])
-            while self.queue and len(flight) < AHEAD * self.engine.workers:
+            while self.queue and len(flight) < self.engine.in_flight:
                 job = self.queue.popleft()
                 self.report.starts += 1
                 flight[self.task.remote(job, shared)] = job
@@ -231,15 +233,15 @@ class _Driver:
         try:
             self.results.refuse(poison)
         except ExcavatorError as error:
-            # Without its entry it is tried again next time.
+            # Without an entry in the list, the next run tries the job again.
             self.report.failed[job.key] = f"{text}; and the poison list cannot be written: {error}"
             return
         self.report.poisoned[job.key] = text
 
 
 def _task(job: Job, shared: tuple[Work, Results, Store]) -> tuple[str, str]:
-    """What a worker does: the work, and the writing of its result. Errors are told as texts, so that each can be read anywhere."""
-    # A worker is one processor: fits of several workers would fight for all of them.
+    """Runs a job in a worker and writes its result. Returns errors as text, which any process can deserialize."""
+    # Each worker uses one processor; otherwise, the fits of all workers would compete for all processors.
     os.environ.setdefault("RAYON_NUM_THREADS", "1")
     work, results, store = shared
     try:
@@ -248,14 +250,14 @@ def _task(job: Job, shared: tuple[Work, Results, Store]) -> tuple[str, str]:
         return "store", _one_line(error)
     except ExcavatorError as error:
         return "data", _one_line(error)
-    except Exception as error:  # noqa: BLE001: whatever it is, other work goes on
+    except Exception as error:  # noqa: BLE001: no error may stop the other jobs
         return "fault", f"{type(error).__name__}: {_one_line(error)}"
     return "done", ""
 
 
 def _one_line(error: BaseException) -> str:
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    # Of Ray's tracebacks the last line says what happened.
+    # The last line of a traceback from Ray contains the message.
     text = lines[-1] if len(lines) > 3 and any("Traceback" in line for line in lines) else " ".join(lines)
     return text[:500] or type(error).__name__
 

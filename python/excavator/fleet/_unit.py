@@ -1,4 +1,4 @@
-"""The work on one pair."""
+"""Runs a verb on one pair."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from ._pairs import Job
 from ._store import Store, joined, local_path
 
 OWN_TOPICS = ("*arm/state", "*arm/orifice_command")
-"""Ends of the topics of this project, in any namespace."""
+"""Patterns of the topics of this project, in any namespace."""
 
 
 @dataclass(frozen=True)
 class Done:
-    """What the work on a pair gave."""
+    """Result of the work on a pair."""
 
     json: str
-    """The program's `--json`, character by character."""
+    """The exact `--json` text of the program."""
     row: dict[str, Any]
-    """One row of results: see `excavator.fleet.ROW`."""
+    """One row of the results; see `excavator.fleet.ROW`."""
     remarks: list[str] = field(default_factory=list)
-    """What the program remarks on the recordings."""
+    """Remarks of the program on the recordings."""
 
 
 def work(job: Job, store: Store) -> Done:
-    """Runs the verb on the pair. Bags that are not on this machine are copied into a temporary folder, only with the topics that are needed;
-    results name their addresses all the same."""
+    """Runs the verb on the pair. Bags that are not on this machine are copied into a temporary folder, with only the required topics. Results
+    contain the original addresses."""
     began = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="excavator-") as folder, warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", Remark)
@@ -63,7 +63,7 @@ def work(job: Job, store: Store) -> Done:
 
 
 class _Desk:
-    """Recordings of a job on this machine."""
+    """Makes the recordings of a job available on this machine."""
 
     def __init__(self, job: Job, store: Store, folder: Path) -> None:
         self.job, self.store, self.folder = job, store, folder
@@ -71,7 +71,7 @@ class _Desk:
         self._addresses: list[tuple[str, str]] = []
         self._map: Path | None = None
         if job.map is not None and job.pair.map is not None:
-            # Where it is on this machine it is used in its place: it may name files beside it.
+            # A local map is used in place, because it may refer to neighbouring files.
             self._map = local_path(job.pair.map)
         if job.map is not None and self._map is None:
             self._map = folder / "map.toml"
@@ -82,7 +82,7 @@ class _Desk:
 
         path = local_path(address)
         if path is None:
-            # A folder for each: recordings of one machine may have the same name.
+            # One folder for each recording, because recordings of one machine may have the same name.
             target = self.folder / str(len(self._addresses))
             copied = self.store.thin_copy(address, self._topics(address), target)
             path = copied.path
@@ -96,7 +96,7 @@ class _Desk:
         return read(path, self._map)
 
     def named(self, text: str) -> str:
-        """A text in which recordings have their addresses, not those of the copies."""
+        """Replaces the paths of the copies in a text by the addresses of the recordings."""
         for path, address in self._addresses:
             text = text.replace(_escaped(path), _escaped(address))
         return text
@@ -112,7 +112,7 @@ class _Desk:
 
 
 def topics_of(text: str) -> list[str] | None:
-    """Topics that a map names; `None` where all may be needed: a map of CAN frames, or one that this Python cannot read."""
+    """Returns the topics in a map; `None` if all may be needed: for a map of CAN frames, without topics, or on a Python without `tomllib`."""
     try:
         import tomllib
     except ImportError:

@@ -1,4 +1,4 @@
-"""Work that costs nothing, in place of a diagnosis, and counts how often it is begun."""
+"""Trivial work in place of a diagnosis, with a log of its starts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ VERSION = "cheap"
 
 
 def recordings(folder: Path, count: int) -> list[dict[str, object]]:
-    """Pairs whose recordings are small files with different contents."""
+    """Returns pairs whose recordings are small files with different contents."""
     pairs = []
     for number in range(count):
         files = [folder / f"{number}-{name}.csv" for name in ("identification", "validation")]
@@ -32,7 +32,7 @@ def recordings(folder: Path, count: int) -> list[dict[str, object]]:
 
 
 def work_of(log: Path, *, seconds: float = 0.0, dies: str | None = None, dies_once: str | None = None, raises: dict[str, str] | None = None):
-    """A work function. Every start is a line in `log`. `dies` is the number of the pair that kills its worker, `raises` gives kinds of errors."""
+    """Returns a work function that logs every start in `log`. The pair `dies` kills its worker; `raises` maps pairs to kinds of errors."""
 
     def work(job, store):
         from excavator import ReadError
@@ -61,5 +61,5 @@ def work_of(log: Path, *, seconds: float = 0.0, dies: str | None = None, dies_on
 
 
 def starts(log: Path) -> Counter[str]:
-    """How often the work on each pair was begun, by its number."""
+    """Returns how often the work on each pair was started, by the number of the pair."""
     return Counter(line.split()[1] for line in log.read_text().splitlines())

@@ -1,4 +1,4 @@
-"""A fleet in a process of its own, to be killed: `driver.py FOLDER`."""
+"""Runs a fleet in a separate process that a test can kill: `driver.py FOLDER`."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A proxy on loopback that fails one request in so many: in turn it answers 503, closes the connection before, and closes it after the request."""
+"""Proxy on loopback that fails every n-th request, in turn with status 503 or by closing the connection before or after the request."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 
 class FailingProxy:
-    """`with FailingProxy(port, every=10) as address:` an address whose requests go to `port`, and sometimes nowhere."""
+    """`with FailingProxy(port, every=10) as address:` forwards requests from `address` to `port`, except one in `every`."""
 
     def __init__(self, port: int, every: int = 10) -> None:
         self.port, self.every = port, every
@@ -51,7 +51,7 @@ class FailingProxy:
                 body = answer.read()
                 there.close()
                 if how == "after":
-                    # The store did what was asked for, and nobody hears of it.
+                    # The store executed the request, but the client receives no response.
                     self.close_connection = True
                     self.connection.close()
                     return

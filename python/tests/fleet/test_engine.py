@@ -1,4 +1,4 @@
-"""Each pair is done once, whatever dies."""
+"""Each pair is done once, even if a worker or the driver dies."""
 
 import json
 import os
@@ -7,9 +7,11 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from excavator import fleet
+from excavator.fleet import _run
 
 from . import cheap
 
@@ -30,9 +32,16 @@ def test_everything_is_done_once_and_not_again(places):
     assert set(cheap.starts(log).values()) == {1}
     again = fleet.run(pairs, results, work=cheap.work_of(log))
     assert (again.skipped, again.starts, again.done) == (20, 0, [])
-    # Another name of the machine is the same work; another content is not.
+    # A renamed machine is the same job; changed content is a new one.
     (folder / "0-validation.csv").write_text("changed")
     assert fleet.run([pairs[0] | {"machine": "renamed"}, pairs[1] | {"machine": "renamed"}], results, work=cheap.work_of(log)).starts == 1
+
+
+@pytest.mark.parametrize(("workers", "wanted"), [(2, 2), (16, 16 * _run.AHEAD), (None, 16 * _run.AHEAD)])
+def test_a_cluster_runs_no_more_jobs_than_there_are_workers(workers, wanted):
+    engine = _run._Ray("ray://elsewhere", workers)
+    engine.ray = SimpleNamespace(cluster_resources=lambda: {"CPU": 16.0})
+    assert engine.in_flight == wanted
 
 
 def test_results_are_what_the_work_gave(places):
@@ -103,6 +112,6 @@ def test_a_driver_that_is_killed_goes_on(places, tmp_path):
     after = {file.name: (file.stat().st_ino, file.stat().st_mtime_ns) for file in done.glob("*.json")}
     assert len(after) == 40
     assert all(after[name] == one for name, one in before.items())
-    # Only what was being computed when the driver died was begun twice: two workers have one job each.
+    # Only the jobs that were running when the driver died were started twice: at most one on each of the two workers.
     starts = cheap.starts(log)
     assert len(starts) == 40 and sum(starts.values()) <= 42

@@ -1,4 +1,4 @@
-"""A real S3 server on loopback that fails one request in ten."""
+"""Fleets on a real S3 server on loopback, behind a proxy that fails some requests."""
 
 import json
 
@@ -15,7 +15,7 @@ moto = pytest.importorskip("moto.server")
 
 @pytest.fixture
 def server():
-    """A server with the bucket `fleet`; gives its port and a client."""
+    """A server with the bucket `fleet`; yields its port and a client."""
     server = moto.ThreadedMotoServer(ip_address="127.0.0.1", port=0)
     server.start()
     host, port = server.get_host_and_port()

@@ -1,4 +1,4 @@
-"""Texts, tables, manifests and the page, without Ray."""
+"""Keys, tables, manifests and the page, without Ray."""
 
 import json
 from html.parser import HTMLParser
