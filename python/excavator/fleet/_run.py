@@ -185,7 +185,7 @@ class _Driver:
         self.queue.extend(todo)
         flight: dict[Any, Job] = {}
         # Shared by all workers, and sent once.
-        shared = self.ray.put((self.work, self.results, self.store))
+        shared = self.ray.put((self.work, self.results, self.store, os.getcwd()))
         while self.queue or flight or self.waiting:
             while self.waiting and self.waiting[0][0] <= time.monotonic():
                 self.queue.append(heapq.heappop(self.waiting)[2])
@@ -239,11 +239,14 @@ class _Driver:
         self.report.poisoned[job.key] = text
 
 
-def _task(job: Job, shared: tuple[Work, Results, Store]) -> tuple[str, str]:
+def _task(job: Job, shared: tuple[Work, Results, Store, str]) -> tuple[str, str]:
     """Runs a job in a worker and writes its result. Returns errors as text, which any process can deserialize."""
     # Each worker uses one processor; otherwise, the fits of all workers would compete for all processors.
     os.environ.setdefault("RAYON_NUM_THREADS", "1")
-    work, results, store = shared
+    work, results, store, directory = shared
+    # A relative path means what it means to the caller. Ray may have been started in another folder.
+    if os.path.isdir(directory):
+        os.chdir(directory)
     try:
         results.save(job, work(job, store))
     except _native.StoreError as error:

@@ -37,6 +37,17 @@ def test_everything_is_done_once_and_not_again(places):
     assert fleet.run([pairs[0] | {"machine": "renamed"}, pairs[1] | {"machine": "renamed"}], results, work=cheap.work_of(log)).starts == 1
 
 
+def test_relative_paths_are_those_of_the_caller(places, monkeypatch):
+    folder, results, log = places
+    monkeypatch.chdir(folder)
+    pairs = [
+        pair | {name: Path(pair[name]).name for name in ("identification", "validation")} for pair in cheap.recordings(folder, 2)
+    ]
+    report = fleet.run(pairs, "results", work=cheap.work_of(log))
+    assert (len(report.done), report.left) == (2, 0)
+    assert len(list((folder / "results" / "done").iterdir())) == 2
+
+
 @pytest.mark.parametrize(("workers", "wanted"), [(2, 2), (16, 16 * _run.AHEAD), (None, 16 * _run.AHEAD)])
 def test_a_cluster_runs_no_more_jobs_than_there_are_workers(workers, wanted):
     engine = _run._Ray("ray://elsewhere", workers)
