@@ -1,13 +1,16 @@
-"""Fixtures: the samples, and the program as reference."""
+"""Fixtures: the samples, and the program as reference. Makes the helpers of the docs importable."""
 
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-SAMPLES = Path(__file__).parents[2] / "bags" / "samples"
+REPOSITORY = Path(__file__).parents[2]
+sys.path.insert(0, str(REPOSITORY / "tests" / "docs"))
+SAMPLES = REPOSITORY / "bags" / "samples"
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Makes the helpers of this folder importable, wherever pytest was started, and names the program."""
+"""Makes the helpers of this folder and of the docs importable, wherever pytest was started, and names the program."""
 
 import os
 import sys
@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "docs")]
 
 
 @pytest.fixture

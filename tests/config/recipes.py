@@ -108,6 +108,12 @@ OFFLINE = {
 }
 
 
+def valve_test():
+    """The table of a flow bench: the input of a valve up and down, and the flow through one edge."""
+    rows = [f"{volts / 10:.1f};{0.8 * (volts / 10 - 0.2 * (volts > 0) + 0.2 * (volts < 0)):.3f}" for volts in range(-50, 51)]
+    return "\n".join(["U [V];Q [l/min]", *rows, *reversed(rows)]) + "\n"
+
+
 def prepare(excavator, folder):
     """The files that the recipes name, under short names: a path cannot be broken."""
     for name in ("identification", "validation"):
@@ -118,8 +124,7 @@ def prepare(excavator, folder):
     shutil.copy(SAMPLES / "arm-swing.csv.map.toml", folder / "map.toml")
     shutil.copytree(SAMPLES / "arm-swing", folder / "damaged")
     (folder / "damaged" / "metadata.yaml").unlink()
-    rows = [f"{volts / 10:.1f};{0.8 * (volts / 10 - 0.2 * (volts > 0) + 0.2 * (volts < 0)):.3f}" for volts in range(-50, 51)]
-    (folder / "valve.csv").write_text("\n".join(["U [V];Q [l/min]", *rows, *reversed(rows)]) + "\n")
+    (folder / "valve.csv").write_text(valve_test())
     (folder / "law.toml").write_text(
         '[[formula]]\nname = "load_damping"\nacts_on = "piston_force"\nformula = "-k*v*abs(p_cap - p_rod)"\n'
         'parameters.k = { unit = "N s/(m Pa)", maximum = 1.0, start = [1e-3] }\n'

@@ -18,13 +18,14 @@ def _hear_interrupts():
 class Process:
     """Started at once; its output goes to a file and is shown when a test fails on it."""
 
-    def __init__(self, command, environment):
+    def __init__(self, command, environment, directory=None):
         self.command = [str(word) for word in command]
         self._may_end = False
         self._output = tempfile.TemporaryFile()
         self._process = subprocess.Popen(
             self.command,
             env=environment,
+            cwd=directory,
             stdin=subprocess.DEVNULL,
             stdout=self._output,
             stderr=subprocess.STDOUT,

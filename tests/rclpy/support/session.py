@@ -51,9 +51,9 @@ class Session:
 
     # programs
 
-    def start(self, *command, environment=None):
-        """A program in this session's domain."""
-        process = Process(command, self._environment() | (environment or {}))
+    def start(self, *command, environment=None, directory=None):
+        """A program in this session's domain. `directory`: where it runs, instead of here."""
+        process = Process(command, self._environment() | (environment or {}), directory)
         self._processes.append(process)
         return process
 

@@ -1,0 +1,100 @@
+"""A page of the docs as a reader follows it: files to save, commands to type, and what they print."""
+
+import re
+import shlex
+from dataclasses import dataclass, field
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+DOCS = REPOSITORY / "docs"
+
+INDENT = "    "
+PROMPT = "$ "
+# First words that make an indented line without a prompt a command.
+PROGRAMS = {"excavator", "cp", "mkdir"}
+# Verbs that join the network.
+LIVE = {"node", "play", "record", "up", "dashboard"}
+FENCE = "```"
+# The sentence before a block that the reader saves.
+FILE = re.compile(r"(?:Save this as|Change) `([^`]+)`(?: to)?[^`]*:$")
+
+
+@dataclass
+class Save:
+    """A block that the reader saves as a file."""
+
+    name: str
+    text: str
+
+
+@dataclass
+class Command:
+    """A command as it is printed, continued lines joined, and the lines that the page prints below it."""
+
+    text: str
+    shown: list = field(default_factory=list)
+
+    @property
+    def words(self):
+        """Its words; a comment and what is optional are left out."""
+        return shlex.split(re.sub(r"\[-.*?\]", "", self.text), comments=True)
+
+
+def steps(page):
+    """The steps of a page, in order. `page` is a path."""
+    lines = page.read_text().splitlines()
+    found, save, last, number = [], None, None, 0
+    while number < len(lines):
+        line = lines[number]
+        number += 1
+        if line.startswith(FENCE):
+            end = lines.index(FENCE, number)
+            if save:
+                found.append(Save(save, "\n".join(lines[number:end]) + "\n"))
+            number, save, last = end + 1, None, None
+        elif line.startswith(INDENT):
+            text = line.removeprefix(INDENT)
+            if text.startswith(PROMPT) or text.split()[0] in PROGRAMS:
+                text = text.removeprefix(PROMPT)
+                while text.endswith("\\"):
+                    text = text[:-1] + lines[number]
+                    number += 1
+                last = Command(text)
+                found.append(last)
+            elif last:
+                last.shown.append(text)
+        elif line.strip():
+            save, last = (match.group(1) if (match := FILE.search(line)) else None), None
+    return found
+
+
+def blocks(page, language):
+    """The fenced blocks of a language, in order."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
+
+
+def commands(page):
+    """The commands of a page, in order."""
+    return [step for step in steps(page) if isinstance(step, Command)]
+
+
+def runs(command, verbs):
+    """Whether the command starts the program with one of these verbs."""
+    words = command.words
+    return "excavator" in words and words[words.index("excavator") + 1] in verbs
+
+
+def starts_nodes(command):
+    return runs(command, LIVE)
+
+
+def missing_from(output, shown):
+    """The shown lines that the output lacks; "..." stands for what the page leaves out. Only the characters count, because how lines
+    are broken and how wide columns are depends on the terminal."""
+    printed = bare(output)
+    return [line for line in shown if any(bare(piece) not in printed for piece in line.split("..."))]
+
+
+def bare(text):
+    """The characters of a text without white space and the rules of tables."""
+    return re.sub(r"[\s│┆┌┐└┘├┤─═╞╡╪┬┴┼]+", "", text)
