@@ -13,6 +13,8 @@ import unicodedata
 COLUMNS = 80
 # No command of the tests says nothing for so long, s.
 PATIENCE = 300
+# What a progress bar says last: the line is empty again.
+CLEARED = "\r\x1b[2K"
 ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 
 
@@ -45,8 +47,8 @@ def on_a_terminal(words, folder, complaints=False):
 
 
 def lines_of(output):
-    """Lines as they stand on the terminal: without what changes colours."""
-    return [ESCAPE.sub("", line.removesuffix("\r")) for line in output.split("\n")]
+    """Lines as they stand on the terminal: without what was cleared, and without what changes colours."""
+    return [ESCAPE.sub("", line.removesuffix("\r").rpartition(CLEARED)[2]) for line in output.split("\n")]
 
 
 def width(line):
