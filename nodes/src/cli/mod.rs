@@ -5,6 +5,8 @@ mod live;
 mod new_model;
 mod numbers;
 mod offline;
+mod search;
+mod shared;
 
 use clap::{Parser, Subcommand};
 
@@ -16,6 +18,8 @@ use crate::verbosity::Verbosity;
 pub use live::*;
 pub use new_model::*;
 pub use offline::*;
+pub use search::*;
+pub use shared::*;
 
 /// Which physics is your hydraulic arm's model missing?
 ///

@@ -1,85 +1,11 @@
-//! Arguments of the verbs that work on files.
+//! Arguments of the other verbs that work on files.
 
 use std::path::PathBuf;
 
-use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand, ValueEnum};
-use excavator_bags::map::Origin;
-use excavator_identification::checks::OVERRULABLE;
 use excavator_identification::identify;
 
-use super::numbers::{positive, profile_duration, stroke_margin};
-use super::{NewModelArguments, ValveTestArguments};
-
-#[derive(Debug, Args)]
-pub struct Json {
-    /// Write the result as JSON to this file ("-": standard output, instead of the table).
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
-}
-
-#[derive(Debug, Default, Clone, Copy, Args)]
-pub struct Overwriting {
-    /// Replace files that exist; never one that this command reads.
-    #[arg(long)]
-    pub force: bool,
-}
-
-#[derive(Debug, Default, Clone, Args)]
-pub struct Mapping {
-    /// Topic map (TOML): which field of which topic, or which column of a table, is which signal. Without, the map.toml
-    /// in the bag's folder or FILE.map.toml beside the file is used, if there is one.
-    #[arg(long, value_name = "MAP")]
-    pub map: Option<PathBuf>,
-    /// Namespace of the machine, for a bag of our own topics that has several.
-    #[arg(long, value_name = "NAMESPACE", conflicts_with = "map")]
-    pub namespace: Option<String>,
-    /// Use a recording although this check refuses it; the refusal says its name. Repeat it for several.
-    #[arg(long, value_name = "CHECK", value_parser = PossibleValuesParser::new(OVERRULABLE), hide_possible_values = true)]
-    pub accept: Vec<String>,
-    /// Compare only where this formula holds, as in "abs(v) > 0.002" (SI units). The rest is simulated, not compared. Repeat to
-    /// combine.
-    #[arg(long = "where", value_name = "CONDITION")]
-    pub conditions: Vec<String>,
-}
-
-impl Mapping {
-    /// Where signals are found.
-    pub fn origin(&self) -> Origin<'_> {
-        Origin { map: self.map.as_deref(), namespace: self.namespace.as_deref() }
-    }
-}
-
-#[derive(Debug, Default, Clone, Copy, Args)]
-pub struct Extent {
-    /// Use all of a recording of more than three minutes, not only its most informative stretches: slow, and in memory
-    /// as a whole.
-    #[arg(long)]
-    pub whole: bool,
-}
-
-#[derive(Debug, Clone, Args)]
-pub struct ModelChoice {
-    /// Model: built-in name or TOML file.
-    #[arg(long)]
-    pub model: String,
-    #[command(flatten)]
-    pub own: OwnEffects,
-}
-
-impl ModelChoice {
-    /// The files that it names.
-    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
-        std::iter::once(PathBuf::from(&self.model)).chain(self.own.catalogue.iter().cloned())
-    }
-}
-
-#[derive(Debug, Default, Clone, Args)]
-pub struct OwnEffects {
-    /// Your own effects, written as formulas: a file (TOML), or a folder with such files. Repeat it for several.
-    #[arg(long, value_name = "FILE|FOLDER")]
-    pub catalogue: Vec<PathBuf>,
-}
+use super::{Extent, Json, Mapping, ModelChoice, NewModelArguments, Overwriting, OwnEffects, ValveTestArguments};
 
 #[derive(Debug, Args)]
 pub struct DemoArguments {
@@ -141,7 +67,7 @@ pub struct IdentifyArguments {
     /// Model file to write.
     #[arg(short, long, value_name = "MODEL")]
     pub output: Option<PathBuf>,
-    /// How.
+    /// How parameters are estimated.
     #[arg(long, value_enum, default_value_t = Method::WeakForm)]
     pub method: Method,
     #[command(flatten)]
@@ -206,158 +132,6 @@ pub struct EnergyArguments {
     /// Write a page with the flow of energy, rates of the stored energy, losses by effect, and the ledger.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
-    #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
-}
-
-#[derive(Debug, Args)]
-pub struct Recordings {
-    /// Recordings that parameters are fitted to; `BAG@20..40` is the part of one from 20 s to 40 s.
-    #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
-    pub identification: Vec<PathBuf>,
-    /// Recordings that evidence is taken from; never fitted.
-    #[arg(long, required = true, num_args = 1.., value_name = "BAG")]
-    pub validation: Vec<PathBuf>,
-    #[command(flatten)]
-    pub mapping: Mapping,
-    #[command(flatten)]
-    pub extent: Extent,
-}
-
-impl Recordings {
-    /// All recordings.
-    pub fn bags(&self) -> impl Iterator<Item = &PathBuf> {
-        self.identification.iter().chain(&self.validation)
-    }
-}
-
-#[derive(Debug, Args)]
-pub struct DiagnoseArguments {
-    #[command(flatten)]
-    pub model: ModelChoice,
-    #[command(flatten)]
-    pub recordings: Recordings,
-    /// Write a page with the evidence.
-    #[arg(long, value_name = "FILE.html")]
-    pub report: Option<PathBuf>,
-    /// Save the diagnosis with its fitted models, for `refine --diagnosis FILE`.
-    #[arg(long, value_name = "FILE")]
-    pub save: Option<PathBuf>,
-    /// Write what the verdict was decided from: errors of every hypothesis in every block of time, as JSON.
-    #[arg(long, value_name = "FILE")]
-    pub scores: Option<PathBuf>,
-    #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
-}
-
-#[derive(Debug, Args)]
-pub struct ProposeArguments {
-    #[command(flatten)]
-    pub model: ModelChoice,
-    #[command(flatten)]
-    pub recordings: Recordings,
-    /// Catalogue file to write: the proposed laws, best first, with fitted values.
-    #[arg(short, long, value_name = "FILE.toml")]
-    pub output: Option<PathBuf>,
-    /// Write a page with the evidence.
-    #[arg(long, value_name = "FILE.html")]
-    pub report: Option<PathBuf>,
-    #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
-}
-
-#[derive(Debug, Args)]
-#[command(group(clap::ArgGroup::new("what").required(true).args(["add", "auto", "diagnosis"])))]
-pub struct RefineArguments {
-    /// Add what this diagnosis found (`diagnose --save FILE`), without a search: model and recordings are those of the diagnosis.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["model", "catalogue", "identification", "report"])]
-    pub diagnosis: Option<PathBuf>,
-    /// Model: built-in name or TOML file.
-    #[arg(long, required_unless_present = "diagnosis")]
-    pub model: Option<String>,
-    #[command(flatten)]
-    pub own: OwnEffects,
-    /// Recordings that parameters are fitted to; `BAG@20..40` is the part of one from 20 s to 40 s.
-    #[arg(long, required_unless_present = "diagnosis", num_args = 1.., value_name = "BAG")]
-    pub identification: Vec<PathBuf>,
-    /// Recordings that evidence is taken from; never fitted.
-    #[arg(long, required_unless_present = "diagnosis", num_args = 1.., value_name = "BAG")]
-    pub validation: Vec<PathBuf>,
-    #[command(flatten)]
-    pub mapping: Mapping,
-    #[command(flatten)]
-    pub extent: Extent,
-    /// Effects to add, one after the other: EFFECT, EFFECT@CYLINDER, EFFECT@pump or EFFECT@machine.
-    #[arg(long, num_args = 1.., value_name = "EFFECT[@PLACE]")]
-    pub add: Vec<String>,
-    /// Add what a diagnosis finds, until nothing improves.
-    #[arg(long)]
-    pub auto: bool,
-    /// With --auto: add the best proposed law if no effect of the catalogue explains the recordings.
-    #[arg(long, requires = "auto")]
-    pub propose: bool,
-    /// Model file to write.
-    #[arg(short, long, value_name = "MODEL")]
-    pub output: PathBuf,
-    /// Write a page with the story.
-    #[arg(long, value_name = "FILE.html")]
-    pub report: Option<PathBuf>,
-    #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
-}
-
-impl RefineArguments {
-    /// The model that was named.
-    pub fn model_choice(&self) -> ModelChoice {
-        ModelChoice { model: self.model.clone().unwrap_or_default(), own: self.own.clone() }
-    }
-
-    /// The recordings that were named.
-    pub fn recordings(&self) -> Recordings {
-        Recordings {
-            identification: self.identification.clone(),
-            validation: self.validation.clone(),
-            mapping: self.mapping.clone(),
-            extent: self.extent,
-        }
-    }
-}
-
-#[derive(Debug, Args)]
-#[command(group(clap::ArgGroup::new("what").required(true).multiple(true).args(["between", "parameter", "diagnosis"])))]
-pub struct DesignArguments {
-    #[command(flatten)]
-    pub model: ModelChoice,
-    /// Effects to separate, with commas: EFFECT, EFFECT@CYLINDER, EFFECT@pump, EFFECT@machine, or none for the model as it is. With
-    /// --parameter: effects that the model is to have besides.
-    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "EFFECT[@PLACE],...")]
-    pub between: Vec<String>,
-    /// Parameter to be determined (arm.inertia), instead of effects to be told apart.
-    #[arg(long, value_name = "NAME")]
-    pub parameter: Option<String>,
-    /// What `diagnose --json` wrote: tied effects, fitted values and the sensors' noise are taken from there.
-    #[arg(long, value_name = "FILE.json")]
-    pub diagnosis: Option<PathBuf>,
-    /// Profile to write.
-    #[arg(short, long, value_name = "PROFILE.toml")]
-    pub output: PathBuf,
-    /// Longest profile, s: 15 to 600.
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = profile_duration)]
-    pub duration: f64,
-    /// Share of the stroke that is kept free at each end.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.08, value_parser = stroke_margin)]
-    pub stroke_margin: f64,
-    /// Highest pressure anywhere, Pa.
-    #[arg(long, value_name = "PA", default_value_t = 2e7, value_parser = positive)]
-    pub highest_pressure: f64,
     #[command(flatten)]
     pub json: Json,
     #[command(flatten)]
