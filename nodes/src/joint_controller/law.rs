@@ -9,7 +9,7 @@ use excavator_model::machine::{Cylinder, Drive, Supply};
 
 /// Target of a joint. `NaN` = no target.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Wanted {
+pub(crate) struct Wanted {
     /// Position, rad, or m for a sliding joint.
     pub position: f64,
     /// Rate, rad/s or m/s.
@@ -18,7 +18,7 @@ pub(super) struct Wanted {
 
 /// Gains of every joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Gains {
+pub(crate) struct Gains {
     /// Joint rate per unit of position error, 1/s.
     pub position: f64,
     /// Opening, as a share of the largest, per missing piston travel, as a share of full speed times one second; 1/s.
@@ -27,7 +27,7 @@ pub(super) struct Gains {
 
 /// One joint under control.
 #[derive(Debug, Clone)]
-pub(super) struct JointLaw {
+pub(crate) struct JointLaw {
     cylinder: Cylinder,
     /// Largest opening, m².
     opening: f64,
@@ -64,6 +64,11 @@ impl JointLaw {
         };
         let full_speed = areas.map(|area| flow / area);
         Ok(Some(JointLaw { cylinder: cylinder.clone(), opening, full_speed, integral: 0.0, before: None }))
+    }
+
+    /// Piston speed with the full flow of the supply, in the slower direction, m/s.
+    pub fn full_speed(&self) -> f64 {
+        self.full_speed[0].min(self.full_speed[1])
     }
 
     /// Returns the opening (m²) for a joint at `position` at `time` (s), and the joint's rate. Positions may come at any rate,

@@ -8,5 +8,6 @@
 mod law;
 mod node;
 
+pub(crate) use law::JointLaw;
 pub(crate) use node::parameters;
 pub use node::run;

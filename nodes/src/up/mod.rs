@@ -39,7 +39,7 @@ pub fn run(arguments: &UpArguments, ros_words: &[String]) -> Result<(), VerbErro
     Environment::read(ros.enclave.as_deref())?;
     let signals = Signals::block()?;
     let program = std::env::current_exe()?;
-    let motion = arguments.demo.then(|| Motion::of(&program, &model_of(&ros))).transpose()?;
+    let motion = arguments.demo.then(|| Motion::of(&model_of(&ros))).transpose()?;
     let mut parts = Vec::new();
     let outcome = start(&program, arguments, motion.as_ref(), ros_words, &mut parts)
         .and_then(|()| watch(&signals, arguments.duration, &mut parts));
@@ -91,7 +91,10 @@ fn start(
     spawn("energy monitor", vec!["node".into(), "energy-monitor".into()])?;
     spawn("arm simulator", vec!["node".into(), "arm-simulator".into()])?;
     match motion {
-        Some(motion) => spawn("player", motion.words()),
+        Some(motion) => {
+            spawn("joint controller", vec!["node".into(), "joint-controller".into()])?;
+            spawn("player", motion.words())
+        }
         None => {
             print("The arm obeys arm/orifice_command. `excavator up --demo` moves it by itself.");
             Ok(())
