@@ -89,12 +89,34 @@ def starts_nodes(command):
 
 
 def missing_from(output, shown):
-    """The shown lines that the output lacks; "..." stands for what the page leaves out. Only the characters count, because how lines
-    are broken and how wide columns are depends on the terminal."""
-    printed = bare(output)
-    return [line for line in shown if any(bare(piece) not in printed for piece in line.split("..."))]
+    """The shown lines that the output lacks; "..." stands for what the page leaves out. Words count and not where lines are broken,
+    because that depends on the terminal."""
+    printed = tokens(output)
+    return [line for line in shown if not all(is_part(tokens(piece), printed) for piece in line.split("..."))]
 
 
-def bare(text):
-    """The characters of a text without white space and the rules of tables."""
-    return re.sub(r"[\s│┆┌┐└┘├┤─═╞╡╪┬┴┼]+", "", text)
+def tokens(text):
+    """The words and numbers of a text, without the rules of tables."""
+    return re.sub(r"[│┆┌┐└┘├┤─═╞╡╪┬┴┼]", " ", text).split()
+
+
+def is_part(wanted, words):
+    """Whether the words follow each other somewhere."""
+    starts = range(len(words) - len(wanted) + 1)
+    return any(all(map(is_same, wanted, words[start:])) for start in starts)
+
+
+def is_same(one, other):
+    """Whether two words say the same. Numbers may differ by 1 %, because another processor rounds differently."""
+    first, second = number(one), number(other)
+    if first is None or second is None:
+        return one == other
+    return abs(first - second) <= 0.01 * max(abs(first), abs(second))
+
+
+def number(word):
+    """The value of a word that is a number, or `None`."""
+    try:
+        return float(word.strip("().,;:"))
+    except ValueError:
+        return None
