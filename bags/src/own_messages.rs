@@ -1,10 +1,12 @@
-//! The definitions of our own messages, and topics that carry them.
+//! The definitions of our own messages, topics that carry them, and messages in bags.
 
 use std::sync::LazyLock;
 
 use excavator_msgs::{Message, definitions};
 use rosbag2::dynamic::Definitions;
-use rosbag2::{Qos, TopicToWrite};
+use rosbag2::{BagWriter, Qos, TopicId, TopicToWrite, cdr};
+
+use crate::BagError;
 
 /// Types of `excavator_msgs`.
 const OWN: [&str; 6] = ["ArmState", "CylinderState", "OrificeCommand", "EnergyState", "CylinderEnergy", "EnergyTerm"];
@@ -35,4 +37,20 @@ pub fn topic_to_write<M: Message>(name: &str, qos: Qos) -> TopicToWrite {
         schema: definitions::schema(M::TYPE_NAME).unwrap_or_default(),
         qos: vec![qos],
     }
+}
+
+/// Writes one of our own messages, logged and published at `nanoseconds`. `name` is that of the topic, for the error.
+///
+/// # Errors
+/// [`BagError::Unencodable`], and all of [`BagWriter::write`].
+pub fn write_message<M: Message>(
+    bag: &mut BagWriter,
+    topic: TopicId,
+    name: &str,
+    nanoseconds: u64,
+    message: &M,
+) -> Result<(), BagError> {
+    let bytes = cdr::encode(message)
+        .map_err(|error| BagError::Unencodable { topic: name.to_string(), reason: error.to_string() })?;
+    Ok(bag.write(topic, nanoseconds, nanoseconds, &bytes)?)
 }

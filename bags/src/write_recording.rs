@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use excavator_model::recording::Recording;
-use excavator_msgs::{ArmState, CylinderState, Header, Message, OrificeCommand, Time};
-use rosbag2::{BagWriter, Qos, Staging, TopicId, WriteOptions, cdr};
+use excavator_msgs::{ArmState, CylinderState, Header, OrificeCommand, Time};
+use rosbag2::{BagWriter, Qos, Staging, WriteOptions};
 
-use crate::{BagError, Topics, topic_to_write};
+use crate::{BagError, Topics, topic_to_write, write_message};
 
 /// Depth of the offered history of `/arm/state`.
 const STATE_DEPTH: u32 = 50;
@@ -67,24 +67,12 @@ fn write_samples(
     let commands = bag.add_topic(&topic_to_write::<OrificeCommand>(&topics.command, Qos::reliable(COMMAND_DEPTH)))?;
     for (sample, &Stamp { time, nanoseconds }) in stamps.iter().enumerate() {
         if let Some(command) = command_at(recording, sample, time) {
-            write(&mut bag, commands, &topics.command, nanoseconds, &command)?;
+            write_message(&mut bag, commands, &topics.command, nanoseconds, &command)?;
         }
-        write(&mut bag, states, &topics.state, nanoseconds, &state_at(recording, sample, time))?;
+        write_message(&mut bag, states, &topics.state, nanoseconds, &state_at(recording, sample, time))?;
     }
     bag.finish()?;
     Ok(())
-}
-
-fn write<M: Message>(
-    bag: &mut BagWriter,
-    topic: TopicId,
-    name: &str,
-    nanoseconds: u64,
-    message: &M,
-) -> Result<(), BagError> {
-    let bytes = cdr::encode(message)
-        .map_err(|error| BagError::Unencodable { topic: name.to_string(), reason: error.to_string() })?;
-    Ok(bag.write(topic, nanoseconds, nanoseconds, &bytes)?)
 }
 
 /// The stamp of a sample in the two formats that a bag needs.

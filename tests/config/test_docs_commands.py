@@ -11,7 +11,7 @@ from itertools import takewhile
 from pathlib import Path
 
 import pytest
-from pages import DOCS, REPOSITORY, Save, commands, missing_from, runs, starts_nodes, steps
+from pages import DOCS, REPOSITORY, Save, all_commands, missing_from, runs, starts_nodes, steps
 from recipes import valve_test
 
 SAMPLES = REPOSITORY / "bags" / "samples"
@@ -80,8 +80,7 @@ PAGES = {
 LONG_PAGES = {"design.md", "verdict.md", "measured-crane.md", "measured-drive.md"}
 # Its offline command reads what its nodes have recorded.
 ON_THE_NETWORK = {"ros2.md"}
-# The page of the verbs has usages, and is compared with the program elsewhere.
-ALL = {page.name: commands(page) for page in sorted(DOCS.glob("*.md")) if page.name != "verbs.md"}
+ALL = all_commands()
 
 
 def test_every_page_with_commands_is_followed():
@@ -101,7 +100,7 @@ def test_a_command_that_starts_nodes_parses(excavator, page, command):
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_a_page_can_be_followed(excavator, tmp_path, name):
+def test_a_page_can_be_followed(run, tmp_path, name):
     if name in LONG_PAGES and not LONG:
         pytest.skip(f"{name} is followed in long runs")
     reader = PAGES[name]
@@ -118,49 +117,56 @@ def test_a_page_can_be_followed(excavator, tmp_path, name):
         if isinstance(step, Save):
             (tmp_path / step.name).write_text(step.text)
         elif not starts_nodes(step):
-            wrong += follow(excavator, step, reader, tmp_path)
+            wrong += follow(run, step, reader)
     assert not wrong, "\n".join(wrong)
 
 
-def test_the_commands_of_the_readme_run_in_an_empty_folder(excavator, tmp_path):
+def test_the_commands_of_the_readme_run_in_an_empty_folder(run):
     lines = re.findall(r"^    cargo run --release -- (\S.*?)(?:\s+#.*)?$", (REPOSITORY / "README.md").read_text(), re.MULTILINE)
     assert lines
     for line in lines:
-        run(excavator, f"excavator {line}", tmp_path)
+        run(f"excavator {line}")
 
 
-def follow(excavator, command, reader, folder):
+@pytest.fixture
+def run(excavator, tmp_path):
+    """Runs a line of shell in the folder of the test: the program is on the path, and the home is new."""
+    programs, home = tmp_path / "programs", tmp_path / "home"
+    programs.mkdir()
+    home.mkdir()
+    (programs / "excavator").symlink_to(Path(excavator).resolve())
+    environment = os.environ | {"PATH": f"{programs}:{os.environ['PATH']}", "REPO": str(REPOSITORY), "HOME": str(home)}
+
+    def run(text):
+        shell = ["bash", "-e", "-u", "-o", "pipefail", "-c", text]
+        result = subprocess.run(shell, cwd=tmp_path, capture_output=True, text=True, env=environment)
+        assert result.returncode == 0, f"{text}\n{result.stdout}\n{result.stderr}"
+        leads_on(text, result.stdout)
+        return result.stdout + result.stderr
+
+    return run
+
+
+def follow(run, command, reader):
     """Runs a command of a page, and returns what the page shows and the command did not print."""
-    text = re.sub(r"\[-.*?\]", "", command.text)
+    text = command.text
     for word, thing in reader.means.items():
         text = re.sub(rf"(?<!\S){re.escape(word)}(?!\S)", str(thing), text)
     whole = text
     if runs(command, SEARCHES) and not LONG:
         for end, part in PARTS.items():
             text = re.sub(rf"(?<={re.escape(end)})(?!\S)", part, text)
-    output = run(excavator, text, folder)
-    if text != whole:
-        return []
-    return [f"{command.text}\ndid not print: {piece}" for piece in missing_from(output, command.shown)]
+    # The page shows what whole recordings give: a part has other numbers, and can have another sentence.
+    shown = command.shown if text == whole else []
+    return [f"{command.text}\ndid not print: {line}" for line in missing_from(run(text), shown)]
 
 
-def run(excavator, text, folder):
-    """Runs a line of shell, which must succeed and, where its verb promises that, end with the next command."""
-    home = folder / "home"
-    home.mkdir(exist_ok=True)
-    programs = folder / "programs"
-    programs.mkdir(exist_ok=True)
-    if not (programs / "excavator").exists():
-        (programs / "excavator").symlink_to(Path(excavator).resolve())
-    environment = os.environ | {"PATH": f"{programs}:{os.environ['PATH']}", "REPO": str(REPOSITORY), "HOME": str(home)}
-    shell = ["bash", "-e", "-u", "-o", "pipefail", "-c", text]
-    result = subprocess.run(shell, cwd=folder, capture_output=True, text=True, env=environment)
-    assert result.returncode == 0, f"{text}\n{result.stdout}\n{result.stderr}"
+def leads_on(text, screen):
+    """A verb that promises it ends its screen with the command that comes next; with JSON on standard output there is none."""
     words = shlex.split(text, comments=True)
-    # With JSON on standard output there is no screen.
-    if words[0] == "excavator" and words[1] in LEADS_ON and "-" not in words:
-        _, _, last = result.stdout.rpartition("\nNext, ")
-        why, *following = last.rstrip().splitlines()
-        told = why.endswith(":") and following and following[0].startswith("  excavator ")
-        assert told and all(line.startswith("  ") for line in following), f"{text} ends with\n{last}"
-    return result.stdout + result.stderr
+    if words[0] != "excavator" or words[1] not in LEADS_ON or "-" in words:
+        return
+    _, _, last = screen.rpartition("\nNext, ")
+    why, *following = last.rstrip().splitlines()
+    told = why.endswith(":") and following and following[0].startswith("  excavator ")
+    assert told and all(line.startswith("  ") for line in following), f"{text} ends with\n{last}"

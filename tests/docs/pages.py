@@ -15,6 +15,8 @@ PROGRAMS = {"excavator", "cp", "mkdir"}
 # Verbs that join the network.
 LIVE = {"node", "play", "record", "up", "dashboard"}
 FENCE = "```"
+# What a usage shows as optional.
+OPTIONAL = re.compile(r"\[-.*?\]")
 # The sentence before a block that the reader saves.
 FILE = re.compile(r"(?:Save this as|Change) `([^`]+)`(?: to)?[^`]*:$")
 
@@ -29,15 +31,15 @@ class Save:
 
 @dataclass
 class Command:
-    """A command as it is printed, continued lines joined, and the lines that the page prints below it."""
+    """A command as it is printed, continued lines joined and without what is optional, and the lines that the page prints below it."""
 
     text: str
     shown: list = field(default_factory=list)
 
     @property
     def words(self):
-        """Its words; a comment and what is optional are left out."""
-        return shlex.split(re.sub(r"\[-.*?\]", "", self.text), comments=True)
+        """Its words, without a comment."""
+        return shlex.split(self.text, comments=True)
 
 
 def steps(page):
@@ -59,7 +61,7 @@ def steps(page):
                 while text.endswith("\\"):
                     text = text[:-1] + lines[number]
                     number += 1
-                last = Command(text)
+                last = Command(OPTIONAL.sub("", text))
                 found.append(last)
             elif last:
                 last.shown.append(text)
@@ -76,6 +78,11 @@ def blocks(page, language):
 def commands(page):
     """The commands of a page, in order."""
     return [step for step in steps(page) if isinstance(step, Command)]
+
+
+def all_commands():
+    """The commands of every page by its name. The page of the verbs has usages, and is compared with the program elsewhere."""
+    return {page.name: commands(page) for page in sorted(DOCS.glob("*.md")) if page.name != "verbs.md"}
 
 
 def runs(command, verbs):

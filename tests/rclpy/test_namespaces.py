@@ -4,10 +4,10 @@ import json
 import subprocess
 
 import pytest
-from excavator_msgs.msg import ArmState, EnergyState, OrificeCommand
+from excavator_msgs.msg import EnergyState
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
-from support.simulator import RENEWAL, STATE_QOS, command, cylinder, neutral, stamped
+from support.simulator import STATE_QOS, Simulator, cylinder
 
 pytestmark = pytest.mark.middleware
 
@@ -17,22 +17,19 @@ AREA = 5e-5
 TOPICS = ["arm/state", "arm/orifice_command", "arm/energy"]
 
 
-class Machine:
+class Machine(Simulator):
     """A simulator and its monitor in a namespace, seen from outside."""
 
     def __init__(self, ros, excavator, side, displacement):
-        words = ["--ros-args", "-r", f"__ns:=/{side}"]
-        start = ["-p", f"rate:={RATE}", "-p", "command_timeout:=1.0", "-p", f"start_displacement:=[{displacement}]"]
-        self.simulator = ros.start(excavator, "node", "arm-simulator", *words, *start)
-        self.monitor = ros.start(excavator, "node", "energy-monitor", *words)
-        self.states = ros.listen(ArmState, f"/{side}/arm/state", STATE_QOS)
-        self.energies = ros.listen(EnergyState, f"/{side}/arm/energy", STATE_QOS)
-        self.commands = ros.publisher(OrificeCommand, f"/{side}/arm/orifice_command")
-        ros.spin_until(lambda: self.states and self.energies, f"states and energies of {side}")
+        start = ["-p", f"start_displacement:=[{displacement}]"]
+        super().__init__(ros, excavator, rate=RATE, namespace=f"/{side}", arguments=start)
+        self.monitor = ros.start(excavator, "node", "energy-monitor", "--ros-args", "-r", f"__ns:=/{side}")
+        energies = ros.listen(EnergyState, f"/{side}/arm/energy", STATE_QOS)
+        ros.spin_until(lambda: energies, f"energies of {side}")
 
     @property
     def area(self):
-        return cylinder(self.states[-1]).orifice_area
+        return cylinder(self.last).orifice_area
 
 
 @pytest.fixture(scope="module")
@@ -40,25 +37,10 @@ def machines(ros, excavator):
     return {side: Machine(ros, excavator, side, number / 20) for number, side in enumerate(SIDES)}
 
 
-def drive(ros, machine, area, condition, what):
-    """Commands one machine until something holds. When a renewal came too late, it opens the valve again."""
-
-    def renew():
-        if machine.area == 0.0:
-            machine.commands.publish(stamped(neutral(["arm"])))
-        machine.commands.publish(stamped(command(arm=area)))
-
-    timer = ros.node.create_timer(RENEWAL, renew)
-    try:
-        ros.spin_until(condition, what)
-    finally:
-        ros.node.destroy_timer(timer)
-
-
 def test_a_command_moves_the_machine_of_its_namespace_alone(ros, machines):
     left, right = machines.values()
     before = len(right.states)
-    drive(ros, left, AREA, lambda: left.area == pytest.approx(AREA), "the left valve to open")
+    left.open_until(arm=AREA)
     ros.spin_until(lambda: len(right.states) > before + 50, "states of the right machine")
     assert all(cylinder(state).orifice_area == 0.0 for state in right.states[before:])
 
@@ -102,7 +84,8 @@ def test_both_are_recorded_together_and_read_apart(ros, machines, excavator, tmp
             opened.extend(counts)
         return opened and all(count > first + 200 for count, first in zip(counts, opened, strict=True))
 
-    drive(ros, left, AREA, is_enough, "a second of both machines, the left valve open")
+    with left.holding(arm=AREA):
+        ros.spin_until(is_enough, "a second of both machines, the left valve open")
     assert recorder.interrupt() == 0, recorder.output()
 
     def info(*words):

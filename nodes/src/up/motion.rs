@@ -5,13 +5,14 @@
 
 use std::f64::consts::TAU;
 use std::ffi::OsString;
+use std::path::Path;
 
-use excavator_bags::topic_to_write;
+use excavator_bags::{topic_to_write, write_message};
 use excavator_model::Model;
 use excavator_model::machine::Cylinder;
 use excavator_msgs::common::JointState;
 use excavator_msgs::{Header, Time};
-use rosbag2::{BagWriter, Qos, WriteOptions, cdr};
+use rosbag2::{BagWriter, Qos, WriteOptions};
 
 use crate::arm_state::joint_name;
 use crate::error::VerbError;
@@ -105,7 +106,7 @@ impl Swing {
     }
 }
 
-fn write(bag: &std::path::Path, swings: &[Swing], duration: f64) -> Result<(), VerbError> {
+fn write(bag: &Path, swings: &[Swing], duration: f64) -> Result<(), VerbError> {
     let mut writer = BagWriter::create(bag, &WriteOptions::default())?;
     let topic = writer.add_topic(&topic_to_write::<JointState>(TOPIC, Qos::reliable(10)))?;
     let samples = (RATE * duration) as u32;
@@ -121,8 +122,7 @@ fn write(bag: &std::path::Path, swings: &[Swing], duration: f64) -> Result<(), V
             velocity,
             effort: Vec::new(),
         };
-        let bytes = cdr::encode(&command).map_err(|error| VerbError::Machine(error.to_string()))?;
-        writer.write(topic, nanoseconds, nanoseconds, &bytes)?;
+        write_message(&mut writer, topic, TOPIC, nanoseconds, &command)?;
     }
     writer.finish()?;
     Ok(())

@@ -49,8 +49,11 @@ def neutral(names):
 class Simulator:
     """An `arm-simulator` that runs, with its states and a publisher of commands."""
 
-    def __init__(self, ros, excavator, *, rate=250.0, command_timeout=COMMAND_TIMEOUT, under="/arm", arguments=()):
-        """`command_timeout=None` leaves the node its own. `under`: where its topics are, beside another simulator."""
+    def __init__(
+        self, ros, excavator, *, rate=250.0, command_timeout=COMMAND_TIMEOUT, under="/arm", namespace="", arguments=()
+    ):
+        """`command_timeout=None` leaves the node its own. `under`: where its topics are, beside another simulator; `namespace`
+        moves the whole node instead, and its topics with it."""
         self._ros = ros
         self.rate = rate
         parameters = ["-p", f"rate:={rate}"]
@@ -58,6 +61,8 @@ class Simulator:
             parameters += ["-p", f"command_timeout:={command_timeout}"]
         names = [f"/arm/{topic}:={under}/{topic}" for topic in ("state", "orifice_command")] if under != "/arm" else []
         remaps = [word for name in names for word in ("-r", name)]
+        if namespace:
+            remaps, under = ["-r", f"__ns:={namespace}"], f"{namespace}/arm"
         self.process = ros.start(excavator, "node", "arm-simulator", "--ros-args", *parameters, *remaps, *arguments)
         self.states = ros.listen(ArmState, f"{under}/state", STATE_QOS)
         ros.spin_until(lambda: self.states, f"the first {under}/state")

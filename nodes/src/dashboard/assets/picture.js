@@ -1,12 +1,12 @@
 // The machine from its side, and the piston in its stroke.
 
 const picture = (function () {
-  let robot = null, isAnswered = false, angles = new Map(), assumed = new Set(), parts = [], size = 1;
+  // undefined: nobody has asked for a description yet; null: there is none that can be drawn.
+  let robot, angles = new Map(), assumed = new Set(), parts = [], size = 1;
 
   /** Takes a description; without a good one there is no picture. */
   function load(description) {
     robot = readRobot(description);
-    isAnswered = true;
     angles = new Map(); assumed = new Set(); parts = [];
     byId("machine").classList.toggle("without", robot === null);
     byId("picture").replaceChildren();
@@ -72,7 +72,7 @@ const picture = (function () {
   /** The joint of the chosen cylinder in words. */
   function note(chosen) {
     const joint = robot && robot.joints.find(function (other) { return other.name === chosen + "_joint"; });
-    if (!isAnswered) return "";
+    if (robot === undefined) return "";
     if (!robot) return "No robot description was received: the machine is not drawn.";
     if (!joint) return "The robot description has no joint " + chosen + "_joint.";
     const isAngle = joint.type !== "prismatic", factor = isAngle ? 180 / Math.PI : 1e3, unit = isAngle ? "°" : " mm";
