@@ -7,8 +7,8 @@ use std::time::Duration;
 use excavator_msgs::ArmState;
 use excavator_msgs::common::DiagnosticArray;
 
-use crate::fault::Fault;
-use crate::inside::inside;
+use crate::hostile::fault::Fault;
+use crate::hostile::inside::inside;
 use crate::live::{Network, folder, messages, sleep};
 
 /// The last values that a part of a node told.

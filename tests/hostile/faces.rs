@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use excavator_msgs::OrificeCommand;
 use excavator_ros::TopicQos;
 
-use crate::fault::Fault;
-use crate::inside::{command_of_now, inside, node_of_the_test, peak_memory, until};
+use crate::hostile::fault::Fault;
+use crate::hostile::inside::{command_of_now, inside, node_of_the_test, peak_memory, until};
 use crate::live::{Network, folder, messages, sleep};
 
 /// A recording of a simulator that an operator commands.

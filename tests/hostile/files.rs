@@ -8,7 +8,7 @@ use excavator_bags::{Topics, write_recording};
 use excavator_model::recording::Recording;
 use rosbag2::WriteOptions;
 
-use crate::fault::Fault;
+use crate::hostile::fault::Fault;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_excavator");
 

@@ -11,8 +11,8 @@ use ros2_client::qos::{History, QosProfile};
 use ros2_client::{ActionTypeName, Context, Name, Node, NodeName, NodeOptions, ServiceMapping};
 use serde::{Deserialize, Serialize};
 
-use crate::fault::Fault;
-use crate::inside::{inside, peak_memory, until};
+use crate::hostile::fault::Fault;
+use crate::hostile::inside::{inside, peak_memory, until};
 use crate::live::{Network, folder, messages, sleep};
 
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

@@ -8,9 +8,9 @@ use excavator_msgs::common::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use excavator_msgs::{ArmState, CylinderState, Header};
 use excavator_ros::TopicQos;
 
-use crate::faces::{answer, page};
-use crate::fault::Fault;
-use crate::inside::{command_of_now, inside, node_of_the_test, peak_memory, until};
+use crate::hostile::faces::{answer, page};
+use crate::hostile::fault::Fault;
+use crate::hostile::inside::{command_of_now, inside, node_of_the_test, peak_memory, until};
 use crate::live::{Network, folder, messages, sleep};
 
 fn state(cylinders: Vec<CylinderState>, nanoseconds: i64) -> ArmState {

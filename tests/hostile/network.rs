@@ -14,8 +14,8 @@ use excavator_msgs::{ArmState, Header, OrificeCommand};
 use rustdds::policy::{Durability, History, Reliability};
 use rustdds::{DomainParticipant, DomainParticipantBuilder, GUID, QosPolicyBuilder, TopicKind};
 
-use crate::fault::Fault;
-use crate::inside::start_inside;
+use crate::hostile::fault::Fault;
+use crate::hostile::inside::start_inside;
 use crate::live::{Network, Program, folder, messages, sleep};
 
 /// Most memory that a node may ever need, MB.

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use excavator_msgs::ArmState;
 
-use crate::fault::Fault;
+use crate::hostile::fault::Fault;
 use crate::live::{Network, folder, messages};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_excavator");

@@ -6,11 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use excavator_msgs::ArmState;
 
-use crate::fault::Fault;
-use crate::inside::start_inside;
-use crate::keystore::{Enclave, Keystore};
+use crate::hostile::fault::Fault;
+use crate::hostile::inside::start_inside;
+use crate::hostile::keystore::{Enclave, Keystore};
+use crate::hostile::network::{COMMANDS, MOST_MEMORY, heartbeat, look, operator_with, pairs, peak};
 use crate::live::{Network, Program, folder, messages, sleep};
-use crate::network::{COMMANDS, MOST_MEMORY, heartbeat, look, operator_with, pairs, peak};
 
 /// Time for peers to authenticate each other, s.
 const MEETING: f64 = 16.0;

@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use super::mcap_text::{end, message, start, topic, zeros, zstd_chunk};
-use crate::child::{run, worst};
-use crate::fault::Fault;
+use crate::hostile::child::{run, worst};
+use crate::hostile::fault::Fault;
 
 #[test]
 fn a_chunk_of_four_gigabytes_in_an_mcap_file_of_131_kilobytes() {

@@ -7,8 +7,8 @@ use excavator_bags::{Topics, write_recording};
 use excavator_model::recording::Recording;
 use rosbag2::WriteOptions;
 
-use crate::child::{Run, run};
-use crate::fault::Fault;
+use crate::hostile::child::{Run, run};
+use crate::hostile::fault::Fault;
 
 /// A swing of an arm: pressures and motion that belong together, from the program's own simulation.
 fn simulated(folder: &Path) -> Recording {

@@ -2,8 +2,8 @@
 
 use rusqlite::Connection;
 
-use crate::child::{run, worst};
-use crate::fault::Fault;
+use crate::hostile::child::{run, worst};
+use crate::hostile::fault::Fault;
 
 const TOPICS: &str = "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,
     serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);";

@@ -1,8 +1,8 @@
 //! Definitions of messages that nest without end.
 
 use super::mcap_text::{end, message, start, topic};
-use crate::child::{Run, run, worst};
-use crate::fault::Fault;
+use crate::hostile::child::{Run, run, worst};
+use crate::hostile::fault::Fault;
 
 const MAP: &str = "[[signals]]\nsignal = \"pump_pressure\"\ntopic = \"/t\"\nfield = \"x\"\n";
 

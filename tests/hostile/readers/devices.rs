@@ -2,8 +2,8 @@
 
 use std::process::Command;
 
-use crate::child::{run, worst};
-use crate::fault::Fault;
+use crate::hostile::child::{run, worst};
+use crate::hostile::fault::Fault;
 
 #[test]
 fn devices_fifos_and_folders_are_no_files() {

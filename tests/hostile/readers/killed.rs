@@ -8,8 +8,8 @@ use excavator_bags::topic_to_write;
 use excavator_msgs::ArmState;
 use rosbag2::{BagWriter, Qos, RawMessages, WriteOptions, cdr};
 
-use crate::child::run;
-use crate::fault::Fault;
+use crate::hostile::child::run;
+use crate::hostile::fault::Fault;
 use crate::live::Network;
 
 /// An interpreter that has the libraries of others, or `None` with a line that says what is skipped.

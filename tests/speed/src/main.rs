@@ -1,7 +1,7 @@
 //! `speed`: measures what things cost, beside the programs of others, and writes the page of figures.
 
 mod clock;
-#[path = "../../../model/tests/common/mod.rs"]
+#[path = "../../../model/tests/it/common/mod.rs"]
 mod common;
 mod diffsol;
 mod figures;

@@ -1,0 +1,102 @@
+//! Recorder and player between processes: nothing lost, nothing changed, and a killed recorder loses a second at most.
+
+use crate::live::{Network, custom_number, folder, messages, sleep};
+use excavator_msgs::{ArmState, EnergyState};
+
+#[test]
+fn everything_at_1_khz_is_recorded_and_balanced() {
+    let Some(network) = Network::new("record") else { return };
+    let (_keep, folder) = folder();
+    let bag = folder.join("bag");
+    let up = network.start(&["up", "-o", bag.to_str().unwrap(), "-d", "8"]);
+    let (status, log) = up.wait(std::time::Duration::from_secs(40));
+    assert_eq!(status, 0, "{log}");
+    let states: Vec<ArmState> = messages(&bag, "/arm/state").into_iter().map(|(_, state)| state).collect();
+    let energies: Vec<EnergyState> = messages(&bag, "/arm/energy").into_iter().map(|(_, energy)| energy).collect();
+    assert!(states.len() > 5000, "{}: {log}", states.len());
+    assert_eq!(custom_number(&bag, "lost_messages:/arm/state"), 0);
+    assert_eq!(custom_number(&bag, "lost_messages:/arm/energy"), 0);
+    assert_eq!(custom_number(&bag, "dropped_by_recorder"), 0);
+    // Samples are a period apart, however late they were sent.
+    let steps: Vec<i64> =
+        states.windows(2).map(|pair| pair[1].header.stamp.nanoseconds() - pair[0].header.stamp.nanoseconds()).collect();
+    let uneven = steps.iter().filter(|step| (**step - 1_000_000).abs() > 10_000).count();
+    assert!(uneven <= steps.len() / 100, "{uneven} of {} steps", steps.len());
+    // One balance per state, with its stamp: compare where both were recorded.
+    let (first, last) = (energies[0].header.stamp, energies[energies.len() - 1].header.stamp);
+    let inside: Vec<_> =
+        states.iter().map(|state| state.header.stamp).filter(|stamp| (first..=last).contains(stamp)).collect();
+    let stamps: Vec<_> =
+        energies.iter().map(|energy| energy.header.stamp).filter(|stamp| *stamp >= states[0].header.stamp).collect();
+    let missing = inside.iter().filter(|stamp| !stamps.contains(stamp)).count();
+    assert_eq!(missing, 0, "of {} states", inside.len());
+    // The valve is closed when the simulator has gone.
+    assert_eq!(states[states.len() - 1].cylinders[0].orifice_area, 0.0);
+}
+
+#[test]
+fn a_demo_moves_by_itself_and_shows_itself() {
+    let Some(network) = Network::new("demo") else { return };
+    let (_keep, folder) = folder();
+    let bag = folder.join("bag");
+    let up = network.start(&["up", "--demo", "-o", bag.to_str().unwrap(), "-d", "12"]);
+    let (status, log) = up.wait(std::time::Duration::from_secs(60));
+    assert_eq!(status, 0, "{log}");
+    assert!(log.contains("[dashboard]"), "{log}");
+    let states: Vec<ArmState> = messages(&bag, "/arm/state").into_iter().map(|(_, state)| state).collect();
+    let positions = states.iter().map(|state| state.cylinders[0].displacement);
+    let (least, most) = positions.fold((f64::MAX, f64::MIN), |(low, high), at| (low.min(at), high.max(at)));
+    assert!(most - least > 0.02, "{} m in {} states: {log}", most - least, states.len());
+    let model = excavator_model::document::built_in("zx30u-arm").unwrap();
+    let arm = &model.machine.cylinders[0];
+    assert!(!arm.is_at_an_end(least, 0.1) && !arm.is_at_an_end(most, 0.1), "{least} m to {most} m: {log}");
+}
+
+#[test]
+fn what_is_played_is_what_was_recorded() {
+    let Some(network) = Network::new("play") else { return };
+    let (_keep, folder) = folder();
+    let (first, second) = (folder.join("first"), folder.join("second"));
+    let simulator = network.start(&["node", "arm-simulator", "--ros-args", "-p", "rate:=200"]);
+    let recorder = network.start(&["record", "/arm/state", "/arm/model", "-d", "4", "-o", first.to_str().unwrap()]);
+    assert_eq!(recorder.wait(std::time::Duration::from_secs(30)).0, 0);
+    assert_eq!(simulator.interrupt().0, 0);
+    let again = network.start(&["record", "/left/state", "/arm/model", "-o", second.to_str().unwrap()]);
+    sleep(1.0);
+    let rules =
+        ["play", first.to_str().unwrap(), "--rate", "2", "--remap", "/arm/state:=/left/state", "--delay", "1.5"];
+    let player = network.start(&rules);
+    assert_eq!(player.wait(std::time::Duration::from_secs(30)).0, 0);
+    sleep(0.5);
+    let (status, log) = again.interrupt();
+    assert_eq!(status, 0, "{log}");
+    let before: Vec<(f64, ArmState)> = messages(&first, "/arm/state");
+    let after: Vec<(f64, ArmState)> = messages(&second, "/left/state");
+    assert!(before.len() > 500, "{}", before.len());
+    assert_eq!(before.len(), after.len(), "{log}");
+    // NaN is not equal to itself: compare what is printed.
+    assert!(before.iter().zip(&after).all(|(old, new)| format!("{:?}", old.1) == format!("{:?}", new.1)));
+    let length = |messages: &[(f64, ArmState)]| messages[messages.len() - 1].0 - messages[0].0;
+    let ratio = length(&before) / length(&after);
+    assert!((ratio - 2.0).abs() < 0.2, "{ratio}");
+    // A latched topic is played latched.
+    assert_eq!(messages::<excavator_msgs::common::Text>(&second, "/arm/model").len(), 1);
+}
+
+#[test]
+fn a_killed_recorder_loses_a_second_at_most() {
+    let Some(network) = Network::new("kill") else { return };
+    let (_keep, folder) = folder();
+    let bag = folder.join("bag");
+    let _simulator = network.start(&["node", "arm-simulator", "--ros-args", "-p", "rate:=500"]);
+    let recorder = network.start(&["record", "--all", "-o", bag.to_str().unwrap()]);
+    sleep(6.0);
+    let killed = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_secs_f64();
+    recorder.kill();
+    assert!(!bag.join("metadata.yaml").exists());
+    let states: Vec<(f64, ArmState)> = messages(&bag, "/arm/state");
+    let last = states[states.len() - 1].1.header.stamp.nanoseconds() as f64 * 1e-9;
+    println!("{} states, the last {:.3} s before the end", states.len(), killed - last);
+    assert!(killed - last < 1.0, "{}", killed - last);
+    assert!(states.len() > 1000, "{}", states.len());
+}
