@@ -1,13 +1,14 @@
 //! Files that the program writes: nothing that exists is lost, and names of others do nothing to a terminal.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Output};
+use std::time::Instant;
 
 use excavator_bags::{Topics, write_recording};
 use excavator_model::recording::Recording;
 use rosbag2::WriteOptions;
 
+use crate::hostile::child::run;
 use crate::hostile::fault::Fault;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_excavator");
@@ -220,30 +221,6 @@ fn names_of_others_do_nothing_to_a_terminal() {
     .survived(&[("commands tried", lines.to_string())]);
 }
 
-/// Highest resident memory of a program, MB, and how it ended.
-fn peak_of(folder: &Path, words: &[&str], limit: Duration) -> (f64, Output) {
-    let mut child = Command::new(PROGRAM)
-        .args(words)
-        .current_dir(folder)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let (start, status, mut peak) = (Instant::now(), format!("/proc/{}/status", child.id()), 0.0_f64);
-    while child.try_wait().unwrap().is_none() {
-        let text = std::fs::read_to_string(&status).unwrap_or_default();
-        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let kilobytes = line.and_then(|rest| rest.split_whitespace().next()).and_then(|word| word.parse::<f64>().ok());
-        peak = peak.max(kilobytes.unwrap_or_default() / 1024.0);
-        if start.elapsed() > limit {
-            child.kill().unwrap();
-        }
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    assert!(start.elapsed() < limit, "{words:?} takes longer than {limit:?}");
-    (peak, child.wait_with_output().unwrap())
-}
-
 fn hold(folder: &Path, duration: f64) {
     let text = format!(
         "[[profiles]]\ncylinder = \"arm\"\nsegments = [{{ kind = \"hold\", duration = {duration:?}, area = 0.0 }}]\n"
@@ -257,10 +234,9 @@ const SIMULATE: [&str; 7] = ["simulate", "--model", "zx30u-arm", "--input", "pro
 fn a_profile_of_twelve_days_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     hold(folder.path(), 1e6);
-    let (peak, output) = peak_of(folder.path(), &SIMULATE, Duration::from_secs(10));
-    let line = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{line}");
-    assert!(line.contains("1000000 s") && line.contains("1000 samples per second") && line.contains("limit"), "{line}");
+    let done = run(folder.path(), &SIMULATE, 10.0);
+    done.refused(&["1000000 s", "1000 samples per second", "limit"]);
+    let peak = done.megabytes;
     assert!(peak < 100.0, "{peak} MB");
     Fault {
         group: "Files",
@@ -275,17 +251,14 @@ fn a_profile_of_twelve_days_is_refused() {
 fn the_longest_profile_stays_within_its_memory() {
     let folder = tempfile::tempdir().unwrap();
     hold(folder.path(), 3600.0);
-    let start = Instant::now();
-    let (peak, output) = peak_of(folder.path(), &SIMULATE, Duration::from_secs(600));
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let done = run(folder.path(), &SIMULATE, 600.0);
+    assert_eq!(done.status, Some(0), "{}", done.complaint);
+    let peak = done.megabytes;
     assert!(peak < 1000.0, "{peak} MB");
     Fault {
         group: "Files",
         tried: "the longest profile that is simulated, an hour at 1 kHz",
         outcome: "simulated within bounded memory",
     }
-    .survived(&[
-        ("peak memory [MB]", format!("{peak:.0}")),
-        ("time [s]", format!("{:.0}", start.elapsed().as_secs_f64())),
-    ]);
+    .survived(&[("peak memory [MB]", format!("{peak:.0}")), ("processor time [s]", format!("{:.0}", done.seconds))]);
 }

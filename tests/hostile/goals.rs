@@ -12,8 +12,8 @@ use ros2_client::{ActionTypeName, Context, Name, Node, NodeName, NodeOptions, Se
 use serde::{Deserialize, Serialize};
 
 use crate::hostile::fault::Fault;
-use crate::hostile::inside::{inside, peak_memory, until};
-use crate::live::{Network, folder, messages, sleep};
+use crate::hostile::inside::{inside, peak_memory};
+use crate::live::{LONGEST_WAIT, Network, folder, found, messages, recorded, records, until};
 
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 struct Goal {
@@ -52,8 +52,6 @@ fn long_goal() -> Goal {
     Goal { effects: vec!["entrained_air".to_string()], ..goal("zx30u-arm", "arm-swing") }
 }
 
-const ANSWER: Duration = Duration::from_secs(20);
-
 struct Client {
     _node: Node,
     action: ActionClient<Goal, Outcome, Feedback>,
@@ -78,10 +76,7 @@ impl Client {
         let type_name = ActionTypeName::new("excavator_msgs", "Identify");
         let action = node.create_action_client(ServiceMapping::Enhanced, &name, &type_name, policies).unwrap();
         let client = Client { _node: node, action };
-        let end = Instant::now() + Duration::from_secs(60);
-        while client.send_within(&Goal::default(), Duration::from_secs(1)).is_none() {
-            assert!(Instant::now() < end, "the server is not found");
-        }
+        found("the server", || client.send_within(&Goal::default(), Duration::from_secs(1)));
         client
     }
 
@@ -99,19 +94,15 @@ impl Client {
     }
 
     fn send(&self, goal: &Goal) -> (GoalId, bool) {
-        self.send_within(goal, ANSWER).expect("an answer to a goal")
+        self.send_within(goal, LONGEST_WAIT).expect("an answer to a goal")
     }
 
-    /// The result of an accepted goal, within `time`.
-    fn result(&self, id: GoalId, time: Duration) -> (GoalStatusEnum, Outcome) {
-        let request = self.action.request_result(id).unwrap();
-        until("the result", time, || self.action.receive_result(request).unwrap_or(None))
-    }
-
-    fn run(&self, goal: &Goal, time: Duration) -> (GoalStatusEnum, Outcome) {
+    /// The result of a goal that is accepted.
+    fn run(&self, goal: &Goal) -> (GoalStatusEnum, Outcome) {
         let (id, accepted) = self.send(goal);
         assert!(accepted, "{goal:?}");
-        self.result(id, time)
+        let request = self.action.request_result(id).unwrap();
+        found("the result", || self.action.receive_result(request).unwrap_or(None))
     }
 }
 
@@ -159,15 +150,15 @@ fn files_of_the_machine_are_neither_read_nor_betrayed() {
         for name in there.into_iter().chain(absent) {
             for goal in [goal(name, "arm-swing"), goal("zx30u-arm", name)] {
                 let start = Instant::now();
-                let (status, outcome) = client.run(&goal, ANSWER);
+                let (status, outcome) = client.run(&goal);
                 longest = longest.max(start.elapsed());
                 assert_eq!(status, GoalStatusEnum::Aborted, "{name}: {outcome:?}");
                 messages.push(outcome.message.replace(name, "NAME"));
             }
         }
-        messages.push(client.run(&goal("odd.toml", "arm-swing"), ANSWER).1.message);
+        messages.push(client.run(&goal("odd.toml", "arm-swing")).1.message);
         let start = Instant::now();
-        let (status, outcome) = client.run(&goal("zx30u-arm", "arm-swing"), Duration::from_secs(120));
+        let (status, outcome) = client.run(&goal("zx30u-arm", "arm-swing"));
         assert_eq!(status, GoalStatusEnum::Succeeded, "{}", outcome.message);
         (messages, longest, start.elapsed())
     });
@@ -212,10 +203,8 @@ fn too_large_and_too_many_goals_are_refused() {
         let large = large.count();
         let small = (0..300).filter(|_| client.send(&long_goal()).1).count();
         let request = client.action.cancel_all_goals().unwrap();
-        until("the answer to a cancel request", ANSWER, || {
-            client.action.receive_cancel_response(request).unwrap_or(None)
-        });
-        let (status, outcome) = client.run(&goal("zx30u-arm", "arm-swing"), Duration::from_secs(120));
+        found("the answer to a cancel request", || client.action.receive_cancel_response(request).unwrap_or(None));
+        let (status, outcome) = client.run(&goal("zx30u-arm", "arm-swing"));
         assert_eq!(status, GoalStatusEnum::Succeeded, "{}", outcome.message);
         (large, small)
     });
@@ -226,7 +215,8 @@ fn too_large_and_too_many_goals_are_refused() {
     // Eight wait and one is worked on; while 300 are sent some are done.
     assert!((9..=40).contains(&small), "{small}");
     let lines = log.lines().filter(|line| line.contains("a goal is refused")).count();
-    assert!((1..=30).contains(&lines), "{lines} lines");
+    let refused = 300 - small;
+    assert!((1..=refused / 4).contains(&lines), "{lines} lines about {refused} refused goals");
     assert!(peak < 200.0, "{peak} MB");
     Fault {
         group: "Remote goals",
@@ -253,7 +243,7 @@ fn work_ends_at_the_time_limit_and_the_next_goal_is_worked_on() {
         let client = Client::new();
         [(); 2].map(|()| {
             let start = Instant::now();
-            let (status, outcome) = client.run(&long_goal(), ANSWER);
+            let (status, outcome) = client.run(&long_goal());
             assert_eq!(status, GoalStatusEnum::Aborted);
             assert!(outcome.message.contains("time_limit"), "{}", outcome.message);
             start.elapsed().as_secs_f64()
@@ -282,11 +272,16 @@ fn a_result_is_the_model_in_use_only_where_the_operator_said_so() {
         }
         let recorder = network.start(&["record", "/arm/model", "/diagnostics", "-o", bag.to_str().unwrap()]);
         let program = network.start(&node(&parameters));
+        records(&bag, "/diagnostics", 2);
         inside(&network, || {
-            let (status, outcome) = Client::new().run(&goal("zx30u-arm", "arm-swing"), Duration::from_secs(120));
+            let (status, outcome) = Client::new().run(&goal("zx30u-arm", "arm-swing"));
             assert_eq!(status, GoalStatusEnum::Succeeded, "{}", outcome.message);
         });
-        sleep(1.0);
+        if wanted {
+            until("the model", || recorded(&bag, "/arm/model") > 0);
+        }
+        // What the node would have published has had its time: diagnostics of two seconds have come since.
+        records(&bag, "/diagnostics", 4);
         assert_eq!(program.interrupt().0, 0);
         assert_eq!(recorder.interrupt().0, 0);
         published.push(messages::<Text>(&bag, "/arm/model").len());

@@ -2,7 +2,6 @@
 
 use std::fs::File;
 use std::process::Command;
-use std::time::{Duration, Instant};
 
 use excavator_msgs::{Header, OrificeCommand, Time};
 use excavator_ros::{RosArguments, Supervisor};
@@ -51,18 +50,6 @@ pub fn peak_memory(network: &Network, word: &str) -> f64 {
         }
     }
     panic!("no program with {word} in {}", network.name());
-}
-
-/// Waits until `of` gives something.
-pub fn until<T>(what: &str, time: Duration, mut of: impl FnMut() -> Option<T>) -> T {
-    let end = Instant::now() + time;
-    loop {
-        if let Some(found) = of() {
-            return found;
-        }
-        assert!(Instant::now() < end, "{what} did not come within {time:?}");
-        std::thread::sleep(Duration::from_millis(5));
-    }
 }
 
 /// A node of the test itself, on the thread that runs inside the network.

@@ -2,7 +2,7 @@
 
 use std::net::TcpStream;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use excavator_msgs::common::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use excavator_msgs::{ArmState, CylinderState, Header};
@@ -10,8 +10,8 @@ use excavator_ros::TopicQos;
 
 use crate::hostile::faces::{answer, page};
 use crate::hostile::fault::Fault;
-use crate::hostile::inside::{command_of_now, inside, node_of_the_test, peak_memory, until};
-use crate::live::{Network, folder, messages, sleep};
+use crate::hostile::inside::{command_of_now, inside, node_of_the_test, peak_memory};
+use crate::live::{Network, folder, messages, records, sleep, until};
 
 fn state(cylinders: Vec<CylinderState>, nanoseconds: i64) -> ArmState {
     let stamp = excavator_msgs::Time::from_nanoseconds(nanoseconds).unwrap();
@@ -123,7 +123,7 @@ fn enormous_states_and_diagnostics_do_not_fill_monitor_and_page() {
     let monitor = network.start(&["node", "energy-monitor", "--ros-args", "-p", &model]);
     let dashboard = network.start(&["dashboard"]);
     let (frames, sent) = inside(&network, || {
-        until("the page", Duration::from_secs(30), || TcpStream::connect(page()).ok());
+        until("the page", || TcpStream::connect(page()).is_ok());
         let node = node_of_the_test("stranger");
         let states = node.link.publish("/arm/state", TopicQos::reliable(10)).unwrap();
         let parts = node.link.publish("/diagnostics", TopicQos::reliable(10)).unwrap();

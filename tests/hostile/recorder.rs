@@ -1,90 +1,22 @@
 //! What happens to a recording: its file goes, its disk is full, everybody is told to end at once.
 
-use std::io::{BufRead, BufReader};
-use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::sync::{Arc, Mutex};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use excavator_msgs::ArmState;
 
 use crate::hostile::fault::Fault;
-use crate::live::{Network, folder, messages};
+use crate::live::{Network, Program, folder, kill, messages, until};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_excavator");
 /// Bytes at both ends of an MCAP file.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
-/// A program on a network, in a process group of its own as a shell starts it, with its log as it comes.
-struct Started {
-    child: Child,
-    log: Arc<Mutex<String>>,
-    reader: Option<std::thread::JoinHandle<()>>,
-}
-
-impl Started {
-    fn on(network: &Network, before: &[&str], words: &[&str]) -> Started {
-        let mut command = Command::new("ip");
-        command.args(["netns", "exec", network.name()]).args(before).arg(PROGRAM).args(words);
-        command.env_remove("ROS_DOMAIN_ID").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
-        let mut child = command.process_group(0).spawn().unwrap();
-        let log = Arc::new(Mutex::new(String::new()));
-        let lines = BufReader::new(child.stderr.take().unwrap());
-        let shared = Arc::clone(&log);
-        let reader = std::thread::spawn(move || {
-            for line in lines.lines().map_while(Result::ok) {
-                *shared.lock().unwrap() += &(line + "\n");
-            }
-        });
-        Started { child, log, reader: Some(reader) }
-    }
-
-    fn log(&self) -> String {
-        self.log.lock().unwrap().clone()
-    }
-
-    fn id(&self) -> i32 {
-        i32::try_from(self.child.id()).unwrap()
-    }
-
-    /// Its children.
-    fn children(&self) -> Vec<i32> {
-        let path = format!("/proc/{0}/task/{0}/children", self.id());
-        std::fs::read_to_string(path).unwrap().split_whitespace().map(|word| word.parse().unwrap()).collect()
-    }
-
-    /// Exit status, and the whole log once all that write to it have ended.
-    fn wait(&mut self) -> (Option<i32>, String) {
-        until("the program ends", || self.child.try_wait().unwrap().is_some());
-        let status = self.child.wait().unwrap().code();
-        let reader = self.reader.take().unwrap();
-        until("its children end", || reader.is_finished());
-        reader.join().unwrap();
-        (status, self.log())
-    }
-}
-
-impl Drop for Started {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-/// `kill` of a process, or of a group where the number is negative.
-fn signal(signal: &str, process: i32) {
-    let words = [signal, "--", &process.to_string()];
-    assert!(Command::new("kill").args(words).status().unwrap().success(), "{words:?}");
-}
-
-/// Waits for something that takes seconds at most; returns how long it took.
-fn until(what: &str, mut happened: impl FnMut() -> bool) -> Duration {
+/// Waits for something; returns how long it took.
+fn duration_of(what: &str, happened: impl FnMut() -> bool) -> Duration {
     let start = Instant::now();
-    while !happened() {
-        assert!(start.elapsed() < Duration::from_secs(30), "in vain: {what}");
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    until(what, happened);
     start.elapsed()
 }
 
@@ -114,26 +46,24 @@ fn a_recorder_whose_file_is_deleted_says_so_and_goes_on() {
     let (_keep, folder) = folder();
     let (bag, watch) = (folder.join("bag"), folder.join("watch"));
     let _simulator = network.start(&["node", "arm-simulator", "--ros-args", "-p", "rate:=200"]);
-    let mut watcher = Started::on(&network, &[], &["record", "/diagnostics", "-o", watch.to_str().unwrap()]);
-    let mut recorder = Started::on(&network, &[], &["record", "/arm/state", "-o", bag.to_str().unwrap()]);
+    let watcher = network.start(&["record", "/diagnostics", "-o", watch.to_str().unwrap()]);
+    let recorder = network.start(&["record", "/arm/state", "-o", bag.to_str().unwrap()]);
     let (first, second) = (bag.join("bag_0.mcap"), bag.join("bag_1.mcap"));
-    until("something is recorded", || size(&first) > 5000);
+    until("something to be recorded", || size(&first) > 5000);
     std::fs::remove_file(&first).unwrap();
-    let noticed = until("the deletion is noticed", || recorder.log().contains("bag_0.mcap ("));
-    until("the bag goes on", || size(&second) > 5000);
-    until("the watcher has heard of it", || text_of(&watch).contains("was deleted or moved"));
-    signal("-INT", recorder.id());
+    let noticed = duration_of("the deletion to be noticed", || recorder.log().contains("bag_0.mcap ("));
+    until("the bag to go on", || size(&second) > 5000);
+    until("the watcher to hear of it", || text_of(&watch).contains("was deleted or moved"));
+    recorder.signal("-INT");
     let (status, log) = recorder.wait();
-    assert_eq!(status, Some(1), "{log}");
+    assert_eq!(status, 1, "{log}");
     assert!(
         log.contains("in files that are gone") && log.contains("excavator: files of the recording were deleted"),
         "{log}"
     );
-    assert!(noticed < Duration::from_secs(2), "{noticed:?}");
     let states = states_of_whole(&bag);
     assert!(states > 10, "{states}");
-    signal("-INT", watcher.id());
-    watcher.wait();
+    watcher.interrupt();
     Fault {
         group: "Recorder",
         tried: "the file that is being recorded to is deleted",
@@ -154,13 +84,13 @@ fn a_recorder_whose_folder_is_moved_completes_it_and_goes_on() {
     let (_keep, folder) = folder();
     let (bag, moved) = (folder.join("bag"), folder.join("moved"));
     let _simulator = network.start(&["node", "arm-simulator", "--ros-args", "-p", "rate:=200"]);
-    let mut recorder = Started::on(&network, &[], &["record", "/arm/state", "-o", bag.to_str().unwrap()]);
-    until("something is recorded", || size(&bag.join("bag_0.mcap")) > 5000);
+    let recorder = network.start(&["record", "/arm/state", "-o", bag.to_str().unwrap()]);
+    until("something to be recorded", || size(&bag.join("bag_0.mcap")) > 5000);
     std::fs::rename(&bag, &moved).unwrap();
-    let noticed = until("the bag goes on", || size(&bag.join("bag_1.mcap")) > 5000);
-    signal("-TERM", recorder.id());
+    let noticed = duration_of("the bag to go on", || size(&bag.join("bag_1.mcap")) > 5000);
+    recorder.signal("-TERM");
     let (status, log) = recorder.wait();
-    assert_eq!(status, Some(1), "{log}");
+    assert_eq!(status, 1, "{log}");
     assert!(is_closed(&moved.join("bag_0.mcap")));
     let (before, after) = (messages::<ArmState>(&moved, "/arm/state"), messages::<ArmState>(&bag, "/arm/state"));
     assert!(before.len() > 10 && after.len() == states_of_whole(&bag), "{} {}", before.len(), after.len());
@@ -208,9 +138,9 @@ fn a_full_disk_ends_the_recording_with_a_closed_bag() {
         let Some(disk) = Disk::new(folder.join(compression), bytes) else { return };
         let bag = disk.0.join("bag");
         let words = ["record", "/arm/state", "--compression", compression, "-o", bag.to_str().unwrap()];
-        let mut recorder = Started::on(&network, &[], &words);
+        let recorder = network.start(&words);
         let (status, log) = recorder.wait();
-        assert_eq!(status, Some(1), "{log}");
+        assert_eq!(status, 1, "{log}");
         let line = log.lines().find(|line| line.starts_with("excavator: ")).unwrap();
         assert!(line.contains("no space left on the disk of") && line.contains("bag_0.mcap"), "{line}");
         assert!(is_closed(&bag.join("bag_0.mcap")));
@@ -232,11 +162,11 @@ fn a_full_disk_ends_the_recording_with_a_closed_bag() {
 }
 
 /// Starts everything and waits until something is recorded.
-fn up(network: &Network, before: &[&str], bag: &Path, more: &[&str]) -> Started {
-    let words = [&["up", "-o", bag.to_str().unwrap()], more].concat();
-    let started = Started::on(network, before, &words);
+fn up(network: &Network, before: &[&str], bag: &Path, more: &[&str]) -> Program {
+    let words = [before, &[PROGRAM, "up", "-o", bag.to_str().unwrap()], more].concat();
+    let started = network.start_other(Path::new(words[0]), &words[1..], &[]);
     let name = format!("{}_0.mcap", bag.file_name().unwrap().to_str().unwrap());
-    until("everything is recorded", || {
+    until("everything to be recorded", || {
         started.log().contains("recording /arm/state (") && size(&bag.join(&name)) > 20_000
     });
     started
@@ -249,25 +179,25 @@ fn interrupted(rounds: usize) {
     let mut slowest = Duration::ZERO;
     for round in 0..rounds {
         let bag = folder.join(format!("bag{round}"));
-        let mut started = up(&network, &[], &bag, &[]);
+        let started = up(&network, &[], &bag, &[]);
         let children = started.children();
         assert_eq!(children.len(), 3);
         let start = Instant::now();
         // A terminal signals the whole group.
-        signal("-INT", -started.id());
+        started.signal_group("-INT");
         match round % 3 {
             // Also one who has put the parts into that group.
-            1 => children.iter().for_each(|child| signal("-INT", *child)),
+            1 => children.iter().for_each(|child| kill("-INT", &child.to_string())),
             // A person who does not want to wait.
             2 => {
-                std::thread::sleep(Duration::from_millis(600));
+                started.says("stopping");
                 let _ = Command::new("kill").args(["-INT", &started.id().to_string()]).stderr(Stdio::null()).status();
             }
             _ => {}
         }
         let (status, log) = started.wait();
         slowest = slowest.max(start.elapsed());
-        assert_eq!(status, Some(0), "{round}: {log}");
+        assert_eq!(status, 0, "{round}: {log}");
         assert!(is_closed(&bag.join(format!("bag{round}_0.mcap"))), "{round}: {log}");
         assert!(states_of_whole(&bag) > 100, "{round}: {log}");
     }
@@ -298,13 +228,13 @@ fn parts_end_with_a_parent_that_is_killed() {
     let Some(network) = Network::new("orphans") else { return };
     let (_keep, folder) = folder();
     let bag = folder.join("bag");
-    let mut started = up(&network, &[], &bag, &[]);
+    let started = up(&network, &[], &bag, &[]);
     let children = started.children();
     let start = Instant::now();
-    signal("-KILL", started.id());
+    started.signal("-KILL");
     let (_, log) = started.wait();
     let took = start.elapsed();
-    until("all parts are gone", || children.iter().all(|child| !Path::new(&format!("/proc/{child}")).exists()));
+    until("all parts to be gone", || children.iter().all(|child| !Path::new(&format!("/proc/{child}")).exists()));
     assert!(is_closed(&bag.join("bag_0.mcap")) && states_of_whole(&bag) > 100, "{log}");
     Fault {
         group: "Recorder",
@@ -321,9 +251,9 @@ fn a_script_that_is_deaf_to_ctrl_c_gets_whole_bags() {
     let bag = folder.join("bag");
     // As a shell starts what runs in its background.
     let deaf = ["sh", "-c", "trap '' INT; exec \"$@\"", "sh"];
-    let mut started = up(&network, &deaf, &bag, &["-d", "4"]);
+    let started = up(&network, &deaf, &bag, &["-d", "4"]);
     let (status, log) = started.wait();
-    assert_eq!(status, Some(0), "{log}");
+    assert_eq!(status, 0, "{log}");
     assert!(is_closed(&bag.join("bag_0.mcap")) && states_of_whole(&bag) > 100, "{log}");
     Fault {
         group: "Recorder",

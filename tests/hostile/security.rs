@@ -1,16 +1,14 @@
 //! A stranger on a network that is secured with DDS Security.
 
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use excavator_msgs::ArmState;
 
 use crate::hostile::fault::Fault;
 use crate::hostile::inside::start_inside;
 use crate::hostile::keystore::{Enclave, Keystore};
-use crate::hostile::network::{COMMANDS, MOST_MEMORY, heartbeat, look, operator_with, pairs, peak};
-use crate::live::{Network, Program, folder, messages, sleep};
+use crate::hostile::network::{COMMANDS, MOST_MEMORY, Operator, heartbeat, look, pairs, peak};
+use crate::live::{Network, Program, folder, messages, messages_so_far, records, sleep, until};
 
 /// Time for peers to authenticate each other, s.
 const MEETING: f64 = 16.0;
@@ -32,8 +30,13 @@ fn states(bag: &Path) -> (usize, usize) {
     (states.len(), states.iter().filter(|(_, state)| state.cylinders[0].orifice_area > 0.0).count())
 }
 
-/// Simulator with keys; whether it hears the operator, who may have keys, is in what a recorder with keys has of it.
-fn commanded(name: &str, keystore: &Keystore, operator: ros2_client::ContextOptions) -> Option<(usize, usize, String)> {
+/// Simulator with keys; `permitted`: whether its valve is to open before all ends. Whether it hears the operator, who may have keys, is in what a recorder with keys has of it.
+fn commanded(
+    name: &str,
+    keystore: &Keystore,
+    options: ros2_client::ContextOptions,
+    permitted: bool,
+) -> Option<(usize, usize, String)> {
     let network = Network::new(name)?;
     let (_keep, folder) = folder();
     let bag = folder.join("bag");
@@ -41,11 +44,19 @@ fn commanded(name: &str, keystore: &Keystore, operator: ros2_client::ContextOpti
     let recorder = start(&network, &words, &keystore.environment("/recorder"));
     let words = ["node", "arm-simulator", "--ros-args", "-p", "rate:=200"];
     let simulator = start(&network, &words, &keystore.environment("/arm/simulator"));
-    let stop = Arc::new(AtomicBool::new(false));
-    let commands = operator_with(&network, &stop, operator);
-    sleep(MEETING + 4.0);
-    stop.store(true, Ordering::Relaxed);
-    commands.join().unwrap();
+    let operator = Operator::new(&network, options);
+    records(&bag, "/arm/state", 200);
+    operator.opens();
+    if permitted {
+        let open = |(_, state): &(f64, ArmState)| state.cylinders[0].orifice_area > 0.0;
+        until("100 states with an open valve", || {
+            messages_so_far::<ArmState>(&bag, "/arm/state").iter().filter(|state| open(state)).count() > 100
+        });
+    } else {
+        sleep(MEETING);
+        records(&bag, "/arm/state", 200);
+    }
+    operator.falls_silent().unwrap();
     let (recorded, log) = recorder.interrupt();
     let (simulated, other) = simulator.interrupt();
     assert_eq!((recorded, simulated), (0, 0), "{log}{other}");
@@ -61,9 +72,9 @@ fn keys(keystore: &Keystore, enclave: &str) -> ros2_client::ContextOptions {
 #[test]
 fn peers_with_keys_talk_and_others_neither_command_nor_read() {
     let keystore = Keystore::new(&ENCLAVES, "ENCRYPT");
-    let Some((all, open, log)) = commanded("keys", &keystore, keys(&keystore, "/operator")) else { return };
+    let Some((all, open, log)) = commanded("keys", &keystore, keys(&keystore, "/operator"), true) else { return };
     assert!(all > 400 && open > 100, "{all} states, {open} with an open valve: {log}");
-    let (all, without_keys, log) = commanded("nokeys", &keystore, ros2_client::ContextOptions::new()).unwrap();
+    let (all, without_keys, log) = commanded("nokeys", &keystore, ros2_client::ContextOptions::new(), false).unwrap();
     assert!(all > 400 && without_keys == 0, "{all} states, {without_keys} with an open valve: {log}");
     let network = Network::new("reader").unwrap();
     let (_keep, folder) = folder();
@@ -75,8 +86,7 @@ fn peers_with_keys_talk_and_others_neither_command_nor_read() {
     simulator.interrupt();
     assert!(!log.contains("/arm/state"), "{log}");
     let options = keys(&keystore, "/arm/monitor");
-    let stop = Arc::new(AtomicBool::new(true));
-    let refused = operator_with(&network, &stop, options).join();
+    let refused = Operator::new(&network, options).falls_silent();
     assert!(refused.is_err(), "keys without permission make a writer of commands");
     Fault {
         group: "Network",
@@ -93,8 +103,7 @@ fn a_heartbeat_without_keys_does_nothing_even_without_the_guard() {
     let mut environment = keystore.environment("/arm/simulator").to_vec();
     environment.push(("EXCAVATOR_PACKET_GUARD", "off"));
     let simulator = start(&left, &["node", "arm-simulator", "--ros-args", "-p", "rate:=200"], &environment);
-    let stop = Arc::new(AtomicBool::new(false));
-    let operator = operator_with(&left, &stop, keys(&keystore, "/operator"));
+    let operator = Operator::new(&left, keys(&keystore, "/operator"));
     // Somebody who once had keys knows the identities; the packets are not protected.
     let options = keystore.folder("/recorder");
     let sent = start_inside(&right, move || {
@@ -118,8 +127,7 @@ fn a_heartbeat_without_keys_does_nothing_even_without_the_guard() {
     .unwrap();
     assert!(sent >= 15, "{sent} packets sent");
     sleep(3.0);
-    stop.store(true, Ordering::Relaxed);
-    operator.join().unwrap();
+    operator.falls_silent().unwrap();
     let megabytes = peak(&simulator);
     simulator.interrupt();
     assert!(megabytes < MOST_MEMORY, "{megabytes} MB");

@@ -95,15 +95,14 @@ mod tests {
         let clock = |gap: f64| -> Vec<f64> {
             (0..2000).map(|index| f64::from(index) * interval + if index < 1000 { 0.0 } else { gap }).collect()
         };
-        let start = std::time::Instant::now();
         // No sample at the edge of a window.
         let half_width = 1.0 / 32.0 + 1.0 / 2048.0;
         let places = |gap: f64| -> Vec<usize> {
             windows(&clock(gap), interval, half_width, step).iter().map(|window| window.first).collect()
         };
         let short = places(1.0);
+        // Whoever visits each of the 2^36 places in the gap does not come back.
         assert_eq!(places(f64::from(1 << 29)), short);
         assert!(short.len() > 480, "{}", short.len());
-        assert!(start.elapsed().as_secs() < 2, "{:?}", start.elapsed());
     }
 }

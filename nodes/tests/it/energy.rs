@@ -206,12 +206,11 @@ fn peak_memory(process: u32) -> Option<f64> {
 
 #[test]
 #[ignore = "writes an hour of bag; tests/run --long"]
-fn an_hour_at_one_kilohertz_takes_seconds_and_little_memory() {
+fn an_hour_at_one_kilohertz_takes_little_memory() {
     for (what, minute) in [("noise-free", minute()), ("noisy", noisy(minute()))] {
         let (seconds, peak) = analyse_an_hour_of(&minute);
         println!("{what}: 3.6 million samples in {seconds:.1} s with {peak:.0} MB at most");
         assert!(peak < 400.0, "{what}: {peak} MB");
-        assert!(seconds < 20.0 || cfg!(debug_assertions), "{what}: {seconds} s");
     }
 }
 

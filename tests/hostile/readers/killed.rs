@@ -10,7 +10,7 @@ use rosbag2::{BagWriter, Qos, RawMessages, WriteOptions, cdr};
 
 use crate::hostile::child::run;
 use crate::hostile::fault::Fault;
-use crate::live::Network;
+use crate::live::{Network, until};
 
 /// An interpreter that has the libraries of others, or `None` with a line that says what is skipped.
 fn python() -> Option<PathBuf> {
@@ -190,11 +190,7 @@ fn a_recorder_killed_under_load() {
     let recorder = network.start(&["record", "--all", "-o", bag.to_str().unwrap()]);
     // Two hundred kilobytes are several chunks, written while messages come.
     let file = bag.join("bag_0.mcap");
-    let end = Instant::now() + Duration::from_secs(60);
-    while std::fs::metadata(&file).map_or(0, |metadata| metadata.len()) < 200_000 {
-        assert!(Instant::now() < end, "the recorder writes nothing");
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    until("200 kB of recording", || std::fs::metadata(&file).is_ok_and(|metadata| metadata.len() > 200_000));
     recorder.kill();
     assert!(!bag.join("metadata.yaml").exists());
     assert!(others_see(&python, &bag).is_err());

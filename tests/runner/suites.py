@@ -1,0 +1,77 @@
+"""Test suites: those of Rust, and those of pytest. Each is a step that counts its tests."""
+
+import os
+import sys
+import xml.etree.ElementTree
+from collections import Counter
+
+import cargo
+from run import ROOT, Failed
+
+# Measures beside programs of others, whose solvers take minutes to build: in long runs only.
+EVERY_CRATE = ["--workspace"]
+CRATES = [*EVERY_CRATE, "--exclude", "excavator-speed"]
+PYTHON = ROOT / ".venv" / "bin" / "python"
+PROGRAM = ROOT / "target" / "debug" / "excavator"
+
+
+def rust(run, programs, words, environment):
+    """Runs Rust test programs with further words; prints the output of those that failed."""
+    total, broken = Counter(), []
+    for program, status, output, timed, counts in cargo.run_all(programs, ["--show-output", *words], environment):
+        run.count("Rust", timed, counts)
+        run.skipped(line.partition("skipped: ")[2] for line in output.splitlines() if line.startswith("skipped: "))
+        total += counts
+        if status:
+            again = f"cargo test -p {program.crate}"
+            broken.append(f"$ {again}\n{output}exit status {status}")
+    if broken:
+        raise Failed("\n".join(broken))
+    return _said(total)
+
+
+def pytest(run, kind, words, environment=None):
+    """Runs pytest; counts, durations and the reasons of skipped tests come from its report."""
+    report = ROOT / "target" / "pytest" / f"{kind.replace(' ', '-')}.xml"
+    report.parent.mkdir(parents=True, exist_ok=True)
+    report.unlink(missing_ok=True)
+    variables = {"EXCAVATOR_BINARY": str(PROGRAM), "EXCAVATOR_PYTHON": str(PYTHON)} | (environment or {})
+    # 5: no test was selected
+    command = [PYTHON, "-m", "pytest", "-q", f"--junitxml={report}", *words]
+    failure = None
+    try:
+        run.command(command, environment=variables)
+    except Failed as error:
+        failure = error
+    timed, counts, reasons = read(report)
+    run.count(kind, timed, counts)
+    run.skipped(reasons)
+    if failure:
+        raise failure
+    if not counts["passed"]:
+        raise Failed(f"no test of {' '.join(map(str, words))} passed")
+    return _said(counts)
+
+
+def read(report):
+    """Timed tests, counts, and reasons of skipped tests in a JUnit report of pytest; nothing where there is none."""
+    timed, counts, reasons = [], Counter(), []
+    if not report.exists():
+        return timed, counts, reasons
+    for case in xml.etree.ElementTree.parse(report).iter("testcase"):
+        name = f"{case.get('classname').replace('.', '/')}::{case.get('name')}"
+        timed.append((name, float(case.get("time"))))
+        skipped = case.find("skipped")
+        outcome = "skipped" if skipped is not None else "passed"
+        if case.find("failure") is not None or case.find("error") is not None:
+            outcome = "failed"
+        counts[outcome] += 1
+        if skipped is not None:
+            reasons.append(skipped.get("message", ""))
+    return timed, counts, reasons
+
+
+def _said(counts):
+    from durations import in_words
+
+    return in_words(counts)
