@@ -37,17 +37,26 @@ impl Pace {
 
     /// Sleeps until the next round. Returns `false` if the round is too late; the schedule then restarts.
     pub fn wait(&mut self) -> bool {
-        self.next += self.period;
-        let now = steady_now();
-        if now > self.next + GIVE_UP {
-            self.late += 1;
-            let missed = (now - self.next).as_nanos() / self.period.as_nanos().max(1);
-            self.missed += u64::try_from(missed).unwrap_or_default();
-            self.next = now;
-            return false;
+        match self.next_round(steady_now()) {
+            Some(time) => {
+                sleep_until(time);
+                true
+            }
+            None => false,
         }
-        sleep_until(self.next);
-        true
+    }
+
+    /// When the next round begins; `None` if `now` is too late for it, and the schedule restarts now.
+    fn next_round(&mut self, now: Duration) -> Option<Duration> {
+        self.next += self.period;
+        if now <= self.next + GIVE_UP {
+            return Some(self.next);
+        }
+        self.late += 1;
+        let missed = (now - self.next).as_nanos() / self.period.as_nanos().max(1);
+        self.missed += u64::try_from(missed).unwrap_or_default();
+        self.next = now;
+        None
     }
 
     /// Number of rounds skipped since the last call.
@@ -88,29 +97,34 @@ fn sleep_until(time: Duration) {
 mod tests {
     use super::*;
 
+    const fn milliseconds(count: u64) -> Duration {
+        Duration::from_millis(count)
+    }
+
     #[test]
     fn lateness_of_one_round_does_not_shift_the_others() {
-        let start = Instant::now();
-        let mut pace = Pace::new(100.0);
-        for round in 0..20 {
-            if round == 5 {
-                std::thread::sleep(Duration::from_millis(25));
-            }
-            pace.wait();
+        let mut pace = Pace { next: Duration::ZERO, ..Pace::new(100.0) };
+        for round in 1..20 {
+            let late = if round == 5 { milliseconds(25) } else { Duration::ZERO };
+            let now = milliseconds(10 * (round - 1)) + late;
+            assert_eq!(pace.next_round(now), Some(milliseconds(10 * round)), "round {round}");
         }
-        let elapsed = start.elapsed();
-        assert!(elapsed >= Duration::from_millis(199), "{elapsed:?}");
-        assert_eq!(pace.late(), 0);
+        assert_eq!((pace.late(), pace.take_missed()), (0, 0));
     }
 
     #[test]
     fn a_long_delay_starts_the_schedule_anew() {
-        let mut pace = Pace::new(1000.0);
-        std::thread::sleep(Duration::from_millis(80));
-        assert!(!pace.wait());
-        assert_eq!(pace.late(), 1);
-        let missed = pace.take_missed();
-        assert!(missed >= 78, "{missed}");
-        assert_eq!(pace.take_missed(), 0);
+        let mut pace = Pace { next: Duration::ZERO, ..Pace::new(1000.0) };
+        assert_eq!(pace.next_round(milliseconds(80)), None);
+        assert_eq!((pace.late(), pace.take_missed(), pace.take_missed()), (1, 79, 0));
+        assert_eq!(pace.next_round(milliseconds(80)), Some(milliseconds(81)));
+    }
+
+    #[test]
+    fn a_round_never_begins_before_its_time() {
+        let start = Instant::now();
+        let mut pace = Pace::new(100.0);
+        assert!(pace.wait());
+        assert!(start.elapsed() >= milliseconds(9));
     }
 }

