@@ -94,7 +94,8 @@ mod tests {
         let now = Instant::now();
         let short = Duration::from_millis(20);
         let recent = instant(SystemTime::now() - short);
-        assert!(recent < now && recent + short + short > now);
+        // A busy machine may lie between the readings of the two clocks.
+        assert!(recent < now && recent + 20 * short > now);
         assert!(instant(SystemTime::now() - Duration::from_secs(3600)) >= now);
         assert!(instant(SystemTime::now() + Duration::from_secs(3600)) >= now);
     }
