@@ -1,5 +1,6 @@
 """Fixtures: the samples, and the program as reference. Makes the helpers of the docs importable."""
 
+import importlib.util
 import json
 import os
 import subprocess
@@ -11,6 +12,13 @@ import pytest
 REPOSITORY = Path(__file__).parents[2]
 sys.path.insert(0, str(REPOSITORY / "tests" / "docs"))
 SAMPLES = REPOSITORY / "bags" / "samples"
+HAS_RAY = importlib.util.find_spec("ray") is not None
+collect_ignore = [] if HAS_RAY else ["fleet"]
+
+
+def pytest_report_header():
+    """Says what is left out before anything runs."""
+    return None if HAS_RAY else "fleets: not tested, Ray is not installed (python/tests/requirements-full.txt)"
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ import pytest
 from pages import DOCS, blocks
 
 
+@pytest.mark.full
 def test_the_page_about_python_runs(samples, tmp_path, monkeypatch):
     pytest.importorskip("matplotlib").use("Agg")
     (tmp_path / "bags").symlink_to(samples.parent)

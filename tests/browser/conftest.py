@@ -11,7 +11,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
 from browser import Browser  # noqa: E402
-from pages import PAGES, READY, WIDE, write  # noqa: E402
+from pages import PAGES, READY, WIDE, prepare, write  # noqa: E402
 
 
 @pytest.fixture(scope="session")
@@ -58,9 +58,9 @@ def pictures():
 
 @pytest.fixture(scope="session")
 def pages(excavator, tmp_path_factory):
-    """The folder with all pages, written by the program."""
+    """The folder for all pages; each is written when a test opens it for the first time."""
     folder = tmp_path_factory.mktemp("pages")
-    write(excavator, folder)
+    prepare(excavator, folder)
     return folder
 
 
@@ -72,9 +72,14 @@ def browser(chromium, tmp_path_factory):
         yield opened
 
 
-@pytest.fixture(params=PAGES)
-def page(request, pages, browser):
+# The page that every check opens.
+FIRST = "comparison"
+
+
+@pytest.fixture(params=[pytest.param(name, marks=[] if name == FIRST else pytest.mark.full) for name in PAGES])
+def page(request, excavator, pages, browser):
     """Name of a page that is open in a wide window; nothing may fail in it."""
+    write(excavator, pages, request.param)
     browser.errors.clear()
     browser.screen(*WIDE)
     browser.open((pages / f"{request.param}.html").as_uri())

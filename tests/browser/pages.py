@@ -19,7 +19,7 @@ SEALS = [
 ]  # fmt: skip
 CAMPAIGN = ["trapezoids", "closed-valve", "sine-0.50", "sine-0.27"]
 
-# Every page by its name: the command that writes it. A command may read what one before it wrote.
+# Every page by its name: the command that writes it.
 PAGES = {
     "refinement": ["refine", "--model", "zx30u-arm", *BOTH, "--add", "stribeck_friction@arm", "-o", "refined.toml"],
     "seal": ["refine", "--model", "rig.toml", *SEALS, "--auto", "-o", "better.toml"],
@@ -31,6 +31,9 @@ PAGES = {
     "diagnosis": ["diagnose", "--model", "zx30u-arm", *PARTS],
     "proposal": ["propose", "--model", "zx30u-arm", *PARTS],
 }
+
+# Pages whose command reads what the command of another one wrote.
+READS = {"two-models": "refinement"}
 
 # Windows of a desk and of a phone, px.
 WIDE, PHONE = (1280, 900), (390, 844)
@@ -76,11 +79,13 @@ def prepare(excavator, folder):
         run(excavator, folder, "simulate", "--model", "bench.toml", "--input", PROFILES / f"bench-{name}.toml", "-o", name)
 
 
-def write(excavator, folder):
-    """All pages, as NAME.html."""
-    prepare(excavator, folder)
-    for name, words in PAGES.items():
-        run(excavator, folder, *words, "--report", f"{name}.html")
+def write(excavator, folder, name):
+    """A page as NAME.html, and before it the one whose model it reads; what is there already stays."""
+    if (folder / f"{name}.html").exists():
+        return
+    if name in READS:
+        write(excavator, folder, READS[name])
+    run(excavator, folder, *PAGES[name], "--report", f"{name}.html")
 
 
 def photograph(browser, path, whole=True):

@@ -99,6 +99,7 @@ def test_a_command_that_starts_nodes_parses(excavator, page, command):
     assert result.returncode == 0, f"{page}: {command.text}\n{result.stderr}"
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", PAGES)
 def test_a_page_can_be_followed(run, tmp_path, name):
     if name in LONG_PAGES and not LONG:

@@ -51,7 +51,7 @@ def main(arguments):
     folders = [argument for argument in arguments if argument != "--check"]
     rows = rows_in(Path(folders[0]) if folders else ROOT / "target" / "faults")
     if not rows:
-        return "no rows: run the tests first (cargo test -p excavator --test hostile)"
+        return "no rows: run the tests first (cargo test -p excavator --test it hostile::)"
     if not check:
         PAGE.write_text(page(rows))
         return None

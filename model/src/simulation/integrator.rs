@@ -4,7 +4,7 @@
 //! second-order solution for the error. Chosen over a general solver because a recording's input has a kink at every sample. A
 //! multistep or high-order method restarts there. A Rosenbrock step from sample to sample needs one exact Jacobian, one
 //! factorisation and three rates, and it never iterates, so friction, closed valves and zero pressure drops cannot prevent
-//! convergence. The program `excavator-speed` compares its speed with the solvers of `diffsol`, and `tests/reference_solutions.rs` its
+//! convergence. The program `excavator-speed` compares its speed with the solvers of `diffsol`, and `tests/it/reference_solutions.rs` its
 //! results with their stored solutions.
 
 use thiserror::Error;

@@ -3,10 +3,16 @@
 import os
 
 import pytest
+import ray
 
-ray = pytest.importorskip("ray")
+from . import cheap
 
-from . import cheap  # noqa: E402
+
+def pytest_collection_modifyitems(items):
+    """Fleets need Ray and minutes."""
+    for item in items:
+        if item.path.parent.name == "fleet":
+            item.add_marker(pytest.mark.full)
 
 
 @pytest.fixture(scope="session")
