@@ -3,18 +3,9 @@
 //! Every test tries one thing and asserts what happens; then it writes a row ([`fault::Fault`]) from which `table.py` makes the
 //! table in `docs/faults.md`.
 
-mod bridge;
 mod child;
-mod faces;
 mod fault;
 mod files;
-mod goals;
+mod full;
 mod inside;
-#[cfg(feature = "security")]
-mod keystore;
-mod monitor;
-mod network;
 mod readers;
-mod recorder;
-#[cfg(feature = "security")]
-mod security;

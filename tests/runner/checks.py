@@ -12,10 +12,9 @@ import suites
 from run import ROOT, Failed
 from tier import Tier
 
-# Live tests wait more than they compute, so more of them run at a time than there are cores.
+# Tests of Rust in real time. They wait more than they compute, so more of them run at a time than there are cores.
+LIVE = ["hostile::full::", "full::live_"]
 LIVE_AT_ONCE = "4"
-LIVE = ["hostile::", "live_"]
-NOT_LIVE = [word for name in LIVE for word in ("--skip", name)]
 PUBLISHED = [
     "excavator-msgs", "rosbag2", "excavator-model", "excavator-bags", "excavator-identification", "excavator-report", "excavator-ros",
     "excavator-store", "excavator-workbench", "excavator",
@@ -82,8 +81,8 @@ class _Programs(list):
 
 
 def _compute(run, programs, everything):
-    more = [] if everything else ["--skip", "full::"]
-    run.step("tests of Rust", suites.rust, programs, [*NOT_LIVE, *more], {})
+    left_out = LIVE if everything else ["full::"]
+    run.step("tests of Rust", suites.rust, programs, [word for name in left_out for word in ("--skip", name)], {})
     not_full = [] if everything else ["-m", "not full"]
     run.step("the Python package", _python_package, not_full)
     run.step("links, contents and words of the book", _program(suites.PYTHON, "tests/docs/links.py"))
@@ -99,9 +98,9 @@ def _python_package(run, words):
 
 def _live(run, programs, everything):
     """Nodes in real time. Each suite has ROS domains of its own."""
-    node_tests = _Programs(program for program in programs if program.crate == "excavator" and program.target == "it")
-    more = [] if everything else ["--skip", "full::"]
-    run.step("nodes and faults in network namespaces", suites.rust, node_tests, [*LIVE, *more, "--test-threads", LIVE_AT_ONCE], {})
+    if everything:
+        nodes = [program for program in programs if (program.crate, program.target) == ("excavator", "it")]
+        run.step("nodes and faults in network namespaces", suites.rust, nodes, [*LIVE, "--test-threads", LIVE_AT_ONCE], {})
     if not (ROOT / ".ros2" / "jazzy" / "setup.sh").exists():
         run.step("nodes on the stand-in for rclpy", suites.pytest, "stand-in", ["tests/rclpy"], _rclpy("standin", "1-100"))
         return
@@ -148,15 +147,26 @@ def _long(run, programs):
     run.step("pages with long searches", suites.pytest, "pages with long searches", ["tests/config/test_docs_commands.py"])
     for crate in PUBLISHED:
         run.step(f"{crate} without features", _program("cargo", "check", "--quiet", "-p", crate, "--no-default-features"))
+    run.step("interfaces since the last release", _interfaces)
     run.step("solutions of another solver", _program("cargo", "run", "--quiet", "-p", "excavator-speed", "--", "references", "--check"))
     run.step("DDS Security", _security)
+
+
+def _interfaces(run):
+    """Public items of the library crates beside those of the last release: a break needs another version."""
+    if not shutil.which("cargo-semver-checks"):
+        run.command(["cargo", "install", "--locked", "--quiet", "cargo-semver-checks"])
+    version, commit = (ROOT / "tests" / "released").read_text().split()
+    libraries = [word for crate in PUBLISHED for word in ("-p", crate)]
+    run.command(["cargo", "semver-checks", *libraries, "--baseline-rev", commit])
+    return f"compared with {version}"
 
 
 def _security(run):
     """A build of its own, with OpenSSL."""
     if not (os.path.exists("/usr/include/openssl/ssl.h") and shutil.which("openssl")):
         needs.debian(run, ["libssl-dev", "openssl", "pkg-config"])
-    words = ["--features", "security", "--test", "it", "--", "hostile::security::", "--test-threads", "1"]
+    words = ["--features", "security", "--test", "it", "--", "hostile::full::security::", "--test-threads", "1"]
     run.command(["cargo", "test", "-p", "excavator", *words])
 
 

@@ -11,18 +11,13 @@ mod compare_others;
 mod dashboard_server;
 mod design;
 mod energy;
+mod full;
 #[cfg(all(feature = "dashboard", feature = "can", feature = "tables"))]
 #[path = "../../../tests/hostile/mod.rs"]
 mod hostile;
 mod import;
 #[cfg(all(feature = "dashboard", feature = "can"))]
 mod live;
-#[cfg(all(feature = "dashboard", feature = "can"))]
-mod live_bridge;
-#[cfg(all(feature = "dashboard", feature = "can"))]
-mod live_outages;
-#[cfg(all(feature = "dashboard", feature = "can"))]
-mod live_recording;
 mod long_recordings;
 mod model_file;
 mod monte_carlo;

@@ -5,9 +5,9 @@ use std::path::Path;
 use excavator_msgs::ArmState;
 
 use crate::hostile::fault::Fault;
+use crate::hostile::full::keystore::{Enclave, Keystore};
+use crate::hostile::full::network::{COMMANDS, MOST_MEMORY, Operator, heartbeat, look, pairs, peak};
 use crate::hostile::inside::start_inside;
-use crate::hostile::keystore::{Enclave, Keystore};
-use crate::hostile::network::{COMMANDS, MOST_MEMORY, Operator, heartbeat, look, pairs, peak};
 use crate::live::{Network, Program, folder, messages, messages_so_far, records, sleep, until};
 
 /// Time for peers to authenticate each other, s.

@@ -8,8 +8,8 @@ use excavator_msgs::common::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use excavator_msgs::{ArmState, CylinderState, Header};
 use excavator_ros::TopicQos;
 
-use crate::hostile::faces::{answer, page};
 use crate::hostile::fault::Fault;
+use crate::hostile::full::faces::{answer, page};
 use crate::hostile::inside::{command_of_now, inside, node_of_the_test, peak_memory};
 use crate::live::{Network, folder, messages, records, sleep, until};
 

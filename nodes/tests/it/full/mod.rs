@@ -1,0 +1,8 @@
+//! Tests that `tests/run --all` runs: live nodes in network namespaces, whole searches.
+
+#[cfg(all(feature = "dashboard", feature = "can"))]
+mod live_bridge;
+#[cfg(all(feature = "dashboard", feature = "can"))]
+mod live_outages;
+#[cfg(all(feature = "dashboard", feature = "can"))]
+mod live_recording;
