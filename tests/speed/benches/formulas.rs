@@ -3,7 +3,7 @@
 //! Targets: the right-hand side with a formula at most 2.5 times as long as with the built-in effect, a thousand formulas within 100 ms.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-#[path = "../tests/it/common/mod.rs"]
+#[path = "../../../model/tests/it/common/mod.rs"]
 mod common;
 
 use std::hint::black_box;

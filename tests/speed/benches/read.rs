@@ -5,7 +5,7 @@
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
-#[path = "../tests/it/support/mod.rs"]
+#[path = "../../../bags/tests/it/support/mod.rs"]
 mod support;
 
 use std::path::{Path, PathBuf};

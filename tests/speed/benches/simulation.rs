@@ -3,7 +3,7 @@
 //! 38 s of the arm at 1 kHz: the sine of \[A\] for 24 s, then trapezoids, each as a recording would give it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-#[path = "../tests/it/common/mod.rs"]
+#[path = "../../../model/tests/it/common/mod.rs"]
 mod common;
 
 use std::hint::black_box;
