@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::{Duration, Instant};
 
 use excavator_bags::topic_to_write;
 use excavator_msgs::ArmState;
