@@ -9,7 +9,7 @@ import os
 import re
 import subprocess
 from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -49,7 +49,8 @@ def crate_name(folder):
 def run_all(programs, words, environment):
     """Runs test programs, two at a time; what each printed, its timed tests, and its counts, in the order of their ends."""
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        yield from pool.map(lambda program: run_one(program, words, environment), programs)
+        for ended in as_completed([pool.submit(run_one, program, words, environment) for program in programs]):
+            yield ended.result()
 
 
 def run_one(program, words, environment):
