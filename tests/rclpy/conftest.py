@@ -34,12 +34,15 @@ if choice.is_here(RCLPY):
 
 # Tests with this mark run on every rclpy, the others on the first only.
 MIDDLEWARE = "middleware: what differs between middlewares: discovery, profiles, services, actions, outages"
+# Variants of a claim that another test checks as well, and what takes long.
+FULL = "full: only in tests/run --all"
 
 
 def pytest_configure(config):
     if not choice.is_here(RCLPY):
         choice.start_anew(RCLPY, config)
-    config.addinivalue_line("markers", MIDDLEWARE)
+    for marker in (MIDDLEWARE, FULL):
+        config.addinivalue_line("markers", marker)
     # not ours: lark, with which ROS 2 reads interface files, and rclpy of Kilted with itself
     config.addinivalue_line("filterwarnings", "ignore:module 'sre_:DeprecationWarning:lark")
     config.addinivalue_line("filterwarnings", "ignore:Deprecated in favor of:DeprecationWarning:rclpy")
@@ -83,7 +86,7 @@ def ros():
 
 @pytest.fixture(autouse=True)
 def _nothing_left_listening(request):
-    """What one test subscribed to does not load the next one."""
+    """What one test started or subscribed to does not load the next one."""
     session = request.getfixturevalue("ros") if "ros" in request.fixturenames else None
     mark = session.mark() if session else 0
     yield

@@ -1,7 +1,6 @@
 """The energy monitor's ledger: it closes for the machine's own model, and names the equation for another's."""
 
 import math
-import time
 from contextlib import contextmanager
 
 import pytest
@@ -46,11 +45,10 @@ def number(status, key):
 
 @contextmanager
 def swinging(ros, simulator):
-    """Out and back in a sine of half a hertz, in steps of the command's renewal."""
-    start = time.monotonic()
-    simulator.open(arm=0.0)
+    """Out and back in a sine of half a hertz of the machine's time, in steps of the command's renewal."""
+    start = simulator.time
     timer = ros.node.create_timer(
-        RENEWAL, lambda: simulator.send(command(arm=AREA * math.sin(math.pi * (time.monotonic() - start))))
+        RENEWAL, lambda: simulator.send(command(arm=AREA * math.sin(math.pi * (simulator.time - start))))
     )
     try:
         yield
@@ -60,11 +58,8 @@ def swinging(ros, simulator):
 
 @pytest.fixture
 def monitor(ros, excavator, model):
-    process = ros.start(
-        excavator, "node", "energy-monitor", "--ros-args", "-p", f"model:={model}", "-p", f"ledger_window:={WINDOW}"
-    )
-    yield process
-    process.terminate()
+    words = ["--ros-args", "-p", f"model:={model}", "-p", f"ledger_window:={WINDOW}"]
+    return ros.start(excavator, "node", "energy-monitor", *words)
 
 
 def status_while_swinging(ros, excavator, model, wanted, what):
@@ -72,12 +67,9 @@ def status_while_swinging(ros, excavator, model, wanted, what):
     noise = ["-p", f"pressure_noise:={PRESSURE_NOISE}", "-p", f"displacement_noise:={DISPLACEMENT_NOISE}"]
     simulator = Simulator(ros, excavator, arguments=["-p", f"model:={model}", *noise])
     diagnostics = ros.listen(DiagnosticArray, "/diagnostics")
-    try:
-        with swinging(ros, simulator):
-            ros.spin_until(lambda: any(map(wanted, judged(diagnostics))), what)
-        return next(filter(wanted, judged(diagnostics)))
-    finally:
-        simulator.process.terminate()
+    with swinging(ros, simulator):
+        ros.spin_until(lambda: any(map(wanted, judged(diagnostics))), what)
+    return next(filter(wanted, judged(diagnostics)))
 
 
 def test_the_ledger_of_the_machines_own_model_closes(ros, excavator, model, monitor):

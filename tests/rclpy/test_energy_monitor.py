@@ -5,7 +5,7 @@ import tomllib
 
 import pytest
 from excavator_msgs.msg import EnergyState
-from support.simulator import STATE_QOS, Simulator, all_finite, cylinder
+from support.simulator import STATE_QOS, Simulator, all_finite, cylinder, steps
 
 AREA = 5e-5
 TIME = 2.0
@@ -17,21 +17,22 @@ def key(message):
 
 @pytest.fixture(scope="module")
 def pairs(ros, excavator):
-    """(state, energy) of the same stamp, while the arm moves out and back."""
+    """(state, energy) of the same stamp, while the arm moves out and back and no sample is missing."""
     simulator = Simulator(ros, excavator)
     ros.start(excavator, "node", "energy-monitor")
-    energies = ros.listen(EnergyState, "/arm/energy", STATE_QOS)
-    ros.spin_until(lambda: energies, "the first /arm/energy")
-    simulator.hold(0.3, arm=AREA)
-    del energies[:]
-    states = simulator.hold(TIME / 2, arm=AREA) + simulator.hold(TIME / 2, arm=-AREA)
+    energies = ros.hear(EnergyState, "/arm/energy", STATE_QOS)
+
+    def out_and_back():
+        simulator.settle()
+        simulator.hold(0.3, arm=AREA)
+        return simulator.hold(TIME / 2, arm=AREA) + simulator.hold(TIME / 2, arm=-AREA)
+
+    states = simulator.undisturbed(out_and_back)
     wanted = {key(state) for state in states}
-    ros.spin_until(  # a filter may be behind
-        lambda: len(wanted & {key(energy) for energy in energies}) >= 0.95 * len(wanted), "one balance per state"
-    )
+    ros.spin_until(lambda: wanted <= {key(energy) for energy in energies}, "one balance per state")
     by_stamp = {key(energy): energy for energy in energies}
     assert len(by_stamp) == len(energies), "two balances for one state"
-    return [(state, by_stamp[key(state)]) for state in states if key(state) in by_stamp]
+    return [(state, by_stamp[key(state)]) for state in states]
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +85,7 @@ def test_kinetic_energy_is_that_of_the_joint_rate(pairs, parameters):
     """J qd^2 / 2, (9) of the paper; qd here from the joint angles of neighbouring samples."""
     energies, expected = [], []
     for (before, _), (_, energy), (after, _) in zip(pairs, pairs[1:], pairs[2:]):
-        span = (key(after)[0] - key(before)[0]) + (key(after)[1] - key(before)[1]) * 1e-9
+        (span,) = steps([before, after])
         rate = (cylinder(after).joint_angle - cylinder(before).joint_angle) / span
         expected.append(0.5 * parameters["arm.inertia"] * rate**2)
         energies.append(cylinder(energy).kinetic)

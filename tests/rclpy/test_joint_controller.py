@@ -10,7 +10,7 @@ NEAR = 0.01
 
 @pytest.fixture(scope="module")
 def simulator(ros, excavator):
-    return Simulator(ros, excavator, rate=250.0, command_timeout=None)
+    return Simulator(ros, excavator)
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +20,7 @@ def commands(ros, excavator, simulator):
 
 
 def go(ros, simulator, commands, target, velocity=()):
-    """Sends a target again and again until the arm is there and stands."""
+    """Sends a target with each message that comes until the arm is there and stands."""
 
     def is_there():
         commands.publish(JointState(name=["arm_joint"], position=[target] if target is not None else [], velocity=velocity))
@@ -32,10 +32,10 @@ def go(ros, simulator, commands, target, velocity=()):
 
 def test_the_arm_goes_where_it_is_told(ros, simulator, commands):
     here = cylinder(simulator.last).joint_angle
-    states = ros.listen(JointState, "/robot_joint_states")
+    states = ros.hear(JointState, "/robot_joint_states")
     for step in (0.3, -0.2, 0.0):
         go(ros, simulator, commands, here + step)
-    assert states and states[-1].name == ["arm_joint"]
+    assert states[-1].name == ["arm_joint"]
     ros.spin_until(lambda: abs(states[-1].position[0] - here) < 2 * NEAR, "the last place on robot_joint_states")
     assert len(states[-1].velocity) == 1
 
@@ -51,6 +51,7 @@ def test_a_rate_alone_moves_it(ros, simulator, commands):
 
 
 def test_the_valve_closes_when_nobody_commands_any_more(ros, simulator, commands):
+    """By a command of the controller: what it commanded last would hold for long."""
     go(ros, simulator, commands, cylinder(simulator.last).joint_angle)
     ros.spin_until(lambda: cylinder(simulator.last).orifice_area == 0.0, "a closed valve")
     commands.publish(JointState(name=["tail_joint"], position=[1.0]))

@@ -2,7 +2,8 @@
 
 import pytest
 from excavator_msgs.msg import ArmState, OrificeCommand
-from support.simulator import STATE_QOS, command, cylinder, neutral, stamped
+from support.diagnostics import Diagnostics
+from support.simulator import COMMAND_AGE, COMMAND_QOS, COMMAND_TIMEOUT, STATE_QOS, command, cylinder, neutral, stamped
 
 lifecycle_msgs = pytest.importorskip("lifecycle_msgs.srv", reason="lifecycle_msgs is not installed")
 from lifecycle_msgs.msg import Transition, TransitionEvent  # noqa: E402
@@ -18,17 +19,27 @@ AREA = 5e-5
 
 @pytest.fixture(scope="module")
 def simulator(ros, excavator):
-    words = ["--ros-args", "-p", "rate:=200.0", "-p", "managed:=true", "-p", "command_timeout:=1.0"]
+    limits = ["-p", f"command_timeout:={COMMAND_TIMEOUT}", "-p", f"command_max_age:={COMMAND_AGE}"]
+    words = ["--ros-args", "-p", "rate:=200.0", "-p", "managed:=true", *limits]
     return ros.start(excavator, "node", "arm-simulator", *words)
+
+
+@pytest.fixture(scope="module")
+def changes(ros, simulator):
+    """A client that the node has answered: it asks once for each change, since the second time it would be refused."""
+    client = ros.client(ChangeState, "/arm_simulator/change_state")
+    refused = ros.ask(client, ChangeState.Request(transition=Transition(id=Transition.TRANSITION_DEACTIVATE)))
+    assert not refused.success
+    return client
 
 
 def state(ros):
     return ros.call(GetState, "/arm_simulator/get_state", GetState.Request()).current_state.label
 
 
-def change(ros, number):
+def change(ros, changes, number):
     request = ChangeState.Request(transition=Transition(id=number))
-    return ros.call(ChangeState, "/arm_simulator/change_state", request, attempts=1).success
+    return ros.result(changes.call_async(request), "the answer to a change").success
 
 
 def test_the_graph_of_states_is_that_of_lifecycle_nodes(ros, simulator):
@@ -42,14 +53,17 @@ def test_the_graph_of_states_is_that_of_lifecycle_nodes(ros, simulator):
     assert len(graph.available_transitions) == 7
 
 
-def test_it_works_while_it_is_active_and_only_then(ros, simulator):
+def test_it_works_while_it_is_active_and_only_then(ros, simulator, changes):
     states = ros.listen(ArmState, "/arm/state", STATE_QOS)
     events = ros.listen(TransitionEvent, "/arm_simulator/transition_event")
-    commands = ros.publisher(OrificeCommand, "/arm/orifice_command")
-    assert not change(ros, Transition.TRANSITION_ACTIVATE)
-    assert change(ros, Transition.TRANSITION_CONFIGURE) and state(ros) == "inactive"
+    commands = ros.publisher(OrificeCommand, "/arm/orifice_command", COMMAND_QOS)
+    ros.known_to("/arm_simulator")
+    told = Diagnostics(ros)
+    assert not change(ros, changes, Transition.TRANSITION_ACTIVATE)
+    assert change(ros, changes, Transition.TRANSITION_CONFIGURE) and state(ros) == "inactive"
+    told.next(1)
     assert not states
-    assert change(ros, Transition.TRANSITION_ACTIVATE) and state(ros) == "active"
+    assert change(ros, changes, Transition.TRANSITION_ACTIVATE) and state(ros) == "active"
     ros.spin_until(lambda: states, "a state of the active simulator")
 
     def opens():
@@ -58,29 +72,42 @@ def test_it_works_while_it_is_active_and_only_then(ros, simulator):
         return cylinder(states[-1]).orifice_area == pytest.approx(AREA)
 
     ros.spin_until(opens, "the valve to open")
-    assert change(ros, Transition.TRANSITION_DEACTIVATE)
-    # what was under way
+    assert change(ros, changes, Transition.TRANSITION_DEACTIVATE)
     ros.spin_until(lambda: len(events) >= 3, "the events")
+
+    def is_silent():
+        """After what was under way: while the node says twice how it is, no state comes."""
+        heard = len(states)
+        told.next(2)
+        return len(states) == heard
+
+    ros.spin_until(is_silent, "the end of the states")
     heard = len(states)
+    refused = told.count("refusal", "refused: not active")
     commands.publish(stamped(command(arm=AREA)))
+    ros.spin_until(lambda: told.count("refusal", "refused: not active") > refused, "the command to be refused")
     assert state(ros) == "inactive"
-    assert len(states) <= heard + 1
-    assert change(ros, Transition.TRANSITION_ACTIVATE)
+    assert len(states) == heard
+    assert change(ros, changes, Transition.TRANSITION_ACTIVATE)
     ros.spin_until(lambda: len(states) > heard + 5, "a state after the pause")
     assert cylinder(states[-1]).orifice_area == 0.0
     assert [event.goal_state.label for event in events[:3]] == ["inactive", "active", "inactive"]
 
 
-def test_shutdown_ends_it(ros, simulator):
-    assert change(ros, Transition.TRANSITION_ACTIVE_SHUTDOWN)
-    assert simulator.wait(30.0) == 0, simulator.output()
+def test_shutdown_ends_it(ros, simulator, changes):
+    assert change(ros, changes, Transition.TRANSITION_ACTIVE_SHUTDOWN)
+    assert simulator.wait() == 0, simulator.output()
 
 
 def test_a_node_that_nobody_manages_has_no_such_services(ros, excavator):
     process = ros.start(excavator, "node", "arm-simulator", "--ros-args", "-p", "rate:=50.0", "-r", "__ns:=/free")
-    states = ros.listen(ArmState, "/free/arm/state")
-    ros.spin_until(lambda: states, "a state of a simulator that works at once")
-    services = {name for name, _ in ros.node.get_service_names_and_types()}
-    assert "/free/arm_simulator/get_parameters" in services
-    assert not {name for name in services if name.startswith("/free") and "state" in name}
+    ros.hear(ArmState, "/free/arm/state")
+
+    def services():
+        return {name for name, _ in ros.node.get_service_names_and_types() if name.startswith("/free")}
+
+    # those of the life cycle would be announced before the node is ready
+    ros.known_to("/free/arm_simulator")
+    ros.spin_until(lambda: "/free/arm_simulator/get_parameters" in services(), "the services of the node")
+    assert not {name for name in services() if "state" in name}
     process.interrupt()

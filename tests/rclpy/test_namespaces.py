@@ -7,7 +7,9 @@ import pytest
 from excavator_msgs.msg import EnergyState
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
+from support.recorder import start_recorder
 from support.simulator import STATE_QOS, Simulator, cylinder
+from support.waiting import LONGEST_WAIT
 
 pytestmark = pytest.mark.middleware
 
@@ -24,12 +26,7 @@ class Machine(Simulator):
         start = ["-p", f"start_displacement:=[{displacement}]"]
         super().__init__(ros, excavator, rate=RATE, namespace=f"/{side}", arguments=start)
         self.monitor = ros.start(excavator, "node", "energy-monitor", "--ros-args", "-r", f"__ns:=/{side}")
-        energies = ros.listen(EnergyState, f"/{side}/arm/energy", STATE_QOS)
-        ros.spin_until(lambda: energies, f"energies of {side}")
-
-    @property
-    def area(self):
-        return cylinder(self.last).orifice_area
+        ros.hear(EnergyState, f"/{side}/arm/energy", STATE_QOS)
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +38,8 @@ def test_a_command_moves_the_machine_of_its_namespace_alone(ros, machines):
     left, right = machines.values()
     before = len(right.states)
     left.open_until(arm=AREA)
-    ros.spin_until(lambda: len(right.states) > before + 50, "states of the right machine")
+    right.next(50)
+    left.close()
     assert all(cylinder(state).orifice_area == 0.0 for state in right.states[before:])
 
 
@@ -70,26 +68,21 @@ def test_joint_states_and_description_agree(ros, machines):
 def test_both_are_recorded_together_and_read_apart(ros, machines, excavator, tmp_path):
     bag = tmp_path / "both"
     topics = [f"/{side}/{topic}" for side in SIDES for topic in TOPICS]
-    before = {topic: ros.node.count_subscribers(topic) for topic in topics}
-    recorder = ros.start(excavator, "record", "-o", bag, *topics)
-    for topic in topics:
-        ros.spin_until(lambda t=topic: ros.node.count_subscribers(t) > before[t], f"the recorder on {topic}")
+    recorder = start_recorder(ros, excavator, bag, topics)
     left, right = machines.values()
-    ros.spin_until(lambda: left.area == 0.0, "the left valve to close")
-    opened = []
-
-    def is_enough():
-        counts = [len(machine.states) for machine in (left, right)]
-        if not opened and left.area == pytest.approx(AREA):
-            opened.extend(counts)
-        return opened and all(count > first + 200 for count, first in zip(counts, opened, strict=True))
-
+    for machine in (left, right):
+        machine.next(50)
+    left.open_until(arm=AREA)
     with left.holding(arm=AREA):
-        ros.spin_until(is_enough, "a second of both machines, the left valve open")
+        for machine in (left, right):
+            machine.next(200)
     assert recorder.interrupt() == 0, recorder.output()
 
+    def run(*words):
+        return subprocess.run([excavator, *words], capture_output=True, text=True, timeout=LONGEST_WAIT)
+
     def info(*words):
-        return subprocess.run([excavator, "info", bag, *words], capture_output=True, text=True)
+        return run("info", bag, *words)
 
     whole = info()
     assert "say which with --namespace" in whole.stdout and "/left, /right" in whole.stdout, whole.stdout
@@ -99,5 +92,4 @@ def test_both_are_recorded_together_and_read_apart(ros, machines, excavator, tmp
         measured = {one["name"]: one for one in json.loads(result.read_text())["signals"]["measured"]}
         opening = measured["arm.orifice_area"]
         assert (opening["most"] > 0.5 * AREA) == moved, opening
-    words = ["energy", "--model", "zx30u-arm", "--bag", bag]
-    assert "--namespace" in subprocess.run([excavator, *words], capture_output=True, text=True).stderr
+    assert "--namespace" in run("energy", "--model", "zx30u-arm", "--bag", bag).stderr

@@ -7,7 +7,7 @@ from excavator_msgs.msg import ArmState, OrificeCommand
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
 from rclpy.utilities import get_rmw_implementation_identifier
 from std_msgs.msg import String
-from support.simulator import Simulator, command, cylinder
+from support.simulator import Simulator, command
 
 pytestmark = pytest.mark.middleware
 
@@ -33,7 +33,9 @@ def test_readers_of_the_state(ros, simulator, profile, heard):
     if heard:
         ros.spin_until(lambda: len(states) >= 50, "fifty states")
     else:
-        simulator.next(250)
+        # another reader, announced after it, hears the topic
+        others = ros.listen(ArmState, "/arm/state", 10)
+        ros.spin_until(lambda: len(others) >= 50, "fifty states for another reader")
         assert not states
 
 
@@ -56,7 +58,12 @@ def test_whoever_comes_late_gets_the_model(ros, simulator):
 )
 def test_a_volatile_reader_that_comes_late_gets_no_model(ros, simulator):
     models = ros.listen(String, "/arm/model", 1)
-    simulator.next(250)
+    # another reader, announced after it, gets the model
+    others = ros.listen(String, "/arm/model", LATCHED)
+    ros.spin_until(lambda: others, "the model for another reader")
+    # as long as a writer takes to say again what it has
+    end = simulator.time + 4.0
+    ros.spin_until(lambda: models or simulator.time > end, "the model, or the time in which it would come")
     assert not models
 
 
@@ -66,10 +73,14 @@ def test_a_best_effort_command_is_no_command(ros, simulator):
     try:
         for _ in range(20):
             publisher.publish(command(arm=3e-5))
-            simulator.watch(0.02)
-        assert cylinder(simulator.last).orifice_area == 0.0
+            simulator.next(5)
+        assert simulator.area() == 0.0
+        assert publisher.get_subscription_count() == 0
     finally:
         ros.node.destroy_publisher(publisher)
+    # a reliable one, known since later, is followed
+    simulator.open_until(arm=3e-5)
+    simulator.close()
 
 
 @pytest.mark.parametrize(
@@ -82,8 +93,10 @@ def test_a_best_effort_command_is_no_command(ros, simulator):
     ],
 )
 def test_publishers_announce_what_the_contract_says(ros, simulator, topic, durability):
-    ros.spin_until(lambda: ros.node.count_publishers(topic) == 1, f"a publisher of {topic}")
+    def owners():
+        return [info.node_name for info in ros.node.get_publishers_info_by_topic(topic)]
+
+    ros.spin_until(lambda: owners() == ["arm_simulator"], f"the simulator as publisher of {topic}")
     (info,) = ros.node.get_publishers_info_by_topic(topic)
-    assert info.node_name == "arm_simulator"
     assert info.qos_profile.reliability == ReliabilityPolicy.RELIABLE
     assert info.qos_profile.durability == durability

@@ -54,29 +54,29 @@ def test_a_bad_command_opens_nothing_and_is_told(ros, simulator, complaints, bad
     simulator.send(message)
     sent = len(simulator.states)
     ros.spin_until(lambda: set(complaints()) - set(before), f"a diagnostic about {bad}")
-    simulator.next(100)
+    simulator.next(25)
     assert all(cylinder(state).orifice_area == 0.0 for state in simulator.states[sent:])
     (told,) = set(complaints()) - set(before)
     assert word in told
 
 
 def test_a_bad_command_does_not_disturb_the_good_one(simulator):
-    simulator.settle()
+    simulator.open_until(arm=AREA)
     states = []
-    for message, _ in BAD.values():
-        states += simulator.hold(0.1, arm=AREA)
-        simulator.send(message)
-    states += simulator.hold(0.1, arm=AREA)
-    areas = [cylinder(state).orifice_area for state in states[len(states) // 4 :]]
-    assert all(area == pytest.approx(AREA) for area in areas)
+    with simulator.holding(arm=AREA):
+        for message, _ in BAD.values():
+            states += simulator.next(25)
+            simulator.send(message)
+        states += simulator.next(25)
+    assert all(cylinder(state).orifice_area == pytest.approx(AREA) for state in states)
 
 
-def test_a_bad_command_does_not_renew_the_lease(ros, simulator):
+def test_a_bad_command_does_not_renew_the_lease(ros, excavator):
     """Else a program gone mad would hold the valve open."""
-    simulator.settle()
+    simulator = Simulator(ros, excavator, command_timeout=None, under="/short_lease")
     simulator.open_until(arm=AREA)
     timer = ros.node.create_timer(RENEWAL, lambda: simulator.send(command(arm=math.nan)))
     try:
-        ros.spin_until(lambda: cylinder(simulator.last).orifice_area == 0.0, "the valve to close")
+        ros.spin_until(lambda: simulator.area() == 0.0, "the valve to close")
     finally:
         ros.node.destroy_timer(timer)

@@ -20,7 +20,8 @@ _START = '. "$0/setup.sh" && exec python -m pytest "$@"'
 
 
 def _place(name):
-    return _ROOT / ".ros2" / name
+    # resolved: a Python knows itself by the path without links
+    return (_ROOT / ".ros2" / name).resolve()
 
 
 def _is_ready(name):

@@ -18,7 +18,8 @@ class Peer:
         self.node = rclpy.create_node("peer", start_parameter_services=False)
         self.count = 0
         self.echo = self.node.create_publisher(String, "/peer/echo", 10)
-        self.ticks = self.node.create_publisher(String, "/peer/ticks", 10)
+        # a reader that is late loses none
+        self.ticks = self.node.create_publisher(String, "/peer/ticks", 1000)
         self.loose_ticks = self.node.create_publisher(
             String, "/peer/loose_ticks", QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
         )

@@ -5,14 +5,38 @@ import signal
 import subprocess
 import tempfile
 import time
+from contextlib import contextmanager
+from pathlib import Path
 
-# A clean end is announced to peers; a killed node haunts them until its lease ends. So killing is the last resort.
-LONGEST_CLEAN_END = 10.0
+from .waiting import LONGEST_WAIT
 
 
 def _hear_interrupts():
     """A shell starts what runs in its background deaf to SIGINT, and that is inherited all the way down to here."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@contextmanager
+def stopped(process):
+    """A program that does not go on meanwhile, as in a debugger."""
+    os.kill(process.pid, signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        os.kill(process.pid, signal.SIGCONT)
+
+
+class Child:
+    """A program that a program has started."""
+
+    def __init__(self, pid):
+        self.pid = pid
+
+    def times_slept(self):
+        """How often it has waited for something."""
+        status = Path(f"/proc/{self.pid}/status").read_text()
+        (line,) = [line for line in status.splitlines() if line.startswith("voluntary_ctxt_switches")]
+        return int(line.split()[1])
 
 
 class Process:
@@ -35,6 +59,10 @@ class Process:
     @property
     def pid(self):
         return self._process.pid
+
+    def children(self):
+        """Programs that it has started."""
+        return [Child(int(pid)) for pid in Path(f"/proc/{self.pid}/task/{self.pid}/children").read_text().split()]
 
     def running(self):
         return self._process.poll() is None
@@ -64,12 +92,12 @@ class Process:
         self._process.kill()
         self._process.wait()
 
-    def wait(self, timeout):
-        """The exit status, whatever it is; AssertionError when it takes longer."""
+    def wait(self):
+        """The exit status, whatever it is; AssertionError when it does not end."""
         self._may_end = True
-        end = time.monotonic() + timeout
+        end = time.monotonic() + LONGEST_WAIT
         while self.running():
-            assert time.monotonic() < end, f"{' '.join(self.command)} runs after {timeout} s:\n{self.output()}"
+            assert time.monotonic() < end, f"{' '.join(self.command)} runs after {LONGEST_WAIT} s:\n{self.output()}"
             time.sleep(0.01)
         return self._process.returncode
 
@@ -77,8 +105,9 @@ class Process:
         self._may_end = True
         if self.running():
             self._process.send_signal(how)
+            # A clean end is announced to peers; a killed node haunts them until its lease ends. So killing is the last resort.
             try:
-                self._process.wait(LONGEST_CLEAN_END)
+                self._process.wait(LONGEST_WAIT)
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()

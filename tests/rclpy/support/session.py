@@ -5,6 +5,7 @@ import sys
 import time
 
 import rclpy
+from rcl_interfaces.srv import GetParameters
 from rclpy.action import ActionClient
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
@@ -12,9 +13,7 @@ from rclpy.utilities import get_rmw_implementation_identifier
 
 from .loopback import free_domain
 from .process import Process
-
-# s; what is waited for comes within 0.1 s as a rule, discovery without multicast within 7 s; a busy machine gets the rest.
-LONGEST_WAIT = 90.0
+from .waiting import ASK_AGAIN, LONGEST_WAIT
 
 
 class Session:
@@ -34,8 +33,7 @@ class Session:
         return self
 
     def __exit__(self, *_):
-        for process in reversed(self._processes):
-            process.interrupt()
+        self.release()
         self._executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self._context)
@@ -45,7 +43,7 @@ class Session:
         return len(self._undo)
 
     def release(self, mark=0):
-        """Destroys the subscriptions, publishers and clients that were made since the mark."""
+        """Ends the programs and destroys the subscriptions, publishers and clients that were made since the mark."""
         while len(self._undo) > mark:
             self._undo.pop()()
 
@@ -55,7 +53,12 @@ class Session:
         """A program in this session's domain. `directory`: where it runs, instead of here."""
         process = Process(command, self._environment() | (environment or {}), directory)
         self._processes.append(process)
+        self._undo.append(lambda: self._end(process))
         return process
+
+    def _end(self, process):
+        process.interrupt()
+        self._processes.remove(process)
 
     def start_python(self, script, *arguments):
         return self.start(sys.executable, script, *arguments)
@@ -63,21 +66,16 @@ class Session:
     def _environment(self):
         return dict(os.environ, ROS_DOMAIN_ID=str(self.domain), RMW_IMPLEMENTATION=get_rmw_implementation_identifier())
 
-    # time
+    # waiting
 
-    def spin_for(self, seconds):
-        end = time.monotonic() + seconds
-        while (left := end - time.monotonic()) > 0:
-            self._executor.spin_once(timeout_sec=left)
-
-    def spin_until(self, condition, what, timeout=LONGEST_WAIT):
+    def spin_until(self, condition, what):
         """Runs callbacks until the condition holds; `what` says in words what was waited for."""
-        end = time.monotonic() + timeout
+        end = time.monotonic() + LONGEST_WAIT
         while not condition():
             left = end - time.monotonic()
             for process in self._processes:
                 process.check_not_failed()
-            assert left > 0, f"waited {timeout} s in vain for {what}{self._last_words()}"
+            assert left > 0, f"waited {LONGEST_WAIT} s in vain for {what}{self._last_words()}"
             self._executor.spin_once(timeout_sec=min(left, 0.05))
 
     def _last_words(self):
@@ -92,10 +90,23 @@ class Session:
     # topics
 
     def listen(self, msg_type, topic, qos=10):
-        """A list that fills with the messages of the topic while spinning."""
+        """A list that fills with the messages of the topic while spinning. Which is the first one is left to chance."""
         received = []
         self.listen_with(msg_type, topic, received.append, qos)
         return received
+
+    def hear(self, msg_type, topic, qos=10):
+        """As `listen`, with the first message in it: from there on, a reliable reader misses none that its queue can hold."""
+        received = self.listen(msg_type, topic, qos)
+        self.spin_until(lambda: received, f"the first message on {topic}")
+        return received
+
+    def known_to(self, *nodes):
+        """Waits until these nodes of ours know every subscription that was made so far, and nothing that they publish is missed.
+        Endpoints are announced in the order in which they are made, and to answer a new client a node has to know it."""
+        request = GetParameters.Request(names=["use_sim_time"])
+        for node in nodes:
+            self.call(GetParameters, f"{node}/get_parameters", request)
 
     def listen_with(self, msg_type, topic, callback, qos=10):
         """Calls back with each message of the topic while spinning."""
@@ -103,7 +114,7 @@ class Session:
         self._undo.append(lambda: self.node.destroy_subscription(subscription))
 
     def publisher(self, msg_type, topic, qos=10):
-        """A publisher that somebody already listens to."""
+        """A publisher that somebody already listens to: what it publishes reliably arrives, as far as its queue reaches."""
         publisher = self.node.create_publisher(msg_type, topic, qos)
         self._undo.append(lambda: self.node.destroy_publisher(publisher))
         self.spin_until(lambda: publisher.get_subscription_count() > 0, f"a subscription to {topic}")
@@ -117,27 +128,31 @@ class Session:
         self.spin_until(client.service_is_ready, f"the service {name}")
         return client
 
-    def result(self, future, what, timeout=LONGEST_WAIT):
+    def result(self, future, what):
         """What a future becomes, spinning until then."""
-        self.spin_until(future.done, what, timeout)
+        self.spin_until(future.done, what)
         return future.result()
 
-    def call(self, srv_type, name, request, timeout=LONGEST_WAIT, attempts=3):
-        """The reply to a new client. A server that has not seen the client's reader yet may answer in vain, so the
-        client asks again, within the whole time-out; whoever wants to see that fault asks once."""
+    def call(self, srv_type, name, request):
+        """The reply to a new client."""
         mark = self.mark()
         try:
-            client = self.client(srv_type, name)
-            for attempt in range(attempts):
-                future = client.call_async(request)
-                last = attempt == attempts - 1
-                try:
-                    return self.result(future, f"the reply of {name}", timeout / attempts)
-                except AssertionError:
-                    if last:
-                        raise
+            return self.ask(self.client(srv_type, name), request)
         finally:
             self.release(mark)
+
+    def ask(self, client, request):
+        """The reply to a question that may be asked twice: a server that has not seen the client's reader for 0.1 s answers in
+        vain, so the client asks again until it has been answered once."""
+        futures = []
+
+        def answered():
+            if not futures or time.monotonic() > futures[-1][0] + ASK_AGAIN:
+                futures.append((time.monotonic(), client.call_async(request)))
+            return [future for _, future in futures if future.done()]
+
+        self.spin_until(answered, f"the reply of {client.srv_name}")
+        return answered()[0].result()
 
     def action_client(self, action_type, name):
         client = ActionClient(self.node, action_type, name)

@@ -7,12 +7,15 @@ from contextlib import contextmanager
 from excavator_msgs.msg import ArmState, OrificeCommand
 from rclpy.qos import QoSProfile
 
-# A test that is late must not lose samples in its own queue: two seconds at 1 kHz.
-STATE_QOS = QoSProfile(depth=2000)
-# Time for which a command holds where a test is not about just that, s; the node's own 0.1 s is little when the test
-# shares the processor with a compiler.
-COMMAND_TIMEOUT = 1.0
-# Commands are renewed four times before they would run out with the node's own time.
+# A test that is late must not lose samples in its own queue: ten seconds at 1 kHz.
+STATE_QOS = QoSProfile(depth=10_000)
+# Commands that a late node has not taken yet wait here, and are not replaced by later ones.
+COMMAND_QOS = QoSProfile(depth=1000)
+# Time for which a command holds, and age that it may have, where a test is not about just that, s: the largest values that
+# the node takes. Its own 0.1 s and 0.5 s are little when the test shares the processor with others.
+COMMAND_TIMEOUT = 10.0
+COMMAND_AGE = 3600.0
+# Commands are renewed four times before they would run out with the node's own time, s.
 RENEWAL = 0.025
 # Opening in zx30u-arm.toml, m2; commands stay well inside.
 MAXIMUM_AREA = 1.15e-4
@@ -47,30 +50,43 @@ def neutral(names):
 
 
 class Simulator:
-    """An `arm-simulator` that runs, with its states and a publisher of commands."""
+    """An `arm-simulator` that runs, with its states and a publisher of commands. Time is that of its stamps."""
 
     def __init__(
         self, ros, excavator, *, rate=250.0, command_timeout=COMMAND_TIMEOUT, under="/arm", namespace="", arguments=()
     ):
-        """`command_timeout=None` leaves the node its own. `under`: where its topics are, beside another simulator; `namespace`
-        moves the whole node instead, and its topics with it."""
+        """`command_timeout=None` leaves the node its own limits. `under`: where its topics are, and how it is called, beside
+        another simulator; `namespace` moves the whole node instead, and its topics with it."""
         self._ros = ros
         self.rate = rate
+        self.node = "arm_simulator"
         parameters = ["-p", f"rate:={rate}"]
         if command_timeout is not None:
-            parameters += ["-p", f"command_timeout:={command_timeout}"]
-        names = [f"/arm/{topic}:={under}/{topic}" for topic in ("state", "orifice_command")] if under != "/arm" else []
-        remaps = [word for name in names for word in ("-r", name)]
+            parameters += ["-p", f"command_timeout:={command_timeout}", "-p", f"command_max_age:={COMMAND_AGE}"]
+        remaps = []
+        if under != "/arm":
+            self.node = under.strip("/")
+            names = [f"/arm/{topic}:={under}/{topic}" for topic in ("state", "orifice_command", "stop")]
+            remaps = [word for name in [f"__node:={self.node}", *names] for word in ("-r", name)]
         if namespace:
             remaps, under = ["-r", f"__ns:={namespace}"], f"{namespace}/arm"
         self.process = ros.start(excavator, "node", "arm-simulator", "--ros-args", *parameters, *remaps, *arguments)
-        self.states = ros.listen(ArmState, f"{under}/state", STATE_QOS)
-        ros.spin_until(lambda: self.states, f"the first {under}/state")
-        self._commands = ros.publisher(OrificeCommand, f"{under}/orifice_command")
+        self.states = ros.hear(ArmState, f"{under}/state", STATE_QOS)
+        self._commands = ros.publisher(OrificeCommand, f"{under}/orifice_command", COMMAND_QOS)
 
     @property
     def last(self):
         return self.states[-1]
+
+    @property
+    def time(self):
+        """Stamp of the last state, s."""
+        return seconds(self.last.header.stamp)
+
+    def area(self, name="arm"):
+        return cylinder(self.last, name).orifice_area
+
+    # commands
 
     def send(self, message):
         """Sends a command, stamped with the time of now."""
@@ -81,28 +97,25 @@ class Simulator:
         self.send(neutral(areas))
         self.send(command(**areas))
 
+    def is_open(self, **areas):
+        return all(math.isclose(self.area(name), area) for name, area in areas.items())
+
     def open_until(self, **areas):
         """Commands the areas until the valves are as open."""
-
-        def is_open():
-            return all(math.isclose(cylinder(self.last, name).orifice_area, areas[name]) for name in areas)
-
         with self.holding(**areas):
-            self._ros.spin_until(is_open, f"valves to open {areas} m2")
+            self._ros.spin_until(lambda: self.is_open(**areas), f"valves to open {areas} m2")
 
     def hold(self, duration, **areas):
-        """Commands the areas, renewed in time, and returns the states of that time."""
-        before = len(self.states)
+        """Commands the areas, renewed in time, and returns the states of that time (s)."""
         with self.holding(**areas):
-            self._ros.spin_for(duration)
-        return self.states[before:]
+            return self.watch(duration)
 
     @contextmanager
     def holding(self, **areas):
         """Commands the areas, renewed in time, while the caller spins. When a renewal came too late, it opens again."""
 
         def renew():
-            if all(cylinder(self.last, name).orifice_area == 0.0 for name in areas):
+            if all(self.area(name) == 0.0 for name in areas):
                 self.open(**areas)
             else:
                 self.send(command(**areas))
@@ -114,11 +127,21 @@ class Simulator:
         finally:
             self._ros.node.destroy_timer(timer)
 
-    def watch(self, duration):
-        """The states of the next seconds."""
-        before = len(self.states)
-        self._ros.spin_for(duration)
-        return self.states[before:]
+    def close(self):
+        """Commands neutral until every valve is closed."""
+        names = [one.name for one in self.last.cylinders]
+        with self.holding(**{name: 0.0 for name in names}):
+            self._ros.spin_until(lambda: all(self.area(name) == 0.0 for name in names), "closed valves")
+
+    def settle(self):
+        """Closes the valves, and waits until the arm stands still."""
+        self.close()
+        self._ros.spin_until(
+            lambda: self.area() == 0.0 and abs(cylinder(self.last).velocity) < CREEP, "the arm to stand still"
+        )
+        return self.last
+
+    # states
 
     def next(self, count):
         """The next states, whenever they come."""
@@ -126,13 +149,29 @@ class Simulator:
         self._ros.spin_until(lambda: len(self.states) >= before + count, f"{count} states")
         return self.states[before:]
 
-    def settle(self):
-        """Waits until valves are closed and the arm stands still."""
-        self._ros.spin_until(
-            lambda: cylinder(self.last).orifice_area == 0.0 and abs(cylinder(self.last).velocity) < CREEP,
-            "the arm to stand still",
-        )
-        return self.last
+    def watch(self, duration):
+        """The states of the next seconds."""
+        before = len(self.states)
+        start = self.time
+        self._ros.spin_until(lambda: self.time >= start + duration, f"states of {duration} s")
+        return self.states[before:]
+
+    def is_whole(self, states):
+        """Whether no sample is missing in between. A node that waits for the processor leaves samples out."""
+        return all(step < 1.5 / self.rate for step in steps(states))
+
+    def undisturbed(self, attempt):
+        """The states of the first attempt in which the simulator had the processor when it wanted it."""
+        found = []
+        self._ros.spin_until(lambda: found.append(attempt()) or self.is_whole(found[-1]), "states without a gap")
+        return found[-1]
+
+
+def steps(states):
+    """Times from stamp to stamp, s."""
+    stamps = [state.header.stamp for state in states]
+    pairs = zip(stamps, stamps[1:])
+    return [later.sec - earlier.sec + (later.nanosec - earlier.nanosec) * 1e-9 for earlier, later in pairs]
 
 
 def all_finite(values):

@@ -1,0 +1,22 @@
+"""A recorder that has found what it shall record."""
+
+
+def start_recorder(ros, excavator, bag, topics, *words):
+    """`excavator record`, once it has opened each topic and is seen there; publishers of all of them have to be there."""
+    recorder = ros.start(excavator, "record", "-o", bag, *words, *topics)
+
+    def is_there(topic):
+        readers = {info.node_name for info in ros.node.get_subscriptions_info_by_topic(topic)}
+        return f"recording {topic} " in recorder.output() and "bag_recorder" in readers
+
+    for topic in topics:
+        ros.spin_until(lambda topic=topic: is_there(topic), f"the recorder on {topic}")
+    return recorder
+
+
+def bag_states(bag):
+    """The messages of a bag with one topic, in the order of the bag."""
+    from rosbags.highlevel import AnyReader
+
+    with AnyReader([bag]) as reader:
+        return [reader.deserialize(data, connection.msgtype) for connection, _, data in reader.messages()]
