@@ -1,4 +1,4 @@
-"""A command moves the arm, in the direction of its sign, and the pressures follow. Times are those of the machine."""
+"""A command moves the arm, in the direction of its sign, and the pressures follow."""
 
 import statistics
 

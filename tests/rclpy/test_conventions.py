@@ -92,7 +92,7 @@ def test_diagnostics_say_of_which_hardware_they_are(ros, excavator):
     process.interrupt()
 
 
-@pytest.mark.parametrize("words", [[], ["-p", "frame_id:=pit/base_link"]])
+@pytest.mark.parametrize("words", [[], pytest.param(["-p", "frame_id:=pit/base_link"], marks=pytest.mark.full)])
 def test_states_have_the_frame_of_the_root_link(ros, excavator, words):
     states = ros.listen(ArmState, "/arm/state", STATE_QOS)
     process = ros.start(excavator, *SIMULATOR, *words)

@@ -168,6 +168,7 @@ def test_a_killed_simulator_is_replaced_and_its_readers_go_on(ros, excavator, st
     assert second.process.interrupt() == 0
 
 
+@pytest.mark.full
 def test_a_killed_reader_is_replaced(ros, excavator):
     """The simulator goes on while a reliable reader that died still counts, and serves the next one."""
     simulator = Simulator(ros, excavator, rate=RATE)

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.middleware
 AREA = 5e-5
 # command_timeout of the node itself, and one that a busy machine does not take for it, s.
 OWN = 0.1
-LONG = 3.0
+LONG = 2.0
 # One between them, s.
 SOME = 0.5
 

@@ -3,11 +3,11 @@
 
 def start_recorder(ros, excavator, bag, topics, *words):
     """`excavator record`, once it has opened each topic and is seen there; publishers of all of them have to be there."""
+    readers = {topic: ros.node.count_subscribers(topic) for topic in topics}
     recorder = ros.start(excavator, "record", "-o", bag, *words, *topics)
 
     def is_there(topic):
-        readers = {info.node_name for info in ros.node.get_subscriptions_info_by_topic(topic)}
-        return f"recording {topic} " in recorder.output() and "bag_recorder" in readers
+        return f"recording {topic} " in recorder.output() and ros.node.count_subscribers(topic) > readers[topic]
 
     for topic in topics:
         ros.spin_until(lambda topic=topic: is_there(topic), f"the recorder on {topic}")

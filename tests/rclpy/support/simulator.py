@@ -150,11 +150,8 @@ class Simulator:
         return self.states[before:]
 
     def watch(self, duration):
-        """The states of the next seconds."""
-        before = len(self.states)
-        start = self.time
-        self._ros.spin_until(lambda: self.time >= start + duration, f"states of {duration} s")
-        return self.states[before:]
+        """As many states as there are in this time (s) of the machine. A late node leaves some out, and it takes longer."""
+        return self.next(round(duration * self.rate))
 
     def is_whole(self, states):
         """Whether no sample is missing in between. A node that waits for the processor leaves samples out."""
