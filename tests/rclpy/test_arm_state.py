@@ -6,7 +6,8 @@ import pytest
 from excavator_msgs.msg import ArmState
 from sensor_msgs.msg import JointState
 from support.diagnostics import Diagnostics
-from support.simulator import Simulator, all_finite, cylinder, steps
+from rclpy.qos import QoSProfile
+from support.simulator import NEWEST_QOS, Simulator, all_finite, cylinder, seconds, steps
 
 pytestmark = pytest.mark.middleware
 
@@ -20,14 +21,17 @@ def key(message):
 
 @pytest.fixture(scope="module")
 def simulator(ros, excavator):
-    return Simulator(ros, excavator, rate=RATE)
+    return Simulator(ros, excavator, rate=RATE, qos=NEWEST_QOS)
 
 
 @pytest.fixture(scope="module")
-def states(simulator):
-    """The first states; our queue is longer than what is published meanwhile, however late we are."""
-    simulator.next(WINDOW)
-    return simulator.states[:WINDOW]
+def states(ros, simulator):
+    """States from the first one on; the queue is longer than what is published meanwhile, however late we are."""
+    mark = ros.mark()
+    found = ros.listen(ArmState, "/arm/state", QoSProfile(depth=20 * WINDOW))
+    ros.spin_until(lambda: len(found) >= WINDOW, f"{WINDOW} states")
+    ros.release(mark)
+    return found[:WINDOW]
 
 
 def test_states_come_at_the_rate_of_the_parameter(states):
@@ -38,7 +42,7 @@ def test_stamps_are_those_of_the_samples(ros, simulator, states):
     """Whole periods apart however late they are sent, and none is missing on the way: a gap is where the node started its
     schedule anew, and it counts how often it did."""
     told = Diagnostics(ros)
-    told.reach(simulator.time)
+    told.reach(seconds(states[-1].header.stamp))
     apart = steps(states)
     assert min(apart) > 0.0
     gaps = [step for step in apart if step > 1.5 / RATE]
@@ -64,17 +68,15 @@ def test_states_say_what_a_machine_measures(states):
 
 
 def test_joint_states_are_for_the_robot_description(ros, simulator):
-    joints = ros.listen(JointState, "/joint_states", 1000)
+    angles = {}
+    ros.listen_with(ArmState, "/arm/state", lambda state: angles.update({key(state): cylinder(state).joint_angle}), 20 * WINDOW)
+    joints = ros.hear(JointState, "/joint_states", 1000)
     ros.spin_until(lambda: len(joints) >= 50, "a second of /joint_states")
     assert statistics.median(steps(joints)) == pytest.approx(0.02, rel=0.05)
     assert all(list(joint.name) == ["arm_joint"] and len(joint.velocity) == 1 for joint in joints)
     found = {key(joint): list(joint.position) for joint in joints}
-
-    def both():
-        return [state for state in simulator.states[-5000:] if key(state) in found]
-
-    ros.spin_until(lambda: len(both()) > 10, "states of the same times")
-    assert all(found[key(state)] == [cylinder(state).joint_angle] for state in both())
+    ros.spin_until(lambda: sum(stamp in angles for stamp in found) > 10, "states of the same times")
+    assert all(position == [angles[stamp]] for stamp, position in found.items() if stamp in angles)
 
 
 def test_two_readers_get_the_same(ros, simulator):

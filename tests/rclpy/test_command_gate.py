@@ -13,15 +13,19 @@ from std_msgs.msg import Bool
 from support.diagnostics import Diagnostics
 from support.fault import survived
 from support.process import stopped
-from support.simulator import COMMAND_QOS, MAXIMUM_AREA, RENEWAL, Simulator, command, cylinder, neutral, seconds, stamped, steps
+from support.simulator import (
+    COMMAND_QOS, MAXIMUM_AREA, NEWEST_QOS, RENEWAL, Simulator, command, cylinder, neutral, seconds, stamped, steps,
+)  # fmt: skip
 
 AREA = 5e-5
+# Several simulators run at once, and all of them are heard, Hz.
+RATE = 100.0
 # From fully open, s.
 CLOSING = 0.05
 # The machine gives up after a minute where its valves do not close, s.
 GIVES_UP = 60.0
 # States after which a valve that is still closed was closed by the node, and not by the way of a message.
-STAYS_CLOSED = 50
+STAYS_CLOSED = 30
 
 
 class Operator:
@@ -77,7 +81,7 @@ def machine(ros, excavator):
     """Boom and arm."""
     sources = "['autonomy:0:/arm/orifice_command', 'remote:10:/arm/remote/orifice_command']"
     arguments = ["-p", "model:=zx30u", "-p", f"command_sources:={sources}"]
-    return Simulator(ros, excavator, arguments=arguments)
+    return Simulator(ros, excavator, rate=RATE, arguments=arguments)
 
 
 @pytest.fixture
@@ -165,7 +169,7 @@ def test_a_higher_priority_takes_over(ros, simulator, operators):
 @pytest.fixture(scope="module")
 def strict(ros, excavator):
     """One with its own limits for the age of commands."""
-    return Simulator(ros, excavator, command_timeout=None, under="/strict")
+    return Simulator(ros, excavator, rate=RATE, command_timeout=None, under="/strict")
 
 
 @pytest.mark.parametrize("offset", [None, -1.8e9, -2.0, 5.0])
@@ -225,7 +229,7 @@ def test_a_full_reversal_is_limited_in_its_rate(ros, simulator, operators):
 
 
 def test_a_valve_that_was_closed_opens_after_neutral_only(ros, excavator, operators):
-    simulator = Simulator(ros, excavator, command_timeout=None, under="/neutral_first")
+    simulator = Simulator(ros, excavator, rate=RATE, command_timeout=None, under="/neutral_first")
     told = Diagnostics(ros, simulator.node)
     operator = operators("/neutral_first/orifice_command")
     open_by(ros, simulator, operator, AREA)
@@ -265,7 +269,12 @@ def test_a_stop_closes_and_needs_release_and_neutral(ros, simulator, operators, 
     simulator.next(50)
     assert simulator.area() == 0.0, "the operator still holds the lever"
     open_by(ros, simulator, operator, AREA)
-    survived("Commands", "`true` on `/arm/stop` under an open valve", "the valve closes by its ramp; it opens after release and neutral", closed_after_ms=1e3 * took)
+    survived(
+        "Commands",
+        "`true` on `/arm/stop` under an open valve",
+        "the valve closes by its ramp; it opens after release and neutral",
+        closed_after_ms=1e3 * took,
+    )
 
 
 def test_refusals_are_said_once(ros, simulator, operators, diagnostics):
@@ -290,11 +299,12 @@ def test_refusals_are_said_once(ros, simulator, operators, diagnostics):
 def test_refusals_clear_themselves(ros, simulator, operators, diagnostics):
     operators().send(command(tail=AREA))
     ros.spin_until(lambda: diagnostics.says("refusal", "tail"), "a diagnostic about the refusal")
-    ros.spin_until(lambda: diagnostics.says("refusal", "no command was refused lately", DiagnosticStatus.OK), "the status to clear")
+    clear = "no command was refused lately"
+    ros.spin_until(lambda: diagnostics.says("refusal", clear, DiagnosticStatus.OK), "the status to clear")
 
 
 def test_only_named_writers_command(ros, excavator):
-    simulator = Simulator(ros, excavator, under="/own", arguments=["-p", "command_writers:=['/checker']"])
+    simulator = Simulator(ros, excavator, rate=RATE, under="/own", arguments=["-p", "command_writers:=['/checker']"])
     told = Diagnostics(ros, simulator.node)
     stranger = rclpy.create_node("stranger", context=ros.node.context, start_parameter_services=False)
     publisher = stranger.create_publisher(OrificeCommand, "/own/orifice_command", 10)
@@ -327,7 +337,7 @@ def test_a_second_simulator_is_noticed(ros, excavator, simulator, diagnostics):
 @pytest.mark.parametrize("how", [pytest.param(signal.SIGKILL, marks=pytest.mark.full), signal.SIGABRT])
 def test_valves_close_when_the_node_dies(ros, excavator, how):
     """The machine has a process of its own: no packet reaches it, and it closes when its node has gone."""
-    simulator = Simulator(ros, excavator, rate=1000.0, under=f"/dies_{how}")
+    simulator = Simulator(ros, excavator, rate=1000.0, under=f"/dies_{how}", qos=NEWEST_QOS)
     simulator.open_until(arm=AREA)
     os.kill(simulator.process.pid, how)
     simulator.process.wait()
@@ -348,13 +358,13 @@ def test_valves_close_when_the_node_dies(ros, excavator, how):
 
 
 def test_valves_close_while_the_node_hangs(ros, excavator):
-    simulator = Simulator(ros, excavator, command_timeout=1.0, under="/hangs")
+    simulator = Simulator(ros, excavator, rate=RATE, command_timeout=1.0, under="/hangs")
     (machine,) = simulator.process.children()
     # what the lease takes, and several times what a fully open valve takes
     enough = round(simulator.rate * (10 * CLOSING))
 
     def hang():
-        """Areas from the open valve to the first hundred states after the hang."""
+        """Areas from the open valve to the first states after the hang."""
         simulator.open_until(arm=AREA)
         before = len(simulator.states)
         with stopped(simulator.process):
@@ -362,7 +372,7 @@ def test_valves_close_while_the_node_hangs(ros, excavator):
             slept = machine.times_slept()
             ros.spin_until(lambda: machine.times_slept() > slept + enough, "the machine to go on alone")
         ros.spin_until(lambda: simulator.area() == 0.0, "the valve to be closed")
-        simulator.next(100)
+        simulator.next(50)
         return [cylinder(state).orifice_area for state in simulator.states[before:]]
 
     def is_closed_meanwhile():
@@ -371,4 +381,8 @@ def test_valves_close_while_the_node_hangs(ros, excavator):
         return areas == sorted(areas, reverse=True) and all(area in (0.0, pytest.approx(AREA)) for area in areas)
 
     assert any(is_closed_meanwhile() for _ in range(5))
-    survived("Commands", "the simulator's process hangs (SIGSTOP) with an open valve", "the machine closes it meanwhile; it is closed when the node goes on")
+    survived(
+        "Commands",
+        "the simulator's process hangs (SIGSTOP) with an open valve",
+        "the machine closes it meanwhile; it is closed when the node goes on",
+    )

@@ -1,4 +1,4 @@
-"""The docs, followed by a reader on a network: each node of a page starts as it is printed, is on the graph, and ends when told to."""
+"""The docs, followed by a reader on a network: a node starts as the page prints it, is on the graph, and ends when told to."""
 
 import pytest
 from excavator_msgs.msg import EnergyState
@@ -73,7 +73,11 @@ def start(ros, excavator, words, folder):
 
 def read_back(ros, excavator, words, running):
     """Ends the recorder, and runs the command that reads its bag."""
-    energies = ros.listen(EnergyState, "/left/arm/energy", STATE_QOS)
+    for topic in ("state", "energy"):
+        ros.spin_until(
+            lambda topic=topic: f"recording /left/arm/{topic} " in running[-1].output(), f"the recorder on the left {topic}"
+        )
+    energies = ros.hear(EnergyState, "/left/arm/energy", STATE_QOS)
     ros.spin_until(lambda: len(energies) > ENOUGH, "balances of the left machine")
     assert running.pop().interrupt() == 0
     read = ros.start(excavator, *words)

@@ -17,7 +17,7 @@ from support.simulator import STATE_QOS, Simulator, steps
 pytestmark = pytest.mark.middleware
 
 LONG = os.environ.get("EXCAVATOR_LONG") == "1"
-RATE = 1000.0
+RATE = 250.0
 MALFORMED = 200_000 if LONG else 20_000
 VISITORS = Path(__file__).parent / "support" / "visitor.py"
 # s; a writer that waits for a peer that is gone stands still for its lease of 10 s. A busy machine makes gaps, too.
@@ -45,7 +45,7 @@ def steady(ros, excavator, simulator, tmp_path):
     """A recorder on /arm/state; ends it and returns how many messages it lost and the states that it has."""
     bag = tmp_path / "bag"
     recorder = start_recorder(ros, excavator, bag, ["/arm/state"])
-    simulator.next(1000)
+    simulator.next(round(RATE))
 
     def end():
         assert recorder.interrupt() == 0, recorder.output()
@@ -65,7 +65,7 @@ def test_malformed_packets_at_the_ports_of_dds_stop_nobody(ros, simulator, stead
     told = Diagnostics(ros)
     flooding = in_background(flood, dds_ports(ros.domain), MALFORMED, malformed_packet)
     ros.spin_until(lambda: not flooding.is_alive(), "the end of the flood")
-    simulator.next(1000)
+    simulator.next(round(RATE))
     lost, states = steady()
     assert lost == 0
     assert len(states) > RATE
@@ -134,7 +134,7 @@ def test_ten_participants_come_and_go_and_a_steady_reader_loses_nothing(ros, sim
     for number in range(10 if not LONG else 60):
         guest = ros.start_python(VISITORS)
         guests.append(guest)
-        simulator.next(150)
+        simulator.next(round(0.15 * RATE))
         if len(guests) >= 4:
             leaving = guests.pop(0)
             ros.spin_until(lambda: "heard" in leaving.output(), "a visitor to hear the state")
@@ -145,7 +145,7 @@ def test_ten_participants_come_and_go_and_a_steady_reader_loses_nothing(ros, sim
     for guest in guests:
         ros.spin_until(lambda: "heard" in guest.output(), "a visitor to hear the state")
         in_background(guest.interrupt)
-    simulator.next(1000)
+    simulator.next(round(RATE))
     lost, states = steady()
     assert lost == 0
     assert max(steps(states)) < STALL
@@ -161,7 +161,7 @@ def test_a_killed_simulator_is_replaced_and_its_readers_go_on(ros, excavator, st
         return [state for state in states if state.header.frame_id == "second"]
 
     ros.spin_until(lambda: of_second([second.last]), "states of the second simulator")
-    second.next(1500)
+    second.next(round(1.5 * RATE))
     _, states = steady()
     assert len(of_second(states)) > 0.5 * RATE
     second.open_until(arm=3e-5)
@@ -175,7 +175,7 @@ def test_a_killed_reader_is_replaced(ros, excavator):
     first = ros.start_python(VISITORS, "stay")
     ros.spin_until(lambda: "heard" in first.output(), "the first reader")
     first.vanish()
-    assert max(steps(simulator.next(2000))) < STALL
+    assert max(steps(simulator.next(round(2 * RATE)))) < STALL
     second = ros.start_python(VISITORS, "stay")
     ros.spin_until(lambda: "heard" in second.output(), "the second reader")
     second.interrupt()
