@@ -4,9 +4,9 @@ import statistics
 
 import pytest
 from excavator_msgs.msg import ArmState
+from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 from support.diagnostics import Diagnostics
-from rclpy.qos import QoSProfile
 from support.simulator import NEWEST_QOS, Simulator, all_finite, cylinder, seconds, steps
 
 pytestmark = pytest.mark.middleware
