@@ -73,7 +73,7 @@ def test_a_bad_command_does_not_disturb_the_good_one(simulator):
 
 def test_a_bad_command_does_not_renew_the_lease(ros, excavator):
     """Else a program gone mad would hold the valve open."""
-    simulator = Simulator(ros, excavator, command_timeout=None, under="/short_lease")
+    simulator = Simulator(ros, excavator, rate=100.0, command_timeout=None, under="/short_lease")
     simulator.open_until(arm=AREA)
     timer = ros.node.create_timer(RENEWAL, lambda: simulator.send(command(arm=math.nan)))
     try:
