@@ -28,7 +28,7 @@ def check(run, tier):
     _shared(run)
     python_ready = run.beside(lambda run: _python(run, everything))
     try:
-        programs = _build(run, tier)
+        programs = _build(run, everything)
     finally:
         python_ready()
     live_ended = run.beside(lambda run: _live(run, programs, everything))
@@ -68,12 +68,12 @@ def _python(run, everything):
         run.step("axe-core", needs.axe)
 
 
-def _build(run, tier):
-    crates = suites.EVERY_CRATE if tier >= Tier.LONG else suites.CRATES
+def _build(run, everything):
+    crates = suites.crates(everything)
+    linted = ["--workspace"] if everything else crates
     run.step("format", _program("cargo", "fmt", "--all", "--check"))
-    run.step("lints", _program("cargo", "clippy", *crates, "--all-targets", "--quiet", "--", "-D", "warnings"))
-    programs = run.needs("build of all tests", lambda run: _Programs(cargo.build(ROOT, suites.CRATES, run.command)))
-    return programs
+    run.step("lints", _program("cargo", "clippy", *linted, "--all-targets", "--quiet", "--", "-D", "warnings"))
+    return run.needs("build of all tests", lambda run: _Programs(cargo.build(ROOT, crates, run.command)))
 
 
 class _Programs(list):
@@ -126,11 +126,11 @@ def _release(run):
 
 
 def _doc_tests(run):
-    run.command(["cargo", "test", *suites.CRATES, "--doc", "--quiet"])
+    run.command(["cargo", "test", *suites.crates(True), "--doc", "--quiet"])
 
 
 def _documentation(run):
-    run.command(["cargo", "doc", *suites.CRATES, "--no-deps", "--quiet"], environment={"RUSTDOCFLAGS": "-D warnings"})
+    run.command(["cargo", "doc", *suites.crates(True), "--no-deps", "--quiet"], environment={"RUSTDOCFLAGS": "-D warnings"})
 
 
 def _dependencies(run):

@@ -8,9 +8,17 @@ from collections import Counter
 import cargo
 from run import ROOT, Failed
 
-# Measures beside programs of others, whose solvers take minutes to build: in long runs only.
-EVERY_CRATE = ["--workspace"]
-CRATES = [*EVERY_CRATE, "--exclude", "excavator-speed"]
+# Measures beside programs of others, whose solvers take minutes to build: linted with --all, built in long runs.
+SPEED = ["--exclude", "excavator-speed"]
+# The site of the book, and changed bytes for every reader: with --all.
+SLOW = ["--exclude", "excavator-book", "--exclude", "excavator-fuzzing"]
+
+
+def crates(everything):
+    """The crates whose tests are built."""
+    return ["--workspace", *SPEED, *([] if everything else SLOW)]
+
+
 PYTHON = ROOT / ".venv" / "bin" / "python"
 PROGRAM = ROOT / "target" / "debug" / "excavator"
 

@@ -43,21 +43,6 @@ fn outside(result: &Value) -> Vec<String> {
 }
 
 #[test]
-fn with_nothing_missing_the_ledger_closes_within_its_noise() {
-    let Some(results) = ledgers("p00") else { return };
-    for result in results {
-        assert_eq!(outside(&result), Vec::<String>::new());
-        assert_eq!(result["ledger_closes"], true);
-        assert_eq!(result["missing_power"].as_array().unwrap().len(), 0);
-        for place in result["ledger"].as_array().unwrap() {
-            let always = &place["conditions"]["always"];
-            // The band says something: it is of the size of what is left, not wider by orders of magnitude.
-            assert!(always["size"].as_f64().unwrap() > 0.05 * always["band"].as_f64().unwrap(), "{place:#}");
-        }
-    }
-}
-
-#[test]
 fn leaking_valves_show_where_oil_is_balanced_and_nowhere_else() {
     let Some(results) = ledgers("p02") else { return };
     for result in results {
@@ -66,17 +51,6 @@ fn leaking_valves_show_where_oil_is_balanced_and_nowhere_else() {
             assert!(found.iter().any(|name| name == equation), "{equation}: {found:?}");
         }
         assert!(!found.iter().any(|name| name == "arm.motion"));
-    }
-}
-
-#[test]
-fn losses_in_hoses_show_between_pressure_and_link_and_nowhere_else() {
-    let Some(results) = ledgers("p03") else { return };
-    for result in results {
-        assert_eq!(outside(&result), ["arm.motion"]);
-        let evidence = &result["missing_power"][0];
-        assert_eq!(evidence["cylinder"], "arm");
-        assert!(evidence["sentence"].as_str().unwrap().contains("between the oil's pressure and the moving links"));
     }
 }
 
@@ -154,37 +128,6 @@ fn repeated(minute: &Recording, times: usize) -> Recording {
 }
 
 #[test]
-fn a_long_bag_goes_through_in_blocks_and_gives_what_it_gives_in_one() {
-    let folder = tempfile::tempdir().unwrap();
-    let bag = folder.path().join("bag");
-    let long = repeated(&minute(), 4);
-    write_recording(&bag, &long, &Topics::default(), &WriteOptions::default()).unwrap();
-    let words = ["energy", "--model", "zx30u-arm", "--json", "-", "--report", "page.html", "--bag", "bag"];
-    let result = json(&excavator(folder.path(), &words));
-    let model = built_in("zx30u-arm").unwrap();
-    let whole = excavator_identification::energy::analyse(&model, &long, Default::default()).unwrap();
-    let close = |found: &Value, wanted: f64, what: &str| {
-        let found = found.as_f64().unwrap();
-        assert!((found - wanted).abs() <= 1e-6 * wanted.abs().max(1.0), "{what}: {found} {wanted}");
-    };
-    assert_eq!(result["gaps"], 3);
-    close(&result["energy"]["pump"], whole.totals.pump, "pump");
-    close(&result["energy"]["cylinders"]["arm"]["supplied"], whole.totals.cylinders[0].supplied, "supplied");
-    close(&result["pump_line"]["bypass_loss"], whole.totals.bypass_loss(), "bypass");
-    let period = result["cycle"]["period"].as_f64().unwrap();
-    assert!((period / 2.0 - 1.0).abs() < 5e-3, "{period}");
-    // What goes in comes out.
-    let line = &result["pump_line"];
-    let part = |name: &str| line[name].as_f64().unwrap();
-    let arm = |name: &str| line["sections"]["arm"][name].as_f64().unwrap();
-    let out = part("bypass_loss") + arm("metering_loss") + arm("into_cylinder") + part("stored") - part("residual");
-    assert!((out / part("pump") - 1.0).abs() < 1e-9, "{line:#}");
-    assert!(part("residual").abs() < 1e-3 * part("pump"), "{line:#}");
-    let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
-    assert!(page.contains("Where the energy went") && page.contains("<svg") && !page.contains("http://"));
-}
-
-#[test]
 fn what_is_not_measured_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let mut recording = minute();
@@ -253,4 +196,66 @@ fn analyse_an_hour_of(minute: &Recording) -> (f64, f64) {
     };
     assert!(status.success());
     (started.elapsed().as_secs_f64(), peak)
+}
+
+/// `tests/run --all` runs these.
+mod full {
+    use super::*;
+
+    #[test]
+    fn a_long_bag_goes_through_in_blocks_and_gives_what_it_gives_in_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let bag = folder.path().join("bag");
+        let long = repeated(&minute(), 4);
+        write_recording(&bag, &long, &Topics::default(), &WriteOptions::default()).unwrap();
+        let words = ["energy", "--model", "zx30u-arm", "--json", "-", "--report", "page.html", "--bag", "bag"];
+        let result = json(&excavator(folder.path(), &words));
+        let model = built_in("zx30u-arm").unwrap();
+        let whole = excavator_identification::energy::analyse(&model, &long, Default::default()).unwrap();
+        let close = |found: &Value, wanted: f64, what: &str| {
+            let found = found.as_f64().unwrap();
+            assert!((found - wanted).abs() <= 1e-6 * wanted.abs().max(1.0), "{what}: {found} {wanted}");
+        };
+        assert_eq!(result["gaps"], 3);
+        close(&result["energy"]["pump"], whole.totals.pump, "pump");
+        close(&result["energy"]["cylinders"]["arm"]["supplied"], whole.totals.cylinders[0].supplied, "supplied");
+        close(&result["pump_line"]["bypass_loss"], whole.totals.bypass_loss(), "bypass");
+        let period = result["cycle"]["period"].as_f64().unwrap();
+        assert!((period / 2.0 - 1.0).abs() < 5e-3, "{period}");
+        // What goes in comes out.
+        let line = &result["pump_line"];
+        let part = |name: &str| line[name].as_f64().unwrap();
+        let arm = |name: &str| line["sections"]["arm"][name].as_f64().unwrap();
+        let out = part("bypass_loss") + arm("metering_loss") + arm("into_cylinder") + part("stored") - part("residual");
+        assert!((out / part("pump") - 1.0).abs() < 1e-9, "{line:#}");
+        assert!(part("residual").abs() < 1e-3 * part("pump"), "{line:#}");
+        let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
+        assert!(page.contains("Where the energy went") && page.contains("<svg") && !page.contains("http://"));
+    }
+
+    #[test]
+    fn with_nothing_missing_the_ledger_closes_within_its_noise() {
+        let Some(results) = ledgers("p00") else { return };
+        for result in results {
+            assert_eq!(outside(&result), Vec::<String>::new());
+            assert_eq!(result["ledger_closes"], true);
+            assert_eq!(result["missing_power"].as_array().unwrap().len(), 0);
+            for place in result["ledger"].as_array().unwrap() {
+                let always = &place["conditions"]["always"];
+                // The band says something: it is of the size of what is left, not wider by orders of magnitude.
+                assert!(always["size"].as_f64().unwrap() > 0.05 * always["band"].as_f64().unwrap(), "{place:#}");
+            }
+        }
+    }
+
+    #[test]
+    fn losses_in_hoses_show_between_pressure_and_link_and_nowhere_else() {
+        let Some(results) = ledgers("p03") else { return };
+        for result in results {
+            assert_eq!(outside(&result), ["arm.motion"]);
+            let evidence = &result["missing_power"][0];
+            assert_eq!(evidence["cylinder"], "arm");
+            assert!(evidence["sentence"].as_str().unwrap().contains("between the oil's pressure and the moving links"));
+        }
+    }
 }

@@ -243,19 +243,24 @@ fn emps_is_identified_straight_from_its_matlab_file() {
     }
 }
 
-/// Measured friction of a seal at four pressures (bags/samples/seal-friction): the level rises with the pressure, a model
-/// with a constant level is missing that, and the slope is that of the measurement's authors.
-#[test]
-fn seal_friction_that_grows_with_pressure_is_found() {
-    let folder = tempfile::tempdir().unwrap();
-    let rig = sample("seal-friction/rig.toml");
-    let map = sample("seal-friction/map.toml");
-    let table = |pressure: u8| sample(&format!("seal-friction/O-ring_{pressure}bar.csv"));
-    let (one, three, five, seven) = (table(1), table(3), table(5), table(7));
-    let words = ["diagnose", "--model", text(&rig), "--map", text(&map), "--json", "-"];
-    let recordings = ["--identification", text(&one), text(&five), "--validation", text(&three), text(&seven)];
-    let diagnosis = json(&excavator(folder.path(), &[&words[..], &recordings[..]].concat()));
-    let first = &diagnosis["candidates"][0];
-    assert_eq!(first["effect"], "pressure_dependent_friction", "{diagnosis:#}");
-    assert_eq!(first["tied_with_first"], false, "{diagnosis:#}");
+/// `tests/run --all` runs these.
+mod full {
+    use super::*;
+
+    /// Measured friction of a seal at four pressures (bags/samples/seal-friction): the level rises with the pressure, a model
+    /// with a constant level is missing that, and the slope is that of the measurement's authors.
+    #[test]
+    fn seal_friction_that_grows_with_pressure_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let rig = sample("seal-friction/rig.toml");
+        let map = sample("seal-friction/map.toml");
+        let table = |pressure: u8| sample(&format!("seal-friction/O-ring_{pressure}bar.csv"));
+        let (one, three, five, seven) = (table(1), table(3), table(5), table(7));
+        let words = ["diagnose", "--model", text(&rig), "--map", text(&map), "--json", "-"];
+        let recordings = ["--identification", text(&one), text(&five), "--validation", text(&three), text(&seven)];
+        let diagnosis = json(&excavator(folder.path(), &[&words[..], &recordings[..]].concat()));
+        let first = &diagnosis["candidates"][0];
+        assert_eq!(first["effect"], "pressure_dependent_friction", "{diagnosis:#}");
+        assert_eq!(first["tied_with_first"], false, "{diagnosis:#}");
+    }
 }

@@ -9,7 +9,6 @@ mod common;
 mod compare_others;
 #[cfg(feature = "dashboard")]
 mod dashboard_server;
-mod design;
 mod energy;
 mod full;
 #[cfg(all(feature = "dashboard", feature = "can", feature = "tables"))]
@@ -18,13 +17,11 @@ mod hostile;
 mod import;
 #[cfg(all(feature = "dashboard", feature = "can"))]
 mod live;
-mod long_recordings;
 mod model_file;
 mod monte_carlo;
 mod odd_recordings;
 mod own_physics;
 mod practice;
-mod proposals;
 mod refinement;
 mod results;
 mod servo_bench;

@@ -45,11 +45,6 @@ fn is_judged_right(case: &str) {
 }
 
 #[test]
-fn a_machine_ten_times_smaller_is_judged_like_one_of_usual_size() {
-    is_judged_right("r00");
-}
-
-#[test]
 #[ignore = "two minutes; tests/run --long"]
 fn so_are_larger_machines_and_strokes_onto_stops() {
     ["r01", "r02", "r03", "r04", "r05"].into_iter().for_each(is_judged_right);
@@ -220,5 +215,15 @@ fn demo_tells_its_story() {
     assert!(text.contains(&format!("+ {sealed}@")), "{text}");
     for file in ["report.html", "refined-model.toml", "identification/metadata.yaml", "validation/metadata.yaml"] {
         assert!(folder.path().join("story").join(file).exists(), "{file}");
+    }
+}
+
+/// `tests/run --all` runs these.
+mod full {
+    use super::*;
+
+    #[test]
+    fn a_machine_ten_times_smaller_is_judged_like_one_of_usual_size() {
+        is_judged_right("r00");
     }
 }

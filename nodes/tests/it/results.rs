@@ -89,29 +89,34 @@ fn energy_and_characteristics_of_a_recording() {
     checked::<results::Characterisation>("characterise", folder.path(), &words);
 }
 
-#[test]
-fn verdicts_and_what_follows_from_them() {
-    let folder = tempfile::tempdir().unwrap();
-    // Halves of one recording: the form of a verdict does not depend on what it says.
-    let [identification, validation] = ["@..5", "@5..10"].map(|part| sample("hidden-law/validation") + part);
-    let recordings = ["--model", "zx30u-arm", "--identification", &identification, "--validation", &validation];
-    let of = |words: &[&'static str]| [words, &recordings[..]].concat();
-    let found = checked::<results::Diagnosis>("diagnose", folder.path(), &of(&["diagnose"]));
-    assert!(found["missing_power"][0]["source"].is_string());
-    checked::<results::Proposals>("propose", folder.path(), &of(&["propose"]));
-    let words = of(&["refine", "--add", "hose_loss", "-o", "refined.toml"]);
-    let found = checked::<results::Refinement>("refine", folder.path(), &words);
-    assert_eq!(found["model"], "refined.toml");
-}
+/// `tests/run --all` runs these.
+mod full {
+    use super::*;
 
-#[test]
-fn designs() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = ["design", "--model", "zx30u-arm", "--duration", "20", "-o"];
-    let between = [&words[..], &["pair.toml", "--between", "valve_lag@arm,sensor_delay@arm"]].concat();
-    let found = checked::<results::Separation>("design-separation", folder.path(), &between);
-    assert_eq!(found["profile"], "pair.toml");
-    let parameter = [&words[..], &["parameter.toml", "--parameter", "arm.inertia"]].concat();
-    let found = checked::<results::Determination>("design-determination", folder.path(), &parameter);
-    assert_eq!(found["parameter"], "arm.inertia");
+    #[test]
+    fn verdicts_and_what_follows_from_them() {
+        let folder = tempfile::tempdir().unwrap();
+        // Halves of one recording: the form of a verdict does not depend on what it says.
+        let [identification, validation] = ["@..5", "@5..10"].map(|part| sample("hidden-law/validation") + part);
+        let recordings = ["--model", "zx30u-arm", "--identification", &identification, "--validation", &validation];
+        let of = |words: &[&'static str]| [words, &recordings[..]].concat();
+        let found = checked::<results::Diagnosis>("diagnose", folder.path(), &of(&["diagnose"]));
+        assert!(found["missing_power"][0]["source"].is_string());
+        checked::<results::Proposals>("propose", folder.path(), &of(&["propose"]));
+        let words = of(&["refine", "--add", "hose_loss", "-o", "refined.toml"]);
+        let found = checked::<results::Refinement>("refine", folder.path(), &words);
+        assert_eq!(found["model"], "refined.toml");
+    }
+
+    #[test]
+    fn designs() {
+        let folder = tempfile::tempdir().unwrap();
+        let words = ["design", "--model", "zx30u-arm", "--duration", "20", "-o"];
+        let between = [&words[..], &["pair.toml", "--between", "valve_lag@arm,sensor_delay@arm"]].concat();
+        let found = checked::<results::Separation>("design-separation", folder.path(), &between);
+        assert_eq!(found["profile"], "pair.toml");
+        let parameter = [&words[..], &["parameter.toml", "--parameter", "arm.inertia"]].concat();
+        let found = checked::<results::Determination>("design-determination", folder.path(), &parameter);
+        assert_eq!(found["parameter"], "arm.inertia");
+    }
 }

@@ -174,18 +174,6 @@ fn assert_coefficients(model: &Model) {
 }
 
 #[test]
-fn the_error_falls_with_each_effect_of_the_refined_model() {
-    let named = HIDDEN
-        .iter()
-        .map(|(name, _)| Addition { physics: Catalogue::built_in().find(name).unwrap(), site: Site::Cylinder(0) })
-        .collect();
-    let refinement = story(&Additions::Named(named));
-    assert_falls(&refinement);
-    assert_coefficients(&refinement.model);
-    assert_as_good_as_the_paper(&refinement.model);
-}
-
-#[test]
 #[ignore = "minutes; tests/run --long"]
 fn the_five_effects_are_found_one_by_one_and_nothing_else() {
     let refinement = story(&Additions::Auto);
@@ -198,4 +186,21 @@ fn the_five_effects_are_found_one_by_one_and_nothing_else() {
     assert_eq!(found, hidden);
     assert_coefficients(&refinement.model);
     assert_as_good_as_the_paper(&refinement.model);
+}
+
+/// `tests/run --all` runs these.
+mod full {
+    use super::*;
+
+    #[test]
+    fn the_error_falls_with_each_effect_of_the_refined_model() {
+        let named = HIDDEN
+            .iter()
+            .map(|(name, _)| Addition { physics: Catalogue::built_in().find(name).unwrap(), site: Site::Cylinder(0) })
+            .collect();
+        let refinement = story(&Additions::Named(named));
+        assert_falls(&refinement);
+        assert_coefficients(&refinement.model);
+        assert_as_good_as_the_paper(&refinement.model);
+    }
 }

@@ -3,9 +3,8 @@
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, missing_docs)]
 
 mod against_model;
-mod effects_show;
+mod full;
 mod instruments_record;
-mod near_twins;
 mod plant_at_rest;
 mod plant_energy;
 mod scores;

@@ -1,0 +1,4 @@
+//! Tests that `tests/run --all` runs: whole searches.
+
+mod effects_show;
+mod near_twins;
