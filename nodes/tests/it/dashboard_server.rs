@@ -3,8 +3,8 @@
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
-use std::time::Duration;
 
+use crate::common::LONGEST_WAIT;
 use excavator::dashboard::{Board, Hosts, serve};
 use excavator_msgs::common::{DiagnosticArray, DiagnosticStatus};
 use excavator_msgs::{ArmState, CylinderState, Header};
@@ -24,7 +24,7 @@ fn server() -> (Arc<Board>, SocketAddr) {
 
 fn get(address: SocketAddr, path: &str) -> TcpStream {
     let mut stream = TcpStream::connect(address).unwrap();
-    stream.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
+    stream.set_read_timeout(Some(LONGEST_WAIT)).unwrap();
     write!(stream, "GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n").unwrap();
     stream
 }

@@ -3,6 +3,10 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::time::Duration;
+
+/// Longest that a test waits for anything. What is waited for comes within seconds; a busy machine gets the rest.
+pub const LONGEST_WAIT: Duration = Duration::from_secs(90);
 
 /// Runs `excavator` with these words in `folder`.
 pub fn excavator(folder: &Path, words: &[&str]) -> Output {

@@ -16,8 +16,7 @@ pub use bags::{custom_number, messages, messages_so_far, recorded, records};
 pub use network::Network;
 pub use program::{Program, kill};
 
-/// Longest that a test waits for anything. What is waited for comes within seconds; a busy machine gets the rest.
-pub const LONGEST_WAIT: Duration = Duration::from_secs(90);
+pub use crate::common::LONGEST_WAIT;
 
 /// Waits until something holds.
 pub fn until(what: &str, mut holds: impl FnMut() -> bool) {
