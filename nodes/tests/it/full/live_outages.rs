@@ -21,7 +21,7 @@ fn line(name: &str, bag: &Path) -> Option<Line> {
     let (left, right) = Network::pair(name)?;
     let simulator = left.start(&["node", "arm-simulator", "--ros-args", "-p", "rate:=200"]);
     let recorder = right.start(&["record", "/arm/state", "-o", bag.to_str().unwrap()]);
-    records(&bag, "/arm/state", 400);
+    records(bag, "/arm/state", 400);
     Some(Line { left, _right: right, simulator, recorder })
 }
 
