@@ -122,6 +122,7 @@ def test_a_page_can_be_followed(run, tmp_path, name):
     assert not wrong, "\n".join(wrong)
 
 
+@pytest.mark.full
 def test_the_commands_of_the_readme_run_in_an_empty_folder(run):
     lines = re.findall(r"^    cargo run --release -- (\S.*?)(?:\s+#.*)?$", (REPOSITORY / "README.md").read_text(), re.MULTILINE)
     assert lines
