@@ -60,7 +60,8 @@ fn judged(
 ) -> Polls {
     let bag = folder.join(name);
     let (model, window) = (format!("model:={}", model.display()), "watch_window:=0.5");
-    let simulator = network.start(&["node", "arm-simulator"]);
+    // Slower than usual, so that it is in time beside other work.
+    let simulator = network.start(&["node", "arm-simulator", "--ros-args", "-p", "rate:=200"]);
     let monitor = network.start(&["node", "energy-monitor", "--ros-args", "-p", &model, "-p", window]);
     let recorder = network.start(&["record", "/diagnostics", "-o", bag.to_str().unwrap()]);
     records(&bag, "/diagnostics", 3);
