@@ -19,6 +19,8 @@ COMMAND_TIMEOUT = 10.0
 COMMAND_AGE = 3600.0
 # Commands are renewed four times before they would run out with the node's own time, s.
 RENEWAL = 0.025
+# States after which a valve that is still closed stays so.
+STAYS_CLOSED = 150
 # Opening in zx30u-arm.toml, m2; commands stay well inside.
 MAXIMUM_AREA = 1.15e-4
 # With closed valves its weight and the leakage let the arm creep by 2 mm/s, m/s.
@@ -143,6 +145,22 @@ class Simulator:
         names = [one.name for one in self.last.cylinders]
         with self.holding(**{name: 0.0 for name in names}):
             self._ros.spin_until(lambda: all(self.area(name) == 0.0 for name in names), "closed valves")
+
+    def closes(self, since, name="arm"):
+        """The first state behind state number `since` from which on the valve stays closed. Commands that were sent before, neutral
+        and open again, may be on their way still and close it for a moment only."""
+
+        def is_closed(state):
+            return cylinder(state, name).orifice_area == 0.0
+
+        def stays_closed():
+            return len(self.states) > since + STAYS_CLOSED and all(map(is_closed, self.states[-STAYS_CLOSED:]))
+
+        self._ros.spin_until(stays_closed, f"the valve of the {name} to stay closed")
+        first = len(self.states)
+        while first > since and is_closed(self.states[first - 1]):
+            first -= 1
+        return self.states[first]
 
     def settle(self):
         """Closes the valves, and waits until the arm stands still."""
