@@ -56,6 +56,7 @@ def test_what_is_not_there_is_told(samples):
         excavator.Bag("nowhere")
 
 
+@pytest.mark.full
 def test_it_is_much_faster_than_rosbags(samples, tmp_path):
     highlevel = pytest.importorskip("rosbags.highlevel")
     model = excavator.Model.load("zx30u-arm")
