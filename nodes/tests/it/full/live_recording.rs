@@ -120,7 +120,7 @@ fn a_killed_recorder_loses_the_last_second_and_nothing_before() {
     let recorder = network.start(&["record", "--all", "-o", bag.to_str().unwrap()]);
     // Every second reaches the disk by itself: what is recorded grows while the recorder still runs.
     for _ in 0..5 {
-        records(&bag, "/arm/state", 1);
+        records(&bag, "/arm/state", 150);
     }
     let on_disk = recorded(&bag, "/arm/state");
     recorder.kill();
