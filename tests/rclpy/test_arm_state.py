@@ -72,7 +72,9 @@ def test_joint_states_are_for_the_robot_description(ros, simulator):
     ros.listen_with(ArmState, "/arm/state", lambda state: angles.update({key(state): cylinder(state).joint_angle}), 20 * WINDOW)
     joints = ros.hear(JointState, "/joint_states", 1000)
     ros.spin_until(lambda: len(joints) >= 50, "a second of /joint_states")
-    assert statistics.median(steps(joints)) == pytest.approx(0.02, rel=0.05)
+    # A node that waits for the processor leaves some out; between the others there is a fiftieth of a second, and never less.
+    ros.spin_until(lambda: min(steps(joints)) < 0.021, "two that follow each other")
+    assert min(steps(joints)) > 0.019
     assert all(list(joint.name) == ["arm_joint"] and len(joint.velocity) == 1 for joint in joints)
     found = {key(joint): list(joint.position) for joint in joints}
     ros.spin_until(lambda: sum(stamp in angles for stamp in found) > 10, "states of the same times")
