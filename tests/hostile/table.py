@@ -19,7 +19,7 @@ After reading this page, you know how the program reacts to misuse, broken progr
 `tests/rclpy`. The first column states the action of a careless user, a broken program or a stranger. The last column gives the figures of
 one run on a machine with two cores. Some faults are tried by the long tests only (`tests/run --long`).
 
-`tests/run` collects the rows and checks that this page has all of them. `python3 tests/hostile/table.py` rewrites the page.
+`tests/run --all` collects the rows and checks that this page has all of them. `python3 tests/hostile/table.py` rewrites the page.
 """
 
 
