@@ -354,6 +354,7 @@ def test_valves_close_when_the_node_dies(ros, excavator, how):
         )
 
 
+@pytest.mark.full
 def test_valves_close_while_the_node_hangs(ros, excavator):
     simulator = Simulator(ros, excavator, rate=RATE, command_timeout=1.0, under="/hangs")
     (machine,) = simulator.process.children()

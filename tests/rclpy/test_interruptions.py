@@ -63,6 +63,7 @@ def test_a_stopped_simulator_goes_on(simulator, other):
     assert min(steps(simulator.states)) > 0.0
 
 
+@pytest.mark.full
 def test_a_simulator_that_was_stopped_with_an_open_valve_closes_it(ros, simulator, other):
     """The lease runs on the steady clock and has run out in the meantime; a command that still waited in the socket
     holds for one more 0.1 s, since it arrives only then."""

@@ -1,6 +1,6 @@
 """The steps of each tier, in the order in which they run.
 
-What waits for networks or for messages runs beside what computes: this machine may have two cores only.
+What waits for package indexes runs beside what computes: this machine may have two cores only.
 """
 
 import os
@@ -31,11 +31,9 @@ def check(run, tier):
         programs = _build(run, everything)
     finally:
         python_ready()
-    live_ended = run.beside(lambda run: _live(run, programs, everything))
-    try:
-        _compute(run, programs, everything)
-    finally:
-        live_ended()
+    _compute(run, programs, everything)
+    # After what computes: nodes in real time are for a machine that has time for them.
+    _live(run, programs, everything)
     if everything:
         _release(run)
     if tier >= Tier.LONG:
