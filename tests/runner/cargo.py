@@ -46,17 +46,17 @@ def crate_name(folder):
     return re.search(r'^name = "(.*)"$', (folder / "Cargo.toml").read_text(), re.MULTILINE).group(1)
 
 
-def run_all(programs, words, environment):
-    """Runs test programs, two at a time; what each printed, its timed tests, and its counts, in the order of their ends."""
+def run_all(programs, words):
+    """Runs test programs, two at a time; yields what `run_one` returns, in the order of their ends."""
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        for ended in as_completed([pool.submit(run_one, program, words, environment) for program in programs]):
+        for ended in as_completed([pool.submit(run_one, program, words) for program in programs]):
             yield ended.result()
 
 
-def run_one(program, words, environment):
+def run_one(program, words):
     """Runs one test program with further words for it; returns (program, exit status, output, timed tests, counts)."""
     command = [program.file, "-Zunstable-options", "--report-time", *words]
-    variables = os.environ | environment | {"RUSTC_BOOTSTRAP": "1", "CARGO_MANIFEST_DIR": program.folder}
+    variables = os.environ | {"RUSTC_BOOTSTRAP": "1", "CARGO_MANIFEST_DIR": program.folder}
     done = subprocess.run(
         command, cwd=program.folder, env=variables, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         text=True, errors="replace",

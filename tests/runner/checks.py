@@ -9,7 +9,7 @@ import shutil
 import cargo
 import needs
 import suites
-from run import ROOT, Failed
+from run import ROOT
 from tier import Tier
 
 # Tests of Rust in real time. They wait more than they compute, so more of them run at a time than there are cores.
@@ -80,7 +80,7 @@ class _Programs(list):
 
 def _compute(run, programs, everything):
     left_out = LIVE if everything else ["full::"]
-    run.step("tests of Rust", suites.rust, programs, [word for name in left_out for word in ("--skip", name)], {})
+    run.step("tests of Rust", suites.rust, programs, [word for name in left_out for word in ("--skip", name)])
     not_full = [] if everything else ["-m", "not full"]
     run.step("the Python package", _python_package, not_full)
     run.step("links, contents and words of the book", _program(suites.PYTHON, "tests/docs/links.py"))
@@ -98,7 +98,7 @@ def _live(run, programs, everything):
     """Nodes in real time. Each suite has ROS domains of its own."""
     if everything:
         nodes = [program for program in programs if (program.crate, program.target) == ("excavator", "it")]
-        run.step("nodes and faults in network namespaces", suites.rust, nodes, [*LIVE, "--test-threads", LIVE_AT_ONCE], {})
+        run.step("nodes and faults in network namespaces", suites.rust, nodes, [*LIVE, "--test-threads", LIVE_AT_ONCE])
     if not (ROOT / ".ros2" / "jazzy" / "setup.sh").exists():
         run.step("nodes on the stand-in for rclpy", suites.pytest, "stand-in", ["tests/rclpy"], _rclpy("standin", "1-100"))
         return
@@ -140,7 +140,7 @@ def _dependencies(run):
 
 
 def _long(run, programs):
-    run.step("tests of Rust that take long", suites.rust, programs, ["--ignored"], {})
+    run.step("tests of Rust that take long", suites.rust, programs, ["--ignored"])
     os.environ["EXCAVATOR_LONG"] = "1"
     run.step("pages with long searches", suites.pytest, "pages with long searches", ["tests/config/test_docs_commands.py"])
     for crate in PUBLISHED:
@@ -167,5 +167,3 @@ def _security(run):
     words = ["--features", "security", "--test", "it", "--", "hostile::full::security::", "--test-threads", "1"]
     run.command(["cargo", "test", "-p", "excavator", *words])
 
-
-__all__ = ["Failed", "check"]

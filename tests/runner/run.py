@@ -58,12 +58,16 @@ class Run:
 
     def command(self, words, directory=ROOT, environment=None, allowed=(0,)):
         """Runs a program and returns what it printed on standard output; its exit status must be one of the allowed ones."""
-        done = subprocess.run(
-            list(map(str, words)), cwd=directory, env=os.environ | (environment or {}), stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace",
-        )  # fmt: skip
+        words = list(map(str, words))
+        try:
+            done = subprocess.run(
+                words, cwd=directory, env=os.environ | (environment or {}), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE, text=True, errors="replace",
+            )  # fmt: skip
+        except OSError as error:
+            raise Failed(f"{words[0]} cannot be started: {error}") from None
         if done.returncode not in allowed:
-            raise Failed(f"$ {' '.join(map(str, words))}\n{done.stdout}{done.stderr}exit status {done.returncode}")
+            raise Failed(f"$ {' '.join(words)}\n{done.stdout}{done.stderr}exit status {done.returncode}")
         return done.stdout
 
     def count(self, kind, timed, counts):

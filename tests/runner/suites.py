@@ -1,13 +1,14 @@
 """Test suites: those of Rust, and those of pytest. Each is a step that counts its tests."""
 
-import os
-import sys
 import xml.etree.ElementTree
 from collections import Counter
 
 import cargo
+from durations import in_words
 from run import ROOT, Failed
 
+PYTHON = ROOT / ".venv" / "bin" / "python"
+PROGRAM = ROOT / "target" / "debug" / "excavator"
 # Measures beside programs of others, whose solvers take minutes to build: linted with --all, built in long runs.
 SPEED = ["--exclude", "excavator-speed"]
 # The site of the book, and changed bytes for every reader: with --all.
@@ -19,14 +20,10 @@ def crates(everything):
     return ["--workspace", *SPEED, *([] if everything else SLOW)]
 
 
-PYTHON = ROOT / ".venv" / "bin" / "python"
-PROGRAM = ROOT / "target" / "debug" / "excavator"
-
-
-def rust(run, programs, words, environment):
+def rust(run, programs, words):
     """Runs Rust test programs with further words; prints the output of those that failed."""
     total, broken = Counter(), []
-    for program, status, output, timed, counts in cargo.run_all(programs, ["--show-output", *words], environment):
+    for program, status, output, timed, counts in cargo.run_all(programs, ["--show-output", *words]):
         run.count("Rust", timed, counts)
         run.skipped(line.partition("skipped: ")[2] for line in output.splitlines() if line.startswith("skipped: "))
         total += counts
@@ -35,7 +32,7 @@ def rust(run, programs, words, environment):
             broken.append(f"$ {again}\n{output}exit status {status}")
     if broken:
         raise Failed("\n".join(broken))
-    return _said(total)
+    return in_words(total)
 
 
 def pytest(run, kind, words, environment=None):
@@ -44,7 +41,6 @@ def pytest(run, kind, words, environment=None):
     report.parent.mkdir(parents=True, exist_ok=True)
     report.unlink(missing_ok=True)
     variables = {"EXCAVATOR_BINARY": str(PROGRAM), "EXCAVATOR_PYTHON": str(PYTHON)} | (environment or {})
-    # 5: no test was selected
     command = [PYTHON, "-m", "pytest", "-q", f"--junitxml={report}", *words]
     failure = None
     try:
@@ -52,13 +48,13 @@ def pytest(run, kind, words, environment=None):
     except Failed as error:
         failure = error
     timed, counts, reasons = read(report)
-    run.count(kind, timed, counts)
     run.skipped(reasons)
+    said = run.count(kind, timed, counts)
     if failure:
         raise failure
-    if not counts["passed"]:
-        raise Failed(f"no test of {' '.join(map(str, words))} passed")
-    return _said(counts)
+    if not counts:
+        raise Failed(f"{' '.join(map(str, words))} selects no test")
+    return said
 
 
 def read(report):
@@ -77,9 +73,3 @@ def read(report):
         if skipped is not None:
             reasons.append(skipped.get("message", ""))
     return timed, counts, reasons
-
-
-def _said(counts):
-    from durations import in_words
-
-    return in_words(counts)

@@ -11,13 +11,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use excavator_msgs::{ArmState, Header, OrificeCommand};
+use excavator_msgs::{Header, OrificeCommand};
 use rustdds::policy::{Durability, History, Reliability};
 use rustdds::{DomainParticipant, DomainParticipantBuilder, GUID, QosPolicyBuilder, TopicKind};
 
 use crate::hostile::fault::Fault;
 use crate::hostile::inside::start_inside;
-use crate::live::{Network, Program, folder, found, messages_so_far, records, until};
+use crate::live::{Network, Program, folder, found, messages_so_far, openings, records, until};
 
 /// Most memory that a node may ever need, MB.
 pub const MOST_MEMORY: f64 = 200.0;
@@ -316,13 +316,6 @@ fn machine(name: &str, packets: impl Fn(&Seen) -> Vec<(Vec<u8>, Vec<SocketAddr>)
         refused: refused(&bag),
         sent,
     })
-}
-
-/// Stamps of the states in a bag so far, s since the epoch, and the openings of the arm's valve.
-fn openings(bag: &Path) -> Vec<(f64, f64)> {
-    let states: Vec<(f64, ArmState)> = messages_so_far(bag, "/arm/state");
-    let stamp = |state: &ArmState| state.header.stamp.nanoseconds() as f64 * 1e-9;
-    states.iter().map(|(_, state)| (stamp(state), state.cylinders[0].orifice_area)).collect()
 }
 
 /// Packets that the simulator has refused, as its diagnostics in the bag tell so far.

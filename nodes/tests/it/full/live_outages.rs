@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::live::{
-    Network, Program, custom_number, folder, messages, messages_so_far, python_with_cyclone, records, sleep, until,
+    Network, Program, custom_number, folder, messages, openings, python_with_cyclone, records, sleep, until,
 };
 use excavator_msgs::ArmState;
 use excavator_msgs::common::DiagnosticArray;
@@ -125,13 +125,6 @@ fn now() -> f64 {
 /// When the operator heard states, s since the epoch.
 fn arrivals(log: &Path) -> Vec<f64> {
     std::fs::read_to_string(log).unwrap_or_default().lines().filter_map(|line| line.parse().ok()).collect()
-}
-
-/// Stamps of the states in a bag, s since the epoch, and the openings of the arm's valve.
-fn openings(bag: &Path) -> Vec<(f64, f64)> {
-    let states: Vec<(f64, ArmState)> = messages_so_far(bag, "/arm/state");
-    let stamp = |state: &ArmState| state.header.stamp.nanoseconds() as f64 * 1e-9;
-    states.iter().map(|(_, state)| (stamp(state), state.cylinders[0].orifice_area)).collect()
 }
 
 /// Operator (Cyclone), recorder and energy monitor (Rust) on one side, the arm on the other, and two minutes without a

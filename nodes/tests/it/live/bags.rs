@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use excavator_msgs::ArmState;
 use rosbag2::RawMessage;
 
 use super::until;
@@ -29,6 +30,13 @@ fn of_topic<M: excavator_msgs::Message>(all: impl Iterator<Item = RawMessage>, t
         }
     }
     found
+}
+
+/// Stamps of the states in a bag so far, s since the epoch, and the openings of the arm's valve.
+pub fn openings(bag: &Path) -> Vec<(f64, f64)> {
+    let states: Vec<(f64, ArmState)> = messages_so_far(bag, "/arm/state");
+    let stamp = |state: &ArmState| state.header.stamp.nanoseconds() as f64 * 1e-9;
+    states.iter().map(|(_, state)| (stamp(state), state.cylinders[0].orifice_area)).collect()
 }
 
 /// Number of messages of a topic so far, in a bag that may not exist yet.

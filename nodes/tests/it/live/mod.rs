@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-pub use bags::{custom_number, messages, messages_so_far, recorded, records};
+pub use bags::{custom_number, messages, messages_so_far, openings, recorded, records};
 pub use network::Network;
 pub use program::{Program, kill};
 
