@@ -8,7 +8,6 @@
 //! topic. The first probe is created before all other endpoints of a connection, so it is among the discarded ones. If
 //! it is not acknowledged, or receives nothing from a peer, a second probe is opened. A peer that answers the second
 //! probe but not the first does not know the first. A peer that is stopped or starved of CPU time answers neither.
-//! first does not know the first. A peer that is stopped or starved answers neither.
 
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
