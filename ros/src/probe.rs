@@ -22,6 +22,7 @@ use rustdds::{DomainParticipant, RTPSEntity, Timestamp, TopicKind};
 
 use super::TopicQos;
 use super::health::{Prefix, prefix_of};
+use super::patience::{BUILDING, let_go, within};
 use super::raw::{RawAdapter, RawBytes};
 
 /// Time for a peer to answer before it is suspected: ten times what it takes beside four busy loops.
@@ -54,6 +55,13 @@ impl Probe {
         let probe = Probe { writer, reader, heard: BTreeSet::new() };
         probe.speak()?;
         Ok(probe)
+    }
+
+    /// The same on a connection in use, or `None` if it fails or does not return in time: a writer that is created while
+    /// the threads of the middleware end deadlocks (see `patience.rs`).
+    fn open_in_time(participant: &DomainParticipant) -> Option<Self> {
+        let participant = participant.clone();
+        within(BUILDING, move || Probe::open(&participant))?.ok()
     }
 
     /// Announces a participant without nodes, identified by the GUID of this writer. Other listeners are not affected.
@@ -126,8 +134,8 @@ impl Probes {
         let step = self.verdict.step(&first, second.as_ref(), &speakers, Instant::now());
         match step {
             Step::Wait => {}
-            Step::Probe => self.second = Probe::open(participant).ok(),
-            Step::Dismiss => self.second = None,
+            Step::Probe => self.second = Probe::open_in_time(participant),
+            Step::Dismiss => let_go(self.second.take()),
             Step::Proven => return true,
         }
         false

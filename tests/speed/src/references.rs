@@ -35,8 +35,7 @@ fn agree(motion: &Motion, what: &str, one: &[Vec<f64>], other: &[Vec<f64>]) -> R
         let (unit, noise) = STATES[kind];
         let apart = distance(one, other, state);
         eprintln!("{}, state {state}: {what} are {apart:.1e} {unit} apart", motion.name);
-        // Also where it is not a number.
-        if !(apart < AGREEMENT * noise) {
+        if apart.is_nan() || apart >= AGREEMENT * noise {
             return Err(format!("{}, state {state}: {what} are {apart:e} {unit} apart", motion.name));
         }
     }
