@@ -100,18 +100,14 @@ def _live(run, programs, everything):
         nodes = [program for program in programs if (program.crate, program.target) == ("excavator", "it")]
         run.step("nodes and faults in network namespaces", suites.rust, nodes, [*LIVE, "--test-threads", LIVE_AT_ONCE])
     if not (ROOT / ".ros2" / "jazzy" / "setup.sh").exists():
-        run.step("nodes on the stand-in for rclpy", suites.pytest, "stand-in", ["tests/rclpy"], _rclpy("standin", "1-100"))
+        run.step("nodes on the stand-in for rclpy", suites.nodes, "stand-in", [], "standin", ("1-50", "51-100"))
         return
     selected = [] if everything else ["-m", "not full"]
-    run.step("nodes on ROS 2 Jazzy", suites.pytest, "Jazzy", ["tests/rclpy", *selected], _rclpy("jazzy", "1-33"))
+    run.step("nodes on ROS 2 Jazzy", suites.nodes, "Jazzy", selected, "jazzy", ("1-16", "17-33"))
     if everything:
-        middleware = ["tests/rclpy", "-m", "middleware"]
-        run.step("nodes on ROS 2 Kilted", suites.pytest, "Kilted", middleware, _rclpy("kilted", "34-66"))
-        run.step("nodes on the stand-in for rclpy", suites.pytest, "stand-in", middleware, _rclpy("standin", "67-100"))
-
-
-def _rclpy(name, domains):
-    return {"EXCAVATOR_RCLPY": name, "EXCAVATOR_DOMAINS": domains}
+        middleware = ["-m", "middleware"]
+        run.step("nodes on ROS 2 Kilted", suites.nodes, "Kilted", middleware, "kilted", ("34-50", "51-66"))
+        run.step("nodes on the stand-in for rclpy", suites.nodes, "stand-in", middleware, "standin", ("67-83", "84-100"))
 
 
 def _release(run):

@@ -76,6 +76,10 @@ class Run:
             self.durations.add_tests(kind, timed, counts)
         return in_words(counts)
 
+    def counted(self, kind):
+        """Outcomes of all tests of a kind so far, in words."""
+        return in_words(self.durations.counts[kind])
+
     def skipped(self, reasons):
         """Keeps why tests were skipped, each reason with its number."""
         with self._lock:

@@ -211,8 +211,7 @@ fn powers_add_up_to_the_rate_of_the_storage() {
 }
 
 /// Duals against central differences of the rates, by all states and by all parameters.
-#[test]
-fn jacobians_are_central_differences() {
+fn check_jacobians(states_per_case: usize) {
     let mut worst = 0.0_f64;
     let (mut corners, mut compared) = (0, 0);
     for (model, index) in common::every_effect_everywhere() {
@@ -226,7 +225,7 @@ fn jacobians_are_central_differences() {
         for &(first, states) in &layout.effect_states {
             state_steps[first..first + states].fill(1e-10);
         }
-        for _ in 0..STATES_PER_CASE {
+        for _ in 0..states_per_case {
             let parameters = common::random_parameters(&model, &mut random);
             let state = common::random_state(&system, &mut random);
             let inputs = common::random_inputs(&model.machine, &mut random);
@@ -304,6 +303,11 @@ fn jacobians_are_central_differences() {
     assert!(corners * 1000 < compared, "{corners} corners in {compared} comparisons: more than chance puts there");
 }
 
+#[test]
+fn jacobians_are_central_differences() {
+    check_jacobians(STATES_PER_CASE / 5);
+}
+
 /// Size of the terms that a rate is the sum of, to judge rounding: velocities, accelerations, pressure rates.
 fn rates_scale(layout: &excavator_model::equations::Layout, row: usize) -> f64 {
     if row < layout.joints {
@@ -321,4 +325,14 @@ fn the_two_joint_machine_needs_several_passes() {
     let model = excavator_model::document::built_in("zx30u").unwrap();
     let system = System::new(&model);
     assert!(system.layout().len > DIRECTIONS);
+}
+
+/// `tests/run --all` runs these.
+mod full {
+    use super::*;
+
+    #[test]
+    fn jacobians_are_central_differences_in_many_states() {
+        check_jacobians(STATES_PER_CASE);
+    }
 }

@@ -148,9 +148,8 @@ fn check(model: &Model, slopes: &[Slopes], settings: Tolerances, median: f64, la
 /// changes direction. With steps of 0.1 ms: a hundredth for all, so the sensitivities converge to the slopes. A bucket has a
 /// tenth of an arm's inertia, and what a pressure out of balance does to it is over sooner: a tenth with the finer steps. Oil in a
 /// motor is stiffer still: a third.
-#[test]
-fn sensitivities_are_the_slopes_of_simulations() {
-    for model in common::machines() {
+fn check_machines(models: impl IntoIterator<Item = Model>) {
+    common::each(models, |model| {
         let three_joints = model.machine.cylinders.len() >= 3;
         // Charge valves act within less than a sample interval.
         let charged = model.effects.iter().any(|effect| effect.name() == "charge_check_valve");
@@ -169,27 +168,16 @@ fn sensitivities_are_the_slopes_of_simulations() {
             _ => 0.01,
         };
         check(&model, &slopes, fine(), if has_corners { 5e-3 } else { 1e-3 }, largest);
-    }
+    });
+}
+
+#[test]
+fn sensitivities_are_the_slopes_of_simulations() {
+    check_machines(["zx30u-arm", "servo-bench"].map(|name| excavator_model::document::built_in(name).unwrap()));
 }
 
 fn fine() -> Tolerances {
     Tolerances { maximum_step: 1e-4, ..Tolerances::default() }
-}
-
-#[test]
-fn sensitivities_with_each_effect_added() {
-    let base = excavator_model::document::built_in("zx30u-arm").unwrap();
-    let catalogue = common::catalogue();
-    let cases =
-        catalogue.iter().flat_map(|physics| base.free_sites(physics).into_iter().map(move |site| (physics, site)));
-    common::each(cases, |(physics, site)| {
-        let model = common::with_typical(&base, physics, site);
-        // A regulator that is at its limits has corners there.
-        let is_regulated = physics.card().name == "load_sensing_pump";
-        let slopes = slopes(&model);
-        check(&model, &slopes, Tolerances::default(), 0.02, if is_regulated { 0.2 } else { 0.1 });
-        check(&model, &slopes, fine(), 2e-3, if is_regulated { 0.2 } else { 0.02 });
-    });
 }
 
 /// What instruments see, from what states do.
@@ -247,4 +235,30 @@ fn a_state_set_by_the_caller_is_noticed() {
         assert!((used - fresh).abs() <= absolute + settings.relative * fresh.abs(), "{used} {fresh}");
     }
     assert!((from_used.1 - &from_fresh.1).norm() <= 1e-2 * from_fresh.1.norm());
+}
+
+/// `tests/run --all` runs these.
+mod full {
+    use super::*;
+
+    #[test]
+    fn sensitivities_are_the_slopes_of_simulations_of_every_machine() {
+        check_machines(common::machines());
+    }
+
+    #[test]
+    fn sensitivities_with_each_effect_added() {
+        let base = excavator_model::document::built_in("zx30u-arm").unwrap();
+        let catalogue = common::catalogue();
+        let cases =
+            catalogue.iter().flat_map(|physics| base.free_sites(physics).into_iter().map(move |site| (physics, site)));
+        common::each(cases, |(physics, site)| {
+            let model = common::with_typical(&base, physics, site);
+            // A regulator that is at its limits has corners there.
+            let is_regulated = physics.card().name == "load_sensing_pump";
+            let slopes = slopes(&model);
+            check(&model, &slopes, Tolerances::default(), 0.02, if is_regulated { 0.2 } else { 0.1 });
+            check(&model, &slopes, fine(), 2e-3, if is_regulated { 0.2 } else { 0.02 });
+        });
+    }
 }

@@ -38,20 +38,6 @@ fn shortened(folder: &Path) {
     }
 }
 
-#[test]
-fn each_screen_leads_to_the_next() {
-    let folder = tempfile::tempdir().unwrap();
-    shortened(folder.path());
-    let mut command = "excavator info identification".to_string();
-    let mut verbs = Vec::new();
-    for _ in 0..4 {
-        let screen = shell(&command, folder.path());
-        verbs.push(command.split_whitespace().nth(1).unwrap().to_string());
-        command = next(&screen);
-    }
-    assert_eq!(verbs, ["info", "compare", "diagnose", "propose"], "then {command}");
-}
-
 /// "falls from A to B (C times smaller)" of a sentence.
 fn change(sentence: &str) -> &str {
     let start = sentence.find("falls from").unwrap_or_else(|| panic!("no change of error in: {sentence}"));
@@ -78,6 +64,20 @@ fn quiet_says_nothing_and_verbose_more() {
 /// `tests/run --all` runs these.
 mod full {
     use super::*;
+
+    #[test]
+    fn each_screen_leads_to_the_next() {
+        let folder = tempfile::tempdir().unwrap();
+        shortened(folder.path());
+        let mut command = "excavator info identification".to_string();
+        let mut verbs = Vec::new();
+        for _ in 0..4 {
+            let screen = shell(&command, folder.path());
+            verbs.push(command.split_whitespace().nth(1).unwrap().to_string());
+            command = next(&screen);
+        }
+        assert_eq!(verbs, ["info", "compare", "diagnose", "propose"], "then {command}");
+    }
 
     #[test]
     fn a_saved_diagnosis_is_added_without_another_search() {
