@@ -68,9 +68,8 @@ def _python(run, everything):
 
 def _build(run, everything):
     crates = suites.crates(everything)
-    linted = ["--workspace"] if everything else crates
     run.step("format", _program("cargo", "fmt", "--all", "--check"))
-    run.step("lints", _program("cargo", "clippy", *linted, "--all-targets", "--quiet", "--", "-D", "warnings"))
+    run.step("lints", _program("cargo", "clippy", *crates, "--all-targets", "--quiet", "--", "-D", "warnings"))
     return run.needs("build of all tests", lambda run: _Programs(cargo.build(ROOT, crates, run.command)))
 
 
@@ -142,6 +141,8 @@ def _long(run, programs):
     for crate in PUBLISHED:
         run.step(f"{crate} without features", _program("cargo", "check", "--quiet", "-p", crate, "--no-default-features"))
     run.step("interfaces since the last release", _interfaces)
+    speed = ["-p", "excavator-speed", "--all-targets", "--quiet"]
+    run.step("lints of the measures beside others", _program("cargo", "clippy", *speed, "--", "-D", "warnings"))
     run.step("solutions of another solver", _program("cargo", "run", "--quiet", "-p", "excavator-speed", "--", "references", "--check"))
     run.step("DDS Security", _security)
 

@@ -10,7 +10,7 @@ from run import ROOT, Failed
 
 PYTHON = ROOT / ".venv" / "bin" / "python"
 PROGRAM = ROOT / "target" / "debug" / "excavator"
-# Measures beside programs of others, whose solvers take minutes to build: linted with --all, built in long runs.
+# Measures beside programs of others, whose solvers take minutes to build: linted and built in long runs.
 SPEED = ["--exclude", "excavator-speed"]
 # The site of the book, and changed bytes for every reader: with --all.
 SLOW = ["--exclude", "excavator-book", "--exclude", "excavator-fuzzing"]
