@@ -142,6 +142,7 @@ impl Watch {
     fn judge(&self, length: f64) -> Option<Window> {
         let (first, last) = (self.points.front()?, self.points.back()?);
         let (mut supplied, mut dissipated, mut through, mut between) = (0.0, 0.0, 0.0, 0.0);
+        let powers = || self.points.iter().map(|point| point.supply + point.dissipation);
         for (left, right) in self.points.iter().zip(self.points.iter().skip(1)) {
             let step = (right.nanoseconds - left.nanoseconds) as f64 * 1e-9;
             supplied += 0.5 * step * (left.supply + right.supply);
@@ -154,9 +155,12 @@ impl Watch {
         }
         // The energies at both ends carry their own noise; the noise of the powers averages out over the window.
         let stored_noise = noise(self.points.iter().map(|point| point.stored));
-        let power_noise = noise(self.points.iter().map(|point| point.supply + point.dissipation));
+        let power_noise = noise(powers());
         let size = self.points.iter().map(|point| point.size).fold(0.0, f64::max);
         let step = length / (self.points.len() - 1) as f64;
+        // A command whose rhythm is that of the states steps at the same place between them every time. Then the errors of the
+        // trapezoids add up while the power rises, instead of averaging out.
+        let rise = powers().fold(f64::NEG_INFINITY, f64::max) - powers().fold(f64::INFINITY, f64::min);
         let variance = 2.0 * stored_noise.powi(2) + power_noise.powi(2) * step * length + between;
         Some(Window {
             nanoseconds: last.nanoseconds,
@@ -166,7 +170,7 @@ impl Watch {
             dissipated,
             standard_error: variance.sqrt(),
             significance: self.settings.significance,
-            resolution: SHARE * through + ROUNDING * size,
+            resolution: SHARE * through + ROUNDING * size + 0.5 * step * rise,
         })
     }
 }
