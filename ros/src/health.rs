@@ -87,13 +87,13 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Watches a newly built connection and, if `watch_memory` is set, the memory of this process.
+    /// Watches a newly built connection and, with `memory`, that of this process.
     pub fn new(
         environment: Environment,
         participant: DomainParticipant,
         threads: Threads,
         probe: Option<Probe>,
-        watch_memory: bool,
+        memory: Option<Memory>,
     ) -> Self {
         Watch {
             probes: probe.map(Probes::new),
@@ -105,7 +105,7 @@ impl Watch {
             lost: BTreeSet::new(),
             scout: None,
             networks: addresses(),
-            memory: watch_memory.then(Memory::new),
+            memory,
         }
     }
 

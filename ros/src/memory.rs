@@ -14,15 +14,16 @@ const SETTLED: Duration = Duration::from_secs(3);
 /// Watches the memory of this process.
 pub(super) struct Memory {
     since: Instant,
-    /// Memory at the first look and reference for later looks, MB.
-    first: Option<u64>,
+    /// Memory before the process joined the graph and reference for later looks, MB.
+    at_start: u64,
     before: u64,
 }
 
 impl Memory {
-    /// The reference is the memory once the process has settled.
-    pub fn new() -> Self {
-        Memory { since: Instant::now(), first: None, before: 0 }
+    /// The reference is the memory once the process has settled. `at_start` is the memory before it joined the graph, MB: the
+    /// first flood may be over before the first look.
+    pub fn since(at_start: u64) -> Self {
+        Memory { since: Instant::now(), at_start, before: at_start }
     }
 
     /// Memory before and now, MB, if it has grown too much.
@@ -31,18 +32,16 @@ impl Memory {
     }
 
     fn judge(&mut self, now: u64, age: Duration) -> Option<(u64, u64)> {
-        let first = *self.first.get_or_insert(now);
         if age < SETTLED {
             // A flood from the first moment on must not raise the reference.
-            self.before = self.before.max(now.min(first + MOST_GROWTH / 2));
+            self.before = self.before.max(now.min(self.at_start + MOST_GROWTH / 2));
         }
-        let before = self.before.max(first);
-        (now.saturating_sub(before) > MOST_GROWTH).then_some((before, now))
+        (now.saturating_sub(self.before) > MOST_GROWTH).then_some((self.before, now))
     }
 }
 
 /// Resident memory of this process, MB.
-fn resident() -> Option<u64> {
+pub(super) fn resident() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
     line.split_whitespace().next()?.parse::<u64>().ok().map(|kilobytes| kilobytes / 1024)
@@ -64,7 +63,7 @@ mod tests {
 
     #[test]
     fn what_a_node_needs_at_its_start_is_not_growth() {
-        let mut memory = Memory::new();
+        let mut memory = Memory::since(15);
         assert_eq!(at(&mut memory, 20, 0), None);
         assert_eq!(at(&mut memory, 60, 2), None);
         assert_eq!(at(&mut memory, 60 + MOST_GROWTH, 3600), None);
@@ -73,8 +72,14 @@ mod tests {
 
     #[test]
     fn a_flood_from_the_start_on_is_found() {
-        let mut memory = Memory::new();
+        let mut memory = Memory::since(15);
         let found = (0..100).find_map(|step| memory.judge(20 + 40 * step, Duration::from_millis(250 * step)));
         assert!(found.is_some_and(|(_, now)| now < 400), "{found:?}");
+    }
+
+    #[test]
+    fn a_flood_that_is_over_before_the_first_look_is_found() {
+        let mut memory = Memory::since(15);
+        assert_eq!(at(&mut memory, 239, 0), Some((63, 239)));
     }
 }

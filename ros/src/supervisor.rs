@@ -10,6 +10,7 @@ use tokio::runtime::Runtime;
 use super::dds_names::{dds_topic, dds_type};
 use super::guard::GuardError;
 use super::health::{Ours, Watch};
+use super::memory::{Memory, resident};
 use super::middleware_log::{complaints, count_complaints};
 use super::parameter_file::read_for;
 use super::{
@@ -41,7 +42,8 @@ pub struct Supervisor {
     pub logger: Logger,
     signals: Signals,
     stop: Arc<AtomicBool>,
-    watch_memory: bool,
+    /// Memory before the node joined the graph, MB, if it is watched.
+    memory_at_start: Option<u64>,
     // Last, so that it outlives everything that runs on it.
     _runtime: Background,
 }
@@ -87,6 +89,7 @@ impl Supervisor {
         declared: Vec<Parameter>,
         watch_memory: bool,
     ) -> Result<Self, RosError> {
+        let memory_at_start = if watch_memory { resident() } else { None };
         let signals = Signals::block()?;
         count_complaints();
         let identity = NodeIdentity::new(default_name, &arguments.remaps)?;
@@ -119,7 +122,17 @@ impl Supervisor {
         }
         warnings.into_iter().for_each(|warning| logger.warn(warning));
         let stop = Arc::new(AtomicBool::new(false));
-        Ok(Supervisor { link, parameters, clock, diagnostics, logger, signals, stop, watch_memory, _runtime: runtime })
+        Ok(Supervisor {
+            link,
+            parameters,
+            clock,
+            diagnostics,
+            logger,
+            signals,
+            stop,
+            memory_at_start,
+            _runtime: runtime,
+        })
     }
 
     /// Lifecycle of a node. Its parameter `managed` states whether it is a managed node.
@@ -187,7 +200,8 @@ impl Supervisor {
 
     fn watch(&self) -> Option<Watch> {
         let (participant, threads, probe) = self.link.alive()?;
-        Some(Watch::new(self.link.environment().clone(), participant, threads, probe, self.watch_memory))
+        let memory = self.memory_at_start.map(Memory::since);
+        Some(Watch::new(self.link.environment().clone(), participant, threads, probe, memory))
     }
 
     /// Topics and services of this node.

@@ -67,9 +67,10 @@ def test_the_valve_closes_by_a_ramp(ros, simulator):
         return simulator.states[before:]
 
     areas = [cylinder(state).orifice_area for state in simulator.undisturbed(closing)]
-    falling = [area for area in areas if 0.0 < area < 2 * AREA * 0.999]
+    # A command that arrives late opens the valve again on its way: the last way down counts.
+    last_rise = max((index for index in range(1, len(areas)) if areas[index] > areas[index - 1]), default=0)
+    falling = [area for area in areas[last_rise:] if 0.0 < area < 2 * AREA * 0.999]
     assert len(falling) >= 3
-    assert falling == sorted(falling, reverse=True)
 
 
 def test_the_valve_stays_open_while_commands_come(ros, simulator, lease):
