@@ -14,15 +14,16 @@ const SETTLED: Duration = Duration::from_secs(3);
 /// Watches the memory of this process.
 pub(super) struct Memory {
     since: Instant,
-    /// Memory before the process joined the graph and reference for later looks, MB.
+    /// Memory before the first look, MB.
     at_start: u64,
+    /// Memory once the process has settled and reference for later looks, MB.
     before: u64,
 }
 
 impl Memory {
     /// The reference is the memory once the process has settled. `at_start` is the memory before it joined the graph, MB: the
-    /// first flood may be over before the first look.
-    pub fn since(at_start: u64) -> Self {
+    /// first flood may be over before the first look. For a rebuilt link it is what the old one has left.
+    pub fn new(at_start: u64) -> Self {
         Memory { since: Instant::now(), at_start, before: at_start }
     }
 
@@ -63,7 +64,7 @@ mod tests {
 
     #[test]
     fn what_a_node_needs_at_its_start_is_not_growth() {
-        let mut memory = Memory::since(15);
+        let mut memory = Memory::new(15);
         assert_eq!(at(&mut memory, 20, 0), None);
         assert_eq!(at(&mut memory, 60, 2), None);
         assert_eq!(at(&mut memory, 60 + MOST_GROWTH, 3600), None);
@@ -72,14 +73,21 @@ mod tests {
 
     #[test]
     fn a_flood_from_the_start_on_is_found() {
-        let mut memory = Memory::since(15);
+        let mut memory = Memory::new(15);
         let found = (0..100).find_map(|step| memory.judge(20 + 40 * step, Duration::from_millis(250 * step)));
         assert!(found.is_some_and(|(_, now)| now < 400), "{found:?}");
     }
 
     #[test]
     fn a_flood_that_is_over_before_the_first_look_is_found() {
-        let mut memory = Memory::since(15);
+        let mut memory = Memory::new(15);
         assert_eq!(at(&mut memory, 239, 0), Some((63, 239)));
+    }
+
+    #[test]
+    fn what_a_rebuild_does_not_release_is_no_reason_for_another() {
+        let mut memory = Memory::new(239);
+        assert_eq!(at(&mut memory, 239, 0), None);
+        assert_eq!(at(&mut memory, 240, 3600), None);
     }
 }

@@ -89,7 +89,7 @@ impl Supervisor {
         declared: Vec<Parameter>,
         watch_memory: bool,
     ) -> Result<Self, RosError> {
-        let memory_at_start = if watch_memory { resident() } else { None };
+        let memory_at_start = watch_memory.then(resident).flatten();
         let signals = Signals::block()?;
         count_complaints();
         let identity = NodeIdentity::new(default_name, &arguments.remaps)?;
@@ -150,7 +150,7 @@ impl Supervisor {
 
     /// Watches the link until the stop flag is set. `on_user_signal` is called for SIGUSR1.
     pub fn run(&self, mut on_user_signal: impl FnMut()) {
-        let mut watch = self.watch();
+        let mut watch = self.watch(self.memory_at_start);
         let mut quiet_until = Instant::now();
         let mut rebuilds = 0;
         let mut pending = None;
@@ -187,7 +187,8 @@ impl Supervisor {
             rebuilds += 1;
             quiet_until = Instant::now() + PAUSE;
             match self.link.rebuild() {
-                Ok(()) => watch = self.watch(),
+                // Another rebuild would not release what this one has left.
+                Ok(()) => watch = self.watch(self.memory_at_start.and_then(|_| resident())),
                 Err(error) => self.logger.error(format!("{error}; trying again")),
             }
         }
@@ -198,10 +199,9 @@ impl Supervisor {
         self.link.leave();
     }
 
-    fn watch(&self) -> Option<Watch> {
+    fn watch(&self, memory: Option<u64>) -> Option<Watch> {
         let (participant, threads, probe) = self.link.alive()?;
-        let memory = self.memory_at_start.map(Memory::since);
-        Some(Watch::new(self.link.environment().clone(), participant, threads, probe, memory))
+        Some(Watch::new(self.link.environment().clone(), participant, threads, probe, memory.map(Memory::new)))
     }
 
     /// Topics and services of this node.

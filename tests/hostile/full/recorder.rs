@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use excavator_msgs::ArmState;
 
 use crate::hostile::fault::Fault;
-use crate::live::{Network, Program, folder, kill, messages, until};
+use crate::live::{Network, Program, folder, kill, messages, records, until};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_excavator");
 /// Bytes at both ends of an MCAP file.
@@ -182,6 +182,7 @@ fn interrupted(rounds: usize) {
         let started = up(&network, &[], &bag, &[]);
         let children = started.children();
         assert_eq!(children.len(), 3);
+        records(&bag, "/arm/state", 101);
         let start = Instant::now();
         // A terminal signals the whole group.
         started.signal_group("-INT");
@@ -200,7 +201,10 @@ fn interrupted(rounds: usize) {
         assert_eq!(status, 0, "{round}: {log}");
         assert!(is_closed(&bag.join(format!("bag{round}_0.mcap"))), "{round}: {log}");
         let written = states_of_whole(&bag);
-        assert!(written > 0 && log.contains(&format!("/arm/state: {written} messages")), "{round}: {written} of {log}");
+        assert!(
+            written > 100 && log.contains(&format!("/arm/state: {written} messages")),
+            "{round}: {written} of {log}"
+        );
     }
     Fault {
         group: "Recorder",

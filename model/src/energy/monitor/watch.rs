@@ -142,7 +142,6 @@ impl Watch {
     fn judge(&self, length: f64) -> Option<Window> {
         let (first, last) = (self.points.front()?, self.points.back()?);
         let (mut supplied, mut dissipated, mut through, mut between) = (0.0, 0.0, 0.0, 0.0);
-        let powers = || self.points.iter().map(|point| point.supply + point.dissipation);
         for (left, right) in self.points.iter().zip(self.points.iter().skip(1)) {
             let step = (right.nanoseconds - left.nanoseconds) as f64 * 1e-9;
             supplied += 0.5 * step * (left.supply + right.supply);
@@ -155,6 +154,7 @@ impl Watch {
         }
         // The energies at both ends carry their own noise; the noise of the powers averages out over the window.
         let stored_noise = noise(self.points.iter().map(|point| point.stored));
+        let powers = || self.points.iter().map(|point| point.supply + point.dissipation);
         let power_noise = noise(powers());
         let size = self.points.iter().map(|point| point.size).fold(0.0, f64::max);
         let step = length / (self.points.len() - 1) as f64;
