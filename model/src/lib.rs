@@ -26,7 +26,7 @@ pub mod template;
 mod urdf;
 
 pub use errors::{ModelError, SignalError};
-pub use model::{HistoryEntry, Model, ModelEffect, Parameter, addition_name, site_name, site_named};
+pub use model::{HistoryEntry, Imposed, Model, ModelEffect, Parameter, addition_name, site_name, site_named};
 pub use urdf::urdf;
 
 #[cfg(doctest)]

@@ -18,6 +18,18 @@ pub struct Model {
     pub history: Vec<HistoryEntry>,
     /// The effects available to the model.
     pub catalogue: Catalogue,
+    /// States that follow their measured signals instead of being simulated.
+    pub imposed: Imposed,
+}
+
+/// States that follow their measured signals instead of being simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Imposed {
+    /// Every state is simulated.
+    #[default]
+    Nothing,
+    /// Motion and pressures are measured. Only states of effects are simulated, as the play of a valve.
+    Everything,
 }
 
 /// One effect at one place with its parameter values.

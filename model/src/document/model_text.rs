@@ -92,7 +92,13 @@ pub fn parse(name: &str, text: &str, catalogue: &Catalogue) -> Result<Model, Doc
     }
     let machine = parsed.machine.machine(name)?;
     let catalogue = with_formulas(name, catalogue, &parsed.formula)?;
-    let mut model = Model { machine, effects: Vec::new(), history: parsed.history, catalogue: catalogue.clone() };
+    let mut model = Model {
+        machine,
+        effects: Vec::new(),
+        history: parsed.history,
+        catalogue: catalogue.clone(),
+        imposed: crate::Imposed::Nothing,
+    };
     for effect in &parsed.effects {
         let inconsistent = |reason: String| DocumentError::Inconsistent { name: name.to_string(), reason };
         let physics = catalogue.find(&effect.effect).map_err(|error| inconsistent(error.to_string()))?;

@@ -212,3 +212,10 @@ pub struct Card {
     /// Its part in the energy balance.
     pub energy: Text,
 }
+
+impl Card {
+    /// Whether the effect acts in the flow balances of chambers and pump line, and not in the force balance of a joint.
+    pub fn is_of_flows(&self) -> bool {
+        matches!(self.needs, Needs::Oil | Needs::Valve | Needs::Pump) || self.acts_on == ActsOn::PumpLine
+    }
+}

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use super::{Inputs, Instruments, Layout, Rounding, Rows, Situation};
-use crate::Model;
 use crate::effects::{ActsOn, Number, Site};
 use crate::machine::{Growth, Size, Supply};
+use crate::{Imposed, Model};
 
 /// A model's equations of motion `dx/dt = f(x, inputs, parameters)`.
 #[derive(Debug, Clone)]
@@ -226,11 +226,17 @@ impl<'m> System<'m> {
         situation.time = inputs.time;
         situation.tank_pressure = inputs.tank_pressure;
         situation.pump_flow = inputs.pump_flow;
-        situation.pump_pressure = layout.pump.map_or(inputs.supply_pressure, |index| state[index]);
+        situation.pump_pressure = match layout.pump {
+            Some(index) if self.model.imposed == Imposed::Nothing => state[index],
+            _ => inputs.supply_pressure,
+        };
         for (index, cylinder) in self.model.machine.cylinders.iter().enumerate() {
             let piston = &mut situation.pistons[index];
-            piston.joint = state[layout.joint(index)];
-            piston.rate = state[layout.rate(index)];
+            (piston.joint, piston.rate) = if self.model.imposed == Imposed::Everything {
+                (inputs.imposed[index].joint, inputs.imposed[index].rate)
+            } else {
+                (state[layout.joint(index)], state[layout.rate(index)])
+            };
             piston.displacement = cylinder.linkage.displacement(piston.joint);
             piston.lever = cylinder.linkage.lever(piston.joint);
             piston.velocity = piston.lever * piston.rate;
@@ -242,6 +248,10 @@ impl<'m> System<'m> {
                 }
                 piston.cap_volume = chambers.cap_volume(cylinder.stroke, piston.displacement);
                 piston.rod_volume = chambers.rod_volume(cylinder.stroke, piston.displacement);
+            }
+            if self.model.imposed == Imposed::Everything {
+                piston.cap_pressure = inputs.imposed[index].cap_pressure;
+                piston.rod_pressure = inputs.imposed[index].rod_pressure;
             }
             if cylinder.imposed_motion.is_some() {
                 // The states follow the imposed motion; a deviating state returns to it.
@@ -424,6 +434,12 @@ impl<'m> System<'m> {
         }
         if let Some(pump) = layout.pump {
             rates[pump] = rows.pump_flow / rows.pump_line_compliance();
+        }
+        // States of measured signals are not used, and stay where they are.
+        if self.model.imposed == Imposed::Everything {
+            let held = 2 * layout.joints * if layout.chambers { 2 } else { 1 };
+            rates[..held].fill(T::from(0.0));
+            layout.pump.into_iter().for_each(|pump| rates[pump] = T::from(0.0));
         }
     }
 

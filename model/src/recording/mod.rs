@@ -81,6 +81,23 @@ impl Recording {
         self.at(&(0..self.len()).step_by(stride.max(1)).collect::<Vec<usize>>())
     }
 
+    /// Means of `count` samples each, time included: the recording at a lower rate, with less noise. Samples on both sides of
+    /// a pause of the clock have no mean: `NaN`.
+    #[must_use]
+    pub fn averaged(&self, count: usize) -> Self {
+        let count = count.max(1);
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let mut other = self.with_columns(|column| column.chunks_exact(count).map(mean).collect());
+        let time = other.time.clone();
+        for pause in self.pieces().into_iter().map(|piece| piece.start).filter(|start| start % count != 0) {
+            for column in other.columns_mut() {
+                column.iter_mut().skip(pause / count).take(1).for_each(|value| *value = f64::NAN);
+            }
+        }
+        other.time = time;
+        other
+    }
+
     /// The samples with these indices, which are in ascending order and below the recording's length.
     #[must_use]
     pub fn at(&self, samples: &[usize]) -> Self {

@@ -7,7 +7,7 @@ use crate::effects::Site;
 use crate::equations::{ImposedState, Inputs};
 use crate::machine::{Growth, Size, Supply};
 use crate::recording::{CylinderSignals, Recording, is_measured, standard_deviation};
-use crate::{Model, SignalError};
+use crate::{Imposed, Model, SignalError};
 
 /// Interpolation of an input between its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,7 +76,11 @@ impl InputSignals {
                     .ok_or_else(|| missing(format!("{}.orifice_area (nor a command)", cylinder.name)))?;
                 orifice_area.push(area);
                 rod_force.push(vec![0.0; samples]);
-                imposed.push(None);
+                imposed.push(if model.imposed == Imposed::Nothing {
+                    None
+                } else {
+                    imposed_signals(cylinder, signals, &recording.time)
+                });
             } else {
                 let mut force = without_holes(&recording.time, &signals.rod_force)
                     .ok_or_else(|| missing(format!("{}.rod_force", cylinder.name)))?;
@@ -107,6 +111,7 @@ impl InputSignals {
         };
         let supply_pressure = match machine.supply {
             Supply::PressureSource(source) => or_constant(&recording.pump_pressure, source.pressure),
+            Supply::PumpLine(_) if model.imposed == Imposed::Everything => or_constant(&recording.pump_pressure, 0.0),
             Supply::PumpLine(_) | Supply::None => vec![0.0; samples],
         };
         Ok(InputSignals {

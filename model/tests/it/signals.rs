@@ -235,3 +235,16 @@ fn a_simulation_repeats_itself_from_its_own_recording() {
     }
     assert!((start[8] - simulated.pump_pressure[1500]).abs() < 2e3);
 }
+
+#[test]
+fn means_lower_the_rate_and_do_not_cross_a_pause() {
+    let time = (0..10).map(|k| f64::from(k) * 0.01 + if k < 5 { 0.0 } else { 3.0 }).collect();
+    let mut recording = Recording::unmeasured("paused", time, &["arm"]);
+    recording.pump_pressure = (0..10).map(f64::from).collect();
+    let slow = recording.averaged(2);
+    assert_eq!(slow.len(), 5);
+    assert!((slow.time[0] - 0.005).abs() < 1e-12);
+    assert_eq!(slow.pump_pressure[..2], [0.5, 2.5]);
+    assert!(slow.pump_pressure[2].is_nan());
+    assert_eq!(slow.pump_pressure[3..], [6.5, 8.5]);
+}
