@@ -65,7 +65,7 @@ pub fn decide(scores: &Scores, policy: &Policy) -> Verdict {
         return Verdict { kind, best: 0, set: Vec::new(), reasons, standings };
     };
     let after = assessed[best].validation;
-    let limit = policy.largest_remainder / assessed[best].hypothesis.effects.len() as f64;
+    let limit = policy.largest_remainder;
     let is_explained = after <= limit.max(limit * before);
     if adequacy.is_beyond_doubt && !is_explained {
         return Verdict { kind: Kind::Adequate, best: 0, set: Vec::new(), reasons: adequacy.reasons, standings };

@@ -27,9 +27,9 @@ pub struct Policy {
     /// Probability with which the best hypothesis may be left out of the model confidence set. Larger: fewer ties, more wrong
     /// attributions.
     pub set_error: f64,
-    /// Error that an attributed effect may leave: a log error ratio, or a share of what it explains. Several effects can imitate
-    /// more than one, so each hypothesis with n effects may leave an nth. Larger: effects outside the catalogue are attributed to
-    /// the one that resembles them most.
+    /// Error that a set of attributed effects may leave: a log error ratio, or a share of the error before. Larger: effects
+    /// outside the catalogue are attributed to the ones that resemble them most. Smaller: machines whose laws differ a little in
+    /// form count as unexplained.
     pub largest_remainder: f64,
     /// A lead over another hypothesis below this share of the error that the best one leaves does not count: an error of unknown
     /// origin that exceeds the lead may have caused it.

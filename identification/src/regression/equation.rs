@@ -235,16 +235,28 @@ pub fn equations(
     effect_states: &[Vec<f64>],
     fitted: &[usize],
 ) -> Vec<Equation> {
+    let sensors = Sensor::all(system.layout().joints);
+    equations_by(system, observation, effect_states, fitted, &sensors)
+}
+
+/// Like [`equations`], with derivatives by the readings of these sensors only.
+pub(super) fn equations_by(
+    system: &System<'_>,
+    observation: &Observation,
+    effect_states: &[Vec<f64>],
+    fitted: &[usize],
+    sensors: &[Sensor],
+) -> Vec<Equation> {
     let model = system.model();
     let layout = system.layout();
     let (joints, samples) = (layout.joints, observation.time.len());
-    let sensors = Sensor::all(joints);
     let directions = fitted.len() + sensors.len();
+    // The values need a pass even without directions.
     let passes: Vec<(usize, usize)> =
-        (0..directions).step_by(DIRECTIONS).map(|first| (first, (first + DIRECTIONS).min(directions))).collect();
+        (0..directions.max(1)).step_by(DIRECTIONS).map(|first| (first, (first + DIRECTIONS).min(directions))).collect();
     let tracks = passes
         .into_par_iter()
-        .map(|pass| Tracks::along(system, observation, effect_states, fitted, &sensors, pass))
+        .map(|pass| Tracks::along(system, observation, effect_states, fitted, sensors, pass))
         .reduce_with(Tracks::merged)
         .unwrap_or_else(|| Tracks::new(joints, samples, 0));
     let Tracks { mass, torque, flows, compliances, pump_flow, pump_compliance } = tracks;

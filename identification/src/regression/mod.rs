@@ -6,6 +6,7 @@
 
 mod equation;
 mod error;
+mod flow_rows;
 mod information;
 mod least_squares;
 mod observation;
@@ -23,6 +24,7 @@ mod window;
 
 pub use equation::{Equation, EquationKind, Sensor, Term, equations};
 pub use error::RegressionError;
+pub(crate) use flow_rows::{FlowGround, FlowRows};
 pub(crate) use information::Gauge;
 pub use least_squares::least_squares;
 pub use observation::{Observation, observe, observe_guided};

@@ -52,6 +52,11 @@ impl Ground {
     /// Whether the data stay valid for a model with this additional effect. They do not if the effect has states of its
     /// own, or changes the meaning of instruments or of the input.
     pub fn holds_for(effect: &dyn Effect) -> bool {
-        effect.states() == 0 && !effect.reads_course() && !effect.is_an_instruments()
+        effect.states() == 0 && Ground::keeps_signals(effect)
+    }
+
+    /// Whether the measured signals mean the same with this additional effect.
+    pub fn keeps_signals(effect: &dyn Effect) -> bool {
+        !effect.reads_course() && !effect.is_an_instruments()
     }
 }

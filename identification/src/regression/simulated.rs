@@ -1,9 +1,9 @@
 //! Simulates a recording with the model, piece by piece.
 
-use excavator_model::Model;
 use excavator_model::equations::{Channel, System};
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Integrator, Tolerances};
+use excavator_model::{Imposed, Model};
 use rayon::prelude::*;
 
 use super::RegressionError;
@@ -24,7 +24,12 @@ pub(super) struct Simulated {
 /// [`RegressionError`] if inputs or initial states are missing.
 pub(super) fn simulated(model: &Model, recording: &Recording, truth: &Recording) -> Result<Simulated, RegressionError> {
     let system = System::new(model);
-    let duration = FitSettings::default().segment_duration_for(&model.machine.size());
+    // An imposed state does not drift, and a play remembers its last reversal.
+    let duration = if model.imposed == Imposed::Everything {
+        f64::INFINITY
+    } else {
+        FitSettings::default().segment_duration_for(&model.machine.size())
+    };
     let segmented = SegmentedRecording::new(model, recording, duration, f64::INFINITY)?;
     let channels = Channel::all(system.layout());
     let own_states: usize = model.effects.iter().map(|effect| effect.physics.states()).sum();

@@ -32,14 +32,16 @@ pub(super) struct WeakRow {
     pub regressors: DVector<f64>,
 }
 
-/// Half width, in samples, of the difference quotient for a storage's rate of change. It is wide because storage
-/// changes slowly with the stroke, but noise is fast.
-const STORAGE_SLOPE: usize = 10;
+/// Half width of the difference quotient for a storage's rate of change, s. It is wide because storage changes slowly with
+/// the stroke, but noise is fast: ten samples at 500 Hz. Longer, it blurs the compliance of oil with air.
+const STORAGE_SLOPE: f64 = 0.02;
 
 /// Weights that integrate `bump * storage * d^order quantity` by parts, per sample of the window.
 fn parts(term_order: usize, window: &Window, storage: &[f64], time: &[f64]) -> Vec<f64> {
+    let interval = (time[time.len() - 1] - time[0]) / (time.len() - 1).max(1) as f64;
+    let reach = ((STORAGE_SLOPE / interval).round() as usize).clamp(1, time.len() - 1);
     let slope = |index: usize, values: &dyn Fn(usize) -> f64| {
-        let (low, high) = (index.saturating_sub(STORAGE_SLOPE), (index + STORAGE_SLOPE).min(time.len() - 1));
+        let (low, high) = (index.saturating_sub(reach), (index + reach).min(time.len() - 1));
         (values(high) - values(low)) / (time[high] - time[low])
     };
     let constant = window.weights.len() < 2

@@ -12,6 +12,8 @@ pub struct Effort {
     pub settling_steps: usize,
     /// Largest number of effects in one hypothesis: \[B\] adds five to its preliminary model.
     pub most_effects: usize,
+    /// Largest number of sets of the flow balances that are fitted to the whole machine.
+    pub joined_sets: usize,
     /// Largest number of hypotheses that are extended besides the best one, if that does not explain the recordings.
     pub most_second_beginnings: usize,
     /// Steps of each fit in the screening.
@@ -62,6 +64,7 @@ impl Default for Effort {
             fit: FitSettings::default(),
             settling_steps: 40,
             most_effects: 5,
+            joined_sets: 2,
             most_second_beginnings: 1,
             screening_steps: 3,
             screening_share: 0.5,

@@ -1,6 +1,7 @@
 //! Proposes hypotheses: the given model with some effects added, each fitted and scored. It makes no decision.
 
 mod addition;
+mod balances;
 mod both_sides;
 mod effort;
 mod given;

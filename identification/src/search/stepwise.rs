@@ -2,9 +2,11 @@
 
 use std::time::Instant;
 
+use excavator_model::Model;
 use rayon::prelude::*;
 
 use super::addition::{AdditionError, additions, structural_additions};
+use super::balances::{FlowSet, with_flows_of};
 use super::pool::{Move, Pool};
 use super::progress::Milestones;
 use super::promises::Promised;
@@ -13,7 +15,7 @@ use super::track::Track;
 use super::transient::evaluate_in_windows_of;
 use super::{Addition, Effort, Trial};
 use crate::decision::{Policy, log_error_ratio};
-use crate::fit::{FitSettings, fit, fit_predicted, predict};
+use crate::fit::{FitSettings, fit, fit_predicted, predict, with_nuisances};
 
 /// Settings and callbacks for making moves.
 pub(super) struct Stepwise<'a> {
@@ -49,6 +51,30 @@ impl Stepwise<'_> {
         let Ok(validation) = evaluate_in_windows_of(&fit.model, known, pool.validation(), &settings) else { return };
         let seconds = trial.seconds + begin.elapsed().as_secs_f64();
         pool.put(Trial { fit, validation, seconds, ..trial });
+    }
+
+    /// Fits the sets of several effects that the flow balances ask for, from the parameters found there.
+    pub fn join(&self, model: &Model, sets: &[FlowSet], pool: &mut Pool<'_>) {
+        let settings = FitSettings { maximum_steps: self.effort.settling_steps, ..self.effort.fit };
+        let given = pool.given().clone();
+        // Without its missing effects the fit of the given model may have moved masses and frictions far away.
+        let plain = with_nuisances(model, pool.identification());
+        let fitted = |set: &FlowSet| {
+            let begin = Instant::now();
+            let starts = [&plain, &given.fit.model].map(|forces| with_flows_of(forces, &set.model));
+            let fits = starts.par_iter().filter_map(|start| fit(start, pool.identification(), &settings).ok());
+            let fits: Vec<crate::fit::Fit> = fits.collect();
+            let fit = fits.into_iter().min_by(|a, b| a.loss().total_cmp(&b.loss()))?;
+            let known = &given.validation.model;
+            let validation = evaluate_in_windows_of(&fit.model, known, pool.validation(), &settings).ok()?;
+            let (additions, seconds) = (set.additions.clone(), begin.elapsed().as_secs_f64());
+            Some(Trial { additions, fit, validation, seconds })
+        };
+        self.milestones.tell("the effects of the flow balances together", 0.5);
+        let several: Vec<&FlowSet> =
+            sets.iter().filter(|set| !set.additions.is_empty()).take(self.effort.joined_sets).collect();
+        let trials: Vec<Trial> = several.into_par_iter().filter_map(fitted).collect();
+        trials.into_iter().for_each(|trial| pool.put(trial));
     }
 
     fn prune(&self, number: usize, pool: &mut Pool<'_>) {

@@ -9,6 +9,7 @@ mod full;
 mod named_additions;
 mod profile_likelihood;
 mod rounded_corners;
+mod several_effects;
 mod spool_sensor_lead;
 mod story_of_the_excavator;
 mod together_only;

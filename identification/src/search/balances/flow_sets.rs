@@ -1,0 +1,116 @@
+//! Sets of effects that the flow balances ask for.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+use rayon::prelude::*;
+
+use super::super::Addition;
+use super::super::starts::plain_starts;
+use super::super::trial::key_of;
+use super::flow_fit::{Balances, FlowFit, Step};
+use super::{FlowSet, flow_additions};
+use crate::regression::FlowGround;
+
+/// Number of sets of one size that are extended.
+const WIDTH: usize = 2;
+/// Number of additions to one set that are fitted to the end.
+const FITTED: usize = 4;
+/// Largest number of effects.
+const MOST: usize = 5;
+/// Decrease of the misfit that one more effect must bring.
+const LEAST: f64 = 0.01;
+
+struct Node {
+    additions: Vec<Addition>,
+    fit: FlowFit,
+    misfit: f64,
+}
+
+struct Grounds<'a> {
+    fitted: FlowGround,
+    fitted_balances: Balances,
+    others: FlowGround,
+    other_balances: Balances,
+    recordings: &'a [&'a Recording],
+}
+
+/// The best sets for the flow balances of `model`, best first. Empty if they cannot be evaluated.
+pub(in super::super) fn flow_sets(
+    model: &Model,
+    identification: &[&Recording],
+    validation: &[&Recording],
+) -> Vec<FlowSet> {
+    let Some(grounds) = Grounds::new(model, identification, validation) else { return Vec::new() };
+    let Some(given) = grounds.node(Vec::new(), model) else { return Vec::new() };
+    let mut known: BTreeMap<Vec<String>, (f64, FlowSet)> = BTreeMap::from([(Vec::new(), given.set())]);
+    let mut best = given.misfit;
+    let mut wide = vec![given];
+    for _ in 0..MOST {
+        let mut children: Vec<Node> = wide.iter().flat_map(|parent| grounds.children(parent)).collect();
+        children.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+        let Some(first) = children.first().filter(|first| best - first.misfit >= LEAST) else { break };
+        best = first.misfit;
+        wide.clear();
+        for child in children {
+            if let Entry::Vacant(place) = known.entry(key_of(&child.additions, model)) {
+                place.insert(child.set());
+                if wide.len() < WIDTH {
+                    wide.push(child);
+                }
+            }
+        }
+    }
+    let mut all: Vec<(f64, FlowSet)> = known.into_values().collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all.into_iter().take_while(|(misfit, _)| *misfit < best + LEAST).map(|(_, set)| set).collect()
+}
+
+impl Node {
+    fn set(&self) -> (f64, FlowSet) {
+        (self.misfit, FlowSet { additions: self.additions.clone(), model: self.fit.model.clone() })
+    }
+}
+
+impl<'a> Grounds<'a> {
+    fn new(model: &Model, identification: &'a [&'a Recording], validation: &[&Recording]) -> Option<Self> {
+        let (fitted, others) = (FlowGround::new(model, identification).ok()?, FlowGround::new(model, validation).ok()?);
+        Some(Grounds {
+            fitted_balances: Balances::new(&fitted, model)?,
+            other_balances: Balances::new(&others, model)?,
+            fitted,
+            others,
+            recordings: identification,
+        })
+    }
+
+    fn node(&self, additions: Vec<Addition>, start: &Model) -> Option<Node> {
+        let fit = self.fitted_balances.fit(&self.fitted, start)?;
+        let misfit = 0.5 * (fit.misfit + self.other_balances.evaluate(&self.others, &fit.model)?);
+        Some(Node { additions, fit, misfit })
+    }
+
+    /// The most promising sets with one effect more.
+    fn children(&self, parent: &Node) -> Vec<Node> {
+        let begun = flow_additions(&parent.fit.model).into_par_iter().filter_map(|addition| {
+            let extended = parent.fit.model.with_effect(&addition.physics, addition.site).ok()?;
+            let starts = plain_starts(&extended, self.recordings);
+            let steps: Vec<Step> = starts
+                .par_iter()
+                .filter_map(|start| self.fitted_balances.promise(&self.fitted, &parent.fit, start))
+                .collect();
+            let first = steps.into_iter().min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
+            Some((addition, first))
+        });
+        let mut begun: Vec<(Addition, Step)> = begun.collect();
+        begun.sort_by(|a, b| a.1.misfit.total_cmp(&b.1.misfit));
+        begun.truncate(FITTED);
+        let ended = begun.into_par_iter().filter_map(|(addition, first)| {
+            let additions = parent.additions.iter().cloned().chain([addition]).collect();
+            self.node(additions, &first.model)
+        });
+        ended.collect()
+    }
+}
