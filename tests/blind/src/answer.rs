@@ -12,7 +12,7 @@ pub enum Outcome {
     Right,
     /// The right name in a tied set.
     Tied,
-    /// One of two names.
+    /// Some of several names, and no wrong one.
     Partial,
     /// A catalogue effect was found, and called unexplained.
     CalledUnexplained,
@@ -30,7 +30,7 @@ impl Outcome {
         match self {
             Outcome::Right => "right",
             Outcome::Tied => "right, tied",
-            Outcome::Partial => "one of two",
+            Outcome::Partial => "not all",
             Outcome::WrongName => "WRONG NAME",
             Outcome::CalledUnexplained => "called unexplained",
             Outcome::Missed => "MISSED",
@@ -77,13 +77,17 @@ impl Answer {
         let nothing_else = |names: &[String]| names.iter().all(|name| secret.effects.contains(name));
         match (secret.sort, self.kind) {
             (Sort::Nothing, Kind::Adequate) | (Sort::Unknown, Kind::Unexplained) => Outcome::Right,
+            (Sort::Beside, Kind::Unexplained) if all_in(self.names()) && nothing_else(self.names()) => Outcome::Right,
+            (Sort::Beside, Kind::Unexplained) if nothing_else(self.names()) => Outcome::Partial,
             (Sort::Nothing, _) => Outcome::FalseAlarm,
             (_, Kind::Adequate) => Outcome::Missed,
-            (Sort::Unknown, Kind::MissingEffect) => Outcome::WrongName,
+            (Sort::Unknown | Sort::Beside, Kind::MissingEffect) => Outcome::WrongName,
             (_, Kind::Unexplained) => Outcome::CalledUnexplained,
             _ if self.set.len() == 1 && all_in(self.names()) && nothing_else(self.names()) => Outcome::Right,
             _ if self.set.iter().any(|names| all_in(names) && nothing_else(names)) => Outcome::Tied,
             (Sort::Pair, _) if self.names().iter().any(|name| secret.effects.contains(name)) => Outcome::Partial,
+            // Names of a set of several are counted one by one.
+            (Sort::Several, _) if nothing_else(self.names()) => Outcome::Partial,
             _ => Outcome::WrongName,
         }
     }

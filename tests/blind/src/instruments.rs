@@ -18,6 +18,16 @@ pub struct Instruments {
     /// Time by which the spool's samples are taken ahead of all others in the same message, s: buses and converters read
     /// one channel after the other.
     pub spool_lead: f64,
+    /// Samples per second, [`RATE`] over a whole number.
+    pub rate: f64,
+    /// Bits of the converters.
+    pub bits: u32,
+}
+
+impl Default for Instruments {
+    fn default() -> Self {
+        Instruments { noise: 1.0, spool_sensor: true, spool_lead: 0.0, rate: RATE, bits: 16 }
+    }
 }
 
 /// Noise of the displacement sensor, m.
@@ -30,7 +40,7 @@ pub const SPOOL_NOISE: f64 = 2e-7;
 const JITTER: f64 = 2e-5;
 /// Share of messages lost.
 const LOSS: f64 = 1e-3;
-/// Ranges of the 16-bit converters: displacement (m), pressure (Pa), spool (m²).
+/// Ranges of the converters: displacement (m), pressure (Pa), spool (m²).
 const RANGES: [f64; 3] = [0.7, 25e6, 4e-4];
 /// Stamp of the first sample, ns since the epoch: a made-up day.
 const EPOCH: i64 = 1_795_000_000_000_000_000;
@@ -45,7 +55,11 @@ pub fn record(
     generator: &mut ChaCha8Rng,
 ) -> Recording {
     let samples = truth.samples();
-    let kept: Vec<usize> = (0..samples).filter(|&sample| sample == 0 || generator.random::<f64>() >= LOSS).collect();
+    let stride = ((RATE / instruments.rate).round() as usize).max(1);
+    let kept: Vec<usize> = (0..samples)
+        .filter(|&sample| sample == 0 || generator.random::<f64>() >= LOSS)
+        .filter(|sample| sample % stride == 0)
+        .collect();
     let stamps: Vec<f64> = (0..samples)
         .map(|sample| {
             let normal: f64 = StandardNormal.sample(generator);
@@ -58,7 +72,7 @@ pub fn record(
             .iter()
             .map(|value| {
                 let normal: f64 = StandardNormal.sample(generator);
-                quantised(value + offset + instruments.noise * noise * normal, range)
+                quantised(value + offset + instruments.noise * noise * normal, range, instruments.bits)
             })
             .collect();
         kept.iter().map(|&sample| read[sample]).collect()
@@ -92,8 +106,8 @@ pub fn record(
     recording
 }
 
-/// The nearest step of a 16-bit converter over `range`.
-fn quantised(value: f64, range: f64) -> f64 {
-    let step = range / 65_536.0;
+/// The nearest step of a converter with so many bits over `range`.
+fn quantised(value: f64, range: f64, bits: u32) -> f64 {
+    let step = range / f64::from(bits).exp2();
     (value / step).round() * step
 }

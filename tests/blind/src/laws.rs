@@ -153,7 +153,7 @@ fn third_recording(case: &mut Case, noise: f64) -> Result<Recording, Diverged> {
     let plant = case.plant;
     let manoeuvre = Manoeuvre { firmness: case.validation.firmness, ..Manoeuvre::third(case.validation.centre) };
     let (truth, _) = run_and_compare(&plant, &manoeuvre, case.begin[0])?;
-    let instruments = Instruments { noise, spool_sensor: !plant.blind_spool, spool_lead: 0.0 };
+    let instruments = Instruments { noise, spool_sensor: !plant.blind_spool, ..Instruments::default() };
     let name = format!("case {} third", case.number);
     Ok(record(&truth, &plant.effects.sensors, &plant.extras, &instruments, &name, &mut case.generator))
 }

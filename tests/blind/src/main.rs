@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
 use excavator_blind::cases::{Case, Sort, Wish};
+use excavator_blind::instruments::Instruments;
 use excavator_blind::laws::propose_for;
 use excavator_blind::plant::{CATALOGUE, FOREIGN, Kind, kind};
 use excavator_blind::replay::{Stored, replayed};
@@ -43,6 +44,12 @@ struct Words {
     /// Time in s by which the spool's samples are ahead of all others (half an interval is 0.001)
     #[arg(long, default_value_t = 0.0)]
     spool_lead: f64,
+    /// Samples per second: 500 over a whole number
+    #[arg(long, default_value_t = 500.0)]
+    rate: f64,
+    /// Bits of the converters
+    #[arg(long, default_value_t = 16)]
+    bits: u32,
     /// Leave out the small unmodelled extras (ripple, warming, hose stubs)
     #[arg(long)]
     without_extras: bool,
@@ -78,6 +85,8 @@ enum SortName {
     Single,
     Pair,
     Unknown,
+    Several,
+    Beside,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -115,6 +124,8 @@ fn main() -> ExitCode {
         SortName::Single => Sort::Single,
         SortName::Pair => Sort::Pair,
         SortName::Unknown => Sort::Unknown,
+        SortName::Several => Sort::Several,
+        SortName::Beside => Sort::Beside,
     });
     let strength = words.strength.map(|strength| match strength {
         StrengthName::Weak => Strength::Weak,
@@ -155,7 +166,7 @@ fn read_profile(path: &Path) -> Result<Profile, String> {
 fn fits(sort: Sort, kind: &Kind) -> bool {
     let foreign = FOREIGN.iter().any(|other| other.name == kind.name);
     match sort {
-        Sort::Nothing => false,
+        Sort::Nothing | Sort::Several | Sort::Beside => false,
         Sort::Single | Sort::Pair => !foreign,
         Sort::Unknown => foreign,
     }
@@ -199,7 +210,14 @@ fn judge(words: &Words, case: &mut Case) -> Result<(String, Option<Result<Score,
     let (number, secret, strength) = (case.number, case.secret(), case.strength.name());
     let failed =
         |what: &str, error: String| (format!("{number:>4}  {what}: {secret} {strength}: {error}"), Some(Err(error)));
-    let evidence = match make(case, words.noise, words.spool_lead) {
+    let instruments = Instruments {
+        noise: words.noise,
+        spool_lead: words.spool_lead,
+        rate: words.rate,
+        bits: words.bits,
+        ..Instruments::default()
+    };
+    let evidence = match make(case, &instruments) {
         Ok(evidence) => evidence,
         Err(error) => return Ok(failed("no recording", error.to_string())),
     };

@@ -78,12 +78,12 @@ pub enum ScoreError {
     Diagnosis(#[from] DiagnosisError),
 }
 
-/// Runs and records a case, with a factor on all sensor noise and a spool sensor that is `spool_lead` s ahead.
+/// Runs and records a case. A case that hides what the spool does has no spool sensor.
 ///
 /// # Errors
 /// [`Diverged`].
-pub fn make(case: &mut Case, noise: f64, spool_lead: f64) -> Result<Evidence, Diverged> {
-    let instruments = Instruments { noise, spool_sensor: !case.plant.blind_spool, spool_lead };
+pub fn make(case: &mut Case, instruments: &Instruments) -> Result<Evidence, Diverged> {
+    let instruments = Instruments { spool_sensor: instruments.spool_sensor && !case.plant.blind_spool, ..*instruments };
     let (plant, name) = (case.plant, format!("case {}", case.number));
     let (first, first_change) = run_and_compare(&plant, &case.identification, case.begin[0])?;
     let (second, second_change) = run_and_compare(&plant, &case.validation, case.begin[1])?;
@@ -144,7 +144,7 @@ impl Secret {
         let is_visible = case.hidden.iter().all(|kind| kind.identifiable);
         Secret {
             sort: if is_visible { case.sort } else { Sort::Nothing },
-            effects: case.hidden.iter().map(|kind| kind.answer.to_string()).collect(),
+            effects: case.nameable().map(|kind| kind.answer.to_string()).collect(),
             words: format!("{} {}", case.secret(), case.strength.name()),
         }
     }

@@ -91,6 +91,17 @@ pub fn run_and_compare(plant: &Plant, manoeuvre: &Manoeuvre, displacement: f64) 
     Ok((with, change))
 }
 
+/// What the effects of `plant` change that `less` does not have, at the same commands.
+///
+/// # Errors
+/// [`Diverged`].
+pub fn compare(plant: &Plant, less: &Plant, manoeuvre: &Manoeuvre, displacement: f64) -> Result<Change, Diverged> {
+    let [plant, less] = [plant, less].map(|one| Plant { duration: manoeuvre.duration(), ..*one });
+    let with = run(&plant, Lever::Operator(manoeuvre), displacement)?;
+    let without = run(&less, Lever::Replay(&with.command), displacement)?;
+    Ok(Change::between(&with, &plant.effects.sensors, &without))
+}
+
 /// Searches the factor at which `set` changes the validation manoeuvre by `target`, at most `limit`: shares grow with
 /// about the square of the factor, so a few corrections by the root of the ratio are enough. A run that breaks counts
 /// as far too strong.

@@ -91,6 +91,8 @@ fn groups_of(case: &Case) -> Vec<String> {
         Sort::Single if !case.hidden.iter().all(|kind| kind.identifiable) => vec![format!("{SILENT} to see")],
         Sort::Single => vec![format!("1 effect, {strength}"), format!("1 effect, all"), format!("  {}", case.secret())],
         Sort::Pair => vec![format!("2 effects, {strength}"), "2 effects, all".to_string()],
+        Sort::Several => vec![format!("{} effects", case.hidden.len()), "several effects, all".to_string()],
+        Sort::Beside => vec!["two effects beside one outside the catalogue (right = unexplained)".to_string()],
         Sort::Unknown => {
             vec![
                 format!("outside the catalogue, {strength} (right = unexplained)"),
@@ -119,8 +121,17 @@ fn figures(judged: &[Judged]) -> String {
     let longest = seconds.iter().copied().fold(0.0, f64::max);
     let middle = median(&mut seconds).unwrap_or(f64::NAN);
     let failed = judged.len() - scores.len();
+    let hidden: usize = scores.iter().map(|(case, _)| case.nameable().count()).sum();
+    let is_hidden = |case: &Case, name: &String| case.nameable().any(|kind| kind.answer == name);
+    let named_of = |(case, score): &(&Case, &Score)| -> [usize; 2] {
+        let right = score.answer.names().iter().filter(|name| is_hidden(case, name)).count();
+        [right, score.answer.names().len() - right]
+    };
+    let [right, wrong] =
+        scores.iter().map(named_of).fold([0, 0], |sum, [right, wrong]| [sum[0] + right, sum[1] + wrong]);
     format!(
         "false alarms where nothing can be seen: {alarms} of {silent_cases}\n\
+         hidden effects named: {right} of {hidden}; wrong names: {wrong}\n\
          coefficient error, median of {named} cases: {error}\n\
          95 % intervals of base parameters that contain the truth, in {} rightly answered cases: {covered} of {intervals}\n\
          {}\n\

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use excavator_blind::cases::{Case, Sort, Wish};
+use excavator_blind::instruments::Instruments;
 use excavator_blind::scoring::make;
 use excavator_identification::diagnosis::{DiagnosisSettings, diagnose};
 use excavator_model::document::{built_in, parse_catalogue};
@@ -102,7 +103,7 @@ pub fn joints() -> Result<Group, String> {
 /// In words, where the machine cannot be recorded or diagnosed.
 pub fn candidates() -> Result<Group, String> {
     let mut case = Case::draw(91, 0, &Wish { sort: Some(Sort::Single), ..Wish::default() });
-    let evidence = make(&mut case, 1.0, 0.0).map_err(|error| error.to_string())?;
+    let evidence = make(&mut case, &Instruments::default()).map_err(|error| error.to_string())?;
     let mut runs = Vec::new();
     for wanted in CANDIDATES {
         let mut model = built_in("zx30u-arm").map_err(|error| error.to_string())?;

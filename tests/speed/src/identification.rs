@@ -1,6 +1,7 @@
 //! The identification of a model's parameters, beside sparse regression on differences.
 
 use excavator_blind::cases::{Case, Sort, Wish};
+use excavator_blind::instruments::Instruments;
 use excavator_blind::scoring::make;
 use excavator_identification::regression::{WeakFormSettings, weak_form};
 use excavator_model::document::built_in;
@@ -24,7 +25,7 @@ const COMPARED: [(&str, &str); 2] = [("bulk modulus", "arm.bulk_modulus"), ("flo
 pub fn identification(peers: &Peers) -> Result<Group, String> {
     let model = built_in("zx30u-arm").map_err(|error| error.to_string())?;
     let mut case = Case::draw(SEED, 0, &Wish { sort: Some(Sort::Nothing), ..Wish::default() });
-    let recording = make(&mut case, 1.0, 0.0).map_err(|error| error.to_string())?.identification;
+    let recording = make(&mut case, &Instruments::default()).map_err(|error| error.to_string())?.identification;
     let (seconds, regression) = best_of(REPETITIONS, || weak_form(&model, &[&recording], &WeakFormSettings::default()));
     let regression = regression.map_err(|error| error.to_string())?;
     let named = case.plant.base.named();

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use excavator_bags::{Topics, write_recording};
 use excavator_blind::cases::{Case, Sort, Wish};
+use excavator_blind::instruments::Instruments;
 use excavator_blind::scoring::make;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Profile, Segment, Tolerances, simulate_from_rest};
@@ -37,7 +38,7 @@ pub struct Pair {
 /// In words, where the machine cannot be recorded or the bags not written.
 pub fn blind_pair(folder: &Path, sort: Sort) -> Result<Pair, String> {
     let mut case = Case::draw(SEED, 0, &Wish { sort: Some(sort), ..Wish::default() });
-    let evidence = make(&mut case, 1.0, 0.0).map_err(|error| error.to_string())?;
+    let evidence = make(&mut case, &Instruments::default()).map_err(|error| error.to_string())?;
     let folder = folder.join(case.secret());
     let write = |name: &str, recording: &Recording| {
         let path = folder.join(name);

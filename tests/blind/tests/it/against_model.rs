@@ -33,7 +33,7 @@ fn agrees_with_the_models_simulation() {
             boom_holding_torque: 0.0,
         };
         let truth = run(&plant, Lever::Operator(&manoeuvre), 0.01).unwrap();
-        let instruments = Instruments { noise: 0.0, spool_sensor: true, spool_lead: 0.0 };
+        let instruments = Instruments { noise: 0.0, ..Instruments::default() };
         let sensors = Sensors::default();
         let recording = record(&truth, &sensors, &Extras::none(), &instruments, "clean", &mut generator);
         let mut model = built_in("zx30u-arm").unwrap();

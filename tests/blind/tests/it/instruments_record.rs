@@ -21,7 +21,7 @@ fn recorded(sensors: &Sensors, noise: f64, spool_sensor: bool) -> Recording {
         spool: vec![1e-5; SAMPLES * POINTS],
         command: vec![1e-5; SAMPLES],
     };
-    let instruments = Instruments { noise, spool_sensor, spool_lead: 0.0 };
+    let instruments = Instruments { noise, spool_sensor, ..Instruments::default() };
     record(&truth, sensors, &Extras::none(), &instruments, "test", &mut ChaCha8Rng::seed_from_u64(9))
 }
 

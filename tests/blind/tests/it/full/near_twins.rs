@@ -2,6 +2,7 @@
 
 use excavator_blind::answer::Outcome;
 use excavator_blind::cases::{Case, Sort, Wish};
+use excavator_blind::instruments::Instruments;
 use excavator_blind::plant::{Reversal, ReversalLaw, kind};
 use excavator_blind::scoring::{Score, make, score};
 use excavator_blind::strength::Strength;
@@ -18,7 +19,7 @@ fn drawn(seed: u64, sort: Sort, number: u64) -> Score {
 }
 
 fn judged(mut case: Case) -> Score {
-    let evidence = make(&mut case, 1.0, 0.0).unwrap();
+    let evidence = make(&mut case, &Instruments::default()).unwrap();
     let score = score(&case, &evidence).unwrap();
     println!("{}: {}", case.secret(), score.answer.words());
     score
@@ -75,7 +76,7 @@ fn a_light_load_is_no_contact() {
 fn how_friction_turns_round_is_no_effect() {
     let mut case = Case::draw(5, 2, &Wish { sort: Some(Sort::Nothing), ..Wish::default() });
     case.plant.extras.reversal = Reversal { speed: 4e-3, law: ReversalLaw::Root };
-    let evidence = make(&mut case, 1.0, 0.0).unwrap();
+    let evidence = make(&mut case, &Instruments::default()).unwrap();
     let score = score(&case, &evidence).unwrap();
     println!("nothing: {}", score.answer.words());
     assert_eq!(score.outcome, Outcome::Right);
