@@ -10,10 +10,14 @@ pub struct Effort {
     pub fit: FitSettings,
     /// Largest number of further steps in the fit of the favoured hypothesis, if those of `fit` were not enough.
     pub settling_steps: usize,
-    /// Largest number of effects in one hypothesis: \[B\] adds five to its preliminary model.
+    /// Largest number of effects in one hypothesis. \[B\] adds five to its preliminary model, and its valve has a play; one more
+    /// may be taken away in the end.
     pub most_effects: usize,
     /// Largest number of sets of the flow balances that are fitted to the whole machine.
     pub joined_sets: usize,
+    /// Distance of the loss from that with an effect at which a fit without it is given up after four steps: the effect is
+    /// needed. An improvement of 0.1 would be enough to attribute it.
+    pub needed_beyond_doubt: f64,
     /// Largest number of hypotheses that are extended besides the best one, if that does not explain the recordings.
     pub most_second_beginnings: usize,
     /// Steps of each fit in the screening.
@@ -63,8 +67,9 @@ impl Default for Effort {
         Effort {
             fit: FitSettings::default(),
             settling_steps: 40,
-            most_effects: 5,
+            most_effects: 7,
             joined_sets: 2,
+            needed_beyond_doubt: 1.0,
             most_second_beginnings: 1,
             screening_steps: 3,
             screening_share: 0.5,

@@ -19,11 +19,33 @@ const LOOKED_AT: usize = 3;
 /// then tried as a start too.
 const TRUSTED_LOSS: f64 = 0.2;
 
+/// A fit of the given model, and whether another start could lead to a better one.
+pub(super) struct First {
+    /// The fit.
+    pub fit: Fit,
+    /// Whether nothing is gained from another start.
+    pub is_trusted: bool,
+}
+
 /// Fits a model's unknown parameters and its nuisances, starting from a regression if one is possible.
 ///
 /// # Errors
 /// [`FitError`].
 pub(crate) fn fit_given(model: &Model, identification: &[&Recording], settings: &FitSettings) -> Result<Fit, FitError> {
+    let First { fit: first, is_trusted } = first_fit(model, identification, settings)?;
+    let second = if is_trusted { None } else { second_fit(model, identification, settings, first.loss()) };
+    Ok(second.unwrap_or(first))
+}
+
+/// The fit of the given model that starts from a regression, or from the given values if no regression is possible.
+///
+/// # Errors
+/// [`FitError`].
+pub(super) fn first_fit(
+    model: &Model,
+    identification: &[&Recording],
+    settings: &FitSettings,
+) -> Result<First, FitError> {
     let model = &with_nuisances(model, identification);
     let quick =
         WeakFormSettings { rounds: 2, with_errors: false, hold_at_bounds: false, ..WeakFormSettings::default() };
@@ -32,13 +54,19 @@ pub(crate) fn fit_given(model: &Model, identification: &[&Recording], settings: 
         .ok()
         .and_then(|start| fit(&start, identification, settings).ok());
     match regressed {
-        Some(fitted) if fitted.loss() <= TRUSTED_LOSS => Ok(fitted),
-        regressed => match (regressed, fit(model, identification, settings)) {
-            (Some(first), Ok(second)) if first.loss() <= second.loss() => Ok(first),
-            (Some(first), Err(_)) => Ok(first),
-            (_, second) => second,
-        },
+        Some(fit) => Ok(First { is_trusted: fit.loss() <= TRUSTED_LOSS, fit }),
+        None => Ok(First { fit: fit(model, identification, settings)?, is_trusted: true }),
     }
+}
+
+/// The fit that starts from the given values, if its loss is below that of the first.
+pub(super) fn second_fit(
+    model: &Model,
+    identification: &[&Recording],
+    settings: &FitSettings,
+    first: f64,
+) -> Option<Fit> {
+    fit(&with_nuisances(model, identification), identification, settings).ok().filter(|second| second.loss() < first)
 }
 
 /// A fit of the given model as the first trial.

@@ -7,6 +7,7 @@ mod effort;
 mod given;
 mod hard_stretches;
 mod input_floor;
+mod joining;
 mod named;
 mod pool;
 mod progress;

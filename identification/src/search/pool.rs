@@ -33,6 +33,8 @@ pub(super) enum Move {
     Prune,
     /// Add every other effect to it.
     Extend,
+    /// Add every other effect that the flow balances by themselves do not show.
+    ExtendForces,
     /// Replace its effects by rivals.
     Exchange,
     /// Replace its effects by structural effects.
@@ -67,6 +69,14 @@ impl<'a> Pool<'a> {
             failed: Vec::new(),
             done: BTreeSet::new(),
         }
+    }
+
+    /// The pool with another fit of the given model. Hypotheses of several effects stay: they did not start from it.
+    pub(super) fn restarted(self, given: Trial) -> Self {
+        let mut pool = Pool::new(given, self.identification, self.validation);
+        pool.done = self.done.into_iter().filter(|(_, key)| key.len() > 1).collect();
+        self.trials.into_iter().filter(|trial| trial.additions.len() > 1).for_each(|trial| pool.put(trial));
+        pool
     }
 
     /// Computes the error floor of the input readings, if the given model leaves more than noise.

@@ -9,12 +9,12 @@
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
-use super::balances::{FlowSet, flow_sets, flows_are_measured, unread};
-use super::given::{better_given, fit_given, given_trial};
+use super::balances::{flow_sets, flows_are_measured};
+use super::given::{First, better_given, first_fit, given_trial, second_fit};
 use super::pool::{Move, Pool};
 use super::stepwise::Stepwise;
 use super::{Effort, progress::Milestones};
-use crate::decision::{Kind, Policy, Verdict, leaves_nothing, log_error_ratio};
+use crate::decision::{Kind, Policy, Verdict, leaves_nothing};
 use crate::fit::FitError;
 
 /// Tries effects that `model` may be missing. Parameters are fitted to `identification`; scores also cover
@@ -32,75 +32,48 @@ pub fn search<'a>(
 ) -> Result<Pool<'a>, FitError> {
     let milestones = Milestones::new(progress);
     milestones.tell("fit of the given model", 0.0);
-    let mut fit = fit_given(model, identification, &effort.fit)?;
+    let First { fit, is_trusted } = first_fit(model, identification, &effort.fit)?;
     milestones.pass();
-    let mut restarts = 0;
-    let mut sets: Option<Vec<FlowSet>> = None;
+    let steps = Stepwise { effort, policy, milestones: &milestones };
+    let mut pool = Pool::new(given_trial(fit, validation, &effort.fit)?, identification, validation);
+    pool.look_at_inputs(effort, policy);
+    if leaves_nothing(&pool.scores, 0, policy) {
+        return Ok(pool);
+    }
     let all: Vec<&Recording> = identification.iter().chain(validation).copied().collect();
-    loop {
-        let given = given_trial(fit, validation, &effort.fit)?;
-        let mut pool = Pool::new(given, identification, validation);
-        pool.look_at_inputs(effort, policy);
-        let steps = Stepwise { effort, policy, milestones: &milestones };
-        if leaves_nothing(&pool.scores, 0, policy) {
-            return Ok(pool);
-        }
-        if flows_are_measured(model, &all) {
-            milestones.tell("the flow balances by themselves", 0.0);
-            let sets = sets.get_or_insert_with(|| flow_sets(model, identification, validation));
-            milestones.pass();
-            steps.join(model, sets, &mut pool);
-            while let Some((next, number)) = next_of_joined(&pool, effort, policy) {
-                steps.take(next, number, &mut pool);
-            }
-        }
-        if several_explain(&pool, policy) {
-            // What changes the meaning of a signal was taken as measured.
-            let unread = unread(&pool.given().fit.model);
-            steps.screen(0, unread, &mut pool);
-        } else {
-            steps.take(Move::Extend, 0, &mut pool);
-        }
-        match better_given(&pool, effort) {
-            Some(better) if restarts < effort.most_restarts => {
-                fit = better;
-                restarts += 1;
-            }
-            _ => {
-                while let Some((next, number)) = next_move(&pool, effort, policy) {
-                    steps.take(next, number, &mut pool);
-                    milestones.pass();
-                }
-                steps.complete_path(&mut pool);
+    let is_explained = flows_are_measured(model, &all) && {
+        milestones.tell("the flow balances by themselves", 0.0);
+        let sets = flow_sets(model, effort.most_effects, identification, validation);
+        milestones.pass();
+        steps.join(model, &sets, &mut pool)
+    };
+    let mut better = None;
+    if !is_explained && !is_trusted {
+        milestones.tell("fit of the given model", 0.5);
+        better = second_fit(model, identification, &effort.fit, pool.given().fit.loss());
+    }
+    let mut restarts = 0;
+    while !is_explained {
+        if let Some(fit) = better.take() {
+            pool = pool.restarted(given_trial(fit, validation, &effort.fit)?);
+            pool.look_at_inputs(effort, policy);
+            if leaves_nothing(&pool.scores, 0, policy) {
                 return Ok(pool);
             }
         }
+        steps.take(Move::Extend, 0, &mut pool);
+        better = better_given(&pool, effort).filter(|_| restarts < effort.most_restarts);
+        if better.is_none() {
+            break;
+        }
+        restarts += 1;
     }
-}
-
-/// The next move from what the flow balances ask for: more effects while it leaves something, then fewer. The decision would
-/// rather have few effects, and take away what looks small beside the others that are still missing.
-fn next_of_joined(pool: &Pool<'_>, effort: &Effort, policy: &Policy) -> Option<(Move, usize)> {
-    let misfit = |number: usize| log_error_ratio(&pool.scores.validation, &pool.scores.hypotheses[number].validation);
-    let best = (1..pool.trials.len()).min_by(|&a, &b| misfit(a).total_cmp(&misfit(b)))?;
-    let trial = &pool.trials[best];
-    let is_open = |what: Move| !pool.was_done(what, best);
-    if !trial.fit.converged && is_open(Move::Settle) {
-        return Some((Move::Settle, best));
+    while let Some((next, number)) = next_move(&pool, effort, policy) {
+        steps.take(next, number, &mut pool);
+        milestones.pass();
     }
-    if trial.additions.len() < effort.most_effects
-        && is_open(Move::Extend)
-        && !leaves_nothing(&pool.scores, best, policy)
-    {
-        return Some((Move::Extend, best));
-    }
-    (trial.additions.len() > 1 && is_open(Move::Prune)).then_some((Move::Prune, best))
-}
-
-/// Whether several effects together explain the recordings.
-fn several_explain(pool: &Pool<'_>, policy: &Policy) -> bool {
-    let verdict = pool.verdict(policy);
-    verdict.kind == Kind::MissingEffect && pool.trials[verdict.best].additions.len() > 1
+    steps.complete_path(&mut pool);
+    Ok(pool)
 }
 
 /// The next move and its hypothesis. Returns `None` when every move that could change the verdict was tried.

@@ -2,11 +2,10 @@
 
 use std::time::Instant;
 
-use excavator_model::Model;
 use rayon::prelude::*;
 
 use super::addition::{AdditionError, additions, structural_additions};
-use super::balances::{FlowSet, with_flows_of};
+use super::balances::is_read;
 use super::pool::{Move, Pool};
 use super::progress::Milestones;
 use super::promises::Promised;
@@ -15,7 +14,7 @@ use super::track::Track;
 use super::transient::evaluate_in_windows_of;
 use super::{Addition, Effort, Trial};
 use crate::decision::{Policy, log_error_ratio};
-use crate::fit::{FitSettings, fit, fit_predicted, predict, with_nuisances};
+use crate::fit::{FitSettings, fit, fit_predicted, predict};
 
 /// Settings and callbacks for making moves.
 pub(super) struct Stepwise<'a> {
@@ -34,7 +33,8 @@ impl Stepwise<'_> {
         match what {
             Move::Settle => self.settle(number, pool),
             Move::Prune => self.prune(number, pool),
-            Move::Extend => self.extend(number, pool),
+            Move::Extend => self.extend(number, &|_| true, pool),
+            Move::ExtendForces => self.extend(number, &|one| !is_read(one), pool),
             Move::Exchange => self.exchange(number, pool),
             Move::Structural => self.structural(number, pool),
         }
@@ -51,30 +51,6 @@ impl Stepwise<'_> {
         let Ok(validation) = evaluate_in_windows_of(&fit.model, known, pool.validation(), &settings) else { return };
         let seconds = trial.seconds + begin.elapsed().as_secs_f64();
         pool.put(Trial { fit, validation, seconds, ..trial });
-    }
-
-    /// Fits the sets of several effects that the flow balances ask for, from the parameters found there.
-    pub fn join(&self, model: &Model, sets: &[FlowSet], pool: &mut Pool<'_>) {
-        let settings = FitSettings { maximum_steps: self.effort.settling_steps, ..self.effort.fit };
-        let given = pool.given().clone();
-        // Without its missing effects the fit of the given model may have moved masses and frictions far away.
-        let plain = with_nuisances(model, pool.identification());
-        let fitted = |set: &FlowSet| {
-            let begin = Instant::now();
-            let starts = [&plain, &given.fit.model].map(|forces| with_flows_of(forces, &set.model));
-            let fits = starts.par_iter().filter_map(|start| fit(start, pool.identification(), &settings).ok());
-            let fits: Vec<crate::fit::Fit> = fits.collect();
-            let fit = fits.into_iter().min_by(|a, b| a.loss().total_cmp(&b.loss()))?;
-            let known = &given.validation.model;
-            let validation = evaluate_in_windows_of(&fit.model, known, pool.validation(), &settings).ok()?;
-            let (additions, seconds) = (set.additions.clone(), begin.elapsed().as_secs_f64());
-            Some(Trial { additions, fit, validation, seconds })
-        };
-        self.milestones.tell("the effects of the flow balances together", 0.5);
-        let several: Vec<&FlowSet> =
-            sets.iter().filter(|set| !set.additions.is_empty()).take(self.effort.joined_sets).collect();
-        let trials: Vec<Trial> = several.into_par_iter().filter_map(fitted).collect();
-        trials.into_iter().for_each(|trial| pool.put(trial));
     }
 
     fn prune(&self, number: usize, pool: &mut Pool<'_>) {
@@ -94,7 +70,8 @@ impl Stepwise<'_> {
         if known == Some(0) {
             return known;
         }
-        let settings = &self.effort.fit;
+        let given_up = trial.fit.loss() + self.effort.needed_beyond_doubt;
+        let settings = &FitSettings { give_up_above: given_up, ..self.effort.fit };
         let start = trial.model_without(addition);
         let promise = predict(&start, pool.identification(), settings).ok()?;
         if known.is_some_and(|known| pool.trials[known].fit.loss() <= promise.loss_after) {
@@ -108,19 +85,19 @@ impl Stepwise<'_> {
         pool.find_additions(&rest)
     }
 
-    fn extend(&self, number: usize, pool: &mut Pool<'_>) {
-        let wanted = additions(&pool.trials[number].fit.model);
-        self.screen(number, wanted, pool);
+    fn extend(&self, number: usize, is_wanted: &dyn Fn(&Addition) -> bool, pool: &mut Pool<'_>) {
+        let wanted = additions(&pool.trials[number].fit.model).into_iter().filter(is_wanted).collect();
+        self.screen(number, wanted, self.policy.least_improvement, pool);
     }
 
-    /// Screens additions to a trial and fits the best to convergence.
-    pub(super) fn screen(&self, number: usize, wanted: Vec<Addition>, pool: &mut Pool<'_>) {
+    /// Screens additions to a trial, and fits the best to convergence. An addition that cannot improve it by `least` is left out.
+    pub(super) fn screen(&self, number: usize, wanted: Vec<Addition>, least: f64, pool: &mut Pool<'_>) {
         let base = pool.trials[number].clone();
         let screening = Screening {
             base: &base,
             identification: pool.identification(),
             validation: pool.validation(),
-            least_improvement: self.policy.least_improvement,
+            least_improvement: least,
             effort: self.effort,
         };
         let advance =
@@ -274,16 +251,22 @@ impl Stepwise<'_> {
         self.put_added(base, wanted, worst, Some("how the machine is built"), pool);
     }
 
-    /// Fits the missing trials on the path from the given model to the favoured hypothesis, one effect after the other.
+    /// Fits the missing trials on the path from the given model to the favoured hypothesis, one effect after the other. The effect
+    /// that is missed least beside all others goes first.
     pub fn complete_path(&self, pool: &mut Pool<'_>) {
         let mut number = pool.verdict(self.policy).best;
-        while pool.trials[number].additions.len() > 1 {
-            let additions = pool.trials[number].additions.clone();
-            let without: Vec<usize> = additions.iter().filter_map(|one| self.without(number, one, pool)).collect();
-            let loss =
-                |number: &usize| log_error_ratio(&pool.scores.validation, &pool.scores.hypotheses[*number].validation);
-            let Some(next) = without.into_iter().min_by(|a, b| loss(a).total_cmp(&loss(b))) else { return };
-            number = next;
+        let additions = pool.trials[number].additions.clone();
+        self.milestones.tell("one effect after the other", 0.5);
+        let mut missed: Vec<(f64, Addition)> = Vec::new();
+        for addition in additions {
+            let Some(without) = self.without(number, &addition, pool) else { return };
+            let misfit = log_error_ratio(&pool.scores.validation, &pool.scores.hypotheses[without].validation);
+            missed.push((misfit, addition));
+        }
+        missed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, addition) in missed {
+            let Some(without) = self.without(number, &addition, pool) else { return };
+            number = without;
         }
     }
 }

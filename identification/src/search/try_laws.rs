@@ -19,6 +19,6 @@ pub(crate) fn try_laws(
     let milestones = Milestones::new(progress);
     // The results for the catalogue are kept.
     let (unpromising, failed) = (std::mem::take(&mut pool.unpromising), std::mem::take(&mut pool.failed));
-    Stepwise { effort, policy, milestones: &milestones }.screen(number, laws, pool);
+    Stepwise { effort, policy, milestones: &milestones }.screen(number, laws, policy.least_improvement, pool);
     (pool.unpromising, pool.failed) = (unpromising, failed);
 }

@@ -18,8 +18,6 @@ use crate::regression::FlowGround;
 const WIDTH: usize = 2;
 /// Number of additions to one set that are fitted to the end.
 const FITTED: usize = 4;
-/// Largest number of effects.
-const MOST: usize = 5;
 /// Decrease of the misfit that one more effect must bring.
 const LEAST: f64 = 0.01;
 
@@ -37,9 +35,10 @@ struct Grounds<'a> {
     recordings: &'a [&'a Recording],
 }
 
-/// The best sets for the flow balances of `model`, best first. Empty if they cannot be evaluated.
+/// The best sets of at most `most_effects` for the flow balances of `model`, best first. Empty if they cannot be evaluated.
 pub(in super::super) fn flow_sets(
     model: &Model,
+    most_effects: usize,
     identification: &[&Recording],
     validation: &[&Recording],
 ) -> Vec<FlowSet> {
@@ -48,7 +47,11 @@ pub(in super::super) fn flow_sets(
     let mut known: BTreeMap<Vec<String>, (f64, FlowSet)> = BTreeMap::from([(Vec::new(), given.set())]);
     let mut best = given.misfit;
     let mut wide = vec![given];
-    for _ in 0..MOST {
+    for _ in 0..most_effects {
+        // Noise is all that is left.
+        if best < LEAST {
+            break;
+        }
         let mut children: Vec<Node> = wide.iter().flat_map(|parent| grounds.children(parent)).collect();
         children.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
         let Some(first) = children.first().filter(|first| best - first.misfit >= LEAST) else { break };
@@ -105,6 +108,7 @@ impl<'a> Grounds<'a> {
             Some((addition, first))
         });
         let mut begun: Vec<(Addition, Step)> = begun.collect();
+        begun.retain(|(_, first)| parent.fit.misfit - first.misfit >= 0.5 * LEAST);
         begun.sort_by(|a, b| a.1.misfit.total_cmp(&b.1.misfit));
         begun.truncate(FITTED);
         let ended = begun.into_par_iter().filter_map(|(addition, first)| {

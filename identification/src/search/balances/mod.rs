@@ -70,10 +70,14 @@ pub(super) fn with_flows_of(given: &Model, fitted: &Model) -> Model {
     model
 }
 
+/// Whether the flow balances by themselves show an addition.
+pub(super) fn is_read(one: &Addition) -> bool {
+    one.physics.card().is_of_flows() && Ground::keeps_signals(&*one.physics)
+}
+
 /// Additions to the flow balances.
 fn flow_additions(model: &Model) -> Vec<Addition> {
-    let is_of_flows = |one: &Addition| one.physics.card().is_of_flows() && Ground::keeps_signals(&*one.physics);
-    additions(model).into_iter().filter(is_of_flows).collect()
+    additions(model).into_iter().filter(is_read).collect()
 }
 
 /// Additions that change the meaning of a signal. Balances that take it as measured cannot show them.

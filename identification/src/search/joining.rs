@@ -1,0 +1,86 @@
+//! Sets of several effects that the flow balances ask for, in the whole machine.
+
+use std::time::Instant;
+
+use excavator_model::Model;
+
+use super::balances::{FlowSet, unread, with_flows_of};
+use super::pool::{Move, Pool};
+use super::stepwise::Stepwise;
+use super::transient::evaluate_in_windows_of;
+use super::{Effort, Trial};
+use crate::decision::{Kind, Policy, leaves_nothing, log_error_ratio};
+use crate::fit::{FitSettings, fit, with_nuisances};
+
+impl Stepwise<'_> {
+    /// Fits the sets of the flow balances to the whole machine, extends the best while it leaves something, and takes away what
+    /// is not needed. Returns whether several effects then explain the recordings.
+    pub fn join(&self, model: &Model, sets: &[FlowSet], pool: &mut Pool<'_>) -> bool {
+        self.fit_joined(model, sets, pool);
+        while let Some((next, number)) = next_of_joined(pool, self.effort, self.policy) {
+            self.take(next, number, pool);
+        }
+        let verdict = pool.verdict(self.policy);
+        if verdict.kind != Kind::MissingEffect || pool.trials[verdict.best].additions.len() < 2 {
+            return false;
+        }
+        // What changes the meaning of a signal was taken as measured. It counts if it does about as much alone.
+        let explained = pool.given().fit.loss() - pool.trials[verdict.best].fit.loss();
+        let unread = unread(&pool.given().fit.model);
+        self.screen(0, unread, explained.max(self.policy.least_improvement), pool);
+        true
+    }
+
+    /// Without its missing effects, the fit of the given model may have moved masses and frictions far away. So the forces start
+    /// from the data sheet, and from that fit only if this leaves something.
+    fn fit_joined(&self, model: &Model, sets: &[FlowSet], pool: &mut Pool<'_>) {
+        let several = sets.iter().filter(|set| !set.additions.is_empty()).take(self.effort.joined_sets);
+        let plain = with_nuisances(model, pool.identification());
+        let fitted = pool.given().fit.model.clone();
+        for set in several {
+            let mut least = f64::INFINITY;
+            for forces in [&plain, &fitted] {
+                let begin = Instant::now();
+                self.milestones.tell("the effects of the flow balances together", 0.5);
+                let (maximum_steps, give_up_above) = (self.effort.settling_steps, least);
+                let settings = FitSettings { maximum_steps, give_up_above, ..self.effort.fit };
+                let start = with_flows_of(forces, &set.model);
+                let Ok(fit) = fit(&start, pool.identification(), &settings) else { continue };
+                if fit.loss() >= least {
+                    continue;
+                }
+                least = fit.loss();
+                let known = &pool.given().validation.model;
+                let Ok(validation) = evaluate_in_windows_of(&fit.model, known, pool.validation(), &settings) else {
+                    continue;
+                };
+                let additions = set.additions.clone();
+                pool.put(Trial { additions, fit, validation, seconds: begin.elapsed().as_secs_f64() });
+                let last = pool.find_additions(&set.additions);
+                if last.is_some_and(|last| leaves_nothing(&pool.scores, last, self.policy)) {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// The next move from what the flow balances ask for: more effects while it leaves something, then fewer. The decision would
+/// rather have few effects, and take away what looks small beside the others that are still missing.
+fn next_of_joined(pool: &Pool<'_>, effort: &Effort, policy: &Policy) -> Option<(Move, usize)> {
+    let misfit = |number: usize| log_error_ratio(&pool.scores.validation, &pool.scores.hypotheses[number].validation);
+    let best = (1..pool.trials.len()).min_by(|&a, &b| misfit(a).total_cmp(&misfit(b)))?;
+    let trial = &pool.trials[best];
+    let is_open = |what: &Move| !pool.was_done(*what, best);
+    let mut moves = Vec::new();
+    if !trial.fit.converged {
+        moves.push(Move::Settle);
+    }
+    if trial.additions.len() < effort.most_effects && !leaves_nothing(&pool.scores, best, policy) {
+        moves.extend([Move::ExtendForces, Move::Extend]);
+    }
+    if trial.additions.len() > 1 {
+        moves.push(Move::Prune);
+    }
+    moves.into_iter().find(is_open).map(|what| (what, best))
+}
