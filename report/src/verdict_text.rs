@@ -98,10 +98,20 @@ fn missing(machine: &str, diagnosis: &Diagnosis) -> String {
         (_, true) => "With all of them",
         (_, false) => "With the first of each",
     };
-    text + &format!(
+    text += &format!(
         " {with} the mean NMSE on recordings that were not fitted {}.",
         change_with(diagnosis, diagnosis.supported())
-    )
+    );
+    text + left_in_balances(diagnosis)
+}
+
+/// Whether the supported effects leave more than noise, with a leading space.
+fn left_in_balances(diagnosis: &Diagnosis) -> &'static str {
+    match diagnosis.remainders.as_slice() {
+        [] => "",
+        all if all.iter().all(|one| one.is_noise) => " What remains is noise in every balance.",
+        _ => " A little more than noise remains.",
+    }
 }
 
 /// Change of the mean NMSE on the validation recordings with this hypothesis.
@@ -153,18 +163,29 @@ fn partly(diagnosis: &Diagnosis, selected: &[Candidate<'_>]) -> String {
     let (names, share) = (words::list(&names, "and"), 1.0 - after.max(0.0) / before);
     let change = change_with(diagnosis, diagnosis.best());
     let smaller = format!("the mean NMSE on recordings that were not fitted {change}");
-    if share >= MOSTLY {
-        format!(
-            " It is mostly {names}, in a form that differs from the catalogue's: {smaller}, and {} of the misfit remains.",
-            percent(1.0 - share)
-        )
-    } else {
-        format!(" With {names} {smaller}, but {} of the misfit remains.", percent(1.0 - share))
+    let left = percent(1.0 - share);
+    match selected {
+        [only] if share >= MOSTLY && is_its_own(only, diagnosis) => format!(
+            " It is mostly {names}, in a form that differs from the catalogue's: {smaller}, and {left} of the misfit remains."
+        ),
+        [_] => format!(" With {names} {smaller}, but {left} of the misfit remains."),
+        _ => format!(" Probably missing: {names}. With all of them {smaller}, but {left} of the misfit remains."),
     }
 }
 
 /// Share of the misfit from which an effect is called most of what is missing.
 const MOSTLY: f64 = 0.7;
+
+/// Share of a residual that one variable explains, from which it has the form of a law.
+const LAWFUL: f64 = 0.5;
+
+/// Whether what an effect leaves is in its own kind of balance and follows one variable. Otherwise something else is missing beside it.
+fn is_its_own(candidate: &Candidate<'_>, diagnosis: &Diagnosis) -> bool {
+    diagnosis.unexplained.as_ref().is_some_and(|left| {
+        let is_of_forces = left.equation.ends_with(".motion");
+        left.share_of_residual >= LAWFUL && candidate.addition.physics.card().is_of_flows() != is_of_forces
+    })
+}
 
 /// Structural effects that would explain the recordings, with a leading space.
 fn construction(diagnosis: &Diagnosis) -> String {

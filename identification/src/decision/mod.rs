@@ -7,6 +7,7 @@ mod decide;
 #[cfg(test)]
 mod made_scores;
 mod policy;
+mod presence;
 mod resampling;
 pub mod scores;
 pub mod statistic;
@@ -16,6 +17,7 @@ mod verdict;
 
 pub use decide::{decide, leaves_nothing};
 pub use policy::Policy;
+pub use presence::presence;
 pub use resampling::improvement_on_blocks;
 pub use scores::{Hypothesis, Scores, ScoresError};
 pub use statistic::{block_cost, block_costs_of, log_error_ratio, relative_error};

@@ -3,7 +3,7 @@
 
 use super::made_scores::{BLOCKS, hypothesis, misfit, parameter, scores};
 use super::scores::{Bound, Misfit, Role};
-use super::{Hypothesis, Kind, Policy, Reason, Scores, Verdict, decide, leaves_nothing};
+use super::{Hypothesis, Kind, Policy, Reason, Scores, Verdict, decide, leaves_nothing, presence};
 
 fn decided(given: f64, hypotheses: Vec<Hypothesis>) -> Verdict {
     decide(&with(given, hypotheses), &Policy::default())
@@ -102,6 +102,21 @@ fn two_effects_may_leave_as_much_as_one() {
     assert_eq!((pair(0.15).kind, pair(0.15).best), (Kind::MissingEffect, 3));
     assert_eq!((pair(0.25).kind, pair(0.25).best), (Kind::Unexplained, 3));
     assert_eq!(decided(2.0, vec![hypothesis(&["a"], 0.15)]).kind, Kind::MissingEffect);
+}
+
+#[test]
+fn effects_of_a_set_that_explains_are_there_and_an_imitation_alone_is_not() {
+    let scores =
+        |left: f64| with(2.0, vec![hypothesis(&["a"], 1.0), hypothesis(&["b"], 1.2), hypothesis(&["a", "b"], left)]);
+    let probability = |scores: &Scores| {
+        let verdict = decide(scores, &Policy::default());
+        presence(scores, &verdict, &scores.hypotheses[verdict.best].effects[0])
+    };
+    assert!(probability(&scores(0.0)) > 0.95);
+    let partly = probability(&scores(0.5));
+    assert!((0.5..0.95).contains(&partly), "{partly}");
+    let alone = with(2.0, vec![hypothesis(&["a"], 1.0)]);
+    assert!(probability(&alone) < 0.1);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use excavator_model::{ModelEffect, site_name};
 
 use super::Diagnosis;
-use crate::decision::Standing;
+use crate::decision::{Standing, presence};
 use crate::search::{Addition, Trial};
 
 /// Role of an effect in a verdict.
@@ -139,6 +139,14 @@ impl Diagnosis {
             new.map(move |addition| self.candidate(addition, trial, before, Part::Selected))
         })
         .collect()
+    }
+
+    /// Probability that an effect of the favoured hypothesis is there.
+    pub fn presence_of(&self, candidate: &Candidate<'_>) -> Option<f64> {
+        let favoured = self.scores.hypotheses.get(self.verdict.best)?;
+        let own =
+            favoured.effects.iter().find(|one| one.effect == candidate.name() && one.place == candidate.place())?;
+        Some(presence(&self.scores, &self.verdict, own))
     }
 
     /// Effects that replace another one in hypotheses which cannot be distinguished from the favoured one, each with the effect

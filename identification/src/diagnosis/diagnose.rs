@@ -4,7 +4,8 @@ use excavator_model::Model;
 use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
-use super::{Share, Unexplained, residual_map, unexplained};
+use super::remainder::remainders;
+use super::{Remainder, Share, Unexplained, residual_map, unexplained};
 use crate::decision::{Kind, Policy, Scores, Verdict, decide};
 use crate::fit::FitError;
 use crate::regression::RegressionError;
@@ -27,6 +28,8 @@ pub struct Diagnosis {
     pub failed: Vec<(String, AdditionError)>,
     /// Where the residual of the given model is, on the validation recordings.
     pub map: Vec<Share>,
+    /// What is left in each balance on the validation recordings, the largest first.
+    pub remainders: Vec<Remainder>,
     /// The remaining residual, if no effect explains it.
     pub unexplained: Option<Unexplained>,
     /// Mean NMSE of each trial's model on the validation recordings, simulated from their starts, as in a comparison of that
@@ -93,7 +96,7 @@ pub fn diagnose(
     let pool = search(model, identification, validation, effort, policy, progress)?;
     let verdict = decide(&pool.scores, policy);
     progress("where the model fails", 1.0);
-    diagnosis_of(pool, verdict, validation)
+    diagnosis_of(pool, verdict, policy, validation)
 }
 
 /// Combines a search and its verdict into a diagnosis.
@@ -103,16 +106,21 @@ pub fn diagnose(
 pub(crate) fn diagnosis_of(
     pool: Pool<'_>,
     verdict: Verdict,
+    policy: &Policy,
     validation: &[&Recording],
 ) -> Result<Diagnosis, DiagnosisError> {
     let map = residual_map(&pool.given().fit.model, validation)?;
+    let supported = &pool.trials[verdict.supported()].fit.model;
+    let explains = verdict.standings[verdict.supported()].log_error_ratio <= policy.noise_margin;
+    let remainders = remainders(&pool.given().fit.model, supported, validation, explains)?;
     let unexplained = match verdict.kind {
         Kind::Unexplained => unexplained(&pool.trials[verdict.supported()].fit.model, validation)?,
         Kind::Adequate | Kind::MissingEffect => None,
     };
     let (trials, scores, unpromising, failed) = (pool.trials, pool.scores, pool.unpromising, pool.failed);
     let errors = vec![f64::NAN; trials.len()];
-    let mut diagnosis = Diagnosis { verdict, scores, trials, unpromising, failed, map, unexplained, errors };
+    let mut diagnosis =
+        Diagnosis { verdict, scores, trials, unpromising, failed, map, remainders, unexplained, errors };
     let simulated: Vec<(usize, f64)> = diagnosis
         .shown()
         .into_par_iter()

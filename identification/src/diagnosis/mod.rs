@@ -4,6 +4,7 @@ mod candidates;
 mod contribution;
 mod diagnose;
 mod named;
+mod remainder;
 mod residual_map;
 mod residual_points;
 
@@ -13,4 +14,5 @@ pub(crate) use diagnose::diagnosis_of;
 pub use diagnose::{Diagnosis, DiagnosisError, DiagnosisSettings, diagnose};
 pub use named::NamedVerdict;
 pub(crate) use named::judge_named;
+pub use remainder::Remainder;
 pub use residual_map::{Share, Unexplained, residual_map, unexplained};

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::grammar::rounded;
 use super::merits::{Merits, law_of, merits};
 use super::survey::Survey;
-use crate::decision::Verdict;
+use crate::decision::{Policy, Verdict};
 use crate::diagnosis::{Diagnosis, DiagnosisError, Unexplained, diagnosis_of, unexplained};
 use crate::regression::situations_along;
 use crate::search::{Pool, Trial};
@@ -97,11 +97,12 @@ pub(super) fn proposals(
     kind: ProposalVerdict,
     pool: Pool<'_>,
     verdict: Verdict,
+    policy: &Policy,
     survey: Survey,
     identification: &[&Recording],
     validation: &[&Recording],
 ) -> Result<Proposals, DiagnosisError> {
-    let diagnosis = diagnosis_of(pool, verdict, validation)?;
+    let diagnosis = diagnosis_of(pool, verdict, policy, validation)?;
     let before = comparisons(diagnosis.given(), validation);
     let error_before = mean_error(&before);
     let is_needed = matches!(kind, ProposalVerdict::Law | ProposalVerdict::NoLaw);

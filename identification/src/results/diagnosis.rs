@@ -33,6 +33,9 @@ pub struct Diagnosis {
     /// Effects of instruments and recording that were estimated and show.
     #[serde(default)]
     pub nuisances: Vec<Nuisance>,
+    /// What is left in each balance on the validation recordings, the largest first.
+    #[serde(default)]
+    pub balances: Vec<Balance>,
     /// Where the residual of the given model is, the largest share first.
     #[serde(default, rename = "where")]
     pub shares: Vec<ResidualShare>,
@@ -76,6 +79,9 @@ pub struct SelectedEffect {
     pub effect: String,
     /// Name of its place: a cylinder, `pump` or `machine`.
     pub cylinder: String,
+    /// Probability that it is there, 0 to 1.
+    #[serde(default)]
+    pub probability: Option<f64>,
     /// Log error ratio on the validation recordings of the hypothesis that ends with it.
     pub log_error_ratio_after: Option<f64>,
     /// Its parameters in the model that has all of them.
@@ -93,6 +99,20 @@ pub struct Nuisance {
     /// Its parameters.
     #[serde(default)]
     pub parameters: Vec<Parameter>,
+}
+
+/// What is left in one balance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct Balance {
+    /// Name of the equation: `arm.motion`.
+    pub equation: String,
+    /// Mean squared residual of the given model over the variance of its noise: 1 is noise alone.
+    pub before: Option<f64>,
+    /// The same with the effects that the verdict supports.
+    pub after: Option<f64>,
+    /// Whether noise is all that is left with them.
+    pub is_noise: bool,
 }
 
 /// Share of the residual in one equation under one condition.
@@ -165,6 +185,7 @@ impl Diagnosis {
             rejected: Candidate::rejected(diagnosis),
             together: SelectedEffect::all(diagnosis),
             nuisances: Nuisance::shown(given, &diagnosis.supported().fit.model),
+            balances: diagnosis.remainders.iter().map(Balance::of).collect(),
             shares: diagnosis.map.iter().map(ResidualShare::of).collect(),
             unexplained: diagnosis.unexplained.as_ref().map(Unexplained::of),
             construction: Construction::of(diagnosis),
@@ -186,6 +207,7 @@ impl SelectedEffect {
             .map(|one| SelectedEffect {
                 effect: one.name().to_string(),
                 cylinder: one.place().to_string(),
+                probability: diagnosis.presence_of(&one).and_then(finite),
                 log_error_ratio_after: finite(one.standing.log_error_ratio),
                 parameters: Parameter::of_effect(model, one.name(), one.addition.site),
             })
@@ -203,6 +225,17 @@ impl Nuisance {
                 parameters: Parameter::of_effect(fitted, effect.name(), effect.site),
             })
             .collect()
+    }
+}
+
+impl Balance {
+    fn of(remainder: &diagnosis::Remainder) -> Self {
+        Balance {
+            equation: remainder.equation.clone(),
+            before: finite(remainder.before),
+            after: finite(remainder.after),
+            is_noise: remainder.is_noise,
+        }
     }
 }
 
