@@ -5,10 +5,12 @@ use std::collections::BTreeSet;
 use excavator_model::effects::Text;
 use excavator_model::recording::Recording;
 
+use super::given::given_trial;
 use super::input_floor::input_floor;
 use super::trial::key_of;
 use super::{Addition, AdditionError, Effort, Trial, scoring};
 use crate::decision::{Policy, Scores, Verdict, decide, log_error_ratio};
+use crate::fit::{Fit, FitError, FitSettings};
 
 /// An effect that was not promising enough for a full fit.
 #[derive(Debug, Clone)]
@@ -72,11 +74,15 @@ impl<'a> Pool<'a> {
     }
 
     /// The pool with another fit of the given model. Hypotheses of several effects stay: they did not start from it.
-    pub(super) fn restarted(self, given: Trial) -> Self {
+    ///
+    /// # Errors
+    /// [`FitError`] if the fit cannot be evaluated on the validation recordings.
+    pub(super) fn restarted(self, settings: &FitSettings, given: Fit) -> Result<Self, FitError> {
+        let given = given_trial(given, self.validation, settings)?;
         let mut pool = Pool::new(given, self.identification, self.validation);
         pool.done = self.done.into_iter().filter(|(_, key)| key.len() > 1).collect();
         self.trials.into_iter().filter(|trial| trial.additions.len() > 1).for_each(|trial| pool.put(trial));
-        pool
+        Ok(pool)
     }
 
     /// Computes the error floor of the input readings, if the given model leaves more than noise.

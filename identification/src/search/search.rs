@@ -15,7 +15,7 @@ use super::pool::{Move, Pool};
 use super::stepwise::Stepwise;
 use super::{Effort, progress::Milestones};
 use crate::decision::{Kind, Policy, Verdict, leaves_nothing};
-use crate::fit::FitError;
+use crate::fit::{Fit, FitError};
 
 /// Tries effects that `model` may be missing. Parameters are fitted to `identification`; scores also cover
 /// `validation`. `progress` is called with the current activity and the fraction done.
@@ -47,32 +47,40 @@ pub fn search<'a>(
         milestones.pass();
         steps.join(model, &sets, &mut pool)
     };
-    let mut better = None;
-    if !is_explained && !is_trusted {
+    if !is_explained {
         milestones.tell("fit of the given model", 0.5);
-        better = second_fit(model, identification, &effort.fit, pool.given().fit.loss());
-    }
-    let mut restarts = 0;
-    while !is_explained {
-        if let Some(fit) = better.take() {
-            pool = pool.restarted(given_trial(fit, validation, &effort.fit)?);
-            pool.look_at_inputs(effort, policy);
-            if leaves_nothing(&pool.scores, 0, policy) {
-                return Ok(pool);
-            }
+        let loss = pool.given().fit.loss();
+        let second = if is_trusted { None } else { second_fit(model, identification, &effort.fit, loss) };
+        pool = extended(pool, second, &steps)?;
+        if leaves_nothing(&pool.scores, 0, policy) {
+            return Ok(pool);
         }
-        steps.take(Move::Extend, 0, &mut pool);
-        better = better_given(&pool, effort).filter(|_| restarts < effort.most_restarts);
-        if better.is_none() {
-            break;
-        }
-        restarts += 1;
     }
     while let Some((next, number)) = next_move(&pool, effort, policy) {
         steps.take(next, number, &mut pool);
         milestones.pass();
     }
     steps.complete_path(&mut pool);
+    Ok(pool)
+}
+
+/// Adds every effect to the given model; again whenever that shows a better fit of it, which `better` may be at first.
+fn extended<'a>(mut pool: Pool<'a>, mut better: Option<Fit>, steps: &Stepwise<'_>) -> Result<Pool<'a>, FitError> {
+    let (effort, policy) = (steps.effort, steps.policy);
+    for _ in 0..=effort.most_restarts {
+        if let Some(fit) = better.take() {
+            pool = pool.restarted(&effort.fit, fit)?;
+            pool.look_at_inputs(effort, policy);
+            if leaves_nothing(&pool.scores, 0, policy) {
+                break;
+            }
+        }
+        steps.take(Move::Extend, 0, &mut pool);
+        better = better_given(&pool, effort);
+        if better.is_none() {
+            break;
+        }
+    }
     Ok(pool)
 }
 
