@@ -238,7 +238,7 @@ fn a_simulation_repeats_itself_from_its_own_recording() {
 
 #[test]
 fn means_lower_the_rate_and_do_not_cross_a_pause() {
-    let time = (0..10).map(|k| f64::from(k) * 0.01 + if k < 5 { 0.0 } else { 3.0 }).collect();
+    let time = (0..10).map(|k| f64::from(k) * 0.01 + if k < 5 { 0.0 } else { 30.0 }).collect();
     let mut recording = Recording::unmeasured("paused", time, &["arm"]);
     recording.pump_pressure = (0..10).map(f64::from).collect();
     let slow = recording.averaged(2);
