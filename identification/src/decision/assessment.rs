@@ -35,7 +35,17 @@ pub(super) fn assess<'a>(scores: &'a Scores, policy: &Policy, given_is_adequate:
     let admissible: Vec<bool> =
         (0..assessed.len()).map(|number| is_admissible(&assessed, number, policy, given_is_adequate)).collect();
     assessed.iter_mut().zip(admissible).for_each(|(one, is_admissible)| one.is_admissible = is_admissible);
+    let distorted: Vec<bool> = (0..assessed.len()).map(|number| is_distorted(&assessed, number)).collect();
+    assessed.iter_mut().zip(distorted).for_each(|(one, is_distorted)| one.is_admissible &= !is_distorted);
     assessed
+}
+
+/// Whether a hypothesis is near the recordings only because masses, gains or the bulk modulus left the data sheet: one effect more
+/// brings them back.
+fn is_distorted(all: &[Assessed<'_>], number: usize) -> bool {
+    let own = all[number].hypothesis;
+    !own.is_plausible
+        && all.iter().any(|more| more.is_admissible && more.hypothesis.is_plausible && more.hypothesis.extends(own))
 }
 
 fn is_admissible(all: &[Assessed<'_>], number: usize, policy: &Policy, given_is_adequate: bool) -> bool {
@@ -44,14 +54,22 @@ fn is_admissible(all: &[Assessed<'_>], number: usize, policy: &Policy, given_is_
     !effects.is_empty()
         && effects.iter().all(is_sensible)
         && all.iter().filter(|less| own.hypothesis.extends(less.hypothesis)).all(|less| {
-            let is_given = less.hypothesis.effects.is_empty();
-            let least = if is_given && given_is_adequate {
-                policy.least_improvement_when_adequate
-            } else {
-                policy.least_improvement
-            };
-            improves(less, own, least, policy.least_significance)
+            let (least, significance) = wanted(less.hypothesis, own.hypothesis, policy, given_is_adequate);
+            improves(less, own, least, significance)
         })
+}
+
+/// The improvement that `more` must bring over `less`, and by how many standard errors.
+fn wanted(less: &Hypothesis, more: &Hypothesis, policy: &Policy, given_is_adequate: bool) -> (f64, f64) {
+    let is_given = less.effects.is_empty();
+    if is_given && given_is_adequate {
+        (policy.least_improvement_when_adequate, policy.least_significance)
+    } else if !is_given && more.is_plausible && !less.is_plausible {
+        // Other parameters pay for the effect that it lacks, so its error does not tell how large that effect is.
+        (0.0, policy.least_significance_over_implausible)
+    } else {
+        (policy.least_improvement, policy.least_significance)
+    }
 }
 
 /// Whether `more` explains what `less` does not. The improvement must reach `least` on the validation recordings, half of it on

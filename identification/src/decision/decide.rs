@@ -4,6 +4,7 @@ use super::adequacy::adequacy;
 use super::assessment::{Assessed, assess};
 use super::confidence_set::set_p_values;
 use super::resampling::DRAWS;
+use super::scores::EffectScore;
 use super::{Kind, Policy, Reason, Scores, Standing, Verdict};
 
 /// Decides which effect the given model lacks.
@@ -12,7 +13,7 @@ use super::{Kind, Policy, Reason, Scores, Standing, Verdict};
 ///    readings.
 /// 2. A hypothesis is admissible if each of its effects is needed, significant and of sensible size.
 /// 3. The model confidence set holds the admissible hypotheses that cannot be distinguished from the best one; of these, the ones
-///    with the fewest effects stay.
+///    with the fewest effects stay. If the effects that all of them share leave no more than noise, these are the only one.
 /// 4. The first of them explains the recordings if it leaves little error. A structural effect in the set forbids an attribution.
 ///
 /// ```
@@ -32,6 +33,7 @@ use super::{Kind, Policy, Reason, Scores, Standing, Verdict};
 /// let given = Hypothesis {
 ///     effects: Vec::new(),
 ///     nuisances: Vec::new(),
+///     is_plausible: true,
 ///     identification: misfit.clone(),
 ///     validation: misfit,
 ///     parameter_count: 12,
@@ -51,7 +53,10 @@ pub fn decide(scores: &Scores, policy: &Policy) -> Verdict {
     let adequacy = adequacy(scores, policy);
     let assessed = assess(scores, policy, adequacy.is_adequate);
     let standings = standings(&assessed);
-    let set = confidence_set(&assessed, &standings, policy);
+    let mut set = confidence_set(&assessed, &standings, policy);
+    if let Some(shared) = shared_and_adequate(&assessed, &set, policy) {
+        set = vec![shared];
+    }
     let candidates: Vec<usize> = with_fewest_effects(&assessed, &set, |one| !one.hypothesis.is_structural());
     let before = assessed[0].validation;
     let favoured = candidates.first().copied().or_else(|| best_candidate(&assessed));
@@ -124,6 +129,22 @@ fn confidence_set(assessed: &[Assessed<'_>], standings: &[Standing], policy: &Po
         number == best || is_in_set || lead < doubt
     });
     ranked
+}
+
+/// The admissible hypothesis of exactly the effects that all in `set` share, if it leaves no more than noise: then they differ only
+/// in what does not matter.
+fn shared_and_adequate(assessed: &[Assessed<'_>], set: &[usize], policy: &Policy) -> Option<usize> {
+    let members = || set.iter().map(|&number| assessed[number].hypothesis);
+    let first = members().next().filter(|_| set.len() > 1)?;
+    let shared: Vec<&EffectScore> =
+        first.effects.iter().filter(|effect| members().all(|other| other.has(effect))).collect();
+    (1..assessed.len()).find(|&number| {
+        let own = &assessed[number];
+        own.is_admissible
+            && own.validation <= policy.noise_margin
+            && own.hypothesis.effects.len() == shared.len()
+            && shared.iter().all(|effect| own.hypothesis.has(effect))
+    })
 }
 
 /// Of the hypotheses in `set` that are `wanted`, those with the fewest effects, the determined ones first.

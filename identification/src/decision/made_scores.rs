@@ -38,6 +38,7 @@ pub fn hypothesis(effects: &[&str], log_error_ratio: f64) -> Hypothesis {
     Hypothesis {
         effects: effects.iter().map(|name| effect(name)).collect(),
         nuisances: Vec::new(),
+        is_plausible: true,
         identification: misfit.clone(),
         validation: misfit,
         parameter_count: 10 + effects.len(),

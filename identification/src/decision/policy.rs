@@ -24,6 +24,9 @@ pub struct Policy {
     /// Standard errors, from the scatter between stretches of the recordings, by which an improvement must differ from zero.
     /// Without the least improvement, 3 alone would keep the chance of one false attribution among 30 candidates near 4 %.
     pub least_significance: f64,
+    /// The same over a hypothesis whose masses, gains or bulk modulus left the data sheet, while those of the larger one stay near
+    /// it. Data sheets are rarely that wrong, so little more evidence is needed. Larger: a wrong bulk modulus hides entrained air.
+    pub least_significance_over_implausible: f64,
     /// Probability with which the best hypothesis may be left out of the model confidence set. Larger: fewer ties, more wrong
     /// attributions.
     pub set_error: f64,
@@ -46,6 +49,7 @@ impl Default for Policy {
             least_improvement: 0.1,
             least_improvement_when_adequate: 0.2,
             least_significance: 3.0,
+            least_significance_over_implausible: 1.0,
             set_error: 0.05,
             largest_remainder: 0.1,
             doubtful_share: 0.7,

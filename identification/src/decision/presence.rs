@@ -13,9 +13,8 @@ const TOGETHER_AND_UNEXPLAINED: f64 = 0.8;
 /// Probability that `effect` of the favoured hypothesis is there: the share of resampled recordings on which the best admissible
 /// hypothesis has it, times the share of such effects that were there on machines with a known answer.
 pub fn presence(scores: &Scores, verdict: &Verdict, effect: &EffectScore) -> f64 {
-    let has = |other: &EffectScore| other.effect == effect.effect && other.place == effect.place;
     let rows = scores.hypotheses.iter().zip(&verdict.standings);
-    let share: f64 = rows.filter(|(row, _)| row.effects.iter().any(has)).map(|(_, standing)| standing.is_first).sum();
+    let share: f64 = rows.filter(|(row, _)| row.has(effect)).map(|(_, standing)| standing.is_first).sum();
     let together = scores.hypotheses.get(verdict.best).map_or(0, |best| best.effects.len());
     let trust = match (verdict.kind, together) {
         (Kind::MissingEffect, _) => 1.0,

@@ -71,10 +71,18 @@ pub struct Hypothesis {
     pub identification: Misfit,
     /// On the others.
     pub validation: Misfit,
+    /// Whether what every machine has (masses, flow gains, bulk modulus) stays near the data sheet. Scores that were stored before
+    /// this was asked count as plausible.
+    #[serde(default = "plausible")]
+    pub is_plausible: bool,
     /// Unknown parameters of the whole model.
     pub parameter_count: usize,
     /// Wall-clock time of its fit, s.
     pub seconds: f64,
+}
+
+fn plausible() -> bool {
+    true
 }
 
 /// Squared errors of one hypothesis on one kind of recordings.

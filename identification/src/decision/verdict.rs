@@ -106,7 +106,7 @@ pub enum Reason {
         before: f64,
         /// Log error ratio of the best hypothesis.
         after: f64,
-        /// Log error ratio that may remain, or share of `before`: `largest_remainder` of the policy, over the number of its effects.
+        /// Log error ratio that may remain, or share of `before`: `largest_remainder` of the policy.
         limit: f64,
     },
     /// The best hypothesis explains a part of what the given model leaves, and too much remains for an attribution.
@@ -115,7 +115,7 @@ pub enum Reason {
         before: f64,
         /// Log error ratio of the best hypothesis.
         after: f64,
-        /// Log error ratio that may remain, or share of `before`: `largest_remainder` of the policy, over the number of its effects.
+        /// Log error ratio that may remain, or share of `before`: `largest_remainder` of the policy.
         limit: f64,
     },
     /// No hypothesis improves on the given model.

@@ -5,7 +5,9 @@ use excavator_model::recording::Recording;
 use rayon::prelude::*;
 
 use super::remainder::remainders;
-use super::{Remainder, Share, Unexplained, residual_map, unexplained};
+use super::residual_map::{follows, residual_map};
+use super::residual_points::points;
+use super::{Remainder, Share, Unexplained};
 use crate::decision::{Kind, Policy, Scores, Verdict, decide};
 use crate::fit::FitError;
 use crate::regression::RegressionError;
@@ -109,12 +111,15 @@ pub(crate) fn diagnosis_of(
     policy: &Policy,
     validation: &[&Recording],
 ) -> Result<Diagnosis, DiagnosisError> {
-    let map = residual_map(&pool.given().fit.model, validation)?;
-    let supported = &pool.trials[verdict.supported()].fit.model;
+    let (given, supported) = (&pool.given().fit.model, &pool.trials[verdict.supported()].fit.model);
+    let before = points(given, validation)?;
+    let of_other = if verdict.supported() == 0 { None } else { Some(points(supported, validation)?) };
+    let after = of_other.as_ref().unwrap_or(&before);
+    let map = residual_map(given, &before);
     let explains = verdict.standings[verdict.supported()].log_error_ratio <= policy.noise_margin;
-    let remainders = remainders(&pool.given().fit.model, supported, validation, explains)?;
+    let remainders = remainders(given, &before, after, explains);
     let unexplained = match verdict.kind {
-        Kind::Unexplained => unexplained(&pool.trials[verdict.supported()].fit.model, validation)?,
+        Kind::Unexplained => follows(supported, after),
         Kind::Adequate | Kind::MissingEffect => None,
     };
     let (trials, scores, unpromising, failed) = (pool.trials, pool.scores, pool.unpromising, pool.failed);

@@ -15,4 +15,4 @@ pub use diagnose::{Diagnosis, DiagnosisError, DiagnosisSettings, diagnose};
 pub use named::NamedVerdict;
 pub(crate) use named::judge_named;
 pub use remainder::Remainder;
-pub use residual_map::{Share, Unexplained, residual_map, unexplained};
+pub use residual_map::{Share, Unexplained, unexplained};

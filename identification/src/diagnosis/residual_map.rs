@@ -3,7 +3,7 @@
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
-use super::residual_points::{Point, VARIABLES, bins, points, share_explained, unit_of};
+use super::residual_points::{Point, VARIABLES, bins, mean_squares, points, share_explained, unit_of};
 use crate::regression::{EquationKind, RegressionError};
 
 /// Share of the residual in one equation and one regime.
@@ -40,12 +40,8 @@ const CLOSED: f64 = 0.03;
 /// Speed, relative to the fastest, below which a piston counts as slow.
 const SLOW: f64 = 0.2;
 
-/// Shares of the residual by equation and regime, largest first.
-///
-/// # Errors
-/// [`RegressionError`] if the recordings lack inputs.
-pub fn residual_map(model: &Model, recordings: &[&Recording]) -> Result<Vec<Share>, RegressionError> {
-    let points = points(model, recordings)?;
+/// Shares of the residual by equation and regime, largest first. `points` are those of `model`.
+pub(super) fn residual_map(model: &Model, points: &[Point]) -> Vec<Share> {
     let largest = |of: fn(&Point) -> f64| points.iter().map(|point| of(point).abs()).fold(0.0, f64::max);
     let (largest_opening, fastest) = (largest(|p| p.opening), largest(|p| p.velocity));
     let regime = |point: &Point| {
@@ -69,7 +65,7 @@ pub fn residual_map(model: &Model, recordings: &[&Recording]) -> Result<Vec<Shar
     };
     let total: f64 = points.iter().map(|point| point.weighed * point.weighed).sum();
     let mut shares: Vec<(EquationKind, Share, usize)> = Vec::new();
-    for point in &points {
+    for point in points {
         let name = regime(point);
         let position = shares.iter().position(|(kind, share, _)| *kind == point.kind && share.regime == name);
         let position = position.unwrap_or_else(|| {
@@ -87,7 +83,7 @@ pub fn residual_map(model: &Model, recordings: &[&Recording]) -> Result<Vec<Shar
         .map(|(kind, share, count)| Share { share_of_time: count as f64 / kinds(kind), ..share })
         .collect();
     shares.sort_by(|a, b| b.share_of_residual.total_cmp(&a.share_of_residual));
-    Ok(shares)
+    shares
 }
 
 /// The curve over one variable that explains most of the residual in the equation with the largest residual.
@@ -95,17 +91,12 @@ pub fn residual_map(model: &Model, recordings: &[&Recording]) -> Result<Vec<Shar
 /// # Errors
 /// [`RegressionError`] if the recordings lack inputs.
 pub fn unexplained(model: &Model, recordings: &[&Recording]) -> Result<Option<Unexplained>, RegressionError> {
-    let points = points(model, recordings)?;
-    let mut kinds: Vec<EquationKind> = points.iter().map(|point| point.kind).collect();
-    kinds.sort();
-    kinds.dedup();
-    let mean_square = |kind: EquationKind| {
-        let own = || points.iter().filter(move |point| point.kind == kind);
-        own().map(|point| point.weighed * point.weighed).sum::<f64>() / own().count().max(1) as f64
-    };
-    let Some(worst) = kinds.into_iter().max_by(|a, b| mean_square(*a).total_cmp(&mean_square(*b))) else {
-        return Ok(None);
-    };
+    Ok(follows(model, &points(model, recordings)?))
+}
+
+/// The same from the residuals of `model`.
+pub(super) fn follows(model: &Model, points: &[Point]) -> Option<Unexplained> {
+    let (worst, _) = mean_squares(points).into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let own: Vec<&Point> = points.iter().filter(|point| point.kind == worst).collect();
     let best = VARIABLES
         .into_iter()
@@ -116,11 +107,11 @@ pub fn unexplained(model: &Model, recordings: &[&Recording]) -> Result<Option<Un
             Some((variable, share_explained(&bins), curve))
         })
         .max_by(|a, b| a.1.total_cmp(&b.1));
-    Ok(best.map(|(variable, share_of_residual, curve)| Unexplained {
+    best.map(|(variable, share_of_residual, curve)| Unexplained {
         equation: worst.name(model),
         variable,
         share_of_residual,
         curve,
         unit: unit_of(worst, model),
-    }))
+    })
 }

@@ -1,5 +1,7 @@
 //! Residuals of a model with the states at which they occur, and binned curves over these.
 
+use std::collections::BTreeMap;
+
 use excavator_model::Model;
 use excavator_model::machine::Mechanism;
 use excavator_model::recording::Recording;
@@ -91,6 +93,17 @@ pub(super) fn points(model: &Model, recordings: &[&Recording]) -> Result<Vec<Poi
         }
     }
     Ok(points)
+}
+
+/// Mean squared residual of each equation, in units of the noise variance.
+pub(super) fn mean_squares(points: &[Point]) -> Vec<(EquationKind, f64)> {
+    let mut sums: BTreeMap<EquationKind, (f64, usize)> = BTreeMap::new();
+    for point in points {
+        let (sum, count) = sums.entry(point.kind).or_default();
+        *sum += point.weighed * point.weighed;
+        *count += 1;
+    }
+    sums.into_iter().map(|(kind, (sum, count))| (kind, sum / count as f64)).collect()
 }
 
 fn busiest(inputs: &InputSignals, sample: usize, cylinders: usize) -> usize {

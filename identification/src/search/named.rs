@@ -23,7 +23,8 @@ pub(crate) fn score_named(
 ) -> Result<Scores, AdditionError> {
     let first = given_trial(given.clone(), validation, settings)?;
     let mut known = first.validation.model.clone();
-    let mut pool = Pool::new(first, identification, validation);
+    // Its values before the fit do not matter here: nothing is chosen.
+    let mut pool = Pool::new(&given.model, first, identification, validation);
     pool.look_at_inputs(&Effort { fit: *settings, ..Effort::default() }, policy);
     let mut additions = Vec::new();
     for (addition, fit) in added {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use excavator_model::Model;
 use excavator_model::effects::Text;
 use excavator_model::recording::Recording;
 
@@ -45,6 +46,8 @@ pub(super) enum Move {
 
 /// Trials, their scores (one each, in the same order), and the moves already made with them.
 pub struct Pool<'a> {
+    /// The given model before any fit.
+    data_sheet: Model,
     identification: &'a [&'a Recording],
     validation: &'a [&'a Recording],
     /// The given model first.
@@ -59,10 +62,16 @@ pub struct Pool<'a> {
 }
 
 impl<'a> Pool<'a> {
-    /// Creates a pool with the fitted given model.
-    pub(super) fn new(given: Trial, identification: &'a [&'a Recording], validation: &'a [&'a Recording]) -> Self {
-        let scores = scoring::begin(&given, identification, validation);
+    /// Creates a pool with the fitted given model. `data_sheet` is that model before the fit.
+    pub(super) fn new(
+        data_sheet: &Model,
+        given: Trial,
+        identification: &'a [&'a Recording],
+        validation: &'a [&'a Recording],
+    ) -> Self {
+        let scores = scoring::begin(&given, data_sheet, identification, validation);
         Pool {
+            data_sheet: data_sheet.clone(),
             identification,
             validation,
             trials: vec![given],
@@ -79,7 +88,7 @@ impl<'a> Pool<'a> {
     /// [`FitError`] if the fit cannot be evaluated on the validation recordings.
     pub(super) fn restarted(self, settings: &FitSettings, given: Fit) -> Result<Self, FitError> {
         let given = given_trial(given, self.validation, settings)?;
-        let mut pool = Pool::new(given, self.identification, self.validation);
+        let mut pool = Pool::new(&self.data_sheet, given, self.identification, self.validation);
         pool.done = self.done.into_iter().filter(|(_, key)| key.len() > 1).collect();
         self.trials.into_iter().filter(|trial| trial.additions.len() > 1).for_each(|trial| pool.put(trial));
         Ok(pool)
@@ -128,7 +137,7 @@ impl<'a> Pool<'a> {
     }
 
     fn score(&self, trial: &Trial) -> crate::decision::Hypothesis {
-        scoring::score(trial, &self.given().fit.model, self.identification)
+        scoring::score(trial, &self.given().fit.model, &self.data_sheet, self.identification)
     }
 
     /// Number of the trial with these names, sorted.

@@ -11,15 +11,16 @@ use crate::decision::scores::{
     Block, Bound, EffectScore, FORMAT, Hypothesis, InstrumentScale, Misfit, ParameterScore, Role, Scores, Side,
 };
 use crate::fit::{Fit, nuisances_shown};
+use crate::plausibility::implausible;
 
 /// Scores with the given model only, tried without additions on the recordings that it was fitted to and on others.
-pub fn begin(given: &Trial, identification: &[&Recording], validation: &[&Recording]) -> Scores {
+pub fn begin(given: &Trial, data_sheet: &Model, identification: &[&Recording], validation: &[&Recording]) -> Scores {
     Scores {
         format: FORMAT,
         machine: given.fit.model.machine.name.clone(),
         identification: side(&given.fit, identification),
         validation: side(&given.validation, validation),
-        hypotheses: vec![score(given, &given.fit.model, identification)],
+        hypotheses: vec![score(given, &given.fit.model, data_sheet, identification)],
     }
 }
 
@@ -48,9 +49,9 @@ pub(crate) fn side(fit: &Fit, recordings: &[&Recording]) -> Side {
     }
 }
 
-/// The row of scores of a trial: errors on both sides, and the properties of each added effect. `given` is the model
-/// without additions, `identification` the recordings that the trial was fitted to.
-pub fn score(trial: &Trial, given: &Model, identification: &[&Recording]) -> Hypothesis {
+/// The row of scores of a trial: errors on both sides, and the properties of each added effect. `given` is the fitted
+/// model without additions, `data_sheet` that before any fit, `identification` the recordings that the trial was fitted to.
+pub fn score(trial: &Trial, given: &Model, data_sheet: &Model, identification: &[&Recording]) -> Hypothesis {
     let model = &trial.fit.model;
     let effect = |effect: &ModelEffect| EffectScore {
         effect: effect.name().to_string(),
@@ -66,6 +67,7 @@ pub fn score(trial: &Trial, given: &Model, identification: &[&Recording]) -> Hyp
         nuisances: nuisances_shown(given, model)
             .map(|effect| addition_name(effect.name(), site_name(&model.machine, effect.site)))
             .collect(),
+        is_plausible: implausible(data_sheet, model).is_empty(),
         identification: misfit(&trial.fit),
         validation: misfit(&trial.validation),
         parameter_count: trial.fit.fitted.len(),

@@ -35,7 +35,7 @@ pub fn search<'a>(
     let First { fit, is_trusted } = first_fit(model, identification, &effort.fit)?;
     milestones.pass();
     let steps = Stepwise { effort, policy, milestones: &milestones };
-    let mut pool = Pool::new(given_trial(fit, validation, &effort.fit)?, identification, validation);
+    let mut pool = Pool::new(model, given_trial(fit, validation, &effort.fit)?, identification, validation);
     pool.look_at_inputs(effort, policy);
     if leaves_nothing(&pool.scores, 0, policy) {
         return Ok(pool);
