@@ -81,6 +81,9 @@ fn next_of_joined(pool: &Pool<'_>, effort: &Effort, policy: &Policy) -> Option<(
     }
     if trial.additions.len() > 1 {
         moves.push(Move::Prune);
+        if !leaves_nothing(&pool.scores, best, policy) {
+            moves.push(Move::Swap);
+        }
     }
     moves.into_iter().find(is_open).map(|what| (what, best))
 }

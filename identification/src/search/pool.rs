@@ -38,6 +38,8 @@ pub(super) enum Move {
     Extend,
     /// Add every other effect that the flow balances by themselves do not show.
     ExtendForces,
+    /// Add every other effect to it without one of its effects, for each of these in turn.
+    Swap,
     /// Replace its effects by rivals.
     Exchange,
     /// Replace its effects by structural effects.

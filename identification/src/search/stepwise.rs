@@ -35,6 +35,7 @@ impl Stepwise<'_> {
             Move::Prune => self.prune(number, pool),
             Move::Extend => self.extend(number, &|_| true, pool),
             Move::ExtendForces => self.extend(number, &|one| !is_read(one), pool),
+            Move::Swap => self.swap(number, pool),
             Move::Exchange => self.exchange(number, pool),
             Move::Structural => self.structural(number, pool),
         }
@@ -160,6 +161,16 @@ impl Stepwise<'_> {
             unfinished[..some].iter().filter(|screen| screen.improvement > effort.little_share * best).count()
         } else {
             0
+        }
+    }
+
+    /// Adds every other effect to the hypothesis without one of its effects, for each of these in turn.
+    fn swap(&self, number: usize, pool: &mut Pool<'_>) {
+        for addition in pool.trials[number].additions.clone() {
+            let Some(base) = self.without(number, &addition, pool).filter(|base| *base != 0) else { continue };
+            if !pool.was_done(Move::Extend, base) {
+                self.take(Move::Extend, base, pool);
+            }
         }
     }
 

@@ -14,6 +14,7 @@ pub mod instruments;
 pub mod laws;
 pub mod manoeuvres;
 pub mod plant;
+pub mod reliability;
 pub mod replay;
 pub mod run;
 pub mod scoring;

@@ -68,6 +68,9 @@ struct Words {
     /// Verdicts of an earlier replay to compare with; written there where there are none
     #[arg(long, requires = "replay")]
     against: Option<PathBuf>,
+    /// With --replay, draw how often named effects were there against the stated probability, as SVG
+    #[arg(long, requires = "replay")]
+    diagram: Option<PathBuf>,
     /// Ask for laws, and try the first on a third recording
     #[arg(long)]
     propose: bool,
@@ -99,7 +102,7 @@ enum StrengthName {
 fn main() -> ExitCode {
     let words = Words::parse();
     if !words.replay.is_empty() {
-        return match replayed(&words.replay, words.against.as_deref()) {
+        return match replayed(&words.replay, words.against.as_deref(), words.diagram.as_deref()) {
             Ok(text) => {
                 say(&text);
                 ExitCode::SUCCESS

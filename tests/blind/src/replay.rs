@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, Outcome};
 use crate::cases::Sort;
+use crate::reliability::{diagram, reliability, table};
 use crate::scoring::Secret;
 
 /// The scores of one machine, and what it hides.
@@ -136,11 +137,11 @@ impl Stored {
 }
 
 /// Judges all scores of some folders: a line for each machine whose answer is not right, a summary, and what changed against an
-/// earlier replay whose file is given (written where it does not exist).
+/// earlier replay whose file is given (written where it does not exist). A diagram of the stated probabilities goes to a file.
 ///
 /// # Errors
 /// [`ReplayError`].
-pub fn replayed(folders: &[PathBuf], against: Option<&Path>) -> Result<String, ReplayError> {
+pub fn replayed(folders: &[PathBuf], against: Option<&Path>, to: Option<&Path>) -> Result<String, ReplayError> {
     let mut stored = Vec::new();
     for folder in folders {
         stored.extend(Stored::read_all(folder)?);
@@ -161,6 +162,12 @@ pub fn replayed(folders: &[PathBuf], against: Option<&Path>) -> Result<String, R
         .map(|(source, outcome, words, _)| format!("{source:60} {:18} {words}", outcome.name()))
         .collect();
     lines.push(summary(&answers));
+    let bins = reliability(&stored, &policy);
+    lines.push(table(&bins));
+    if let Some(path) = to {
+        std::fs::write(path, diagram(&bins))
+            .map_err(|source| ReplayError::File { path: path.to_path_buf(), source })?;
+    }
     lines.push(format!("{} machines judged in {seconds:.1} s", answers.len()));
     if let Some(path) = against {
         lines.push(changes(&answers, path)?);
