@@ -1,14 +1,17 @@
 //! Identifies the unknown parameters of a model from recordings, with any of the methods.
 
 use std::fmt;
+use std::ops::ControlFlow;
 
 use excavator_model::effects::Family;
 use excavator_model::recording::Recording;
 use excavator_model::{HistoryEntry, Model};
 
-use crate::fit::{FitError, FitSettings, ProfileInterval, fit, profile, simplified, with_nuisances, with_nuisances_of};
+use crate::fit::{
+    FitError, FitSettings, ProfileInterval, Watch, fit_watched, profile, simplified, with_nuisances, with_nuisances_of,
+};
 use crate::regression::{
-    ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form,
+    ConditionNumber, EquationGauge, Regression, RegressionError, WeakFormSettings, least_squares, weak_form_watched,
 };
 
 /// How parameters are identified.
@@ -89,16 +92,37 @@ pub enum IdentifyError {
 /// # Errors
 /// [`IdentifyError`].
 pub fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Result<Identified, IdentifyError> {
+    identify_watched(model, recordings, method, &|_| ControlFlow::Continue(()))
+}
+
+/// Share of the time of an output-error fit that its regression takes.
+const SHARE_OF_REGRESSION: f64 = 0.3;
+
+/// Like [`identify`], but calls `watch` with the progress, 0 to 1, and stops when it returns a break.
+///
+/// # Errors
+/// [`IdentifyError`], with [`FitError::Stopped`] where it was stopped.
+pub fn identify_watched(
+    model: &Model,
+    recordings: &[&Recording],
+    method: Method,
+    watch: Watch<'_>,
+) -> Result<Identified, IdentifyError> {
+    let first = |done: f64| watch(SHARE_OF_REGRESSION * done);
+    let then = |done: f64| watch(SHARE_OF_REGRESSION + (1.0 - SHARE_OF_REGRESSION) * done);
     let regression = match method {
         Method::LeastSquares => Some(least_squares(model, recordings)?),
-        Method::WeakForm => Some(in_weak_form(model, recordings)?),
-        // If the equations lack signals, the fit starts from the given values.
-        Method::OutputError => in_weak_form(model, recordings).ok(),
+        Method::WeakForm => Some(in_weak_form(model, recordings, watch)?),
+        Method::OutputError => match in_weak_form(model, recordings, &first) {
+            Err(RegressionError::Fit(FitError::Stopped)) => return Err(FitError::Stopped.into()),
+            // If the equations lack signals, the fit starts from the given values.
+            found => found.ok(),
+        },
     };
     let mut result = regression.map_or_else(|| Identified::unchanged(model), Identified::from);
     if method == Method::OutputError {
         let settings = FitSettings { sample_rate: f64::INFINITY, ..FitSettings::default() };
-        let fitted = fit(&with_nuisances(&result.model, recordings), recordings, &settings)?;
+        let fitted = fit_watched(&with_nuisances(&result.model, recordings), recordings, &settings, &then)?;
         let fitted = simplified(model, &fitted, recordings, &settings)?;
         result.profiles = fitted
             .undetermined()
@@ -112,9 +136,9 @@ pub fn identify(model: &Model, recordings: &[&Recording], method: Method) -> Res
     Ok(result)
 }
 
-fn in_weak_form(model: &Model, recordings: &[&Recording]) -> Result<Regression, RegressionError> {
+fn in_weak_form(model: &Model, recordings: &[&Recording], watch: Watch<'_>) -> Result<Regression, RegressionError> {
     let extended = with_nuisances_of(model, &[Family::Recording], recordings);
-    Ok(weak_form(&extended, recordings, &WeakFormSettings::default())?.simplified(model))
+    Ok(weak_form_watched(&extended, recordings, &WeakFormSettings::default(), watch)?.simplified(model))
 }
 
 impl Identified {

@@ -16,7 +16,7 @@ use excavator_model::document::DocumentError;
 use excavator_model::effects::UnknownEffect;
 use excavator_model::formula::FormulaError;
 use excavator_model::simulation::RunError;
-use excavator_workbench::WorkError;
+use excavator_study::WorkError;
 
 #[cfg(feature = "live")]
 use excavator_ros::RosError;

@@ -6,7 +6,6 @@ mod arm_bridge;
 mod arm_simulator;
 #[cfg(feature = "live")]
 mod arm_state;
-mod block_reader;
 mod cli;
 #[cfg(feature = "live")]
 mod command_gate;
@@ -20,7 +19,6 @@ mod error;
 mod identification_node;
 #[cfg(feature = "live")]
 mod joint_controller;
-mod long_recording;
 mod manual;
 mod missing;
 mod output;
@@ -30,7 +28,6 @@ mod play;
 #[cfg(feature = "live")]
 mod record;
 mod ros_words;
-mod saved_diagnosis;
 mod sources;
 mod terminal;
 #[cfg(feature = "live")]

@@ -3,7 +3,7 @@
 use excavator_bags::BagError;
 use excavator_bags::map::MapError;
 use excavator_model::document::DocumentError;
-use excavator_workbench::WorkError;
+use excavator_study::WorkError;
 use pyo3::exceptions::PyException;
 use pyo3::{PyErr, create_exception};
 
@@ -43,9 +43,13 @@ pub fn of_model(error: excavator_model::ModelError) -> PyErr {
 pub fn of_work(error: WorkError) -> PyErr {
     let text = error.to_string();
     match error {
-        WorkError::Recording(_) | WorkError::Bag(_) | WorkError::Part { .. } | WorkError::DiagnosisSyntax { .. } => {
-            ReadError::new_err(text)
-        }
+        WorkError::Recording(_)
+        | WorkError::Bag(_)
+        | WorkError::Part { .. }
+        | WorkError::DiagnosisSyntax { .. }
+        | WorkError::StudySyntax { .. }
+        | WorkError::Unreadable { .. }
+        | WorkError::Changed { .. } => ReadError::new_err(text),
         WorkError::Check(refusal) => CheckError::new_err(match refusal.name() {
             Some(name) => format!("{text}; if this is right, say accept=[\"{name}\"]"),
             None => text,
@@ -66,6 +70,7 @@ pub fn of_work(error: WorkError) -> PyErr {
         | WorkError::Run(_)
         | WorkError::Signal(_)
         | WorkError::Json(_)
+        | WorkError::NoRecording
         | WorkError::NoTie { .. } => ComputationError::new_err(text),
     }
 }

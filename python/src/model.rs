@@ -8,8 +8,8 @@ use excavator_model::document::{BUILT_IN, built_in, parse, parse_catalogue, to_t
 use excavator_model::effects::{Catalogue, Site};
 use excavator_model::template::examples;
 use excavator_model::{Model as Physics, site_name, site_named};
-use excavator_workbench::profile_file::ProfileFile;
-use excavator_workbench::simulated::{simulate_commands, simulate_profile};
+use excavator_study::profile_file::ProfileFile;
+use excavator_study::simulated::{simulate_commands, simulate_profile};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use rosbag2::{ReadLimits, read_regular_text};

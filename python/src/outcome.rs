@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use excavator_workbench::results::Outcome as Told;
+use excavator_study::results::Outcome as Told;
 use pyo3::prelude::*;
 
 use crate::errors::of_work;

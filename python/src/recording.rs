@@ -7,7 +7,7 @@ use excavator_bags::map::{Origin, SignalName, TopicMap, read_mapped, read_record
 use excavator_bags::table::Table;
 use excavator_bags::{ReadReport, Topics, write_recording};
 use excavator_model::recording::{Recording as Signals, is_measured};
-use excavator_workbench::recording_part::Part;
+use excavator_study::recording_part::Part;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;

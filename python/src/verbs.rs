@@ -1,20 +1,17 @@
 //! The verbs of the program as functions.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use excavator_identification::checks::shared_readings;
 use excavator_identification::identify::Method;
 use excavator_identification::refinement::Additions;
 use excavator_model::Model as Physics;
 use excavator_model::recording::Recording as Signals;
-use excavator_workbench::WorkError;
-use excavator_workbench::diagnosis_file::DiagnosisFile;
-use excavator_workbench::recordings::{Use, checked, telling};
-use excavator_workbench::results::{
-    Characterised, Compared, DesignOrder, Determined, Diagnosed, Energetic, IdentifiedResult, Outcome as Told,
-    Progress, Proposed, Refined, Separated,
-};
+use excavator_study::diagnosis_file::DiagnosisFile;
+use excavator_study::recordings::{Use, checked, telling};
+use excavator_study::results::{DesignOrder, Determined, Outcome as Told, Progress, Separated};
+use excavator_study::{Study, WorkError};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -66,12 +63,11 @@ impl Desk {
         contents.iter().map(|content| self.telling(content, model)).collect()
     }
 
-    /// The recordings for the fit, and those for validation.
-    fn both(&mut self, contents: &[Vec<Arc<Content>>; 2], model: &Physics) -> Result<[Vec<Signals>; 2], WorkError> {
-        let [fitted, judging] = [self.all(&contents[0], model)?, self.all(&contents[1], model)?];
-        let shared = shared_readings(&fitted.iter().collect::<Vec<_>>(), &judging.iter().collect::<Vec<_>>());
-        self.remarks.extend(shared.iter().map(ToString::to_string));
-        Ok([fitted, judging])
+    /// A study of the recordings for the fit and of those for validation.
+    fn study(&mut self, contents: &[Vec<Arc<Content>>; 2], model: &Physics) -> Result<Study, WorkError> {
+        let study = Study::new(model.clone(), self.all(&contents[0], model)?, self.all(&contents[1], model)?);
+        self.remarks.extend(study.shared_readings());
+        Ok(study)
     }
 }
 
@@ -109,7 +105,7 @@ pub fn compare(
     done(py, None, usage, move |desk, _| {
         let used = desk.telling(&recording, &model)?;
         let again = repeat.map(|repeat| desk.checked(&repeat, &model)).transpose()?;
-        Compared::of(&model, &used, against.as_deref(), again.as_ref())
+        Study::of_recording((*model).clone(), used).compare(against.as_deref(), again.as_ref())
     })
 }
 
@@ -134,7 +130,7 @@ pub fn identify(
     let (model, recordings) = (model.physics(), contents(&recordings));
     done(py, None, usage, move |desk, _| {
         let used = desk.all(&recordings, &model)?;
-        IdentifiedResult::of(&model, &used.iter().collect::<Vec<_>>(), method)
+        Study::of_fitted((*model).clone(), used).identify(method, &|_| ControlFlow::Continue(()))
     })
 }
 
@@ -149,7 +145,7 @@ pub fn characterise(
     let (model, recordings) = (model.physics(), contents(&recordings));
     done(py, None, usage, move |desk, _| {
         let used = recordings.iter().map(|content| desk.checked(content, &model)).collect::<Result<Vec<_>, _>>()?;
-        Ok(Characterised::of(&model, &used.iter().collect::<Vec<_>>()))
+        Ok(Study::of_fitted((*model).clone(), used).characterise())
     })
 }
 
@@ -158,8 +154,8 @@ pub fn characterise(
 pub fn energy(py: Python<'_>, model: &Model, recording: &Recording, usage: Usage) -> PyResult<(Outcome, Vec<String>)> {
     let (model, recording) = (model.physics(), recording.content());
     done(py, None, usage, move |desk, _| match recording.is_mapped {
-        true => Energetic::of(&model, &desk.checked(&recording, &model)?),
-        false => Energetic::of_blocks(&model, &recording.signals),
+        true => Study::of_recording((*model).clone(), desk.checked(&recording, &model)?).energy(),
+        false => Study::of_recording((*model).clone(), recording.signals.clone()).energy_in_blocks(),
     })
 }
 
@@ -174,10 +170,7 @@ pub fn diagnose(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Outcome, Vec<String>)> {
     let (model, both) = (model.physics(), [contents(&identification), contents(&validation)]);
-    done(py, progress, usage, move |desk, progress| {
-        let [fitted, judging] = desk.both(&both, &model)?;
-        Diagnosed::of(&model, &fitted.iter().collect::<Vec<_>>(), judging, progress)
-    })
+    done(py, progress, usage, move |desk, progress| desk.study(&both, &model)?.diagnose(progress))
 }
 
 /// `propose`.
@@ -191,10 +184,7 @@ pub fn propose(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Outcome, Vec<String>)> {
     let (model, both) = (model.physics(), [contents(&identification), contents(&validation)]);
-    done(py, progress, usage, move |desk, progress| {
-        let [fitted, judging] = desk.both(&both, &model)?;
-        Proposed::of(&model, &fitted.iter().collect::<Vec<_>>(), &judging.iter().collect::<Vec<_>>(), progress)
-    })
+    done(py, progress, usage, move |desk, progress| desk.study(&both, &model)?.propose(progress))
 }
 
 /// `refine`: with these effects, or without names with what a diagnosis finds (and with laws that are proposed).
@@ -217,9 +207,7 @@ pub fn refine(
             ([], false) => Additions::Auto,
             (names, _) => Additions::named(&model, names)?,
         };
-        let [fitted, judging] = desk.both(&both, &model)?;
-        let (fitted, judging) = (fitted.iter().collect::<Vec<_>>(), judging.iter().collect::<Vec<_>>());
-        Refined::of(&model, &fitted, &judging, &additions, progress)
+        desk.study(&both, &model)?.refine(&additions, progress)
     })
 }
 

@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-use excavator_workbench::WorkError;
-use excavator_workbench::results::Progress;
+use excavator_study::WorkError;
+use excavator_study::results::Progress;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 

@@ -65,7 +65,7 @@ fn table(rows: &[Candidate<'_>]) -> Markup {
                     td { (words::spoken(candidate.name())) " " code.code-name { (candidate.name()) } }
                     td { (candidate.place()) }
                     td { span class={ "chip " (class) } { (candidate.result()) } }
-                    @for error in candidate.errors { td.n { (significant(error, 3)) } }
+                    @for error in candidate.errors { td.n { (significant(error.unwrap_or(f64::NAN), 3)) } }
                     td.n { (two_digits(candidate.improvement)) }
                     td.n { (two_digits(candidate.standing.significance)) " σ" }
                     td.n { (two_digits(candidate.standing.identification_improvement)) }

@@ -108,6 +108,6 @@ fn lacking(found: &Proposals) -> Option<String> {
         "{without} {} is off, and {} of its squared residual follows the {}.",
         words::equation(&left.equation),
         percent(left.share_of_residual),
-        words::variable(left.variable)
+        words::variable(&left.variable)
     ))
 }

@@ -48,6 +48,8 @@ fn comparison(error: f64) -> Comparison {
             input_correlation: None,
             name: name.to_string(),
             normalised_error: error * error,
+            root_mean_squared_error: error,
+            unit: "Pa",
             fit: 100.0 * (1.0 - error),
             phases: Vec::new(),
             phase_delay_degrees: (name != "arm.velocity").then_some(-1.25),
@@ -95,21 +97,21 @@ fn trial(names: &[&str], improvement: f64) -> Trial {
         additions.push(Addition { physics, site });
     }
     let validation = fit_of(&extended, 1e-2 * (-0.5 * improvement).exp());
-    Trial { additions, fit: fit_of(&extended, 1e-3), validation, seconds: 0.0 }
+    Trial { additions, fit: fit_of(&extended, 1e-3), validation, seconds: 0.0, error: None }
 }
 
 /// A diagnosis whose hypotheses are the given model and then `trials`. `set` holds their numbers, from 1.
 fn diagnosis(kind: Kind, trials: Vec<Trial>, set: &[usize], reasons: Vec<Reason>) -> Diagnosis {
     let share = |equation: &str, share| Share {
         equation: equation.into(),
-        regime: "valve closed",
+        regime: "valve closed".into(),
         share_of_residual: share,
         share_of_time: 0.2,
     };
     let given = trial(&[], 0.0);
     let recording = recording("bag", 0.0);
-    let mut scores = scores_of_given(&given, &[&recording], &[&recording]);
-    scores.hypotheses.extend(trials.iter().map(|trial| score(trial, &given.fit.model, &[&recording])));
+    let mut scores = scores_of_given(&given, &model(), &[&recording], &[&recording]);
+    scores.hypotheses.extend(trials.iter().map(|trial| score(trial, &given.fit.model, &model(), &[&recording])));
     let standing = |trial: &Trial| Standing {
         log_error_ratio: trial.validation.loss(),
         improvement: given.validation.loss() - trial.validation.loss(),
@@ -119,27 +121,26 @@ fn diagnosis(kind: Kind, trials: Vec<Trial>, set: &[usize], reasons: Vec<Reason>
         set_p_value: None,
         is_first: 0.97,
     };
-    let errors = std::iter::once(&given)
-        .chain(&trials)
-        .map(|trial| 0.1 * (trial.validation.loss() - given.validation.loss()).exp())
-        .collect();
     let standings = std::iter::once(&given).chain(&trials).map(standing).collect();
+    let with_error = |trial: Trial| {
+        let error = Some(0.1 * (trial.validation.loss() - given.validation.loss()).exp());
+        Trial { error, ..trial }
+    };
     Diagnosis {
         verdict: Verdict { kind, best: set.first().copied().unwrap_or(0), set: set.to_vec(), reasons, standings },
         scores,
-        trials: std::iter::once(given).chain(trials).collect(),
+        trials: std::iter::once(given.clone()).chain(trials).map(with_error).collect(),
         unpromising: Vec::new(),
         failed: Vec::new(),
         map: vec![share("arm.cap_continuity", 0.7), share("arm.motion", 0.3)],
         remainders: Vec::new(),
         unexplained: (kind == Kind::Unexplained).then(|| Unexplained {
             equation: "arm.motion".into(),
-            variable: "position",
+            variable: "position".into(),
             share_of_residual: 0.6,
             curve: vec![[-0.1, 20.0, 2.0], [0.0, f64::NAN, 1.0], [0.1, -30.0, 2.5]],
-            unit: "N m",
+            unit: "N m".into(),
         }),
-        errors,
     }
 }
 

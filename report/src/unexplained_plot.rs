@@ -11,7 +11,7 @@ use super::words;
 
 /// The residual, with its band.
 pub(super) fn unexplained_plot(machine: &Machine, left: &Unexplained) -> Markup {
-    let (x_unit, y_unit) = (unit_of_variable(machine, &left.equation, left.variable), unit_of_residual(left.unit));
+    let (x_unit, y_unit) = (unit_of_variable(machine, &left.equation, &left.variable), unit_of_residual(&left.unit));
     let points: Vec<(f64, f64, f64)> = left
         .curve
         .iter()
@@ -28,7 +28,7 @@ pub(super) fn unexplained_plot(machine: &Machine, left: &Unexplained) -> Markup 
         x: range_of(points.iter().map(|point| point.0)),
         y: range_of(band.iter().flat_map(|&(_, low, high)| [low, high, 0.0])),
     };
-    let x_label = format!("{} ({})", words::variable(left.variable), x_unit.symbol);
+    let x_label = format!("{} ({})", words::variable(&left.variable), x_unit.symbol);
     let y_label = format!("residual ({})", y_unit.symbol);
     let content = html! {
         (frame.axes(&x_label, &y_label))
@@ -39,7 +39,7 @@ pub(super) fn unexplained_plot(machine: &Machine, left: &Unexplained) -> Markup 
     html! {
         p {
             "The " (words::equation(&left.equation)) " (" code { (left.equation) } ") is off, and " (percent(left.share_of_residual))
-            " of its squared residual follows the " (words::variable(left.variable))
+            " of its squared residual follows the " (words::variable(&left.variable))
             ". The curve is the mean residual, measured side minus model, with a 95 % band: whatever is missing has this shape."
         }
         @if line.is_empty() { p.empty { "The curve has no points." } } @else {

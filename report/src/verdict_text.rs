@@ -116,7 +116,7 @@ fn left_in_balances(diagnosis: &Diagnosis) -> &'static str {
 
 /// Change of the mean NMSE on the validation recordings with this hypothesis.
 fn change_with(diagnosis: &Diagnosis, trial: &Trial) -> String {
-    change_of_error([diagnosis.given(), trial].map(|one| diagnosis.error_of(one)))
+    change_of_error([diagnosis.given(), trial].map(|one| one.error.unwrap_or(f64::NAN)))
 }
 
 /// Share of a residual that a variable must explain to be mentioned.
@@ -146,7 +146,7 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
         text += &if left.share_of_residual < LEAST_SHARE {
             "; it follows no single variable.".to_string()
         } else {
-            format!("; {} of it follows the {}.", percent(left.share_of_residual), words::variable(left.variable))
+            format!("; {} of it follows the {}.", percent(left.share_of_residual), words::variable(&left.variable))
         };
     }
     text + &construction(diagnosis)

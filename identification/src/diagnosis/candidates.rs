@@ -32,8 +32,8 @@ pub struct Candidate<'a> {
     pub standing: Standing,
     /// Decrease of the log error ratio from `before` to `trial`.
     pub improvement: f64,
-    /// Mean NMSE of both on the validation recordings, as in [`Diagnosis::errors`]: before, with it.
-    pub errors: [f64; 2],
+    /// Mean NMSE of both on the validation recordings, as in [`Trial::error`]: before, with it.
+    pub errors: [Option<f64>; 2],
     /// Its role in the verdict.
     pub part: Part,
     /// Whether it shares the first place with others.
@@ -85,17 +85,16 @@ impl Diagnosis {
         &self.trials[self.verdict.supported()]
     }
 
-    /// Mean NMSE of the model of a trial on the validation recordings, as in [`Diagnosis::errors`].
-    pub fn error_of(&self, trial: &Trial) -> f64 {
-        self.errors.get(self.number(trial)).copied().unwrap_or(f64::NAN)
+    /// Numbers of the given model and of the hypotheses on the path to the supported one.
+    pub(super) fn on_paths(&self) -> Vec<usize> {
+        std::iter::once(0).chain(self.path(self.verdict.supported())).collect()
     }
 
     /// Numbers of the trials that are shown to users.
     pub(super) fn shown(&self) -> Vec<usize> {
-        let paths = [self.verdict.best, self.verdict.supported()].into_iter().flat_map(|number| self.path(number));
-        let singles = self.trials.iter().filter(|trial| trial.additions.len() == 1);
-        let mut shown: Vec<usize> = paths.chain(singles).map(|trial| self.number(trial)).collect();
-        shown.push(0);
+        let singles = (0..self.trials.len()).filter(|&number| self.trials[number].additions.len() == 1);
+        let mut shown: Vec<usize> =
+            self.on_paths().into_iter().chain(self.path(self.verdict.best)).chain(singles).collect();
         shown.extend(self.verdict.set.iter().copied().chain(self.verdict.structural_alternative()));
         shown.sort_unstable();
         shown.dedup();
@@ -108,12 +107,12 @@ impl Diagnosis {
         singles + self.unpromising.len() + self.failed.len()
     }
 
-    /// The trials from the first effect to hypothesis `number`, each with one more effect than the previous one.
-    pub fn path(&self, number: usize) -> Vec<&Trial> {
+    /// Numbers of the hypotheses from the first effect to hypothesis `number`, each with one more effect than the previous one.
+    pub fn path(&self, number: usize) -> Vec<usize> {
         let mut path = Vec::new();
         let mut next = Some(number).filter(|&number| number != 0);
         while let Some(number) = next {
-            path.insert(0, &self.trials[number]);
+            path.insert(0, number);
             let own = &self.scores.hypotheses[number];
             next = (1..self.trials.len())
                 .filter(|&less| {
@@ -132,20 +131,20 @@ impl Diagnosis {
 
     fn selected_of(&self, number: usize) -> Vec<Candidate<'_>> {
         let path = self.path(number);
-        let befores = std::iter::once(self.given()).chain(path.iter().copied());
+        let befores = std::iter::once(0).chain(path.iter().copied());
         let each = path.iter().zip(befores);
-        each.flat_map(|(&trial, before)| {
-            let new = trial.additions.iter().filter(|addition| !before.adds(addition));
-            new.map(move |addition| self.candidate(addition, trial, before, Part::Selected))
+        each.flat_map(|(&number, before)| {
+            let known = &self.trials[before];
+            let new = self.trials[number].additions.iter().filter(|addition| !known.adds(addition));
+            new.map(move |addition| self.candidate(addition, [before, number], Part::Selected))
         })
         .collect()
     }
 
-    /// Probability that an effect of the favoured hypothesis is there.
+    /// Probability that an effect is there; `None` if no hypothesis has it.
     pub fn presence_of(&self, candidate: &Candidate<'_>) -> Option<f64> {
-        let favoured = self.scores.hypotheses.get(self.verdict.best)?;
-        let own =
-            favoured.effects.iter().find(|one| one.effect == candidate.name() && one.place == candidate.place())?;
+        let mut effects = self.scores.hypotheses.iter().flat_map(|hypothesis| &hypothesis.effects);
+        let own = effects.find(|one| one.effect == candidate.name() && one.place == candidate.place())?;
         Some(presence(&self.scores, &self.verdict, own))
     }
 
@@ -163,7 +162,7 @@ impl Diagnosis {
             let Some(&replaced) = replaced else { continue };
             for addition in trial.additions.iter().filter(|addition| !best.adds(addition)) {
                 if !found.iter().any(|(known, _)| known.addition == addition) {
-                    found.push((self.candidate(addition, trial, self.given(), Part::Tied), replaced));
+                    found.push((self.candidate(addition, [0, number], Part::Tied), replaced));
                 }
             }
         }
@@ -208,29 +207,20 @@ impl Diagnosis {
             })
             .map(|number| {
                 let part = if self.verdict.standings[number].is_admissible { Part::Improves } else { Part::NoEvidence };
-                let trial = &self.trials[number];
-                self.candidate(&trial.additions[0], trial, self.given(), part)
+                self.candidate(&self.trials[number].additions[0], [0, number], part)
             })
             .collect();
         singles.sort_by(|a, b| b.improvement.total_cmp(&a.improvement));
         singles
     }
 
-    fn candidate<'a>(
-        &'a self,
-        addition: &'a Addition,
-        trial: &'a Trial,
-        before: &'a Trial,
-        part: Part,
-    ) -> Candidate<'a> {
-        let standing = self.verdict.standings[self.number(trial)];
-        let improvement = self.verdict.standings[self.number(before)].log_error_ratio - standing.log_error_ratio;
-        let errors = [before, trial].map(|one| self.error_of(one));
+    /// A candidate from the numbers of the hypotheses without it and with it.
+    fn candidate<'a>(&'a self, addition: &'a Addition, numbers: [usize; 2], part: Part) -> Candidate<'a> {
+        let [before, trial] = numbers.map(|number| &self.trials[number]);
+        let [less, standing] = numbers.map(|number| self.verdict.standings[number]);
+        let improvement = less.log_error_ratio - standing.log_error_ratio;
+        let errors = [before.error, trial.error];
         Candidate { addition, trial, before, standing, improvement, errors, part, is_tied_with_first: false }
-    }
-
-    fn number(&self, trial: &Trial) -> usize {
-        self.trials.iter().position(|one| std::ptr::eq(one, trial)).unwrap_or(0)
     }
 
     fn ratio(&self, number: usize) -> f64 {

@@ -11,7 +11,7 @@ use super::{Remainder, Share, Unexplained};
 use crate::decision::{Kind, Policy, Scores, Verdict, decide};
 use crate::fit::FitError;
 use crate::regression::RegressionError;
-use crate::search::{AdditionError, Effort, Pool, Trial, Unpromising, search};
+use crate::search::{Effort, Pool, Trial, Unpromising, search};
 use crate::validation::mean_error;
 
 /// Result of a diagnosis.
@@ -27,16 +27,13 @@ pub struct Diagnosis {
     /// best first.
     pub unpromising: Vec<Unpromising>,
     /// Additions that could not be fitted, with the reason.
-    pub failed: Vec<(String, AdditionError)>,
+    pub failed: Vec<(String, String)>,
     /// Where the residual of the given model is, on the validation recordings.
     pub map: Vec<Share>,
     /// What is left in each balance on the validation recordings, the largest first.
     pub remainders: Vec<Remainder>,
     /// The remaining residual, if no effect explains it.
     pub unexplained: Option<Unexplained>,
-    /// Mean NMSE of each trial's model on the validation recordings, simulated from their starts, as in a comparison of that
-    /// model. `NaN` for trials that are not shown and if a simulation failed.
-    pub errors: Vec<f64>,
 }
 
 /// Why a diagnosis fails.
@@ -98,39 +95,63 @@ pub fn diagnose(
     let pool = search(model, identification, validation, effort, policy, progress)?;
     let verdict = decide(&pool.scores, policy);
     progress("where the model fails", 1.0);
-    diagnosis_of(pool, verdict, policy, validation)
+    Ok(diagnosis_of(pool, verdict, settings, validation)?)
 }
 
-/// Combines a search and its verdict into a diagnosis.
+/// Combines a search and its verdict into a diagnosis. The models that a refinement would write lose the nuisance effects that do
+/// not show, so that both have the same parameters and errors.
 ///
 /// # Errors
-/// [`DiagnosisError::Regression`] if the recordings lack inputs.
+/// [`RegressionError`] if the recordings lack inputs.
 pub(crate) fn diagnosis_of(
     pool: Pool<'_>,
     verdict: Verdict,
-    policy: &Policy,
+    settings: &DiagnosisSettings,
     validation: &[&Recording],
-) -> Result<Diagnosis, DiagnosisError> {
-    let (given, supported) = (&pool.given().fit.model, &pool.trials[verdict.supported()].fit.model);
-    let before = points(given, validation)?;
-    let of_other = if verdict.supported() == 0 { None } else { Some(points(supported, validation)?) };
-    let after = of_other.as_ref().unwrap_or(&before);
-    let map = residual_map(given, &before);
-    let explains = verdict.standings[verdict.supported()].log_error_ratio <= policy.noise_margin;
-    let remainders = remainders(given, &before, after, explains);
-    let unexplained = match verdict.kind {
-        Kind::Unexplained => follows(supported, after),
-        Kind::Adequate | Kind::MissingEffect => None,
-    };
-    let (trials, scores, unpromising, failed) = (pool.trials, pool.scores, pool.unpromising, pool.failed);
-    let errors = vec![f64::NAN; trials.len()];
-    let mut diagnosis =
-        Diagnosis { verdict, scores, trials, unpromising, failed, map, remainders, unexplained, errors };
-    let simulated: Vec<(usize, f64)> = diagnosis
+) -> Result<Diagnosis, RegressionError> {
+    let (policy, identification, data_sheet) = (&settings.policy, pool.identification(), pool.data_sheet().clone());
+    let failed = pool.failed.into_iter().map(|(name, error)| (name, error.to_string())).collect();
+    let (trials, scores, unpromising) = (pool.trials, pool.scores, pool.unpromising);
+    let (map, remainders, unexplained) = (Vec::new(), Vec::new(), None);
+    let mut diagnosis = Diagnosis { verdict, scores, trials, unpromising, failed, map, remainders, unexplained };
+    let simple: Vec<(usize, Trial)> = diagnosis
+        .on_paths()
+        .into_par_iter()
+        .map(|number| {
+            let simple =
+                diagnosis.trials[number].simplified(&data_sheet, identification, validation, &settings.effort.fit);
+            // A model that cannot be fitted without them keeps them.
+            Some((number, simple.ok()?))
+        })
+        .flatten()
+        .collect();
+    simple.into_iter().for_each(|(number, trial)| diagnosis.trials[number] = trial);
+    let simulated: Vec<(usize, Option<f64>)> = diagnosis
         .shown()
         .into_par_iter()
-        .map(|number| (number, mean_error(&diagnosis.trials[number].fit.model, validation).unwrap_or(f64::NAN)))
+        .map(|number| (number, mean_error(&diagnosis.trials[number].fit.model, validation).ok()))
         .collect();
-    simulated.into_iter().for_each(|(number, error)| diagnosis.errors[number] = error);
+    simulated.into_iter().for_each(|(number, error)| diagnosis.trials[number].error = error);
+    diagnosis.locate(policy, validation)?;
     Ok(diagnosis)
+}
+
+impl Diagnosis {
+    /// Finds where the given model fails, and what the supported one leaves.
+    fn locate(&mut self, policy: &Policy, validation: &[&Recording]) -> Result<(), RegressionError> {
+        let number = self.verdict.supported();
+        let (given, supported) = (&self.trials[0].fit.model, &self.trials[number].fit.model);
+        let before = points(given, validation)?;
+        let of_other = if number == 0 { None } else { Some(points(supported, validation)?) };
+        let after = of_other.as_ref().unwrap_or(&before);
+        let explains = self.verdict.standings[number].log_error_ratio <= policy.noise_margin;
+        let map = residual_map(given, &before);
+        let remainders = remainders(given, &before, after, explains);
+        let unexplained = match self.verdict.kind {
+            Kind::Unexplained => follows(supported, after),
+            Kind::Adequate | Kind::MissingEffect => None,
+        };
+        (self.map, self.remainders, self.unexplained) = (map, remainders, unexplained);
+        Ok(())
+    }
 }

@@ -1,6 +1,7 @@
 //! Locates where a model fails: in which equation, in which regime, along which variable.
 
 use excavator_model::Model;
+use excavator_model::effects::Text;
 use excavator_model::recording::Recording;
 
 use super::residual_points::{Point, VARIABLES, bins, mean_squares, points, share_explained, unit_of};
@@ -12,7 +13,7 @@ pub struct Share {
     /// `arm.motion`, `arm.cap_continuity`, ...
     pub equation: String,
     /// Description: "valve closed", "to cap side, fast", ...
-    pub regime: &'static str,
+    pub regime: Text,
     /// Fraction of the squared residual (in units of noise) of all equations.
     pub share_of_residual: f64,
     /// Fraction of the time.
@@ -25,13 +26,13 @@ pub struct Unexplained {
     /// The equation with the largest residual.
     pub equation: String,
     /// The variable that it follows most closely.
-    pub variable: &'static str,
+    pub variable: Text,
     /// Fraction of that equation's squared residual that a curve over the variable explains.
     pub share_of_residual: f64,
     /// The curve: variable, mean residual, its standard error; both in SI units.
     pub curve: Vec<[f64; 3]>,
     /// Unit of the residual: N m, N for a load without joint, or m³/s.
-    pub unit: &'static str,
+    pub unit: Text,
 }
 
 /// Opening, relative to the largest commanded, below which a valve counts as closed.
@@ -70,7 +71,7 @@ pub(super) fn residual_map(model: &Model, points: &[Point]) -> Vec<Share> {
         let position = shares.iter().position(|(kind, share, _)| *kind == point.kind && share.regime == name);
         let position = position.unwrap_or_else(|| {
             let equation = point.kind.name(model);
-            let share = Share { equation, regime: name, share_of_residual: 0.0, share_of_time: 0.0 };
+            let share = Share { equation, regime: name.into(), share_of_residual: 0.0, share_of_time: 0.0 };
             shares.push((point.kind, share, 0));
             shares.len() - 1
         });
@@ -109,9 +110,9 @@ pub(super) fn follows(model: &Model, points: &[Point]) -> Option<Unexplained> {
         .max_by(|a, b| a.1.total_cmp(&b.1));
     best.map(|(variable, share_of_residual, curve)| Unexplained {
         equation: worst.name(model),
-        variable,
+        variable: variable.into(),
         share_of_residual,
         curve,
-        unit: unit_of(worst, model),
+        unit: unit_of(worst, model).into(),
     })
 }

@@ -1,11 +1,12 @@
 //! The ledger as evidence of what a model is missing.
 
 use excavator_model::Model;
+use serde::{Deserialize, Serialize};
 
 use super::{EnergyAnalysis, Place, PlaceJudgement, Regime, RegimeJudgement};
 
 /// Power that is lost, or appears, at one equation of a model.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MissingPower {
     /// Cylinder; `None` for the pump line, or where several joints share an equation.
     pub cylinder: Option<String>,

@@ -1,6 +1,7 @@
 //! Measured signals of a recording that a simulation is compared with.
 
 use excavator_model::equations::{Channel, System};
+use excavator_model::machine::Machine;
 use excavator_model::recording::{Recording, is_measured, noise_level, standard_deviation};
 
 /// One measured output of the model.
@@ -14,6 +15,13 @@ pub struct Instrument {
     pub channel: Channel,
     /// Standard deviation of its noise, estimated from the recordings, in its unit.
     pub noise: f64,
+}
+
+impl Instrument {
+    /// The instrument of a machine that measures this, with this noise.
+    pub(crate) fn new(channel: Channel, machine: &Machine, noise: f64) -> Self {
+        Instrument { name: channel.name(machine), unit: unit(channel), channel, noise }
+    }
 }
 
 /// Lower bound of the noise as a fraction of the signal's own standard deviation. Without it a noiseless (simulated)
@@ -44,7 +52,7 @@ pub fn instruments(system: &System<'_>, recordings: &[&Recording]) -> Vec<Instru
             let noise = signals.iter().map(|signal| noise_level(signal)).fold(0.0, f64::max);
             let spread = signals.iter().map(|signal| standard_deviation(signal)).fold(0.0, f64::max);
             let floor = (LEAST_RELATIVE_NOISE * spread).max(f64::MIN_POSITIVE);
-            found.push(Instrument { name, unit: unit(channel), channel, noise: noise.max(floor) });
+            found.push(Instrument::new(channel, machine, noise.max(floor)));
         }
     }
     found

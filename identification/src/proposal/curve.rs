@@ -20,7 +20,7 @@ pub(super) fn table_law(left: &Unexplained) -> Option<FormulaText> {
         _ => ("pump_leak", -1.0),
     };
     let is_pump = place == "pump";
-    let variable = match left.variable {
+    let variable = match &*left.variable {
         "command" => "u",
         "speed" => "v",
         "position" => "s",
@@ -57,7 +57,7 @@ pub(super) fn table_law(left: &Unexplained) -> Option<FormulaText> {
         formula: format!("k*table({variable}, [{}], [{}])", list(x), list(y)),
         summary: format!(
             "What the equations lack, as a table over the {}: a measured curve, and no law.",
-            words(left.variable)
+            words(&left.variable)
         ),
         source: super::proposals::CURVE.to_string(),
         shows: String::new(),
@@ -99,7 +99,13 @@ mod tests {
     fn left(equation: &str, variable: &'static str) -> Unexplained {
         let curve =
             (0..24).map(|index| [f64::from(index) * 0.01 - 0.1, f64::from(index * index) - 90.0, 1.0]).collect();
-        Unexplained { equation: equation.into(), variable, share_of_residual: 0.9, curve, unit: "N m" }
+        Unexplained {
+            equation: equation.into(),
+            variable: variable.into(),
+            share_of_residual: 0.9,
+            curve,
+            unit: "N m".into(),
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use excavator_model::formula::FormulaText;
 use excavator_model::recording::Recording;
 use excavator_model::site_name;
+use serde::{Deserialize, Serialize};
 
 use super::grammar::law_text;
 use super::screening::screen;
@@ -13,7 +14,7 @@ use crate::fit::{Fit, FitSettings};
 use crate::regression::RegressionError;
 
 /// The most promising law of one term. It was neither fitted nor judged.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Guess {
     /// The law, with its coefficient after a first step.
     pub text: FormulaText,

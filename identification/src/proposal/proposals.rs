@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::grammar::rounded;
 use super::merits::{Merits, law_of, merits};
 use super::survey::Survey;
-use crate::decision::{Policy, Verdict};
-use crate::diagnosis::{Diagnosis, DiagnosisError, Unexplained, diagnosis_of, unexplained};
+use crate::decision::Verdict;
+use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisSettings, Unexplained, diagnosis_of, unexplained};
 use crate::regression::situations_along;
 use crate::search::{Pool, Trial};
 use crate::validation::{Comparison, compare};
@@ -97,12 +97,12 @@ pub(super) fn proposals(
     kind: ProposalVerdict,
     pool: Pool<'_>,
     verdict: Verdict,
-    policy: &Policy,
+    settings: &DiagnosisSettings,
     survey: Survey,
     identification: &[&Recording],
     validation: &[&Recording],
 ) -> Result<Proposals, DiagnosisError> {
-    let diagnosis = diagnosis_of(pool, verdict, policy, validation)?;
+    let diagnosis = diagnosis_of(pool, verdict, settings, validation)?;
     let before = comparisons(diagnosis.given(), validation);
     let error_before = mean_error(&before);
     let is_needed = matches!(kind, ProposalVerdict::Law | ProposalVerdict::NoLaw);

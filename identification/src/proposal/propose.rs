@@ -63,7 +63,7 @@ pub fn propose(
         laws_dissipate(trial, &situations) && !reverses_an_opening(trial, &situations)
     };
     let verdict = simplest_first(pool.verdict(policy), &pool.trials, &is_possible);
-    proposals(kind, pool, verdict, policy, survey, identification, validation)
+    proposals(kind, pool, verdict, settings, survey, identification, validation)
 }
 
 /// Largest share of the misfit that a first law may leave if a second one is to be searched.

@@ -199,53 +199,45 @@ pub fn refine(
         }
         Additions::Named(named) => as_named(model, named, identification, validation, settings, progress)?,
     };
-    with_fits(model, fits, reason, identification, validation, settings, when)
+    let fitted_to: Vec<String> = identification.iter().map(|recording| recording.source.clone()).collect();
+    with_fits(model, fits, reason, &fitted_to, validation, when)
 }
 
-/// The refinement that follows from a diagnosis of `model` on these recordings, without another search.
+/// The refinement that follows from a diagnosis of `model`, without another search. `fitted_to` names the identification recordings.
 ///
 /// # Errors
 /// [`RefineError`].
 pub fn refinement_of(
     model: &Model,
-    diagnosis: &Diagnosis,
-    identification: &[&Recording],
+    diagnosis: Diagnosis,
+    fitted_to: &[String],
     validation: &[&Recording],
-    settings: &DiagnosisSettings,
     when: &str,
 ) -> Result<Refinement, RefineError> {
-    let (fits, reason) = found(model, diagnosis.clone());
-    with_fits(model, fits, reason, identification, validation, settings, when)
+    let (fits, reason) = found(model, diagnosis);
+    with_fits(model, fits, reason, fitted_to, validation, when)
 }
 
 fn with_fits(
     model: &Model,
     fits: Fits,
     reason: Reason,
-    identification: &[&Recording],
+    fitted_to: &[String],
     validation: &[&Recording],
-    settings: &DiagnosisSettings,
     when: &str,
 ) -> Result<Refinement, RefineError> {
     let given =
         validation.iter().map(|recording| compare(model, recording)).collect::<Result<_, _>>().unwrap_or_default();
     let mut steps: Vec<Step> = Vec::new();
     for (added, fit) in fits {
-        let fit = simplified(model, &fit, identification, &settings.effort.fit)?;
         let comparisons =
             validation.iter().map(|recording| compare(&fit.model, recording)).collect::<Result<Vec<_>, _>>()?;
         steps.push(Step { added, fit, comparisons });
     }
-    let reason = match reason {
-        Reason::Found(mut diagnosis) => {
-            with_errors_of(&mut diagnosis, &steps);
-            Reason::Found(diagnosis)
-        }
-        Reason::Named(named) => Reason::Named(named),
-    };
     let mut final_model = steps.last().map_or_else(|| model.clone(), |step| step.fit.model.clone());
     final_model.history.clone_from(&model.history);
-    let recordings: Vec<String> = identification.iter().chain(validation).map(|r| r.source.clone()).collect();
+    let recordings: Vec<String> =
+        fitted_to.iter().cloned().chain(validation.iter().map(|recording| recording.source.clone())).collect();
     for (number, step) in steps.iter().enumerate() {
         let before = number.checked_sub(1).map(|previous| steps[previous].mean_error());
         final_model.history.push(HistoryEntry {
@@ -279,16 +271,6 @@ fn found(model: &Model, diagnosis: Diagnosis) -> (Fits, Reason) {
     (fits, Reason::Found(Box::new(diagnosis)))
 }
 
-/// Replaces the errors of the diagnosis by those of the steps, whose models are its trials without superfluous parts.
-fn with_errors_of(diagnosis: &mut Diagnosis, steps: &[Step]) {
-    let ends = [(0, steps.first()), (diagnosis.verdict.supported(), steps.last())];
-    for (number, step) in ends {
-        if let (Some(error), Some(step)) = (diagnosis.errors.get_mut(number), step) {
-            *error = step.mean_error();
-        }
-    }
-}
-
 /// Adds named effects, one after the other.
 fn as_named(
     model: &Model,
@@ -315,6 +297,9 @@ fn as_named(
         fits.push((Some(name), current.clone()));
     }
     let verdict = judge_named(&given, &added, identification, validation, fitting, &settings.policy)?;
+    for (_, fit) in &mut fits {
+        *fit = simplified(model, fit, identification, fitting)?;
+    }
     Ok((fits, Reason::Named(verdict)))
 }
 

@@ -1,6 +1,5 @@
 //! An effect that was tried.
 
-use excavator_model::Model;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +18,9 @@ pub struct Candidate {
     pub validation_error_before: Option<f64>,
     /// Mean NMSE on the validation recordings with it.
     pub validation_error_after: Option<f64>,
+    /// Probability that it is there, 0 to 1.
+    #[serde(default)]
+    pub probability: Option<f64>,
     /// Improvement: fall of the log error ratio on the validation recordings.
     pub evidence: Option<f64>,
     /// Improvement on all recordings in its own standard errors.
@@ -49,17 +51,19 @@ pub struct Bootstrap {
 }
 
 impl Candidate {
-    /// Of a candidate. `found` is the favoured model: where the candidate is a part of it its parameters are those beside the others, which
-    /// one alone had to stand in for.
-    fn of(candidate: &diagnosis::Candidate<'_>, found: &Model) -> Self {
+    /// Of a candidate. If it is a part of the favoured model, its parameters are those beside the others, which one alone had to stand in
+    /// for.
+    fn of(candidate: &diagnosis::Candidate<'_>, diagnosis: &diagnosis::Diagnosis) -> Self {
+        let found = &diagnosis.best().fit.model;
         let (alone, site) = (&candidate.trial.fit.model, candidate.addition.site);
         let model = Some(found).filter(|model| model.has(candidate.name(), site)).unwrap_or(alone);
         let standing = candidate.standing;
         Candidate {
             effect: candidate.name().to_string(),
             cylinder: candidate.place().to_string(),
-            validation_error_before: finite(candidate.errors[0]),
-            validation_error_after: finite(candidate.errors[1]),
+            validation_error_before: candidate.errors[0].and_then(finite),
+            validation_error_after: candidate.errors[1].and_then(finite),
+            probability: diagnosis.presence_of(candidate).and_then(finite),
             evidence: finite(candidate.improvement),
             significance: finite(standing.significance),
             set_p_value: standing.set_p_value.and_then(finite),
@@ -73,17 +77,15 @@ impl Candidate {
 
     /// Those with evidence. A structural alternative is no candidate: a verdict does not name it.
     pub(super) fn all(diagnosis: &diagnosis::Diagnosis) -> Vec<Self> {
-        let found = &diagnosis.best().fit.model;
         let candidates = diagnosis.candidates().into_iter();
         candidates
             .filter(|one| one.addition.physics.card().family.is_candidate())
-            .map(|one| Candidate::of(&one, found))
+            .map(|one| Candidate::of(&one, diagnosis))
             .collect()
     }
 
     /// Those without.
     pub(super) fn rejected(diagnosis: &diagnosis::Diagnosis) -> Vec<Self> {
-        let found = &diagnosis.best().fit.model;
-        diagnosis.rejected().iter().map(|one| Candidate::of(one, found)).collect()
+        diagnosis.rejected().iter().map(|one| Candidate::of(one, diagnosis)).collect()
     }
 }

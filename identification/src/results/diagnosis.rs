@@ -29,7 +29,9 @@ pub struct Diagnosis {
     pub rejected: Vec<Candidate>,
     /// The effects that the verdict supports, one after the other, in the model that has them all.
     #[serde(default)]
-    pub together: Vec<SelectedEffect>,
+    pub effects: Vec<SelectedEffect>,
+    /// What is left with these effects, in the balance that leaves most; `null` if that is noise.
+    pub remains: Option<Remains>,
     /// Effects of instruments and recording that were estimated and show.
     #[serde(default)]
     pub nuisances: Vec<Nuisance>,
@@ -115,6 +117,16 @@ pub struct Balance {
     pub is_noise: bool,
 }
 
+/// What is left in the balance that leaves most.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct Remains {
+    /// Name of the equation: `arm.motion`.
+    pub balance: String,
+    /// Mean squared residual over that of the given model.
+    pub share: Option<f64>,
+}
+
 /// Share of the residual in one equation under one condition.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
@@ -178,12 +190,13 @@ impl Diagnosis {
             verdict: diagnosis.verdict.kind,
             reasons: diagnosis.verdict.reasons.clone(),
             validation_error: ErrorChange {
-                before: finite(diagnosis.error_of(diagnosis.given())),
-                after: finite(diagnosis.error_of(diagnosis.supported())),
+                before: diagnosis.given().error.and_then(finite),
+                after: diagnosis.supported().error.and_then(finite),
             },
             candidates: Candidate::all(diagnosis),
             rejected: Candidate::rejected(diagnosis),
-            together: SelectedEffect::all(diagnosis),
+            effects: SelectedEffect::all(diagnosis),
+            remains: Remains::of(diagnosis),
             nuisances: Nuisance::shown(given, &diagnosis.supported().fit.model),
             balances: diagnosis.remainders.iter().map(Balance::of).collect(),
             shares: diagnosis.map.iter().map(ResidualShare::of).collect(),
@@ -239,6 +252,13 @@ impl Balance {
     }
 }
 
+impl Remains {
+    fn of(diagnosis: &diagnosis::Diagnosis) -> Option<Self> {
+        let left = diagnosis.remainders.iter().find(|one| !one.is_noise)?;
+        Some(Remains { balance: left.equation.clone(), share: finite(left.after / left.before) })
+    }
+}
+
 impl ResidualShare {
     fn of(share: &diagnosis::Share) -> Self {
         ResidualShare {
@@ -258,7 +278,7 @@ impl Construction {
         Some(Construction {
             effect: name.to_string(),
             cylinder: site_name(&model.machine, structural.site).to_string(),
-            validation_error_after: finite(diagnosis.error_of(trial)),
+            validation_error_after: trial.error.and_then(finite),
             parameters: Parameter::of_effect(model, name, structural.site),
         })
     }

@@ -35,7 +35,9 @@ pub use candidate::{Bootstrap, Candidate};
 pub use characterisation::{Characterisation, CylinderCharacterisation, Estimate, Outcome, Refused};
 pub use comparison::{Baseline, Baselines, Comparison, OtherComparison};
 pub use determination::Determination;
-pub use diagnosis::{Construction, Diagnosis, ErrorChange, Instrument, Nuisance, ResidualShare, SelectedEffect};
+pub use diagnosis::{
+    Balance, Construction, Diagnosis, ErrorChange, Instrument, Nuisance, Remains, ResidualShare, SelectedEffect,
+};
 pub use energies::{CylinderEnergies, EffectEnergies, Energies};
 pub use energy::{Cycle, Energy, LedgerCondition, LedgerPlace, PhaseDelays, PumpLine, ValveSection};
 pub use friction::{Friction, FrictionTerm};

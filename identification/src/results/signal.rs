@@ -14,6 +14,11 @@ use crate::validation;
 pub struct SignalComparison {
     /// Mean squared error over the variance of the measured signal (NMSE); of several recordings the mean.
     pub nmse: Option<f64>,
+    /// Root mean squared error, in `unit`; of several recordings the mean.
+    pub rmse: Option<f64>,
+    /// SI unit of the signal.
+    #[serde(default)]
+    pub unit: String,
     /// `100 (1 - sqrt(NMSE))`, %; of several recordings the mean.
     pub fit: Option<f64>,
     /// Lag of the model behind the measurement at the frequency of the excitation, degrees; of several recordings the largest by size. `null` where no frequency stands out.
@@ -70,6 +75,8 @@ impl SignalComparison {
         };
         SignalComparison {
             nmse: finite(own().map(|signal| signal.normalised_error).sum::<f64>() / count),
+            rmse: finite(own().map(|signal| signal.root_mean_squared_error).sum::<f64>() / count),
+            unit: own().next().map(|signal| signal.unit.to_string()).unwrap_or_default(),
             fit: finite(own().map(|signal| signal.fit).sum::<f64>() / count),
             phase_delay_deg: delays.max_by(|a, b| a.abs().total_cmp(&b.abs())).and_then(finite),
             autocorrelation: Correlation::worst(own().filter_map(|signal| signal.autocorrelation)),

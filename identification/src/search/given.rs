@@ -77,7 +77,7 @@ pub(super) fn given_trial(fit: Fit, validation: &[&Recording], settings: &FitSet
     let begin = Instant::now();
     let evaluated = evaluate(&fit.model, validation, settings)?;
     let seconds = begin.elapsed().as_secs_f64();
-    Ok(Trial { additions: Vec::new(), fit, validation: evaluated, seconds })
+    Ok(Trial { additions: Vec::new(), fit, validation: evaluated, seconds, error: None })
 }
 
 /// A better fit of the given model that was found through an addition. If the fit of the given model ended in a local

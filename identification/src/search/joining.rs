@@ -24,6 +24,10 @@ impl Stepwise<'_> {
         if verdict.kind != Kind::MissingEffect || pool.trials[verdict.best].additions.len() < 2 {
             return false;
         }
+        // The sets of the balances have no single rivals that the search could exchange.
+        if !leaves_nothing(&pool.scores, verdict.best, self.policy) {
+            self.take(Move::Swap, verdict.best, pool);
+        }
         // What changes the meaning of a signal was taken as measured. It counts if it does about as much alone.
         let explained = pool.given().fit.loss() - pool.trials[verdict.best].fit.loss();
         let unread = unread(&pool.given().fit.model);
@@ -55,7 +59,8 @@ impl Stepwise<'_> {
                     continue;
                 };
                 let additions = set.additions.clone();
-                pool.put(Trial { additions, fit, validation, seconds: begin.elapsed().as_secs_f64() });
+                let seconds = begin.elapsed().as_secs_f64();
+                pool.put(Trial { additions, fit, validation, seconds, error: None });
                 let last = pool.find_additions(&set.additions);
                 if last.is_some_and(|last| leaves_nothing(&pool.scores, last, self.policy)) {
                     return;
@@ -81,9 +86,6 @@ fn next_of_joined(pool: &Pool<'_>, effort: &Effort, policy: &Policy) -> Option<(
     }
     if trial.additions.len() > 1 {
         moves.push(Move::Prune);
-        if !leaves_nothing(&pool.scores, best, policy) {
-            moves.push(Move::Swap);
-        }
     }
     moves.into_iter().find(is_open).map(|what| (what, best))
 }

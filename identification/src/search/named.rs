@@ -32,7 +32,7 @@ pub(crate) fn score_named(
         let evaluated = evaluate_on_others(&fit.model, &known, validation, settings)?;
         known = evaluated.model.clone();
         let additions = additions.clone();
-        pool.put(Trial { additions, fit: fit.clone(), validation: evaluated, seconds: 0.0 });
+        pool.put(Trial { additions, fit: fit.clone(), validation: evaluated, seconds: 0.0, error: None });
     }
     Ok(pool.scores)
 }

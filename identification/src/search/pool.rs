@@ -107,13 +107,18 @@ impl<'a> Pool<'a> {
         self.scores.validation.input_floor = floor;
     }
 
-    /// The given model.
+    /// The given model before any fit.
+    pub(crate) fn data_sheet(&self) -> &Model {
+        &self.data_sheet
+    }
+
+    /// The given model, fitted.
     pub fn given(&self) -> &Trial {
         &self.trials[0]
     }
 
     /// Recordings that are fitted.
-    pub(super) fn identification(&self) -> &'a [&'a Recording] {
+    pub(crate) fn identification(&self) -> &'a [&'a Recording] {
         self.identification
     }
 

@@ -82,7 +82,7 @@ impl Stepwise<'_> {
         let validation =
             evaluate_in_windows_of(&fit.model, &trial.validation.model, pool.validation(), settings).ok()?;
         let seconds = begin.elapsed().as_secs_f64();
-        pool.put(Trial { additions: rest.clone(), fit, validation, seconds });
+        pool.put(Trial { additions: rest.clone(), fit, validation, seconds, error: None });
         pool.find_additions(&rest)
     }
 

@@ -5,9 +5,9 @@ use std::time::Instant;
 use excavator_model::recording::Recording;
 use excavator_model::{Model, ModelEffect};
 
-use super::transient::{evaluate_on_others, is_transient};
+use super::transient::{evaluate_in_windows_of, evaluate_on_others, is_transient};
 use super::{Addition, AdditionError};
-use crate::fit::{Fit, FitSettings};
+use crate::fit::{Fit, FitError, FitSettings, simplified};
 
 /// A model that was tried: the given one with some additions, fitted to the identification recordings and evaluated on the
 /// validation recordings.
@@ -21,6 +21,9 @@ pub struct Trial {
     pub validation: Fit,
     /// Wall-clock time of the fit, s.
     pub seconds: f64,
+    /// Mean NMSE of the fitted model on the validation recordings, simulated from their starts, as in a comparison of that model.
+    /// `None` if it was not asked for, or if the simulation failed.
+    pub error: Option<f64>,
 }
 
 impl Trial {
@@ -40,7 +43,26 @@ impl Trial {
         let validation = evaluate_on_others(&fit.model, &self.validation.model, validation, settings)?;
         let mut additions = self.additions.clone();
         additions.push(addition);
-        Ok(Trial { additions, fit, validation, seconds: begin.elapsed().as_secs_f64() })
+        Ok(Trial { additions, fit, validation, seconds: begin.elapsed().as_secs_f64(), error: None })
+    }
+
+    /// This trial without the nuisance effects that `data_sheet` lacks and that do not show, fitted again.
+    ///
+    /// # Errors
+    /// [`FitError`].
+    pub(crate) fn simplified(
+        &self,
+        data_sheet: &Model,
+        identification: &[&Recording],
+        validation: &[&Recording],
+        settings: &FitSettings,
+    ) -> Result<Trial, FitError> {
+        let fit = simplified(data_sheet, &self.fit, identification, settings)?;
+        if fit.model.effects.len() == self.fit.model.effects.len() {
+            return Ok(self.clone());
+        }
+        let validation = evaluate_in_windows_of(&fit.model, &self.validation.model, validation, settings)?;
+        Ok(Trial { fit, validation, ..self.clone() })
     }
 
     /// Names of the additions, sorted: the same for every order of selection.

@@ -1,13 +1,13 @@
 //! Simulates a model with the input of a recording from its initial state, and compares every output.
 
 use excavator_model::Model;
-use excavator_model::machine::Machine;
+use excavator_model::machine::{Cylinder, Machine};
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::simulation::{InputSignals, RunError, simulate};
 
 use super::{
     Correlation, MotionPhase, PhaseShare, autocorrelation, dominant_frequency, fit_percent, input_correlation,
-    motion_phases, normalised_mean_squared_error, phase_delay_degrees, phase_shares,
+    motion_phases, normalised_mean_squared_error, phase_delay_degrees, phase_shares, root_mean_squared_error,
 };
 use crate::regression::observe;
 
@@ -33,6 +33,10 @@ pub struct SignalComparison {
     pub name: String,
     /// Normalised mean squared error.
     pub normalised_error: f64,
+    /// Root mean squared error, in `unit`.
+    pub root_mean_squared_error: f64,
+    /// SI unit of the signal.
+    pub unit: &'static str,
     /// FIT in %.
     pub fit: f64,
     /// Lag of the model behind the measurement at the excitation frequency, degrees.
@@ -160,6 +164,8 @@ pub(super) fn beside(model: &Model, recording: &Recording, simulated: Recording)
                     .and_then(|frequency| phase_delay_degrees(&recording.time, y, yhat, frequency)),
                 autocorrelation: autocorrelation(&time, &error).map(in_seconds),
                 input_correlation: input_correlation(&time, &error, &input).map(in_seconds),
+                root_mean_squared_error: root_mean_squared_error(y, yhat),
+                unit: unit_of(&name, cylinder.map(|number| &model.machine.cylinders[number])),
                 fit: fit_percent(normalised_error),
                 phases: phase_shares(cylinder.map_or(&together, |number| &own_phases[number]), &error),
                 normalised_error,
@@ -168,6 +174,20 @@ pub(super) fn beside(model: &Model, recording: &Recording, simulated: Recording)
         })
         .collect();
     Ok(Comparison { measured, simulated, signals, excitation_frequency, machine: model.machine.clone() })
+}
+
+/// SI unit of an output with this contract name, of this cylinder or motor.
+fn unit_of(name: &str, cylinder: Option<&Cylinder>) -> &'static str {
+    let is_motor = cylinder.is_some_and(Cylinder::is_motor);
+    match name.rsplit('.').next().unwrap_or(name) {
+        "displacement" if is_motor => "rad",
+        "displacement" => "m",
+        "velocity" if is_motor => "rad/s",
+        "velocity" => "m/s",
+        "rod_force" if is_motor => "N m",
+        "rod_force" => "N",
+        _ => "Pa",
+    }
 }
 
 /// Mean over the recordings of the mean normalised squared error of `model`: the one number by which models are compared.

@@ -25,7 +25,7 @@ fn shown(name: &'static str, values: &[f64], found: &[f64]) -> Option<Contributi
     let model = machine(name, found);
     let fit = evaluate(&model, &[&recording], &FitSettings::default()).unwrap();
     let addition = Addition { physics: Catalogue::built_in().find(name).unwrap(), site: Site::Cylinder(0) };
-    let trial = Trial { additions: vec![addition.clone()], validation: fit.clone(), fit, seconds: 0.0 };
+    let trial = Trial { additions: vec![addition.clone()], validation: fit.clone(), fit, seconds: 0.0, error: None };
     contribution(&trial, &addition, &[&recording]).unwrap()
 }
 

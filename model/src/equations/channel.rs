@@ -1,5 +1,7 @@
 //! Output channels of a model that instruments can measure.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Layout, System};
 use crate::effects::Number;
 use crate::machine::Machine;
@@ -7,7 +9,7 @@ use crate::recording::{CylinderSignals, Recording};
 use crate::scalar::{constant, derivative, variable};
 
 /// One measurable output of a model. Cylinders are given by their index.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Channel {
     /// Joint coordinate, rad (m for a linear load).
     JointAngle(usize),

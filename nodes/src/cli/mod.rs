@@ -96,6 +96,8 @@ pub enum Verb {
     Design(DesignArguments),
     /// Add effects, refit, and measure the error again.
     Refine(RefineArguments),
+    /// Print a saved study again: the same lines, page and JSON, without a search.
+    Report(ReportArguments),
     /// The catalogue of physical effects, or one of them in full.
     Effects(EffectsArguments),
     /// Write a new model file, check one; schema and reference page of such files.

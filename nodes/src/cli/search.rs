@@ -16,12 +16,9 @@ pub struct DiagnoseArguments {
     /// Write a page with the evidence.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
-    /// Save the diagnosis with its fitted models, for `refine --diagnosis FILE`.
-    #[arg(long, value_name = "FILE")]
+    /// Save the study: recordings by name and hash, fitted models, scores and result, for refine, design and report.
+    #[arg(long, value_name = "STUDY.json")]
     pub save: Option<PathBuf>,
-    /// Write what the verdict was decided from: errors of every hypothesis in every block of time, as JSON.
-    #[arg(long, value_name = "FILE")]
-    pub scores: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
     #[command(flatten)]
@@ -49,8 +46,8 @@ pub struct ProposeArguments {
 #[derive(Debug, Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["add", "auto", "diagnosis"])))]
 pub struct RefineArguments {
-    /// Add what this diagnosis found (`diagnose --save FILE`), without a search: model and recordings are those of the diagnosis.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["model", "catalogue", "identification", "report"])]
+    /// Add what this study found (`diagnose --save`), without a search: model and recordings are those of the study.
+    #[arg(long, value_name = "STUDY.json", conflicts_with_all = ["model", "catalogue", "identification"])]
     pub diagnosis: Option<PathBuf>,
     /// Model: built-in name or TOML file.
     #[arg(long, required_unless_present = "diagnosis")]
@@ -117,8 +114,8 @@ pub struct DesignArguments {
     /// Parameter to be determined (arm.inertia), instead of effects to be told apart.
     #[arg(long, value_name = "NAME")]
     pub parameter: Option<String>,
-    /// What `diagnose --json` wrote: tied effects, fitted values and the sensors' noise are taken from there.
-    #[arg(long, value_name = "FILE.json")]
+    /// What `diagnose --save` or `--json` wrote: tied effects, fitted values and the sensors' noise are taken from there.
+    #[arg(long, value_name = "STUDY.json")]
     pub diagnosis: Option<PathBuf>,
     /// Profile to write.
     #[arg(short, long, value_name = "PROFILE.toml")]
@@ -132,6 +129,20 @@ pub struct DesignArguments {
     /// Highest pressure anywhere, Pa.
     #[arg(long, value_name = "PA", default_value_t = 2e7, value_parser = positive)]
     pub highest_pressure: f64,
+    #[command(flatten)]
+    pub json: Json,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+}
+
+#[derive(Debug, Args)]
+pub struct ReportArguments {
+    /// What `diagnose --save` wrote.
+    #[arg(value_name = "STUDY.json")]
+    pub study: PathBuf,
+    /// Write a page with the evidence; needs the recordings of the study.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     pub json: Json,
     #[command(flatten)]

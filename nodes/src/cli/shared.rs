@@ -6,6 +6,12 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use excavator_bags::map::Origin;
 use excavator_identification::checks::OVERRULABLE;
+use excavator_model::Model;
+use excavator_study::preparation::Preparation;
+use excavator_study::recordings::Use;
+use excavator_study::{Study, WorkError};
+
+use crate::terminal::remark;
 
 #[derive(Debug, Args)]
 pub struct Json {
@@ -43,6 +49,12 @@ impl Mapping {
     /// Where signals are found.
     pub fn origin(&self) -> Origin<'_> {
         Origin { map: self.map.as_deref(), namespace: self.namespace.as_deref() }
+    }
+
+    /// How recordings are read and made fit for use. Remarks go to standard error.
+    pub fn preparation(&self, extent: Extent) -> Preparation<'_> {
+        let usage = Use { accept: &self.accept, conditions: &self.conditions };
+        Preparation { origin: self.origin(), usage, whole: extent.whole, remark: &remark }
     }
 }
 
@@ -95,5 +107,13 @@ impl Recordings {
     /// All recordings.
     pub fn bags(&self) -> impl Iterator<Item = &PathBuf> {
         self.identification.iter().chain(&self.validation)
+    }
+
+    /// A study of these recordings.
+    ///
+    /// # Errors
+    /// [`WorkError`] if one cannot be read, or if a check refuses it.
+    pub fn study(&self, model: Model) -> Result<Study, WorkError> {
+        self.mapping.preparation(self.extent).study(model, [&self.identification, &self.validation])
     }
 }

@@ -4,15 +4,14 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use excavator_identification::fit::{
-    FitError, FitSettings, fit_watched, simplified, with_nuisances, with_nuisances_of,
-};
-use excavator_identification::regression::{RegressionError, WeakFormSettings, weak_form_watched};
+use excavator_identification::fit::FitError;
+use excavator_identification::identify::{IdentifyError, Method};
+use excavator_identification::regression::RegressionError;
 use excavator_identification::validation::compare;
 use excavator_model::document::to_text;
-use excavator_model::effects::Family;
 use excavator_model::recording::Recording;
-use excavator_model::{HistoryEntry, Model};
+use excavator_model::{HistoryEntry, Model, addition_name, site_name};
+use excavator_study::Study;
 
 use super::library::{Library, QUOTED, Unusable};
 use super::printable::printable;
@@ -20,7 +19,6 @@ use super::refusals::tell_operator;
 use super::types::{Goal, Outcome};
 use crate::cli::{Extent, Mapping};
 use crate::error::VerbError;
-use crate::sources;
 
 /// Why there is no outcome.
 #[derive(Debug)]
@@ -63,9 +61,10 @@ impl Bounds<'_> {
 impl From<VerbError> for Ended {
     fn from(error: VerbError) -> Self {
         match error {
-            VerbError::Fit(FitError::Stopped) | VerbError::Regression(RegressionError::Fit(FitError::Stopped)) => {
-                Ended::Cancelled
-            }
+            VerbError::Identify(
+                IdentifyError::Fit(FitError::Stopped)
+                | IdentifyError::Regression(RegressionError::Fit(FitError::Stopped)),
+            ) => Ended::Cancelled,
             error => Ended::Failed(error),
         }
     }
@@ -89,12 +88,7 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
     };
     stage("reading the model", 0.0)?;
     let given = bounds.library.model(&goal.model)?;
-    let mut wanted = given.clone();
-    for effect in &goal.effects {
-        for (physics, site) in wanted.parse_addition(effect).map_err(VerbError::from)? {
-            wanted = wanted.with_effect(&physics, site).map_err(VerbError::from)?;
-        }
-    }
+    let wanted = with_effects(&given, &goal.effects)?;
     if goal.bags.is_empty() {
         return Err(VerbError::NoBags.into());
     }
@@ -103,29 +97,18 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
         stage("reading", 0.3 * index as f64 / goal.bags.len() as f64)?;
         recordings.push(recording(bag, bounds.library, &wanted)?);
     }
-    let recordings: Vec<&Recording> = recordings.iter().collect();
-    let part = |name: &'static str, from: f64, to: f64| {
-        move |done: f64| match stage(name, from + (to - from) * done) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(_) => ControlFlow::Break(()),
-        }
+    // Added effects start far from their values, and some enter nonlinearly. So the outputs are fitted as well.
+    let method = if goal.effects.is_empty() { Method::WeakForm } else { Method::OutputError };
+    let watch = |done: f64| match stage("identifying", 0.3 + 0.4 * done) {
+        Ok(()) => ControlFlow::Continue(()),
+        Err(_) => ControlFlow::Break(()),
     };
-    let settings = WeakFormSettings::default();
-    let extended = with_nuisances_of(&wanted, &[Family::Recording], &recordings);
-    let regression = weak_form_watched(&extended, &recordings, &settings, &part("identifying", 0.3, 0.5))
-        .map_err(VerbError::from)?;
-    let mut identified = regression.simplified(&wanted).model;
-    if !goal.effects.is_empty() {
-        // Added effects start far from their values, and some enter nonlinearly. So the outputs are fitted as well.
-        let fitting = part("fitting outputs", 0.5, 0.7);
-        let start = with_nuisances(&identified, &recordings);
-        let fitted = fit_watched(&start, &recordings, &FitSettings::default(), &fitting).map_err(VerbError::from)?;
-        identified = simplified(&wanted, &fitted, &recordings, &FitSettings::default()).map_err(VerbError::from)?.model;
-    }
+    let study = Study::of_fitted(wanted, recordings);
+    let identified = study.identify(method, &watch).map_err(VerbError::from)?.result.model;
     let (mut signals, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
-    for (index, recording) in recordings.iter().enumerate() {
-        stage("comparing", 0.7 + 0.3 * index as f64 / recordings.len() as f64)?;
-        let share = 1.0 / recordings.len() as f64;
+    let share = 1.0 / study.identification.len() as f64;
+    for (index, recording) in study.identification.iter().enumerate() {
+        stage("comparing", 0.7 + 0.3 * share * index as f64)?;
         let compared = |model: &Model| compare(model, recording).map_err(VerbError::from);
         let pairs = compared(&given)?.signals.into_iter().zip(compared(&identified)?.signals);
         for (number, (old, new)) in pairs.enumerate() {
@@ -143,27 +126,41 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
     stage("done", 1.0)?;
     let mean = |errors: &[f64]| errors.iter().sum::<f64>() / errors.len().max(1) as f64;
     let message = format!(
-        "{} identified from {} bags: mean NMSE {:.4} before, {:.4} after",
+        "{} identified from {} bags: mean NMSE on these bags {:.4} before, {:.4} after",
         identified.machine.name,
-        recordings.len(),
+        study.identification.len(),
         mean(&before),
         mean(&after)
     );
-    identified.history.push(HistoryEntry {
-        when: jiff::Timestamp::now().to_string(),
-        what: "parameters identified (weak form with instruments)".to_string(),
-        recordings: goal.bags.clone(),
-        validation_error_before: None,
-        validation_error_after: None,
-    });
     let model = to_text(&identified).map_err(VerbError::from)?;
     Ok(Outcome { model, signals, nmse_before: before, nmse_after: after, success: true, message })
+}
+
+/// The model with the effects of a goal; its history tells that they were added.
+fn with_effects(given: &Model, effects: &[String]) -> Result<Model, VerbError> {
+    let mut wanted = given.clone();
+    for effect in effects {
+        for (physics, site) in wanted.parse_addition(effect)? {
+            let name = addition_name(&physics.card().name, site_name(&wanted.machine, site));
+            wanted = wanted.with_effect(&physics, site)?;
+            wanted.history.push(HistoryEntry {
+                when: jiff::Timestamp::now().to_string(),
+                what: format!("added {name}"),
+                recordings: Vec::new(),
+                validation_error_before: None,
+                validation_error_after: None,
+            });
+        }
+    }
+    Ok(wanted)
 }
 
 /// A bag of the library as a recording. A reader's message may quote a file, so it goes to the console only.
 fn recording(name: &str, library: &Library, wanted: &Model) -> Result<Recording, Ended> {
     let path = library.bag(name)?;
-    sources::telling_recording(&path, Extent::default(), &Mapping::default(), wanted).map_err(|error| match error {
+    let mapping = Mapping::default();
+    let found = mapping.preparation(Extent::default()).recording(&path, wanted).map_err(VerbError::from);
+    found.map_err(|error| match error {
         VerbError::Recording(_) | VerbError::Bag(_) => {
             tell_operator(&error.to_string());
             Ended::Unusable(Unusable::NotARecording(printable(name, QUOTED)))
@@ -203,12 +200,13 @@ mod tests {
         assert!(outcome.is_ok(), "{outcome:?}");
         let told = told.into_inner();
         assert!(told.windows(2).all(|pair| pair[0].1 <= pair[1].1), "{told:?}");
-        assert!(told.iter().filter(|(stage, _)| stage == "fitting outputs").count() > 2, "{told:?}");
+        assert!(told.iter().filter(|(stage, _)| stage == "identifying").count() > 4, "{told:?}");
     }
 
     #[test]
     fn cancelled_work_ends_within_the_stage() {
-        for (stage, rounds) in [("identifying", 2), ("fitting outputs", 2)] {
+        // The second round is in the regression, the sixth in the fit of the outputs.
+        for (stage, rounds) in [("identifying", 2), ("identifying", 6)] {
             let cancelled = AtomicBool::new(false);
             let seen = Cell::new(0);
             let tell = |name: &str, _: f64| {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use excavator_workbench::json_text;
+use excavator_study::json_text;
 use serde::Serialize;
 use serde_json::{Value, json};
 

@@ -15,7 +15,7 @@ pub use characterisation::{characterisation_table, refusals};
 pub use chart::chart;
 pub use design::pair_table;
 pub use energy::{energy_table, ledger_table};
-pub use excavator_workbench::numbers::number;
+pub use excavator_study::numbers::number;
 pub use json::{finite, write_json};
 pub use next_step::NextStep;
 pub use paragraph::filled;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_workbench::recording_part::Part;
+use excavator_study::recording_part::Part;
 
 use crate::cli::{Mapping, ModelChoice, Recordings};
 

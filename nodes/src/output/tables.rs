@@ -8,7 +8,7 @@ use excavator_identification::validation::{Baselines, Comparison, Correlation, M
 use excavator_identification::value_marks::{remedies, value_mark};
 use excavator_model::Model;
 use excavator_report::Beside;
-use excavator_workbench::numbers::number;
+use excavator_study::numbers::number;
 
 /// A number with so many decimals, and no minus sign before zero.
 pub(super) fn fixed(value: f64, decimals: usize) -> String {
@@ -158,8 +158,8 @@ pub fn candidate_table(diagnosis: &Diagnosis, detail: bool) -> Table {
         let mut row = vec![
             Cell::new(candidate.name()),
             Cell::new(candidate.place()),
-            right(number(candidate.errors[0])),
-            right(number(candidate.errors[1])),
+            right(number(candidate.errors[0].unwrap_or(f64::NAN))),
+            right(number(candidate.errors[1].unwrap_or(f64::NAN))),
             Cell::new(candidate.result()),
         ];
         if detail {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use excavator_bags::map::TopicMap;
-use excavator_workbench::recording_part::Part;
+use excavator_study::recording_part::Part;
 
 use super::place::FileId;
 

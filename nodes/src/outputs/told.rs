@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use excavator_workbench::results::Outcome;
+use excavator_study::results::Outcome;
 
 use super::write;
 use crate::cli::Overwriting;

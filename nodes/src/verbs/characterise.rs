@@ -2,15 +2,13 @@
 
 use std::path::Path;
 
-use excavator_identification::characterisation::{Characterisation, characterise};
-use excavator_identification::results;
-use excavator_model::recording::Recording;
-use excavator_report::characterisation_page;
+use excavator_identification::characterisation::Characterisation;
+use excavator_study::Study;
 
 use super::{print, print_next};
-use crate::cli::CharacteriseArguments;
+use crate::cli::{CharacteriseArguments, Extent};
 use crate::error::VerbError;
-use crate::output::{NextStep, characterisation_table, refusals, write_json};
+use crate::output::{NextStep, characterisation_table, refusals};
 use crate::outputs::{self, Inputs};
 use crate::sources;
 
@@ -19,29 +17,24 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
     let inputs = Inputs::recordings(&arguments.bags, arguments.mapping.map.as_deref()).and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
-    let recordings = sources::recordings(&arguments.bags, &arguments.mapping, &model)?;
-    let recordings: Vec<&Recording> = recordings.iter().collect();
-    let found = characterise(&model, &recordings);
+    let preparation = arguments.mapping.preparation(Extent { whole: true });
+    let recordings = preparation.recordings(&arguments.bags, &model)?;
+    let characterised = Study::of_fitted(model, recordings).characterise();
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        for one in &found {
+        for one in characterised.found() {
             let (results, all) = (one.results(), Characterisation::MOST_RESULTS);
             print(&format!(
                 "These recordings show {results} of {all} results for {} of {}.",
-                one.cylinder, model.machine.name
+                one.cylinder,
+                characterised.machine()
             ));
             print(&characterisation_table(one).to_string());
             refusals(one).iter().for_each(|line| print(line));
         }
         print_next(&next(arguments));
     }
-    if let Some(path) = &arguments.report {
-        let sources: Vec<String> = recordings.iter().map(|recording| recording.source.clone()).collect();
-        outputs::write(path, &characterisation_page(&model, &sources, &found), arguments.overwriting)?;
-    }
-    if let Some(path) = &arguments.json.json {
-        write_json(path, &results::Characterisation::of(&found), arguments.overwriting)?;
-    }
-    Ok(())
+    let (report, json) = (arguments.report.as_deref(), arguments.json.json.as_deref());
+    outputs::write_told(&characterised, report, json, arguments.overwriting)
 }
 
 /// A fit needs the whole recordings, not only the parts that the procedures use.

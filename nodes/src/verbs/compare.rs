@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use excavator_report::{comparison_sentence, others_sentence};
-use excavator_workbench::results::Compared;
+use excavator_study::Study;
 
 use super::{print, print_detail, print_next};
 use crate::cli::CompareArguments;
@@ -18,12 +18,12 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
     let inputs = Inputs::recordings(bags, arguments.mapping.map.as_deref()).and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
-    let recording = sources::telling_recording(&arguments.bag, arguments.extent, &arguments.mapping, &model)?;
+    let preparation = arguments.mapping.preparation(arguments.extent);
+    let recording = preparation.recording(&arguments.bag, &model)?;
     let against =
         arguments.against.as_deref().map(|name| sources::another_model(name, &arguments.model)).transpose()?;
-    let again =
-        arguments.repeat.as_deref().map(|bag| sources::recording(bag, &arguments.mapping, &model)).transpose()?;
-    let compared = Compared::of(&model, &recording, against.as_ref(), again.as_ref())?;
+    let again = arguments.repeat.as_deref().map(|bag| preparation.whole(bag, &model)).transpose()?;
+    let compared = Study::of_recording(model, recording).compare(against.as_ref(), again.as_ref())?;
     let (comparison, baselines, others) = (&compared.comparison, &compared.baselines, compared.others());
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         print(&comparison_sentence(comparison, baselines));

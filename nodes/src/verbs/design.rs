@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use excavator_identification::design::{ParameterDesign, Plan, SeparationDesign};
-use excavator_workbench::diagnosis_file::DiagnosisFile;
-use excavator_workbench::results::{DesignOrder, Determined, Outcome, Separated};
-use excavator_workbench::sentences::{determination_sentence, separation_sentence};
+use excavator_study::diagnosis_file::DiagnosisFile;
+use excavator_study::results::{DesignOrder, Determined, Outcome, Separated};
+use excavator_study::sentences::{determination_sentence, separation_sentence};
 
 use super::{print, print_detail, print_next};
 use crate::cli::DesignArguments;

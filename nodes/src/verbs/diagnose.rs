@@ -3,20 +3,18 @@
 use std::path::Path;
 
 use excavator_identification::decision::Kind;
-use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings};
-use excavator_identification::refinement::refinement_of;
+use excavator_identification::diagnosis::Diagnosis;
 use excavator_identification::search::Unpromising;
 use excavator_model::Model;
-use excavator_model::recording::Recording;
 use excavator_report::{NONE_TRIED, guess_sentence, verdict_sentence};
-use excavator_workbench::results::Diagnosed;
+use excavator_study::StudyFile;
+use excavator_study::results::Diagnosed;
 
-use super::{print, print_detail, print_next};
-use crate::cli::DiagnoseArguments;
+use super::{print, print_detail, print_next, saved_study};
+use crate::cli::{DiagnoseArguments, ModelChoice, Recordings};
 use crate::error::VerbError;
 use crate::output::{NextStep, Progress, candidate_table};
 use crate::outputs::{self, Inputs};
-use crate::saved_diagnosis::SavedDiagnosis;
 use crate::sources;
 use crate::verbosity::Verbosity;
 
@@ -24,57 +22,40 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     let outputs = [
         ("--report", arguments.report.as_deref()),
         ("--save", arguments.save.as_deref()),
-        ("--scores", arguments.scores.as_deref()),
         ("--json", arguments.json.json.as_deref()),
     ];
     let inputs = Inputs::recordings(arguments.recordings.bags(), arguments.recordings.mapping.map.as_deref())
         .and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
-    let model = sources::model(&arguments.model)?;
-    let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
-    let identification: Vec<&Recording> = identification.iter().collect();
+    let study = arguments.recordings.study(sources::model(&arguments.model)?)?;
     let progress = Progress::new();
-    let tell = |what: &str, done: f64| progress.tell(what, done);
-    let mut diagnosed = Diagnosed::of(&model, &identification, validation, &tell)?;
+    let diagnosed = study.diagnose(&|what: &str, done: f64| progress.tell(what, done))?;
     drop(progress);
     if let Some(path) = &arguments.save {
-        let (settings, when) = (DiagnosisSettings::default(), jiff::Timestamp::now().to_string());
-        let validation: Vec<&Recording> = diagnosed.validation.iter().collect();
-        let refinement = refinement_of(&model, &diagnosed.diagnosis, &identification, &validation, &settings, &when)?;
-        outputs::write(path, &SavedDiagnosis::of(&refinement, &arguments.recordings)?.text()?, arguments.overwriting)?;
-        // A refinement leaves superfluous effects out of the fits. Its errors are used here, because `refine` will show the
-        // same ones.
-        if let Some(found) = refinement.diagnosis() {
-            diagnosed.diagnosis.errors.clone_from(&found.errors);
-        }
+        let recordings = &arguments.recordings;
+        let options = saved_study::options(&arguments.model, recordings);
+        let bags = [recordings.identification.as_slice(), recordings.validation.as_slice()];
+        outputs::write(path, &StudyFile::of(&diagnosed, options, bags)?.text()?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&model, &diagnosed.diagnosis);
-        diagnosed.guess.iter().for_each(|guess| print(&guess_sentence(guess)));
-        for (source, found) in &diagnosed.missing {
-            found.iter().for_each(|one| print_detail(&format!("Energy in {source}: {}", one.sentence)));
-        }
-        print_next(&next(arguments, &diagnosed.diagnosis));
-    }
-    if let Some(path) = &arguments.scores {
-        let text = serde_json::to_string(&diagnosed.diagnosis.scores).map_err(VerbError::from)?;
-        outputs::write(path, &text, arguments.overwriting)?;
+        show(&diagnosed);
+        let step = next(&arguments.model, &arguments.recordings, arguments.save.as_deref(), &diagnosed.diagnosis);
+        print_next(&step);
     }
     outputs::write_told(&diagnosed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
 }
 
-/// The next command, which depends on the verdict.
-fn next(arguments: &DiagnoseArguments, diagnosis: &Diagnosis) -> NextStep {
-    let same =
-        |why: &str, verb: &str| NextStep::new(why, verb).same_model(&arguments.model).recordings(&arguments.recordings);
-    match (diagnosis.verdict.kind, &arguments.save) {
+/// The next command, which depends on the verdict, and on whether the study was saved.
+pub fn next(model: &ModelChoice, recordings: &Recordings, saved: Option<&Path>, diagnosis: &Diagnosis) -> NextStep {
+    let same = |why: &str, verb: &str| NextStep::new(why, verb).same_model(model).recordings(recordings);
+    match (diagnosis.verdict.kind, saved) {
         (Kind::Unexplained, _) => {
             same("look for a law of the missing physics", "propose").path("-o", Path::new("laws.toml"))
         }
         (Kind::Adequate, _) => {
-            let step = NextStep::new("see where the energy goes", "energy").same_model(&arguments.model);
-            let bag = arguments.recordings.validation.first();
-            bag.map_or(step.clone(), |bag| step.path("--bag", bag).mapping(&arguments.recordings.mapping))
+            let step = NextStep::new("see where the energy goes", "energy").same_model(model);
+            let bag = recordings.validation.first();
+            bag.map_or(step.clone(), |bag| step.path("--bag", bag).mapping(&recordings.mapping))
         }
         (Kind::MissingEffect, Some(saved)) => NextStep::new("add it to the model", "refine")
             .path("--diagnosis", saved)
@@ -85,11 +66,20 @@ fn next(arguments: &DiagnoseArguments, diagnosis: &Diagnosis) -> NextStep {
     }
 }
 
+/// Prints a diagnosis with its guess and its missing power.
+pub fn show(diagnosed: &Diagnosed) {
+    show_diagnosis(&diagnosed.model, &diagnosed.diagnosis);
+    diagnosed.guess.iter().for_each(|guess| print(&guess_sentence(guess)));
+    for (source, found) in &diagnosed.missing {
+        found.iter().for_each(|one| print_detail(&format!("Energy in {source}: {}", one.sentence)));
+    }
+}
+
 /// Smallest share of the residual that gets a line.
 const LEAST_SHARE: f64 = 0.05;
 
 /// Prints a diagnosis.
-pub fn show(model: &Model, diagnosis: &Diagnosis) {
+pub fn show_diagnosis(model: &Model, diagnosis: &Diagnosis) {
     print(&verdict_sentence(model, diagnosis));
     if diagnosis.tried() == 0 {
         print(NONE_TRIED);

@@ -11,12 +11,12 @@ use excavator_identification::results;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 use excavator_report::energy_page;
-use excavator_workbench::recordings::LEDGER_BLOCK;
-use excavator_workbench::sentences::ledger_sentence;
+use excavator_study::block_reader::{needs_a_map, read_beside};
+use excavator_study::recordings::LEDGER_BLOCK;
+use excavator_study::sentences::ledger_sentence;
 
 use super::{print, print_next};
-use crate::block_reader::{needs_a_map, read_beside};
-use crate::cli::{EnergyArguments, Mapping};
+use crate::cli::{EnergyArguments, Extent, Mapping};
 use crate::error::VerbError;
 use crate::output::{NextStep, energy_table, ledger_table, write_json};
 use crate::outputs::{self, Inputs};
@@ -67,7 +67,7 @@ fn next(arguments: &EnergyArguments, closes: bool, duration: f64) -> NextStep {
 fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAnalysis, VerbError> {
     let settings = EnergySettings::default();
     if needs_a_map(bag, mapping.map.as_deref()) {
-        return Ok(analyse(model, &sources::recording(bag, mapping, model)?, settings)?);
+        return Ok(analyse(model, &mapping.preparation(Extent { whole: true }).whole(bag, model)?, settings)?);
     }
     let work = |blocks: Receiver<Recording>| {
         let mut analyser = Analyser::new(model, settings);

@@ -1,14 +1,14 @@
 //! `excavator identify`
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use excavator_identification::identify::Identified;
 use excavator_model::Model;
 use excavator_model::document::to_text;
-use excavator_model::recording::Recording;
 use excavator_report::implausible_sentence;
-use excavator_workbench::results::IdentifiedResult;
-use excavator_workbench::sentences::{identification_sentence, profile_sentence};
+use excavator_study::Study;
+use excavator_study::sentences::{identification_sentence, profile_sentence};
 
 use super::{print, print_detail, print_next};
 use crate::cli::IdentifyArguments;
@@ -24,14 +24,14 @@ pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     outputs::check(&outputs[1..], &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
-    let recordings = sources::telling_recordings(&arguments.bag, arguments.extent, &arguments.mapping, &model)?;
-    let recordings: Vec<&Recording> = recordings.iter().collect();
-    let identified = IdentifiedResult::of(&model, &recordings, arguments.method.into())?;
+    let recordings = arguments.mapping.preparation(arguments.extent).recordings(&arguments.bag, &model)?;
+    let goes_on = |_| ControlFlow::Continue(());
+    let identified = Study::of_fitted(model, recordings).identify(arguments.method.into(), &goes_on)?;
     if let Some(path) = &arguments.output {
         outputs::write(path, &to_text(&identified.result.model)?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(&model, &identified.result);
+        show(&identified.given, &identified.result);
         print_next(&next(arguments));
     }
     outputs::write_told(&identified, None, arguments.json.json.as_deref(), arguments.overwriting)

@@ -18,6 +18,8 @@ mod node;
 mod propose;
 mod refine;
 mod reindex;
+mod report;
+mod saved_study;
 mod simulate;
 mod valve_test;
 
@@ -45,6 +47,7 @@ pub fn run(verb: Verb, ros: &RosWords) -> Result<(), VerbError> {
         Verb::Propose(arguments) => propose::run(&arguments),
         Verb::Design(arguments) => design::run(&arguments),
         Verb::Refine(arguments) => refine::run(&arguments),
+        Verb::Report(arguments) => report::run(&arguments),
         Verb::Effects(arguments) => effects::run(&arguments),
         Verb::Model(which) => model::run(&which),
         Verb::Info(arguments) => info::run(&arguments),

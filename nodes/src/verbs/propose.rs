@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use excavator_identification::proposal::{Finding, Proposal, ProposalVerdict, Proposals};
 use excavator_model::Model;
-use excavator_model::recording::Recording;
 use excavator_report::proposal_sentence;
-use excavator_workbench::results::{Outcome, Proposed};
+use excavator_study::results::Outcome;
 
 use super::{print, print_next};
 use crate::cli::ProposeArguments;
@@ -25,15 +24,12 @@ pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
         .and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
-    let (identification, validation) = sources::fitted_and_judging(&arguments.recordings, &model)?;
-    let identification: Vec<&Recording> = identification.iter().collect();
-    let validation: Vec<&Recording> = validation.iter().collect();
+    let study = arguments.recordings.study(model)?;
     let progress = Progress::new();
-    let proposed =
-        Proposed::of(&model, &identification, &validation, &|what: &str, done: f64| progress.tell(what, done))?;
+    let proposed = study.propose(&|what: &str, done: f64| progress.tell(what, done))?;
     drop(progress);
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        show(arguments, &model, &proposed.found);
+        show(arguments, &proposed.model, &proposed.found);
     }
     if let Some(path) = &arguments.output
         && let Some(laws) = proposed.file()?

@@ -3,50 +3,32 @@
 use std::path::Path;
 
 use excavator_identification::refinement::{Additions, Refinement};
-use excavator_identification::results;
-use excavator_identification::validation::{Comparison, compare};
-use excavator_model::Model;
 use excavator_model::document::to_text;
-use excavator_model::recording::Recording;
 use excavator_report::refinement_sentence;
-use excavator_workbench::results::Refined;
+use excavator_study::StudyFile;
+use excavator_study::results::Refined;
 
-use super::{print, print_next};
+use super::{print, print_next, saved_study};
 use crate::cli::{ModelChoice, Recordings, RefineArguments};
 use crate::error::VerbError;
 use crate::output::{NextStep, Progress, Stage, parameter_table, remedy_lines, stage_table, write_json};
 use crate::outputs::{self, Inputs};
-use crate::saved_diagnosis::SavedDiagnosis;
 use crate::sources;
 
 pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
-    match &arguments.diagnosis {
-        Some(path) => as_diagnosed(path, arguments),
-        None => searched(arguments),
-    }
-}
-
-fn searched(arguments: &RefineArguments) -> Result<(), VerbError> {
-    let (choice, recordings) = (arguments.model_choice(), arguments.recordings());
-    let others = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
-    let outputs = [("-o", Some(arguments.output.as_path())), others[0], others[1]];
-    let inputs = Inputs::recordings(recordings.bags(), recordings.mapping.map.as_deref());
-    // With --force the output may replace the input model, which keeps its history.
-    outputs::check(&outputs, &inputs, arguments.overwriting)?;
-    outputs::check(&others, &inputs.and_all(choice.files()), arguments.overwriting)?;
-    let model = sources::model(&choice)?;
-    let additions = match (arguments.auto, arguments.propose) {
-        (true, true) => Additions::AutoWithLaws,
-        (true, false) => Additions::Auto,
-        _ => Additions::named(&model, &arguments.add)?,
+    let study = arguments.diagnosis.as_deref().map(StudyFile::read).transpose()?;
+    let (choice, mut recordings) = match &study {
+        Some(study) => (saved_study::model(study), saved_study::recordings(study)),
+        None => (arguments.model_choice(), arguments.recordings()),
     };
-    let (identification, validation) = sources::fitted_and_judging(&recordings, &model)?;
-    let identification: Vec<&Recording> = identification.iter().collect();
-    let validation: Vec<&Recording> = validation.iter().collect();
-    let progress = Progress::new();
-    let tell = |what: &str, done: f64| progress.tell(what, done);
-    let refined = Refined::of(&model, &identification, &validation, &additions, &tell)?;
-    drop(progress);
+    if !arguments.validation.is_empty() {
+        recordings.validation.clone_from(&arguments.validation);
+    }
+    check_outputs(arguments, &choice, &recordings)?;
+    let refined = match (study, &arguments.diagnosis) {
+        (Some(study), Some(path)) => as_diagnosed(study, path, &recordings, arguments)?,
+        _ => searched(arguments, &choice, &recordings)?,
+    };
     outputs::write(&arguments.output, &to_text(&refined.refinement.model)?, arguments.overwriting)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&refined.refinement);
@@ -60,42 +42,43 @@ fn searched(arguments: &RefineArguments) -> Result<(), VerbError> {
     Ok(())
 }
 
-/// Adds the effects of a saved diagnosis. Its fits are used, and simulated once more.
-fn as_diagnosed(path: &Path, arguments: &RefineArguments) -> Result<(), VerbError> {
-    let saved = SavedDiagnosis::read(path)?;
-    let mut recordings = saved.recordings();
-    if !arguments.validation.is_empty() {
-        recordings.validation.clone_from(&arguments.validation);
-    }
-    let outputs = [("-o", Some(arguments.output.as_path())), ("--json", arguments.json.json.as_deref())];
-    let inputs = Inputs::recordings(recordings.bags(), recordings.mapping.map.as_deref()).and_all([path.to_path_buf()]);
+fn check_outputs(arguments: &RefineArguments, choice: &ModelChoice, recordings: &Recordings) -> Result<(), VerbError> {
+    let others = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let outputs = [("-o", Some(arguments.output.as_path())), others[0], others[1]];
+    let inputs = Inputs::recordings(recordings.bags(), recordings.mapping.map.as_deref());
+    let inputs = inputs.and_all(arguments.diagnosis.clone());
+    // With --force the output may replace the input model, which keeps its history.
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
-    let (given, refined) = (saved.given()?, saved.refined()?);
-    let validation =
-        sources::telling_recordings(&recordings.validation, recordings.extent, &recordings.mapping, &given)?;
-    let compared = |model: &Model| {
-        validation
-            .iter()
-            .map(|recording| Ok(compare(model, recording)?))
-            .collect::<Result<Vec<Comparison>, VerbError>>()
+    outputs::check(&others, &inputs.and_all(choice.files()), arguments.overwriting)
+}
+
+fn searched(arguments: &RefineArguments, choice: &ModelChoice, recordings: &Recordings) -> Result<Refined, VerbError> {
+    let model = sources::model(choice)?;
+    let additions = match (arguments.auto, arguments.propose) {
+        (true, true) => Additions::AutoWithLaws,
+        (true, false) => Additions::Auto,
+        _ => Additions::named(&model, &arguments.add)?,
     };
-    // A model with the values of a data sheet may fail to simulate.
-    let as_given = compared(&given).unwrap_or_default();
-    let steps = saved.steps()?.into_iter().map(|step| Ok((step.added, compared(&step.model)?)));
-    let steps = steps.collect::<Result<Vec<_>, VerbError>>()?;
-    let steps = || steps.iter().map(|(added, comparisons)| (added.as_deref(), comparisons.as_slice()));
-    outputs::write(&arguments.output, &to_text(&refined)?, arguments.overwriting)?;
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        print(&saved.sentence);
-        print(&stage_table(&Stage::all(&as_given, steps())).to_string());
-        print(&parameter_table(&refined, &refined.unknown_parameters()).to_string());
-        end(arguments, &ModelChoice { model: String::new(), own: arguments.own.clone() }, &recordings);
+    let study = recordings.study(model)?;
+    let progress = Progress::new();
+    Ok(study.refine(&additions, &|what: &str, done: f64| progress.tell(what, done))?)
+}
+
+/// Adds the effects of a saved study. Its fits are used, and compared with the validation recordings once more.
+fn as_diagnosed(
+    study: StudyFile,
+    path: &Path,
+    recordings: &Recordings,
+    arguments: &RefineArguments,
+) -> Result<Refined, VerbError> {
+    if arguments.validation.is_empty() {
+        study.validation.iter().try_for_each(|file| file.check())?;
     }
-    if let Some(file) = &arguments.json.json {
-        let written = arguments.output.display().to_string();
-        write_json(file, &results::Refinement::of(saved.verdict, steps(), Some(&written)), arguments.overwriting)?;
-    }
-    Ok(())
+    let fitted_to: Vec<String> = recordings.identification.iter().map(|path| path.display().to_string()).collect();
+    let mut diagnosed = study.diagnosed(path)?;
+    let preparation = recordings.mapping.preparation(recordings.extent);
+    diagnosed.validation = preparation.recordings(&recordings.validation, &diagnosed.model)?;
+    Ok(diagnosed.refine(&fitted_to)?)
 }
 
 /// Prints where the model is, and the next command.

@@ -6,12 +6,12 @@ use excavator_bags::{Topics, write_recording};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::simulate;
-use excavator_workbench::profile_file::ProfileFile;
-use excavator_workbench::simulated::simulate_profile;
+use excavator_study::profile_file::ProfileFile;
+use excavator_study::simulated::simulate_profile;
 use rosbag2::WriteOptions;
 
 use super::{print, print_next};
-use crate::cli::SimulateArguments;
+use crate::cli::{Extent, SimulateArguments};
 use crate::error::VerbError;
 use crate::output::NextStep;
 use crate::outputs;
@@ -25,7 +25,8 @@ pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
     let simulated = if arguments.input.extension().is_some_and(|extension| extension == "toml") {
         with_profile(&model, &arguments.input)?
     } else {
-        simulate(&model, &sources::recording(&arguments.input, &arguments.mapping, &model)?)?
+        let preparation = arguments.mapping.preparation(Extent { whole: true });
+        simulate(&model, &preparation.whole(&arguments.input, &model)?)?
     };
     let options = WriteOptions { replace: arguments.overwriting.force, ..WriteOptions::default() };
     write_recording(&arguments.output, &simulated, &Topics::default(), &options)?;

@@ -117,8 +117,8 @@ fn is_named(case: &str, law: &str) {
     let found = read(&folder.path().join("found.json"));
     let truth = read(&practice.join("answers.json"))[case]["k"].as_f64().unwrap();
     assert_eq!(found["verdict"], "missing_effect", "{case}");
-    let together = found["together"].as_array().unwrap();
-    assert_eq!(together.len(), 1, "{case}: {together:?}");
+    let effects = found["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 1, "{case}: {effects:?}");
     let first = &found["candidates"][0];
     assert_eq!((&first["effect"], &first["tied_with_first"]), (&law.into(), &false.into()), "{case}");
     let value = first["parameters"][0]["value"].as_f64().unwrap();

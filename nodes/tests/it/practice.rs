@@ -71,7 +71,7 @@ fn assert_found(case: &str) {
     let (before, after) = (&first["validation_error_before"], &first["validation_error_after"]);
     println!("{case}: {wanted}, validation error {before} -> {after}");
     assert!(after.as_f64().unwrap() < 0.2 * before.as_f64().unwrap());
-    assert_leaves_noise(&diagnosis["together"][0]["log_error_ratio_after"]);
+    assert_leaves_noise(&diagnosis["effects"][0]["log_error_ratio_after"]);
 }
 
 #[test]

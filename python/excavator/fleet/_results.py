@@ -225,7 +225,7 @@ def effects_of(text: dict[str, Any]) -> list[dict[str, Any]]:
 def _in_verdict(text: dict[str, Any]) -> list[dict[str, Any]]:
     if text.get("verdict") != "missing_effect":
         return []
-    return text.get("together") or (text.get("candidates") or [])[:1]
+    return text.get("effects") or (text.get("candidates") or [])[:1]
 
 
 def _type(pyarrow: Any, kind: str) -> Any:

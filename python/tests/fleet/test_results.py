@@ -14,7 +14,7 @@ DIAGNOSIS = {
     "validation_error": {"before": 0.4, "after": 0.1},
     "candidates": [{"effect": "pump_leakage", "cylinder": "pump", "validation_error_before": 0.4, "validation_error_after": 0.1, "evidence": 9.0}],
     "rejected": [{"effect": "hose_loss", "cylinder": "arm", "validation_error_before": 0.4, "validation_error_after": 0.39, "evidence": 0.1}],
-    "together": [
+    "effects": [
         {"effect": "pump_leakage", "cylinder": "pump", "parameters": [{"name": "leakage", "value": 1e-12, "margin_95": 1e-13, "unit": "m³/(s Pa)"}]}
     ],
     "refitted": [{"name": "friction", "value": 900.0, "std_error": 5.0, "margin_95": 10.0, "unit": "N"}],

@@ -1,4 +1,4 @@
-//! Reads the output of `excavator diagnose --json`.
+//! Reads what `excavator diagnose` wrote: a study, or `--json`.
 
 use std::path::{Path, PathBuf};
 
@@ -37,7 +37,7 @@ impl DiagnosisFile {
     /// # Errors
     /// [`WorkError::DiagnosisSyntax`].
     pub fn of_text(path: &Path, text: &str) -> Result<Self, WorkError> {
-        let found: Diagnosis = serde_json::from_str(text)
+        let found = result(text)
             .map_err(|error| WorkError::DiagnosisSyntax { path: path.to_path_buf(), reason: error.to_string() })?;
         let name = |candidate: &Candidate| format!("{}@{}", candidate.effect, candidate.cylinder);
         let mut fitted: Vec<(String, Vec<(String, f64)>)> = vec![("none".into(), values(&found.refitted))];
@@ -99,6 +99,18 @@ impl DiagnosisFile {
         if !self.noise.is_empty() {
             sensors.noise.clone_from(&self.noise);
         }
+    }
+}
+
+/// The result of a study, or the result itself.
+fn result(text: &str) -> Result<Diagnosis, serde_json::Error> {
+    #[derive(serde::Deserialize)]
+    struct OfStudy {
+        result: Option<Diagnosis>,
+    }
+    match serde_json::from_str::<OfStudy>(text)?.result {
+        Some(result) => Ok(result),
+        None => serde_json::from_str(text),
     }
 }
 

@@ -10,11 +10,11 @@ use excavator_identification::regression::RegressionError;
 use excavator_identification::selection::{Chosen, Selection, SelectionSettings, joined};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
-use excavator_workbench::recordings::{BLOCK, is_long};
 
+use crate::WorkError;
 use crate::block_reader::{needs_a_map, read_beside};
-use crate::error::VerbError;
-use excavator_workbench::recording_part::Part;
+use crate::recording_part::Part;
+use crate::recordings::{BLOCK, is_long};
 
 /// Blocks that may be queued for the selection.
 const WAITING: usize = 1;
@@ -23,13 +23,13 @@ const WAITING: usize = 1;
 /// chosen (without the recording itself).
 ///
 /// # Errors
-/// [`VerbError::Recording`] if there is no recording, [`VerbError::Part`], and [`VerbError::Regression`] if a long one lacks
+/// [`WorkError::Recording`] if there is no recording, [`WorkError::Part`], and [`WorkError::Regression`] if a long one lacks
 /// inputs.
-pub fn recording_or_stretches(
+pub(crate) fn recording_or_stretches(
     path: &Path,
     origin: Origin<'_>,
     model: &Model,
-) -> Result<(Recording, ReadReport, Option<Chosen>), VerbError> {
+) -> Result<(Recording, ReadReport, Option<Chosen>), WorkError> {
     let (whole, part) = Part::split(path)?;
     if !whole.exists() || needs_a_map(&whole, origin.map) {
         let (recording, report) = read_recording_or_mapped(&whole, origin)?;
@@ -44,7 +44,7 @@ pub fn recording_or_stretches(
     in_blocks(path, (&whole, origin.namespace), part, model)
 }
 
-fn in_part(recording: Recording, part: Option<Part>, path: &Path) -> Result<Recording, VerbError> {
+fn in_part(recording: Recording, part: Option<Part>, path: &Path) -> Result<Recording, WorkError> {
     match part {
         Some(part) => Ok(part.of(&recording, path)?),
         None => Ok(recording),
@@ -57,7 +57,7 @@ fn in_blocks(
     (whole, namespace): (&Path, Option<&str>),
     part: Option<Part>,
     model: &Model,
-) -> Result<(Recording, ReadReport, Option<Chosen>), VerbError> {
+) -> Result<(Recording, ReadReport, Option<Chosen>), WorkError> {
     let (mut start, mut end) = (None, 0.0);
     let choose = |block: Recording| {
         let offset = (block.start_nanoseconds - *start.get_or_insert(block.start_nanoseconds)) as f64 * 1e-9;
@@ -72,7 +72,7 @@ fn in_blocks(
     let (report, outcome) = read_beside(whole, namespace, BLOCK, WAITING, choose, |blocks| taken(blocks, path, model))?;
     match outcome? {
         Taken::Whole(recording) if recording.is_empty() => match part {
-            Some(part) => Err(part.is_beyond(end, path).into()),
+            Some(part) => Err(part.is_beyond(end, path)),
             None => Ok((recording, report, None)),
         },
         Taken::Whole(recording) => Ok((recording, report, None)),

@@ -7,8 +7,8 @@ use crate::WorkError;
 /// A result as JSON text, indented to be readable.
 ///
 /// ```
-/// assert_eq!(excavator_workbench::json_text(&[0.5, 2.0])?, "[\n  0.5,\n  2.0\n]\n");
-/// # Ok::<(), excavator_workbench::WorkError>(())
+/// assert_eq!(excavator_study::json_text(&[0.5, 2.0])?, "[\n  0.5,\n  2.0\n]\n");
+/// # Ok::<(), excavator_study::WorkError>(())
 /// ```
 ///
 /// # Errors

@@ -3,11 +3,10 @@
 use excavator_identification::characterisation::{Characterisation, characterise};
 use excavator_identification::results;
 use excavator_model::Model;
-use excavator_model::recording::Recording;
 use excavator_report::characterisation_page;
 
 use super::Outcome;
-use crate::{WorkError, json_text};
+use crate::{Study, WorkError, json_text};
 
 /// Result of `characterise`.
 #[must_use]
@@ -17,11 +16,23 @@ pub struct Characterised {
     found: Vec<Characterisation>,
 }
 
+impl Study {
+    /// Determines all characteristics of valve and friction that the identification recordings together allow.
+    pub fn characterise(&self) -> Characterised {
+        let sources = self.identification.iter().map(|recording| recording.source.clone()).collect();
+        Characterised { model: self.model.clone(), sources, found: characterise(&self.model, &self.fitted()) }
+    }
+}
+
 impl Characterised {
-    /// Determines all characteristics that the recordings together allow.
-    pub fn of(model: &Model, recordings: &[&Recording]) -> Self {
-        let sources = recordings.iter().map(|recording| recording.source.clone()).collect();
-        Characterised { model: model.clone(), sources, found: characterise(model, recordings) }
+    /// What was found, cylinder by cylinder.
+    pub fn found(&self) -> &[Characterisation] {
+        &self.found
+    }
+
+    /// Name of the machine.
+    pub fn machine(&self) -> &str {
+        &self.model.machine.name
     }
 }
 

@@ -1,16 +1,17 @@
 //! Diagnosis of the physical effect that a model is missing.
 
-use excavator_identification::diagnosis::{Diagnosis, DiagnosisSettings, diagnose};
+use excavator_identification::diagnosis::{Diagnosis, diagnose};
 use excavator_identification::energy::{MissingPower, ledgers};
 use excavator_identification::proposal::{Guess, guess_for};
+use excavator_identification::refinement::refinement_of;
 use excavator_identification::results;
 use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 use excavator_report::{diagnosis_page, guess_sentence, verdict_sentence};
 
-use super::{Outcome, Progress};
-use crate::{WorkError, json_text};
+use super::{Outcome, Progress, Refined};
+use crate::{Study, WorkError, json_text};
 
 /// Result of `diagnose`.
 pub struct Diagnosed {
@@ -26,29 +27,40 @@ pub struct Diagnosed {
     pub validation: Vec<Recording>,
 }
 
-impl Diagnosed {
-    /// Fits `model` and every effect of its catalogue to `identification`, and evaluates the evidence on `validation`.
+impl Study {
+    /// Fits the model and every effect of its catalogue to the identification recordings, and evaluates the evidence on the
+    /// validation recordings.
     ///
     /// # Errors
     /// [`WorkError::Diagnosis`].
-    pub fn of(
-        model: &Model,
-        identification: &[&Recording],
-        validation: Vec<Recording>,
-        progress: Progress<'_>,
-    ) -> Result<Self, WorkError> {
-        let judging: Vec<&Recording> = validation.iter().collect();
-        let diagnosis = diagnose(model, identification, &judging, &DiagnosisSettings::default(), progress)?;
-        let guess = guess_for(&diagnosis, identification, &judging);
+    pub fn diagnose(self, progress: Progress<'_>) -> Result<Diagnosed, WorkError> {
+        let (fitted, judging) = (self.fitted(), self.judging());
+        let diagnosis = diagnose(&self.model, &fitted, &judging, &self.settings, progress)?;
+        let guess = guess_for(&diagnosis, &fitted, &judging);
         let missing = ledgers(&diagnosis.given().fit.model, &judging);
-        Ok(Diagnosed { model: model.clone(), diagnosis, guess, missing, validation })
+        Ok(Diagnosed { diagnosis, guess, missing, model: self.model, validation: self.validation })
+    }
+}
+
+impl Diagnosed {
+    /// The result for JSON.
+    pub fn result(&self) -> results::Diagnosis {
+        results::Diagnosis::of(&self.model, &self.diagnosis, self.guess.as_ref(), &self.missing)
+    }
+
+    /// The refinement that adds what was found, without another search. `fitted_to` names the identification recordings.
+    ///
+    /// # Errors
+    /// [`WorkError::Refine`].
+    pub fn refine(self, fitted_to: &[String]) -> Result<Refined, WorkError> {
+        let (judging, when) = (self.validation.iter().collect::<Vec<_>>(), jiff::Timestamp::now().to_string());
+        Ok(Refined { refinement: refinement_of(&self.model, self.diagnosis, fitted_to, &judging, &when)? })
     }
 }
 
 impl Outcome for Diagnosed {
     fn json(&self) -> Result<String, WorkError> {
-        let result = results::Diagnosis::of(&self.model, &self.diagnosis, self.guess.as_ref(), &self.missing);
-        json_text(&result)
+        json_text(&self.result())
     }
 
     fn sentence(&self) -> String {

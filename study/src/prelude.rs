@@ -1,6 +1,5 @@
-//! Imports that most programs need: `use excavator_workbench::prelude::*;`.
+//! Imports that most programs need: `use excavator_study::prelude::*;`.
 
-pub use crate::WorkError;
 pub use crate::diagnosis_file::DiagnosisFile;
 pub use crate::profile_file::ProfileFile;
 pub use crate::recording_part::Part;
@@ -10,3 +9,4 @@ pub use crate::results::{
     Proposed, Refined, Separated,
 };
 pub use crate::simulated::simulate_profile;
+pub use crate::{Study, StudyFile, StudyOptions, WorkError};

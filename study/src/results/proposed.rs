@@ -1,15 +1,13 @@
 //! Proposed laws for effects that are missing from a model and from every catalogue.
 
-use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::proposal::{Proposals, propose};
 use excavator_identification::results;
 use excavator_model::Model;
 use excavator_model::document::catalogue_text;
-use excavator_model::recording::Recording;
 use excavator_report::{proposal_page, proposal_sentence};
 
 use super::{Outcome, Progress};
-use crate::{WorkError, json_text};
+use crate::{Study, WorkError, json_text};
 
 /// Result of `propose`.
 pub struct Proposed {
@@ -19,19 +17,14 @@ pub struct Proposed {
     pub found: Proposals,
 }
 
-impl Proposed {
-    /// Proposes laws, best first.
+impl Study {
+    /// Proposes laws for what the model and its catalogue lack, best first.
     ///
     /// # Errors
     /// [`WorkError::Diagnosis`].
-    pub fn of(
-        model: &Model,
-        identification: &[&Recording],
-        validation: &[&Recording],
-        progress: Progress<'_>,
-    ) -> Result<Self, WorkError> {
-        let found = propose(model, identification, validation, &DiagnosisSettings::default(), progress)?;
-        Ok(Proposed { model: model.clone(), found })
+    pub fn propose(&self, progress: Progress<'_>) -> Result<Proposed, WorkError> {
+        let found = propose(&self.model, &self.fitted(), &self.judging(), &self.settings, progress)?;
+        Ok(Proposed { model: self.model.clone(), found })
     }
 }
 

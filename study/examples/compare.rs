@@ -1,4 +1,4 @@
-//! A built-in model beside a recording: `cargo run -p excavator-workbench --example compare -- [DATA]`.
+//! A built-in model beside a recording: `cargo run -p excavator-study --example compare -- [DATA]`.
 //!
 //! DATA is a bag or table, also a part of one (`BAG@1..3`, s); without, a sample of the repository is read. What a person should
 //! know goes to standard error, the result as JSON to standard output.
@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use excavator_bags::prelude::*;
 use excavator_model::document::built_in;
-use excavator_workbench::prelude::*;
+use excavator_study::prelude::*;
 
 /// Four seconds of an arm.
 const SAMPLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../bags/samples/arm-swing");
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut remarks = report.problems();
     let usage = Use { accept: &[], conditions: &[] };
     let recording = checked("recording", recording, &report, &usage, &model, &mut remarks)?;
-    let compared = Compared::of(&model, &recording, None, None)?;
+    let compared = Study::of_recording(model, recording).compare(None, None)?;
     remarks.push(compared.sentence());
     eprintln!("{}", remarks.join("\n"));
     print!("{}", compared.json()?);

@@ -18,8 +18,8 @@ use crate::profile_file::ProfileFile;
 /// use std::path::Path;
 ///
 /// use excavator_model::document::built_in;
-/// use excavator_workbench::profile_file::ProfileFile;
-/// use excavator_workbench::simulated::simulate_profile;
+/// use excavator_study::profile_file::ProfileFile;
+/// use excavator_study::simulated::simulate_profile;
 ///
 /// let text = r#"
 ///     rate = 100.0

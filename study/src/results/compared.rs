@@ -7,7 +7,7 @@ use excavator_model::recording::Recording;
 use excavator_report::{Beside, comparison_page, comparison_sentence, others_sentence};
 
 use super::Outcome;
-use crate::{WorkError, json_text};
+use crate::{Study, WorkError, json_text};
 
 /// Result of `compare`.
 pub struct Compared {
@@ -23,25 +23,23 @@ pub struct Compared {
     pub again: Option<Repeat>,
 }
 
-impl Compared {
-    /// Simulates `model` with the input of `recording` and compares every output. Optionally adds another model, or
-    /// another run of the same commands.
+impl Study {
+    /// Simulates the model with the input of the first validation recording and compares every output. Optionally adds another
+    /// model, or another run of the same commands.
     ///
     /// # Errors
-    /// [`WorkError::Run`].
-    pub fn of(
-        model: &Model,
-        recording: &Recording,
-        against: Option<&Model>,
-        again: Option<&Recording>,
-    ) -> Result<Self, WorkError> {
+    /// [`WorkError::Run`], [`WorkError::NoRecording`].
+    pub fn compare(&self, against: Option<&Model>, again: Option<&Recording>) -> Result<Compared, WorkError> {
+        let (model, recording) = (&self.model, self.validation.first().ok_or(WorkError::NoRecording)?);
         let comparison = compare(model, recording)?;
         let baselines = Baselines::of(model, recording, &comparison);
         let against = against.map(|model| compare(model, recording)).transpose()?;
         let again = again.map(|again| compare_runs(model, recording, again)).transpose()?;
         Ok(Compared { model: model.clone(), comparison, baselines, against, again })
     }
+}
 
+impl Compared {
     /// The additional comparisons.
     #[must_use]
     pub fn others(&self) -> Vec<Beside<'_>> {

@@ -3,7 +3,7 @@
 /// A number with four significant digits, short.
 ///
 /// ```
-/// use excavator_workbench::numbers::number;
+/// use excavator_study::numbers::number;
 ///
 /// assert_eq!([21.3456, 2.1e-7, f64::NAN].map(number), ["21.35", "2.100e-7", "-"]);
 /// ```

@@ -1,14 +1,14 @@
 //! Parameters from recordings.
 
-use excavator_identification::identify::{Identified, Method, identify};
+use excavator_identification::fit::Watch;
+use excavator_identification::identify::{Identified, Method, identify_watched};
 use excavator_identification::results;
 use excavator_model::Model;
-use excavator_model::recording::Recording;
 use excavator_report::implausible_sentence;
 
 use super::Outcome;
 use crate::sentences::{identification_sentence, profile_sentence};
-use crate::{WorkError, json_text};
+use crate::{Study, WorkError, json_text};
 
 /// Result of `identify`.
 pub struct IdentifiedResult {
@@ -18,15 +18,17 @@ pub struct IdentifiedResult {
     pub result: Identified,
 }
 
-impl IdentifiedResult {
-    /// Identifies the unknown parameters of `model`.
+impl Study {
+    /// Identifies the unknown parameters of the model from the identification recordings. `watch` receives the progress, and can
+    /// stop the work.
     ///
     /// # Errors
     /// [`WorkError::Identify`].
-    pub fn of(model: &Model, recordings: &[&Recording], method: Method) -> Result<Self, WorkError> {
-        let mut result = identify(model, recordings, method)?;
-        result.add_history(&jiff::Timestamp::now().to_string(), method, recordings);
-        Ok(IdentifiedResult { given: model.clone(), result })
+    pub fn identify(&self, method: Method, watch: Watch<'_>) -> Result<IdentifiedResult, WorkError> {
+        let recordings = self.fitted();
+        let mut result = identify_watched(&self.model, &recordings, method, watch)?;
+        result.add_history(&jiff::Timestamp::now().to_string(), method, &recordings);
+        Ok(IdentifiedResult { given: self.model.clone(), result })
     }
 }
 

@@ -1,6 +1,5 @@
 //! A model with additional effects, fitted and compared again.
 
-use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
 use excavator_identification::results;
 use excavator_model::Model;
@@ -8,7 +7,7 @@ use excavator_model::recording::Recording;
 use excavator_report::{refinement_page, refinement_sentence};
 
 use super::{Outcome, Progress};
-use crate::{WorkError, json_text};
+use crate::{Study, WorkError, json_text};
 
 /// Result of `refine`.
 pub struct Refined {
@@ -16,23 +15,19 @@ pub struct Refined {
     pub refinement: Refinement,
 }
 
-impl Refined {
-    /// Adds effects to `model` and fits it again.
+impl Study {
+    /// Adds effects to the model and fits it again.
     ///
     /// # Errors
     /// [`WorkError::Refine`].
-    pub fn of(
-        model: &Model,
-        identification: &[&Recording],
-        validation: &[&Recording],
-        additions: &Additions,
-        progress: Progress<'_>,
-    ) -> Result<Self, WorkError> {
-        let (settings, when) = (DiagnosisSettings::default(), jiff::Timestamp::now().to_string());
-        let refinement = refine(model, identification, validation, additions, &settings, &when, progress)?;
+    pub fn refine(&self, additions: &Additions, progress: Progress<'_>) -> Result<Refined, WorkError> {
+        let (fitted, judging, when) = (self.fitted(), self.judging(), jiff::Timestamp::now().to_string());
+        let refinement = refine(&self.model, &fitted, &judging, additions, &self.settings, &when, progress)?;
         Ok(Refined { refinement })
     }
+}
 
+impl Refined {
     /// The result, with the name of the file that the model was written to.
     pub fn result(&self, written: Option<&str>) -> results::Refinement {
         results::Refinement::of(self.refinement.verdict(), self.refinement.compared_steps(), written)

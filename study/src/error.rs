@@ -57,10 +57,18 @@ pub enum WorkError {
     ProfileWrite(String),
     #[error("profile: {machine} has no cylinder \"{cylinder}\"; it has {known}")]
     ProfileCylinder { machine: String, cylinder: String, known: String },
-    #[error("{} is not what `excavator diagnose --json` writes: {reason}", path.display())]
+    #[error("{} is not what `excavator diagnose --save` or `--json` writes: {reason}", path.display())]
     DiagnosisSyntax { path: PathBuf, reason: String },
     #[error("{} has no tie: {found}; name rivals with --between", path.display())]
     NoTie { path: PathBuf, found: String },
+    #[error("{} is no study: {reason}", path.display())]
+    StudySyntax { path: PathBuf, reason: String },
+    #[error("{} cannot be read: {source}", path.display())]
+    Unreadable { path: PathBuf, source: std::io::Error },
+    #[error("{} is not the recording of the study: its content has changed; run the diagnosis again", path.display())]
+    Changed { path: PathBuf },
+    #[error("no recording to compare the model with")]
+    NoRecording,
     #[error("cannot write JSON: {0}")]
     Json(#[from] serde_json::Error),
 }

@@ -20,12 +20,12 @@ impl Part {
     /// ```
     /// use std::path::Path;
     ///
-    /// use excavator_workbench::recording_part::Part;
+    /// use excavator_study::recording_part::Part;
     ///
     /// let (bag, part) = Part::split(Path::new("drive_1@20..40"))?;
     /// assert_eq!(bag, Path::new("drive_1"));
     /// assert!(part.is_some());
-    /// # Ok::<(), excavator_workbench::WorkError>(())
+    /// # Ok::<(), excavator_study::WorkError>(())
     /// ```
     ///
     /// # Errors

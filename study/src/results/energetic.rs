@@ -3,13 +3,12 @@
 use excavator_identification::energy::{Analyser, EnergyAnalysis, EnergySettings, analyse, missing_power};
 use excavator_identification::results;
 use excavator_model::Model;
-use excavator_model::recording::Recording;
 use excavator_report::energy_page;
 
 use super::Outcome;
 use crate::recordings::{LEDGER_BLOCK, blocks};
 use crate::sentences::ledger_sentence;
-use crate::{WorkError, json_text};
+use crate::{Study, WorkError, json_text};
 
 /// Result of `energy`.
 pub struct Energetic {
@@ -17,24 +16,26 @@ pub struct Energetic {
     analysis: EnergyAnalysis,
 }
 
-impl Energetic {
-    /// Analyses a recording as a whole.
+impl Study {
+    /// Analyses the energy of the first validation recording as a whole.
     ///
     /// # Errors
-    /// [`WorkError::Energy`].
-    pub fn of(model: &Model, recording: &Recording) -> Result<Self, WorkError> {
-        let analysis = analyse(model, recording, EnergySettings::default())?;
-        Ok(Energetic { model: model.clone(), analysis })
+    /// [`WorkError::Energy`], [`WorkError::NoRecording`].
+    pub fn energy(&self) -> Result<Energetic, WorkError> {
+        let recording = self.validation.first().ok_or(WorkError::NoRecording)?;
+        let analysis = analyse(&self.model, recording, EnergySettings::default())?;
+        Ok(Energetic { model: self.model.clone(), analysis })
     }
 
     /// The same block by block, as the program reads a bag with its own topics.
     ///
     /// # Errors
-    /// [`WorkError::Energy`].
-    pub fn of_blocks(model: &Model, recording: &Recording) -> Result<Self, WorkError> {
-        let mut analyser = Analyser::new(model, EnergySettings::default());
+    /// As [`Study::energy`].
+    pub fn energy_in_blocks(&self) -> Result<Energetic, WorkError> {
+        let recording = self.validation.first().ok_or(WorkError::NoRecording)?;
+        let mut analyser = Analyser::new(&self.model, EnergySettings::default());
         blocks(recording, LEDGER_BLOCK).try_for_each(|block| analyser.push(&block))?;
-        Ok(Energetic { model: model.clone(), analysis: analyser.finish()? })
+        Ok(Energetic { model: self.model.clone(), analysis: analyser.finish()? })
     }
 }
 

@@ -1,0 +1,31 @@
+//! `excavator report`
+
+use std::path::Path;
+
+use excavator_study::StudyFile;
+
+use super::{diagnose, print_next, saved_study};
+use crate::cli::ReportArguments;
+use crate::error::VerbError;
+use crate::outputs::{self, Inputs};
+
+pub fn run(arguments: &ReportArguments) -> Result<(), VerbError> {
+    let (path, json) = (&arguments.study, arguments.json.json.as_deref());
+    let study = StudyFile::read(path)?;
+    let (model, recordings) = (saved_study::model(&study), saved_study::recordings(&study));
+    let outputs = [("--report", arguments.report.as_deref()), ("--json", json)];
+    let inputs = Inputs::recordings(recordings.bags(), recordings.mapping.map.as_deref()).and_all([path.clone()]);
+    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    let files = study.validation.clone();
+    let mut diagnosed = study.diagnosed(path)?;
+    if arguments.report.is_some() {
+        files.iter().try_for_each(|file| file.check())?;
+        let preparation = recordings.mapping.preparation(recordings.extent);
+        diagnosed.validation = preparation.recordings(&recordings.validation, &diagnosed.model)?;
+    }
+    if json != Some(Path::new("-")) {
+        diagnose::show(&diagnosed);
+        print_next(&diagnose::next(&model, &recordings, Some(path), &diagnosed.diagnosis));
+    }
+    outputs::write_told(&diagnosed, arguments.report.as_deref(), json, arguments.overwriting)
+}

@@ -1,0 +1,90 @@
+//! Reads recordings by name and makes them fit for use.
+
+use std::path::{Path, PathBuf};
+
+use excavator_bags::ReadReport;
+use excavator_bags::map::{Origin, read_recording_or_mapped};
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+
+use crate::long_recording::recording_or_stretches;
+use crate::recording_part::Part;
+use crate::recordings::{Use, checked, choice};
+use crate::{Study, WorkError};
+
+/// How recordings are found and used. Remarks for the user go to `remark`, also those that precede a failure.
+#[derive(Clone, Copy)]
+pub struct Preparation<'p> {
+    /// Map and namespace.
+    pub origin: Origin<'p>,
+    /// Checks that are overruled, and conditions.
+    pub usage: Use<'p>,
+    /// Whether all of a long recording is used.
+    pub whole: bool,
+    /// Receives one line at a time.
+    pub remark: &'p dyn Fn(&str),
+}
+
+impl Preparation<'_> {
+    /// All of a recording, checked against the model. `BAG@20..40` is the part from 20 s to 40 s.
+    ///
+    /// # Errors
+    /// [`WorkError`] if it cannot be read, or if a check refuses it.
+    pub fn whole(&self, path: &Path, model: &Model) -> Result<Recording, WorkError> {
+        let (whole, part) = Part::split(path)?;
+        let (mut recording, report) = read_recording_or_mapped(&whole, self.origin)?;
+        if let Some(part) = part {
+            recording = part.of(&recording, path)?;
+        }
+        self.checked(path, recording, &report, model)
+    }
+
+    /// A recording, checked against the model. Of a long one only the stretches that are most informative about the parameters of
+    /// the model are read, unless all of it is wanted.
+    ///
+    /// # Errors
+    /// As [`Preparation::whole`].
+    pub fn recording(&self, path: &Path, model: &Model) -> Result<Recording, WorkError> {
+        if self.whole {
+            return self.whole(path, model);
+        }
+        let (recording, report, chosen) = recording_or_stretches(path, self.origin, model)?;
+        if let Some(chosen) = &chosen {
+            (self.remark)(&format!("{}: {}; --whole uses all", path.display(), choice(&recording, chosen)));
+        }
+        self.checked(path, recording, &report, model)
+    }
+
+    /// Several recordings.
+    ///
+    /// # Errors
+    /// As [`Preparation::whole`].
+    pub fn recordings(&self, paths: &[PathBuf], model: &Model) -> Result<Vec<Recording>, WorkError> {
+        paths.iter().map(|path| self.recording(path, model)).collect()
+    }
+
+    /// A study of recordings for the fit and others that judge. What they have in common is remarked.
+    ///
+    /// # Errors
+    /// As [`Preparation::whole`].
+    pub fn study(&self, model: Model, [fitted, judging]: [&[PathBuf]; 2]) -> Result<Study, WorkError> {
+        let study = Study::new(model.clone(), self.recordings(fitted, &model)?, self.recordings(judging, &model)?);
+        study.shared_readings().iter().for_each(|shared| (self.remark)(shared));
+        Ok(study)
+    }
+
+    fn checked(
+        &self,
+        path: &Path,
+        recording: Recording,
+        report: &ReadReport,
+        model: &Model,
+    ) -> Result<Recording, WorkError> {
+        let name = path.display().to_string();
+        report.problems().iter().for_each(|problem| (self.remark)(&format!("{name}: {problem}")));
+        let mut remarks = Vec::new();
+        let used = checked(&name, recording, report, &self.usage, model, &mut remarks);
+        remarks.iter().for_each(|line| (self.remark)(line));
+        used
+    }
+}

@@ -1,0 +1,54 @@
+//! A question about a machine.
+
+use excavator_identification::checks::shared_readings;
+use excavator_identification::diagnosis::DiagnosisSettings;
+use excavator_model::Model;
+use excavator_model::recording::Recording;
+
+/// A model, the recordings that its parameters are fitted to, and the recordings that judge it. Its methods answer the questions
+/// of the verbs: [`Study::compare`], [`Study::identify`], [`Study::characterise`], [`Study::energy`], [`Study::diagnose`],
+/// [`Study::propose`], [`Study::refine`]. Recordings must have been prepared ([`crate::recordings`]).
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// The model as given.
+    pub model: Model,
+    /// Recordings that parameters are fitted to.
+    pub identification: Vec<Recording>,
+    /// Recordings that evidence is taken from; never fitted.
+    pub validation: Vec<Recording>,
+    /// How much a diagnosis tries, and the rules of its verdict.
+    pub settings: DiagnosisSettings,
+}
+
+impl Study {
+    /// A study of `model` with the usual settings.
+    #[must_use]
+    pub fn new(model: Model, identification: Vec<Recording>, validation: Vec<Recording>) -> Self {
+        Study { model, identification, validation, settings: DiagnosisSettings::default() }
+    }
+
+    /// A study of one recording, which is compared with the model and not fitted.
+    #[must_use]
+    pub fn of_recording(model: Model, recording: Recording) -> Self {
+        Study::new(model, Vec::new(), vec![recording])
+    }
+
+    /// A study of recordings that are fitted only.
+    #[must_use]
+    pub fn of_fitted(model: Model, recordings: Vec<Recording>) -> Self {
+        Study::new(model, recordings, Vec::new())
+    }
+
+    /// What the recordings for the fit and those for validation have in common, one line each.
+    pub fn shared_readings(&self) -> Vec<String> {
+        shared_readings(&self.fitted(), &self.judging()).iter().map(ToString::to_string).collect()
+    }
+
+    pub(crate) fn fitted(&self) -> Vec<&Recording> {
+        self.identification.iter().collect()
+    }
+
+    pub(crate) fn judging(&self) -> Vec<&Recording> {
+        self.validation.iter().collect()
+    }
+}
