@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use excavator_identification::decision::{Kind, Reason, Standing, Verdict};
+use excavator_identification::decision::{Kind, Policy, Reason, Standing, Verdict};
 use excavator_identification::diagnosis::{Diagnosis, NamedVerdict, Share, Unexplained};
 use excavator_identification::energy::{MissingPower, Regime};
 use excavator_identification::fit::{Fit, Instrument};
@@ -127,6 +127,7 @@ fn diagnosis(kind: Kind, trials: Vec<Trial>, set: &[usize], reasons: Vec<Reason>
         Trial { error, ..trial }
     };
     Diagnosis {
+        policy: Policy::default(),
         verdict: Verdict { kind, best: set.first().copied().unwrap_or(0), set: set.to_vec(), reasons, standings },
         scores,
         trials: std::iter::once(given.clone()).chain(trials).map(with_error).collect(),
@@ -138,6 +139,8 @@ fn diagnosis(kind: Kind, trials: Vec<Trial>, set: &[usize], reasons: Vec<Reason>
             equation: "arm.motion".into(),
             variable: "position".into(),
             share_of_residual: 0.6,
+            follows_variable: true,
+            differs_in_form: false,
             curve: vec![[-0.1, 20.0, 2.0], [0.0, f64::NAN, 1.0], [0.1, -30.0, 2.5]],
             unit: "N m".into(),
         }),
@@ -336,9 +339,9 @@ fn what_is_unexplained_says_what_is_known_of_it() {
     let partly = |after| Reason::PartlyExplained { before: 2.0, after, limit: 0.1 };
     let elsewhere = diagnosis(Kind::Unexplained, dead_zone(), &[1], vec![partly(0.4)]);
     assert!(sentence(&elsewhere).contains("20 % of the misfit remains"), "{}", sentence(&elsewhere));
-    assert!(!sentence(&elsewhere).contains("mostly"), "a valve is no force: {}", sentence(&elsewhere));
+    assert!(!sentence(&elsewhere).contains("mostly"), "{}", sentence(&elsewhere));
     let mut in_its_own = elsewhere;
-    in_its_own.unexplained.iter_mut().for_each(|left| left.equation = "arm.cap_continuity".into());
+    in_its_own.unexplained.iter_mut().for_each(|left| left.differs_in_form = true);
     let mostly = sentence(&in_its_own);
     assert!(mostly.contains("mostly valve dead zone at the arm valve section"), "{mostly}");
     assert!(mostly.contains("in a form that differs"), "{mostly}");

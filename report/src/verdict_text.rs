@@ -119,9 +119,6 @@ fn change_with(diagnosis: &Diagnosis, trial: &Trial) -> String {
     change_of_error([diagnosis.given(), trial].map(|one| one.error.unwrap_or(f64::NAN)))
 }
 
-/// Share of a residual that a variable must explain to be mentioned.
-const LEAST_SHARE: f64 = 0.1;
-
 fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
     let structural = diagnosis.verdict.structural_alternative();
     let selected = diagnosis.selected();
@@ -143,10 +140,10 @@ fn unexplained(machine: &str, diagnosis: &Diagnosis) -> String {
     }
     if let Some(left) = &diagnosis.unexplained {
         text += &format!(" The largest residual is in the {}", words::equation(&left.equation));
-        text += &if left.share_of_residual < LEAST_SHARE {
-            "; it follows no single variable.".to_string()
-        } else {
+        text += &if left.follows_variable {
             format!("; {} of it follows the {}.", percent(left.share_of_residual), words::variable(&left.variable))
+        } else {
+            "; it follows no single variable.".to_string()
         };
     }
     text + &construction(diagnosis)
@@ -165,26 +162,12 @@ fn partly(diagnosis: &Diagnosis, selected: &[Candidate<'_>]) -> String {
     let smaller = format!("the mean NMSE on recordings that were not fitted {change}");
     let left = percent(1.0 - share);
     match selected {
-        [only] if share >= MOSTLY && is_its_own(only, diagnosis) => format!(
+        [_] if diagnosis.unexplained.as_ref().is_some_and(|left| left.differs_in_form) => format!(
             " It is mostly {names}, in a form that differs from the catalogue's: {smaller}, and {left} of the misfit remains."
         ),
         [_] => format!(" With {names} {smaller}, but {left} of the misfit remains."),
         _ => format!(" Probably missing: {names}. With all of them {smaller}, but {left} of the misfit remains."),
     }
-}
-
-/// Share of the misfit from which an effect is called most of what is missing.
-const MOSTLY: f64 = 0.7;
-
-/// Share of a residual that one variable explains, from which it has the form of a law.
-const LAWFUL: f64 = 0.5;
-
-/// Whether what an effect leaves is in its own kind of balance and follows one variable. Otherwise something else is missing beside it.
-fn is_its_own(candidate: &Candidate<'_>, diagnosis: &Diagnosis) -> bool {
-    diagnosis.unexplained.as_ref().is_some_and(|left| {
-        let is_of_forces = left.equation.ends_with(".motion");
-        left.share_of_residual >= LAWFUL && candidate.addition.physics.card().is_of_flows() != is_of_forces
-    })
 }
 
 /// Structural effects that would explain the recordings, with a leading space.

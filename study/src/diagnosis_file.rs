@@ -61,9 +61,9 @@ impl DiagnosisFile {
         if self.tied.len() > 1 {
             return Ok(self.tied.clone());
         }
-        let found = match self.named.first() {
-            Some(first) => format!("it names {first} alone"),
-            None => format!("its verdict is {} without a candidate", self.verdict.name()),
+        let found = match self.named.as_slice() {
+            [] => format!("its verdict is {} without a candidate", self.verdict.name()),
+            named => format!("it names {} without an alternative", named.join(", ")),
         };
         Err(WorkError::NoTie { path: self.path.clone(), found })
     }

@@ -153,3 +153,72 @@ fn own_effects(model: &Model) -> Vec<FormulaText> {
     let own = model.catalogue.iter().filter(|effect| !is_known(&effect.card().name));
     own.filter_map(|effect| effect.formula().cloned()).collect()
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use excavator_model::document::built_in;
+    use excavator_model::effects::Site;
+    use excavator_model::recording::Recording;
+    use excavator_model::simulation::{Tolerances, simulate_from_rest};
+    use tempfile::TempDir;
+
+    use super::*;
+    use crate::Study;
+    use crate::results::Outcome;
+
+    /// A swing of an arm whose valve has a dead zone, and the model without it. The catalogue has little besides.
+    fn study() -> Study {
+        let mut model = built_in("zx30u-arm").unwrap();
+        let wanted = ["valve_dead_zone", "valve_directional_gain"];
+        let few = model.catalogue.iter().filter(|effect| {
+            let card = effect.card();
+            let is_used = model.effects.iter().any(|own| own.name() == card.name);
+            is_used || !card.family.is_candidate() || wanted.contains(&&*card.name)
+        });
+        model.catalogue = Catalogue::of(few.cloned().collect());
+        let mut machine =
+            model.with_effect(&model.catalogue.find("valve_dead_zone").unwrap(), Site::Cylinder(0)).unwrap();
+        machine.effects.last_mut().unwrap().parameters.iter_mut().for_each(|parameter| parameter.value = 8e-6);
+        let recording = |shift: f64| {
+            let time: Vec<f64> = (0..6000).map(|sample| f64::from(sample) * 2e-3).collect();
+            let mut command = Recording::unmeasured("swing", time, &["arm"]);
+            command.tank_pressure.fill(3e5);
+            let area = |t: &f64| 5e-5 * (3.1 * t + shift).sin() + 3e-5 * (7.3 * t).sin();
+            command.cylinders[0].orifice_area = command.time.iter().map(area).collect();
+            simulate_from_rest(&machine, &command, &[0.1], Tolerances::default()).unwrap()
+        };
+        Study::new(model, vec![recording(0.0)], vec![recording(1.0)])
+    }
+
+    fn saved(folder: &TempDir, text: &str) -> PathBuf {
+        let path = folder.path().join("study.json");
+        std::fs::write(&path, text).unwrap();
+        path
+    }
+
+    #[test]
+    fn a_study_gives_the_same_bytes_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let diagnosed = study().diagnose(&|_, _| ()).unwrap();
+        let bag = saved(&folder, "the recording");
+        let file = StudyFile::of(&diagnosed, StudyOptions::default(), [&[], &[bag]]).unwrap();
+        let path = saved(&folder, &file.text().unwrap());
+        let mut read = StudyFile::read(&path).unwrap().diagnosed(&path).unwrap();
+        assert_eq!(diagnosed.result().effects.len(), 1, "{}", diagnosed.sentence());
+        assert_eq!(read.json().unwrap(), diagnosed.json().unwrap());
+        assert_eq!(read.sentence(), diagnosed.sentence());
+        read.validation.clone_from(&diagnosed.validation);
+        assert!(read.page().unwrap() == diagnosed.page().unwrap(), "the pages differ");
+    }
+
+    #[test]
+    fn what_is_no_study_is_refused_in_one_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let refused = |text: &str| StudyFile::read(&saved(&folder, text)).unwrap_err().to_string();
+        assert!(refused("{\"form\": 1}").contains("it has no version; run `excavator diagnose --save` again"));
+        assert!(refused("{\"study\": 1}").contains("it has version 1, this program reads version 2"));
+        assert!(refused("{\"study\": 2}").contains("is no study: missing field"));
+        assert!(refused("[").contains("is no study: EOF"));
+    }
+}

@@ -13,9 +13,6 @@ pub(super) struct Adequacy {
     pub reasons: Vec<Reason>,
 }
 
-/// A block whose error is this many times the noise variance is off.
-const OFF: f64 = 4.0;
-
 /// Judges the given model by what it leaves on the validation recordings.
 pub(super) fn adequacy(scores: &Scores, policy: &Policy) -> Adequacy {
     let (side, misfit) = (&scores.validation, &scores.given().validation);
@@ -23,7 +20,7 @@ pub(super) fn adequacy(scores: &Scores, policy: &Policy) -> Adequacy {
     let limit = policy.noise_margin;
     if ratio <= limit && error <= policy.largest_error {
         let mut reasons = vec![Reason::WithinNoise { log_error_ratio: ratio, limit }];
-        let share_of_time = error_ratio_shares(side, misfit, OFF);
+        let share_of_time = error_ratio_shares(side, misfit, policy.bad_moment);
         if share_of_time > 0.0 {
             reasons.push(Reason::ExceptMoments { share_of_time });
         }

@@ -55,7 +55,7 @@ fn is_admissible(all: &[Assessed<'_>], number: usize, policy: &Policy, given_is_
         && effects.iter().all(is_sensible)
         && all.iter().filter(|less| own.hypothesis.extends(less.hypothesis)).all(|less| {
             let (least, significance) = wanted(less.hypothesis, own.hypothesis, policy, given_is_adequate);
-            improves(less, own, least, significance)
+            improves(less, own, [least, policy.share_where_fitted * least], significance)
         })
 }
 
@@ -72,12 +72,17 @@ fn wanted(less: &Hypothesis, more: &Hypothesis, policy: &Policy, given_is_adequa
     }
 }
 
-/// Whether `more` explains what `less` does not. The improvement must reach `least` on the validation recordings, half of it on
-/// the identification recordings, and `least_significance` standard errors on all together.
-fn improves(less: &Assessed<'_>, more: &Assessed<'_>, least: f64, least_significance: f64) -> bool {
+/// Whether `more` explains what `less` does not. The improvement must reach these values on the validation and on the identification
+/// recordings, and `least_significance` standard errors on all together.
+fn improves(
+    less: &Assessed<'_>,
+    more: &Assessed<'_>,
+    [on_validation, on_identification]: [f64; 2],
+    least_significance: f64,
+) -> bool {
     let (_, significance) = less.resampled.improvement(&more.resampled);
-    less.improvement(more) >= least
-        && less.identification - more.identification >= 0.5 * least
+    less.improvement(more) >= on_validation
+        && less.identification - more.identification >= on_identification
         && significance >= least_significance
 }
 

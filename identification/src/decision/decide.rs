@@ -96,7 +96,7 @@ pub fn leaves_nothing(scores: &Scores, number: usize, policy: &Policy) -> bool {
     let hypothesis = &scores.hypotheses[number];
     let sides = [(&scores.identification, &hypothesis.identification), (&scores.validation, &hypothesis.validation)];
     let left = sides.map(|(side, misfit)| super::statistic::log_error_ratio(side, misfit));
-    left.into_iter().all(|left| left <= 0.5 * policy.least_improvement)
+    left.into_iter().all(|left| left <= policy.nothing_left)
 }
 
 fn standings(assessed: &[Assessed<'_>]) -> Vec<Standing> {

@@ -1,7 +1,9 @@
 //! Every number that can change a verdict.
 
+use serde::{Deserialize, Serialize};
+
 /// The numbers of a verdict. Log error ratios are those of [`super::statistic`]: 0 is sensor noise alone, 0.7 twice its variance.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Policy {
     /// Log error ratio up to which the error of a model counts as noise. 0.2 is 1.2 times the noise variance. Larger: weak
     /// effects are taken for noise. Smaller: a machine whose friction or servo differs a little from the equations counts as
@@ -19,6 +21,12 @@ pub struct Policy {
     /// Decrease of the log error ratio on the validation recordings that an attributed effect must bring. Smaller: small
     /// imperfections, which every model has, are attributed.
     pub least_improvement: f64,
+    /// Share of an improvement that must show on the recordings that were fitted. An effect that helps only where nothing was fitted
+    /// does so by chance.
+    pub share_where_fitted: f64,
+    /// Log error ratio on all recordings up to which nothing is left that another effect could explain: half of what it would have
+    /// to bring.
+    pub nothing_left: f64,
     /// The same if the model is adequate without the effect. Real machines have imperfections that no simulator has.
     pub least_improvement_when_adequate: f64,
     /// Standard errors, from the scatter between stretches of the recordings, by which an improvement must differ from zero.
@@ -37,6 +45,21 @@ pub struct Policy {
     /// A lead over another hypothesis below this share of the error that the best one leaves does not count: an error of unknown
     /// origin that exceeds the lead may have caused it.
     pub doubtful_share: f64,
+    /// A block whose error is this many times the noise variance counts as a bad moment of an adequate model. 4 is twice the noise.
+    pub bad_moment: f64,
+    /// Share of the named effects that were there, of those named alone, by two and by more by a verdict that leaves something
+    /// unexplained. A law outside the catalogue is often imitated by one effect of it, or by two, and hardly by three. From stored
+    /// machines (`docs/blind-benchmark.md`): 2 of 37, 3 of 18 and 9 of 12.
+    pub trust_when_unexplained: [f64; 3],
+    /// Mean squared residual of a balance, over the variance of its noise, up to which a remainder is noise. Right models leave 0.3
+    /// to 1.3 at 500 Hz.
+    pub noise_in_balance: f64,
+    /// Share of the misfit from which a single effect is called most of what is missing.
+    pub most_of_misfit: f64,
+    /// Share of a balance's residual that one variable must explain, so that what an effect leaves is called another form of it.
+    pub share_of_a_law: f64,
+    /// The same, so that the variable is named at all.
+    pub share_of_a_variable: f64,
 }
 
 impl Default for Policy {
@@ -47,12 +70,20 @@ impl Default for Policy {
             small_error_ceiling: 1.0,
             largest_error: 0.01,
             least_improvement: 0.1,
+            share_where_fitted: 0.5,
+            nothing_left: 0.05,
             least_improvement_when_adequate: 0.2,
             least_significance: 3.0,
             least_significance_over_implausible: 1.0,
             set_error: 0.05,
             largest_remainder: 0.1,
             doubtful_share: 0.7,
+            bad_moment: 4.0,
+            trust_when_unexplained: [0.05, 0.2, 0.7],
+            noise_in_balance: 2.0,
+            most_of_misfit: 0.7,
+            share_of_a_law: 0.5,
+            share_of_a_variable: 0.1,
         }
     }
 }

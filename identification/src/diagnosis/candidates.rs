@@ -145,7 +145,7 @@ impl Diagnosis {
     pub fn presence_of(&self, candidate: &Candidate<'_>) -> Option<f64> {
         let mut effects = self.scores.hypotheses.iter().flat_map(|hypothesis| &hypothesis.effects);
         let own = effects.find(|one| one.effect == candidate.name() && one.place == candidate.place())?;
-        Some(presence(&self.scores, &self.verdict, own))
+        Some(presence(&self.scores, &self.verdict, own, &self.policy))
     }
 
     /// Effects that replace another one in hypotheses which cannot be distinguished from the favoured one, each with the effect

@@ -11,12 +11,14 @@ use super::{Remainder, Share, Unexplained};
 use crate::decision::{Kind, Policy, Scores, Verdict, decide};
 use crate::fit::FitError;
 use crate::regression::RegressionError;
-use crate::search::{Effort, Pool, Trial, Unpromising, search};
+use crate::search::{Addition, Effort, Pool, Trial, Unpromising, search};
 use crate::validation::mean_error;
 
 /// Result of a diagnosis.
 #[derive(Debug, Clone)]
 pub struct Diagnosis {
+    /// The rules of the verdict.
+    pub policy: Policy,
     /// The verdict on the scores.
     pub verdict: Verdict,
     /// The scores behind the verdict.
@@ -109,11 +111,12 @@ pub(crate) fn diagnosis_of(
     settings: &DiagnosisSettings,
     validation: &[&Recording],
 ) -> Result<Diagnosis, RegressionError> {
-    let (policy, identification, data_sheet) = (&settings.policy, pool.identification(), pool.data_sheet().clone());
+    let (policy, identification, data_sheet) = (settings.policy, pool.identification(), pool.data_sheet().clone());
     let failed = pool.failed.into_iter().map(|(name, error)| (name, error.to_string())).collect();
     let (trials, scores, unpromising) = (pool.trials, pool.scores, pool.unpromising);
     let (map, remainders, unexplained) = (Vec::new(), Vec::new(), None);
-    let mut diagnosis = Diagnosis { verdict, scores, trials, unpromising, failed, map, remainders, unexplained };
+    let mut diagnosis =
+        Diagnosis { policy, verdict, scores, trials, unpromising, failed, map, remainders, unexplained };
     let simple: Vec<(usize, Trial)> = diagnosis
         .on_paths()
         .into_par_iter()
@@ -132,26 +135,72 @@ pub(crate) fn diagnosis_of(
         .map(|number| (number, mean_error(&diagnosis.trials[number].fit.model, validation).ok()))
         .collect();
     simulated.into_iter().for_each(|(number, error)| diagnosis.trials[number].error = error);
-    diagnosis.locate(policy, validation)?;
+    diagnosis.locate(validation)?;
     Ok(diagnosis)
 }
 
 impl Diagnosis {
     /// Finds where the given model fails, and what the supported one leaves.
-    fn locate(&mut self, policy: &Policy, validation: &[&Recording]) -> Result<(), RegressionError> {
+    fn locate(&mut self, validation: &[&Recording]) -> Result<(), RegressionError> {
         let number = self.verdict.supported();
         let (given, supported) = (&self.trials[0].fit.model, &self.trials[number].fit.model);
         let before = points(given, validation)?;
         let of_other = if number == 0 { None } else { Some(points(supported, validation)?) };
         let after = of_other.as_ref().unwrap_or(&before);
-        let explains = self.verdict.standings[number].log_error_ratio <= policy.noise_margin;
+        // Slow recordings do not resolve a second derivative, so the force balance may seem to leave more than simulations do.
+        let explains = self.verdict.standings[number].log_error_ratio <= self.policy.noise_margin;
         let map = residual_map(given, &before);
-        let remainders = remainders(given, &before, after, explains);
+        let most = if explains { f64::INFINITY } else { self.policy.noise_in_balance };
+        let remainders = remainders(given, &before, after, most);
         let unexplained = match self.verdict.kind {
-            Kind::Unexplained => follows(supported, after),
+            Kind::Unexplained => follows(supported, after, &self.policy).map(|left| {
+                let ratios = [0, self.verdict.best].map(|number| self.verdict.standings[number].log_error_ratio);
+                let differs_in_form = differs_in_form(&left, &self.supported().additions, ratios, &self.policy);
+                Unexplained { differs_in_form, ..left }
+            }),
             Kind::Adequate | Kind::MissingEffect => None,
         };
         (self.map, self.remainders, self.unexplained) = (map, remainders, unexplained);
         Ok(())
+    }
+}
+
+/// Whether one effect is most of what is missing, and what it leaves looks like another form of it: it is in a balance of its own kind
+/// and follows one variable. Otherwise something else is missing beside it. `before` and `after` are log error ratios.
+fn differs_in_form(left: &Unexplained, found: &[Addition], [before, after]: [f64; 2], policy: &Policy) -> bool {
+    let [only] = found else { return false };
+    let is_of_forces = left.equation.ends_with(".motion");
+    1.0 - after.max(0.0) / before >= policy.most_of_misfit
+        && left.share_of_residual >= policy.share_of_a_law
+        && only.physics.card().is_of_flows() != is_of_forces
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use excavator_model::effects::{Catalogue, Site};
+
+    use super::*;
+
+    #[test]
+    fn another_form_is_in_its_own_balance_and_follows_one_variable() {
+        let physics = Catalogue::built_in().find("valve_dead_zone").unwrap();
+        let found = [Addition { physics, site: Site::Cylinder(0) }];
+        let is_another_form = |equation: &str, share_of_residual: f64, after: f64| {
+            let left = Unexplained {
+                equation: equation.into(),
+                variable: "command".into(),
+                share_of_residual,
+                follows_variable: true,
+                differs_in_form: false,
+                curve: Vec::new(),
+                unit: "m3/s".into(),
+            };
+            differs_in_form(&left, &found, [2.0, after], &Policy::default())
+        };
+        assert!(is_another_form("arm.cap_continuity", 0.6, 0.4));
+        assert!(!is_another_form("arm.motion", 0.6, 0.4), "a valve is no force");
+        assert!(!is_another_form("arm.cap_continuity", 0.2, 0.4), "that is no law");
+        assert!(!is_another_form("arm.cap_continuity", 0.6, 1.0), "half is not most");
     }
 }

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::{Diagnosis, Remainder, Share, Unexplained};
-use crate::decision::{Scores, ScoresError, Verdict};
+use crate::decision::{Policy, Scores, ScoresError, Verdict};
 use crate::fit::{Fit, Instrument};
 use crate::search::{Addition, Trial, Unpromising};
 
@@ -16,6 +16,7 @@ use crate::search::{Addition, Trial, Unpromising};
 /// A number that is not finite is `null`, because JSON has no other form for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DiagnosisRecord {
+    policy: Policy,
     verdict: Verdict,
     scores: Scores,
     trials: Vec<TrialRecord>,
@@ -39,6 +40,8 @@ struct UnexplainedRecord {
     variable: Text,
     unit: Text,
     share_of_residual: Option<f64>,
+    follows_variable: bool,
+    differs_in_form: bool,
     curve: Vec<[Option<f64>; 3]>,
 }
 
@@ -111,6 +114,7 @@ impl DiagnosisRecord {
             (one.equation.clone(), one.regime.clone(), [one.share_of_residual, one.share_of_time].map(finite))
         };
         DiagnosisRecord {
+            policy: diagnosis.policy,
             verdict: diagnosis.verdict.clone(),
             scores: diagnosis.scores.clone(),
             trials: diagnosis.trials.iter().map(TrialRecord::of).collect(),
@@ -127,6 +131,8 @@ impl DiagnosisRecord {
                 variable: one.variable.clone(),
                 unit: one.unit.clone(),
                 share_of_residual: finite(one.share_of_residual),
+                follows_variable: one.follows_variable,
+                differs_in_form: one.differs_in_form,
                 curve: one.curve.iter().map(|point| point.map(finite)).collect(),
             }),
         }
@@ -163,6 +169,7 @@ impl DiagnosisRecord {
             is_noise,
         };
         Ok(Diagnosis {
+            policy: self.policy,
             verdict: self.verdict,
             scores,
             trials: self.trials.into_iter().map(|trial| trial.trial(given)).collect::<Result<_, _>>()?,
@@ -175,6 +182,8 @@ impl DiagnosisRecord {
                 variable: one.variable,
                 unit: one.unit,
                 share_of_residual: number(one.share_of_residual),
+                follows_variable: one.follows_variable,
+                differs_in_form: one.differs_in_form,
                 curve: one.curve.into_iter().map(|point| point.map(number)).collect(),
             }),
         })

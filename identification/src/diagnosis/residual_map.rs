@@ -5,6 +5,7 @@ use excavator_model::effects::Text;
 use excavator_model::recording::Recording;
 
 use super::residual_points::{Point, VARIABLES, bins, mean_squares, points, share_explained, unit_of};
+use crate::decision::Policy;
 use crate::regression::{EquationKind, RegressionError};
 
 /// Share of the residual in one equation and one regime.
@@ -29,6 +30,11 @@ pub struct Unexplained {
     pub variable: Text,
     /// Fraction of that equation's squared residual that a curve over the variable explains.
     pub share_of_residual: f64,
+    /// Whether that is enough to name the variable.
+    pub follows_variable: bool,
+    /// Whether one effect is most of what is missing, and what it leaves looks like another form of it: it is in a balance of its own
+    /// kind and follows one variable.
+    pub differs_in_form: bool,
     /// The curve: variable, mean residual, its standard error; both in SI units.
     pub curve: Vec<[f64; 3]>,
     /// Unit of the residual: N m, N for a load without joint, or m³/s.
@@ -91,12 +97,16 @@ pub(super) fn residual_map(model: &Model, points: &[Point]) -> Vec<Share> {
 ///
 /// # Errors
 /// [`RegressionError`] if the recordings lack inputs.
-pub fn unexplained(model: &Model, recordings: &[&Recording]) -> Result<Option<Unexplained>, RegressionError> {
-    Ok(follows(model, &points(model, recordings)?))
+pub fn unexplained(
+    model: &Model,
+    recordings: &[&Recording],
+    policy: &Policy,
+) -> Result<Option<Unexplained>, RegressionError> {
+    Ok(follows(model, &points(model, recordings)?, policy))
 }
 
 /// The same from the residuals of `model`.
-pub(super) fn follows(model: &Model, points: &[Point]) -> Option<Unexplained> {
+pub(super) fn follows(model: &Model, points: &[Point], policy: &Policy) -> Option<Unexplained> {
     let (worst, _) = mean_squares(points).into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let own: Vec<&Point> = points.iter().filter(|point| point.kind == worst).collect();
     let best = VARIABLES
@@ -112,6 +122,8 @@ pub(super) fn follows(model: &Model, points: &[Point]) -> Option<Unexplained> {
         equation: worst.name(model),
         variable: variable.into(),
         share_of_residual,
+        follows_variable: share_of_residual >= policy.share_of_a_variable,
+        differs_in_form: false,
         curve,
         unit: unit_of(worst, model).into(),
     })

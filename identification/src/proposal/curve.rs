@@ -103,6 +103,8 @@ mod tests {
             equation: equation.into(),
             variable: variable.into(),
             share_of_residual: 0.9,
+            follows_variable: true,
+            differs_in_form: false,
             curve,
             unit: "N m".into(),
         }

@@ -106,7 +106,8 @@ pub(super) fn proposals(
     let before = comparisons(diagnosis.given(), validation);
     let error_before = mean_error(&before);
     let is_needed = matches!(kind, ProposalVerdict::Law | ProposalVerdict::NoLaw);
-    let lacking = if is_needed { unexplained(&diagnosis.given().fit.model, validation)? } else { None };
+    let lacking =
+        if is_needed { unexplained(&diagnosis.given().fit.model, validation, &settings.policy)? } else { None };
     let mut proposals = Vec::new();
     let numbers = if is_needed { ranked(&diagnosis) } else { Vec::new() };
     for number in numbers {

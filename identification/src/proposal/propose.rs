@@ -136,7 +136,7 @@ impl Trials<'_> {
     /// Tries the curve of the residual as a law, which lowers the error without an explanation.
     fn of_the_curve(&self, pool: &mut Pool<'_>) -> Result<(), DiagnosisError> {
         let model = &pool.given().fit.model;
-        let Some(left) = unexplained(model, self.identification)? else { return Ok(()) };
+        let Some(left) = unexplained(model, self.identification, self.policy)? else { return Ok(()) };
         let Some(law) = table_law(&left).and_then(|text| Law::read(&text).ok()) else { return Ok(()) };
         let physics: AnyEffect = Arc::new(law);
         let place = left.equation.split_once('.').map_or("", |(place, _)| place);

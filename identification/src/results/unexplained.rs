@@ -17,6 +17,12 @@ pub struct Unexplained {
     pub variable: String,
     /// Share of that equation's squared residual that a curve over the variable explains, 0 to 1.
     pub share_of_residual: Option<f64>,
+    /// Whether that is enough to name the variable.
+    #[serde(default)]
+    pub follows_variable: bool,
+    /// Whether one effect is most of what is missing, and what it leaves looks like another form of it.
+    #[serde(default)]
+    pub differs_in_form: bool,
     /// Unit of the residual: N m, N for a load without joint, or m3/s.
     pub unit: String,
     /// Points of the curve: the variable (SI unit), mean residual, its standard error (both in `unit`).
@@ -30,6 +36,8 @@ impl Unexplained {
             equation: rest.equation.clone(),
             variable: rest.variable.to_string(),
             share_of_residual: finite(rest.share_of_residual),
+            follows_variable: rest.follows_variable,
+            differs_in_form: rest.differs_in_form,
             unit: rest.unit.to_string(),
             curve: rest.curve.iter().map(|point| point.map(finite)).collect(),
         }

@@ -29,7 +29,7 @@ pub fn reliability(stored: &[Stored], policy: &Policy) -> Vec<Bin> {
             continue;
         }
         for effect in &one.scores.hypotheses[verdict.best].effects {
-            let stated = presence(&one.scores, &verdict, effect);
+            let stated = presence(&one.scores, &verdict, effect, policy);
             let number = BOUNDS[1..].iter().position(|bound| stated < *bound).unwrap_or(bins.len() - 1);
             bins[number].stated += stated;
             bins[number].names += 1;
