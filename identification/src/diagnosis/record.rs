@@ -63,8 +63,15 @@ struct TrialRecord {
 struct EffectRecord {
     /// `effect@place`.
     name: String,
-    /// Value, standard error and margin of each parameter, and whether it is known.
-    parameters: Vec<(Option<f64>, Option<f64>, Option<f64>, bool)>,
+    parameters: Vec<ParameterRecord>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct ParameterRecord {
+    value: Option<f64>,
+    standard_error: Option<f64>,
+    margin_95: Option<f64>,
+    known: bool,
 }
 
 /// Why a record is no diagnosis of a model.
@@ -212,8 +219,11 @@ impl UnpromisingRecord {
 impl TrialRecord {
     fn of(trial: &Trial) -> Self {
         let model = &trial.fit.model;
-        let parameter = |one: &Parameter| {
-            (finite(one.value), one.standard_error.and_then(finite), one.margin_95.and_then(finite), one.known)
+        let parameter = |one: &Parameter| ParameterRecord {
+            value: finite(one.value),
+            standard_error: one.standard_error.and_then(finite),
+            margin_95: one.margin_95.and_then(finite),
+            known: one.known,
         };
         let effect = |effect: &ModelEffect| EffectRecord {
             name: addition_name(effect.name(), site_name(&model.machine, effect.site)),
@@ -272,9 +282,9 @@ impl EffectRecord {
         if found != expected {
             return Err(RecordError::Parameters { effect: self.name.clone(), found, expected });
         }
-        for (own, (value, standard_error, margin_95, known)) in effect.parameters.iter_mut().zip(&self.parameters) {
-            own.value = number(*value);
-            (own.standard_error, own.margin_95, own.known) = (*standard_error, *margin_95, *known);
+        for (own, record) in effect.parameters.iter_mut().zip(&self.parameters) {
+            own.value = number(record.value);
+            (own.standard_error, own.margin_95, own.known) = (record.standard_error, record.margin_95, record.known);
         }
         Ok(effect)
     }

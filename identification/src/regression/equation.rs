@@ -260,102 +260,101 @@ pub(super) fn equations_by(
         .reduce_with(Tracks::merged)
         .unwrap_or_else(|| Tracks::new(joints, samples, 0));
     let Tracks { mass, torque, flows, compliances, pump_flow, pump_compliance } = tracks;
+    let parts = Parts { model, observation, fitted: fitted.len(), sensors };
+    let mut equations = parts.motion(mass, torque);
+    equations.extend(parts.chambers(flows, compliances));
+    if matches!(model.machine.supply, Supply::PumpLine(_)) {
+        equations.push(parts.pump_line(pump_flow, pump_compliance));
+    }
+    equations
+}
 
-    let parameters_only = |mut track: Track| {
-        track.slopes.truncate(fitted.len());
-        track
-    };
-    let split = |mut track: Track| {
-        let mut by_sensor = track.slopes.split_off(fitted.len());
-        for (sensor, column) in sensors.iter().zip(&mut by_sensor) {
+/// What turns tracks into equations.
+struct Parts<'p> {
+    model: &'p Model,
+    observation: &'p Observation,
+    /// Number of fitted parameters, whose derivatives come first in a track.
+    fitted: usize,
+    sensors: &'p [Sensor],
+}
+
+impl Parts<'_> {
+    /// Torque balance of each joint: row of the mass matrix times accelerations = torque.
+    fn motion(&self, mass: Vec<Track>, torque: Vec<Track>) -> Vec<Equation> {
+        let (joints, mut mass) = (torque.len(), mass.into_iter());
+        let equation = |(index, torque): (usize, Track)| {
+            let row = mass.by_ref().take(joints).enumerate();
+            let term = |(other, track): (usize, Track)| Term {
+                order: 2,
+                sensor: Sensor::Velocity(other),
+                quantity: self.observation.cylinders[other].joint.clone(),
+                by_parameter: self.by_parameter(&track),
+                storage: track.value,
+            };
+            let terms = row.map(term).collect();
+            self.equation(EquationKind::Motion(index), terms, torque)
+        };
+        torque.into_iter().enumerate().map(equation).collect()
+    }
+
+    /// Continuity of both chambers of each cylinder: area times velocity + compliance times pressure rate = flow.
+    fn chambers(&self, flows: Vec<[Track; 2]>, compliances: Vec<[Track; 2]>) -> Vec<Equation> {
+        let mut equations = Vec::new();
+        for (index, (flows, compliances)) in flows.into_iter().zip(compliances).enumerate() {
+            let Some(constants) = self.model.machine.cylinders[index].chambers else { continue };
+            let cylinder = &self.observation.cylinders[index];
+            let sides = [
+                (EquationKind::CapContinuity(index), constants.cap_area, Sensor::CapPressure(index)),
+                (EquationKind::RodContinuity(index), -constants.rod_area, Sensor::RodPressure(index)),
+            ];
+            let tracks = flows.into_iter().zip(compliances).zip(&cylinder.pressures);
+            for ((kind, area, sensor), ((flow, compliance), pressure)) in sides.into_iter().zip(tracks) {
+                let displaced = Term {
+                    order: 1,
+                    sensor: Sensor::Velocity(index),
+                    quantity: cylinder.displacement.clone(),
+                    storage: vec![area; self.observation.time.len()],
+                    by_parameter: vec![Vec::new(); self.fitted],
+                };
+                equations.push(self.equation(
+                    kind,
+                    vec![displaced, self.compressed(sensor, pressure, compliance)],
+                    flow,
+                ));
+            }
+        }
+        equations
+    }
+
+    /// Continuity of the pump line: compliance times pressure rate = flow.
+    fn pump_line(&self, flow: Track, compliance: Track) -> Equation {
+        let term = self.compressed(Sensor::PumpPressure, &self.observation.pump_pressure, compliance);
+        self.equation(EquationKind::PumpContinuity, vec![term], flow)
+    }
+
+    fn compressed(&self, sensor: Sensor, pressure: &[f64], compliance: Track) -> Term {
+        let by_parameter = self.by_parameter(&compliance);
+        Term { order: 1, sensor, quantity: pressure.to_vec(), storage: compliance.value, by_parameter }
+    }
+
+    fn by_parameter(&self, track: &Track) -> Vec<Vec<f64>> {
+        track.slopes[..self.fitted].to_vec()
+    }
+
+    /// An equation whose forces or flows are `rest`.
+    fn equation(&self, kind: EquationKind, terms: Vec<Term>, mut rest: Track) -> Equation {
+        let mut rest_by_sensor = rest.slopes.split_off(self.fitted);
+        for (sensor, column) in self.sensors.iter().zip(&mut rest_by_sensor) {
             if let Sensor::Velocity(c) = *sensor
                 && !column.is_empty()
             {
                 // From joint rate to piston velocity.
-                let linkage = &model.machine.cylinders[c].linkage;
-                for (slope, &s) in column.iter_mut().zip(&observation.cylinders[c].smooth_displacement) {
+                let linkage = &self.model.machine.cylinders[c].linkage;
+                for (slope, &s) in column.iter_mut().zip(&self.observation.cylinders[c].smooth_displacement) {
                     *slope /= linkage.lever(linkage.joint(s));
                 }
             }
         }
-        (track, by_sensor)
-    };
-    let mut equations = Vec::new();
-    let mut mass = mass.into_iter();
-    for (index, torque) in torque.into_iter().enumerate() {
-        let terms = mass
-            .by_ref()
-            .take(joints)
-            .enumerate()
-            .map(|(other, track)| (other, parameters_only(track)))
-            .map(|(other, track)| Term {
-                order: 2,
-                sensor: Sensor::Velocity(other),
-                quantity: observation.cylinders[other].joint.clone(),
-                storage: track.value,
-                by_parameter: track.slopes,
-            })
-            .collect();
-        let (torque, rest_by_sensor) = split(torque);
-        equations.push(Equation {
-            kind: EquationKind::Motion(index),
-            terms,
-            rest: torque.value,
-            rest_by_parameter: torque.slopes,
-            rest_by_sensor,
-        });
+        Equation { kind, terms, rest: rest.value, rest_by_parameter: rest.slopes, rest_by_sensor }
     }
-    for (index, (flows, compliances)) in flows.into_iter().zip(compliances).enumerate() {
-        let Some(constants) = model.machine.cylinders[index].chambers else { continue };
-        let cylinder = &observation.cylinders[index];
-        let sides = [
-            (EquationKind::CapContinuity(index), constants.cap_area),
-            (EquationKind::RodContinuity(index), -constants.rod_area),
-        ];
-        for (side, ((kind, area), (flow, compliance))) in
-            sides.into_iter().zip(flows.into_iter().zip(compliances)).enumerate()
-        {
-            let compliance = parameters_only(compliance);
-            let (flow, rest_by_sensor) = split(flow);
-            let displaced = Term {
-                order: 1,
-                sensor: Sensor::Velocity(index),
-                quantity: cylinder.displacement.clone(),
-                storage: vec![area; samples],
-                by_parameter: vec![Vec::new(); fitted.len()],
-            };
-            let compressed = Term {
-                order: 1,
-                sensor: if side == 0 { Sensor::CapPressure(index) } else { Sensor::RodPressure(index) },
-                quantity: cylinder.pressures[side].clone(),
-                storage: compliance.value,
-                by_parameter: compliance.slopes,
-            };
-            equations.push(Equation {
-                kind,
-                terms: vec![displaced, compressed],
-                rest: flow.value,
-                rest_by_parameter: flow.slopes,
-                rest_by_sensor,
-            });
-        }
-    }
-    if matches!(model.machine.supply, Supply::PumpLine(_)) {
-        let pump_compliance = parameters_only(pump_compliance);
-        let (pump_flow, rest_by_sensor) = split(pump_flow);
-        equations.push(Equation {
-            kind: EquationKind::PumpContinuity,
-            terms: vec![Term {
-                order: 1,
-                sensor: Sensor::PumpPressure,
-                quantity: observation.pump_pressure.clone(),
-                storage: pump_compliance.value,
-                by_parameter: pump_compliance.slopes,
-            }],
-            rest: pump_flow.value,
-            rest_by_parameter: pump_flow.slopes,
-            rest_by_sensor,
-        });
-    }
-    equations
 }

@@ -72,14 +72,8 @@ impl FlowGround {
         let slowest = recordings.iter().map(Recording::sample_interval).fold(0.0, f64::max);
         let half_width = (HALF_WIDTH * time_scale).max(LEAST_SAMPLES * slowest);
         let measured = |recording: Recording| {
-            let mut observation = observe(model, &recording)?;
-            // The windows average the noise of the pressures; smoothing would bend their corners.
-            for cylinder in &mut observation.cylinders {
-                cylinder.smooth_pressures.clone_from(&cylinder.pressures);
-            }
-            observation.smooth_pump_pressure.clone_from(&observation.pump_pressure);
             Ok(Measured {
-                observation,
+                observation: observe(model, &recording)?.with_measured_pressures(),
                 noise: sensor_noise(&recording, model)?,
                 windows: windows(&recording.time, recording.sample_interval(), half_width, half_width * STEP),
                 recording,

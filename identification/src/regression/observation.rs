@@ -109,6 +109,18 @@ fn observe_against(
     })
 }
 
+impl Observation {
+    /// The same with pressures as they were measured: whatever averages them later needs their corners.
+    #[must_use]
+    pub(super) fn with_measured_pressures(mut self) -> Self {
+        for cylinder in &mut self.cylinders {
+            cylinder.smooth_pressures.clone_from(&cylinder.pressures);
+        }
+        self.smooth_pump_pressure.clone_from(&self.pump_pressure);
+        self
+    }
+}
+
 fn displacement(signals: &CylinderSignals, from_joint: impl Fn(f64) -> f64) -> Vec<f64> {
     let pairs = signals.displacement.iter().zip(&signals.joint_angle);
     pairs.map(|(&s, &q)| if s.is_finite() { s } else { from_joint(q) }).collect()

@@ -7,7 +7,7 @@
 use excavator_identification::diagnosis::DiagnosisSettings;
 use excavator_identification::refinement::{Additions, Refinement, refine};
 use excavator_identification::search::Addition;
-use excavator_identification::validation::compare;
+use excavator_identification::validation::{Comparison, compare};
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse};
 use excavator_model::effects::{Catalogue, Site};
@@ -110,6 +110,18 @@ fn record(segments: Vec<Segment>, generator: &mut ChaCha8Rng) -> Recording {
     recording
 }
 
+/// A row of the table in `docs/papers.md`.
+fn print_row(name: &str, comparisons: &[Comparison]) {
+    let number = |value: f64| if value < 1e-2 { format!("{value:.1e}") } else { format!("{value:.3}") };
+    let signal = |name: &str| {
+        let own = comparisons.iter().flat_map(|one| one.signals.iter().filter(|signal| signal.name.ends_with(name)));
+        number(own.map(|signal| signal.normalised_error).sum::<f64>() / comparisons.len() as f64)
+    };
+    let mean = comparisons.iter().map(Comparison::mean_error).sum::<f64>() / comparisons.len() as f64;
+    let cells = ["displacement", "velocity", "cap_pressure", "rod_pressure"].map(signal);
+    println!("| {name} | {} | {} |", cells.join(" | "), number(mean));
+}
+
 fn story(additions: &Additions) -> Refinement {
     let mut generator = ChaCha8Rng::seed_from_u64(3);
     let identification = record(trapezoids(), &mut generator);
@@ -126,8 +138,10 @@ fn story(additions: &Additions) -> Refinement {
         &|_, _| (),
     )
     .unwrap();
+    print_row("preliminary, as given", &refinement.given);
     for step in &refinement.steps {
-        println!("{:32} NMSE {:.3e}", step.added.as_deref().unwrap_or("preliminary"), step.mean_error());
+        let name = step.added.as_deref().and_then(|name| name.strip_suffix("@load"));
+        print_row(&name.map_or("preliminary, identified".to_string(), |name| format!("+ {name}")), &step.comparisons);
     }
     refinement
 }
