@@ -25,6 +25,7 @@ mod output;
 mod outputs;
 #[cfg(feature = "live")]
 mod play;
+mod printing;
 #[cfg(feature = "live")]
 mod record;
 mod ros_words;
@@ -56,7 +57,7 @@ pub fn run_command_line() -> ExitCode {
         arguments.verbosity().choose();
         PressureUnit::from(arguments.units).show();
         verbs::run(arguments.verb, &ros)?;
-        verbs::all_was_printed()
+        printing::all_was_printed()
     });
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

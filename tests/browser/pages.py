@@ -28,12 +28,13 @@ PAGES = {
     "energy": ["energy", "--model", "zx30u-arm", "--bag", "validation"],
     "refusals": ["characterise", "--model", "zx30u-arm", "validation"],
     "characterisation": ["characterise", "--model", "servo-bench", *CAMPAIGN],
-    "diagnosis": ["diagnose", "--model", "zx30u-arm", *PARTS],
+    "diagnosis": ["diagnose", "--model", "zx30u-arm", *PARTS, "--save", "study.json"],
+    "diagnosis-again": ["report", "study.json"],
     "proposal": ["propose", "--model", "zx30u-arm", *PARTS],
 }
 
 # Pages whose command reads what the command of another one wrote.
-READS = {"two-models": "refinement"}
+READS = {"two-models": "refinement", "diagnosis-again": "diagnosis"}
 
 # Windows of a desk and of a phone, px.
 WIDE, PHONE = (1280, 900), (390, 844)

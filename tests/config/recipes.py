@@ -68,9 +68,10 @@ OFFLINE = {
     ),
     "energy": Recipe(works=[["energy", *MODEL, "--bag", BAG]], fails=["energy", "--model", "emps", "--bag", BAG]),
     "diagnose": Recipe(
-        works=[["diagnose", *MODEL, *SHORT], ["diagnose", "--verbose", *MODEL, *SHORT]],
+        works=[["diagnose", *MODEL, *SHORT, "--save", "study.json"], ["diagnose", "--verbose", *MODEL, *SHORT]],
         fails=["diagnose", *MODEL, "--identification", "nowhere", "--validation", BAG],
     ),
+    "report": Recipe(works=[["report", "study.json"]], fails=["report", "law.toml"]),
     "propose": Recipe(works=[["propose", *MODEL, *SHORT]], fails=["propose", *MODEL, "--identification", BAG, "--validation", "nowhere"]),
     "design": Recipe(
         works=[["design", *MODEL, "--parameter", "arm.inertia", "--duration", "20", "-o", "profile-1.toml"]],

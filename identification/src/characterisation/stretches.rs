@@ -183,7 +183,8 @@ fn steady_piece(track: &Track, samples: Still) -> Option<Steady> {
     let even = (acceleration * length(track, samples)).abs() < CHANGE * speed.value.abs()
         && noise < (JERKY * noise_level(&track.displacement[range.clone()])).max(SHAKE * travel);
     let end = END * track.size.stroke;
-    let free = points.iter().all(|point| point.y.abs() < track.stroke / 2.0 - end);
+    let [retracted, extended] = track.ends;
+    let free = points.iter().all(|point| point.y > retracted + end && point.y < extended - end);
     if !even || !free || speed.value.abs() < LEAST_SPEED || speed.relative_error() > 0.1 {
         return None;
     }

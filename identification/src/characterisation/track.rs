@@ -29,6 +29,8 @@ pub struct Track {
     pub areas: (f64, f64),
     /// Stroke, m.
     pub stroke: f64,
+    /// Displacements at which the piston meets its stops, m.
+    pub ends: [f64; 2],
     /// Size of the cylinder.
     pub size: Size,
     /// Bulk modulus of the model (Pa) and its standard error.
@@ -140,6 +142,7 @@ impl Track {
             chambers: constants.chambers,
             areas,
             stroke: constants.stroke,
+            ends: constants.ends,
             size,
             bulk_modulus,
             half_width: (HALF_WIDTH * size.time()).max(FEWEST_SAMPLES * recording.sample_interval()),

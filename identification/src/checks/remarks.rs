@@ -158,9 +158,8 @@ pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
     found
 }
 
-/// Shares of the stroke within which a piston counts as resting at one place, and as being at its end.
+/// Share of the stroke within which a piston counts as resting at one place.
 const ONE_PLACE: f64 = 0.002;
-const AT_THE_END: f64 = 0.02;
 
 /// Share of the recording for which a piston must be pressed before that is reported.
 const LEAST_SHARE: f64 = 0.05;
@@ -175,7 +174,7 @@ fn pressed(model: &Model, cylinder: &Cylinder, displacement: &[f64], opening: &[
     for sample in 0..displacement.len().saturating_sub(AFTER) {
         let (here, later) = (displacement[sample], displacement[sample + AFTER]);
         let is_open = open_one_way(&opening[sample..=sample + AFTER], largest);
-        let stands = (later - here).abs() < 0.1 * place && !cylinder.is_at_an_end(here, AT_THE_END);
+        let stands = (later - here).abs() < 0.1 * place && !cylinder.is_at_an_end(here);
         if largest > 0.0 && is_open && stands {
             *places.entry(((here / place).round() as i64, opening[sample] > 0.0)).or_default() += 1;
         }

@@ -2,7 +2,7 @@
 
 use excavator_model::SignalError;
 use excavator_model::energy::Accountant;
-use excavator_model::equations::{Inputs, LawStates, System};
+use excavator_model::equations::{Inputs, KnownCylinder, LawStates, System};
 use excavator_model::machine::Supply;
 use excavator_model::recording::{Recording, is_measured};
 use excavator_model::simulation::{InputSignals, undistorted};
@@ -76,25 +76,23 @@ pub(super) fn measured(system: &System<'_>, block: &Block, settings: &EnergySett
             continue;
         }
         entries.signals.between(sample, 0.0, &mut inputs);
-        for (number, (cylinder, (displacement, measured))) in model.machine.cylinders.iter().zip(&sources).enumerate() {
-            let joint = cylinder.linkage.joint(motion.value(displacement));
+        let known = |number: usize| {
+            let (displacement, measured) = &sources[number];
             let velocity = match measured.velocity[sample] {
                 known if known.is_finite() => pressure.value(&measured.velocity),
                 _ => motion.slope(displacement),
             };
-            let pressures = [&measured.cap_pressure, &measured.rod_pressure].map(|signal| pressure.value(signal));
-            system.set_cylinder(number, joint, velocity, pressures, &mut state);
-        }
-        match (layout.pump, model.machine.supply) {
-            (Some(pump), _) => state[pump] = pressure.value(&recording.pump_pressure),
-            (None, Supply::PressureSource(_)) => {
-                // If it is not measured, the machine's constant is already set.
-                let measured = pressure.value(&recording.pump_pressure);
-                if measured.is_finite() {
-                    inputs.supply_pressure = measured;
-                }
+            KnownCylinder {
+                joint: model.machine.cylinders[number].linkage.joint(motion.value(displacement)),
+                velocity,
+                pressures: [&measured.cap_pressure, &measured.rod_pressure].map(|signal| pressure.value(signal)),
             }
-            (None, _) => {}
+        };
+        let pump_pressure = pressure.value(&recording.pump_pressure);
+        system.set_measured(known, pump_pressure, &mut state);
+        // If it is not measured, the machine's constant is already set.
+        if matches!(model.machine.supply, Supply::PressureSource(_)) && pump_pressure.is_finite() {
+            inputs.supply_pressure = pump_pressure;
         }
         if state.iter().all(|value| value.is_finite()) {
             entries.push(sample, block.start + recording.time[sample], inputs.supply_pressure, &state);
@@ -164,19 +162,21 @@ pub(super) fn simulated_books(system: &System<'_>, block: &Block, simulated: &Re
     let parameters = model.parameter_values();
     let truth = undistorted(model, simulated);
     let signals = InputSignals::from_recording(model, &block.recording)?;
+    let machine = model.machine.cylinders.iter();
+    let cylinders = machine.map(|cylinder| truth.cylinder(&cylinder.name)).collect::<Result<Vec<_>, _>>()?;
     let (mut state, mut inputs) = (vec![0.0; layout.len], Inputs::zero(model.machine.cylinders.len()));
     let mut entries = Entries::new(system, signals);
     for sample in block.entries() {
         entries.signals.between(sample, 0.0, &mut inputs);
-        for (number, cylinder) in model.machine.cylinders.iter().enumerate() {
-            let own = truth.cylinder(&cylinder.name)?;
-            let joint = cylinder.linkage.joint(own.displacement[sample]);
-            let pressures = [own.cap_pressure[sample], own.rod_pressure[sample]];
-            system.set_cylinder(number, joint, own.velocity[sample], pressures, &mut state);
-        }
-        if let Some(pump) = layout.pump {
-            state[pump] = truth.pump_pressure[sample];
-        }
+        let known = |number: usize| {
+            let own = cylinders[number];
+            KnownCylinder {
+                joint: model.machine.cylinders[number].linkage.joint(own.displacement[sample]),
+                velocity: own.velocity[sample],
+                pressures: [own.cap_pressure[sample], own.rod_pressure[sample]],
+            }
+        };
+        system.set_measured(known, truth.pump_pressure[sample], &mut state);
         entries.push(sample, block.start + truth.time[sample], inputs.supply_pressure, &state);
     }
     Ok(books_of(system, &parameters, &entries))

@@ -37,15 +37,10 @@ pub fn with_nuisances_of(model: &Model, families: &[Family], recordings: &[&Reco
     extended
 }
 
-/// Share of the stroke within which a piston is at its end.
-const AT_THE_END: f64 = 0.02;
-
 /// Whether the piston of this cylinder reaches one of its ends.
 fn comes_to_an_end(cylinder: &Cylinder, recordings: &[&Recording]) -> bool {
     let signals = recordings.iter().filter_map(|recording| recording.cylinder(&cylinder.name).ok());
-    signals
-        .flat_map(|signals| &signals.displacement)
-        .any(|displacement| cylinder.is_at_an_end(*displacement, AT_THE_END))
+    signals.flat_map(|signals| &signals.displacement).any(|displacement| cylinder.is_at_an_end(*displacement))
 }
 
 /// Only a measured opening can have a different sampling time or zero than the other signals. A command acts when it is

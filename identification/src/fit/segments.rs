@@ -37,9 +37,6 @@ const LARGEST_GAP: f64 = 10.0;
 /// Fewer samples than this determine no more than their own initial state.
 const FEWEST_SAMPLES: usize = 20;
 
-/// Distance from an end, as a share of the stroke, within which a piston counts as arriving at its stop.
-const AT_THE_END: f64 = 0.005;
-
 /// Duration of an arrival, s, on a machine of the reference size: the bounce and the pressure shock in the oil.
 const ARRIVAL: f64 = 0.3;
 
@@ -56,7 +53,7 @@ fn arrivals(model: &Model, recording: &Recording) -> Vec<bool> {
         let (mut was_near, mut until) = (false, f64::NEG_INFINITY);
         for (sample, (&time, position)) in recording.time.iter().zip(&signals.displacement).enumerate() {
             if position.is_finite() {
-                let is_near = cylinder.is_at_an_end(*position, AT_THE_END);
+                let is_near = cylinder.is_at_a_stop(*position);
                 if is_near && !was_near {
                     until = time + duration;
                 }

@@ -176,20 +176,7 @@ impl Tracks {
         for sample in 0..samples {
             observation.inputs.between(sample, 0.0, &mut plain_inputs);
             inputs.lift_from(&plain_inputs);
-            for (index, cylinder) in observation.cylinders.iter().enumerate() {
-                let joint = model.machine.cylinders[index].linkage.joint(cylinder.smooth_displacement[sample]);
-                let pressures = [0, 1].map(|side: usize| cylinder.smooth_pressures[side][sample]);
-                system.set_cylinder(index, joint, cylinder.velocity[sample], pressures, &mut state);
-            }
-            if let Some(pump) = layout.pump {
-                state[pump] = constant(observation.smooth_pump_pressure[sample]);
-            }
-            if let Some(states) = effect_states.get(sample) {
-                let start = layout.len - states.len();
-                for (slot, &value) in state[start..].iter_mut().zip(states) {
-                    *slot = constant(value);
-                }
-            }
+            observation.set_state(system, sample, effect_states.get(sample), &mut state);
             for number in first.max(fitted.len())..last {
                 let direction = number - first;
                 let vary = |number: &mut Dual| *number = variable(number.re, direction);

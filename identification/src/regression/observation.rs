@@ -1,6 +1,8 @@
 //! Computes the state along a recording, sample by sample.
 
 use excavator_model::Model;
+use excavator_model::effects::Number;
+use excavator_model::equations::{KnownCylinder, System};
 use excavator_model::recording::{CylinderSignals, Recording, denoised};
 use excavator_model::simulation::InputSignals;
 
@@ -110,6 +112,29 @@ fn observe_against(
 }
 
 impl Observation {
+    /// Writes the state at a sample to `state`, with these states of effects.
+    pub(super) fn set_state<T: Number>(
+        &self,
+        system: &System<'_>,
+        sample: usize,
+        effect_states: Option<&Vec<f64>>,
+        state: &mut [T],
+    ) {
+        let known = |number: usize| {
+            let own = &self.cylinders[number];
+            let joint = system.model().machine.cylinders[number].linkage.joint(own.smooth_displacement[sample]);
+            let pressures = [0, 1].map(|side: usize| own.smooth_pressures[side][sample]);
+            KnownCylinder { joint, velocity: own.velocity[sample], pressures }
+        };
+        system.set_measured(known, self.smooth_pump_pressure[sample], state);
+        if let Some(states) = effect_states {
+            let start = state.len() - states.len();
+            for (slot, &value) in state[start..].iter_mut().zip(states) {
+                *slot = T::from(value);
+            }
+        }
+    }
+
     /// The same with pressures as they were measured: whatever averages them later needs their corners.
     #[must_use]
     pub(super) fn with_measured_pressures(mut self) -> Self {

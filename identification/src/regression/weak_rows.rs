@@ -60,7 +60,7 @@ pub(super) fn rows(
                     let inside = window.first..window.first + window.weights.len();
                     let own = &model.machine.cylinders[cylinder];
                     let positions = &observation.cylinders[cylinder].smooth_displacement[inside];
-                    if has_stop[cylinder] && positions.iter().any(|position| own.is_at_an_end(*position, AT_THE_END)) {
+                    if has_stop[cylinder] && positions.iter().any(|position| own.is_at_a_stop(*position)) {
                         continue;
                     }
                 }
@@ -97,10 +97,6 @@ pub(super) fn moves(kind: EquationKind, window: &Window, observation: &Observati
     let speeds = &observation.cylinders[cylinder].velocity[window.first..window.first + window.weights.len()];
     speeds.iter().all(|speed| speed.abs() > slowest)
 }
-
-/// Share of the stroke at each end within which the force of a stop is uncertain: the stop is stiff, and its start was
-/// not measured.
-const AT_THE_END: f64 = 0.005;
 
 pub(super) fn sensor_noise(recording: &Recording, model: &Model) -> Result<SensorNoise, RegressionError> {
     // A noiseless (simulated) signal would give its rows infinite weight. Rounding alone is of this size.

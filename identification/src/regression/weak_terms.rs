@@ -134,18 +134,7 @@ fn situations<'m>(
     let mut all = Vec::with_capacity(observation.time.len());
     for sample in 0..observation.time.len() {
         observation.inputs.between(sample, 0.0, &mut inputs);
-        for (index, cylinder) in observation.cylinders.iter().enumerate() {
-            let joint = model.machine.cylinders[index].linkage.joint(cylinder.smooth_displacement[sample]);
-            let pressures = [0, 1].map(|side: usize| cylinder.smooth_pressures[side][sample]);
-            system.set_cylinder(index, joint, cylinder.velocity[sample], pressures, &mut state);
-        }
-        if let Some(pump) = layout.pump {
-            state[pump] = observation.smooth_pump_pressure[sample];
-        }
-        if let Some(states) = effect_states.get(sample) {
-            let start = layout.len - states.len();
-            state[start..].copy_from_slice(states);
-        }
+        observation.set_state(system, sample, effect_states.get(sample), &mut state);
         system.rates(&mut workspace, &parameters, &state, &inputs, &mut rates);
         all.push(workspace.situation.clone());
     }

@@ -4,19 +4,19 @@ use std::time::Instant;
 
 use excavator_model::Model;
 
-use super::balances::{FlowSet, unread, with_flows_of};
+use super::balances::{FlowSet, FlowSets, unread, with_flows_of};
 use super::pool::{Move, Pool};
 use super::stepwise::Stepwise;
 use super::transient::evaluate_in_windows_of;
-use super::{Effort, Trial};
+use super::{Addition, Effort, Trial};
 use crate::decision::{Kind, Policy, leaves_nothing, log_error_ratio};
 use crate::fit::{FitSettings, fit, with_nuisances};
 
 impl Stepwise<'_> {
     /// Fits the sets of the flow balances to the whole machine, extends the best while it leaves something, and takes away what
     /// is not needed. Returns whether several effects then explain the recordings.
-    pub fn join(&self, model: &Model, sets: &[FlowSet], pool: &mut Pool<'_>) -> bool {
-        self.fit_joined(model, sets, pool);
+    pub fn join(&self, model: &Model, sets: &FlowSets, pool: &mut Pool<'_>) -> bool {
+        self.fit_joined(model, &sets.best, pool);
         while let Some((next, number)) = next_of_joined(pool, self.effort, self.policy) {
             self.take(next, number, pool);
         }
@@ -25,6 +25,7 @@ impl Stepwise<'_> {
             return false;
         }
         // The sets of the balances have no single rivals that the search could exchange.
+        self.fit_rivals(verdict.best, sets, pool);
         if !leaves_nothing(&pool.scores, verdict.best, self.policy) {
             self.take(Move::Swap, verdict.best, pool);
         }
@@ -33,6 +34,39 @@ impl Stepwise<'_> {
         let unread = unread(&pool.given().fit.model);
         self.screen(0, unread, explained.max(self.policy.least_improvement), pool);
         true
+    }
+
+    /// Fits hypothesis `number` with the rivals of its effects on the flows in their place.
+    fn fit_rivals(&self, number: usize, sets: &FlowSets, pool: &mut Pool<'_>) {
+        let Some(first) = sets.best.first() else { return };
+        self.milestones.tell("rivals in the flow balances", 0.5);
+        let trial = pool.trials[number].clone();
+        let give_up_above = trial.fit.loss() + self.effort.needed_beyond_doubt;
+        let settings = FitSettings { give_up_above, ..self.effort.fit };
+        for rival in &sets.rivals {
+            let begin = Instant::now();
+            let replaced = first.additions.iter().find(|one| !rival.additions.contains(one));
+            let replacing = rival.additions.iter().find(|one| !first.additions.contains(one));
+            let (Some(replaced), Some(replacing)) = (replaced, replacing) else { continue };
+            if !trial.adds(replaced) || trial.adds(replacing) {
+                continue;
+            }
+            let rest = trial.additions.iter().filter(|one| *one != replaced).chain([replacing]);
+            let additions: Vec<Addition> = rest.cloned().collect();
+            if pool.find_additions(&additions).is_some() {
+                continue;
+            }
+            let mut start = trial.model_without(replaced);
+            let found = rival.model.effect(&replacing.physics.card().name, replacing.site).cloned();
+            start.effects.extend(found);
+            let Ok(fit) = fit(&start, pool.identification(), &settings) else { continue };
+            let known = &trial.validation.model;
+            let Ok(validation) = evaluate_in_windows_of(&fit.model, known, pool.validation(), &settings) else {
+                continue;
+            };
+            let seconds = begin.elapsed().as_secs_f64();
+            pool.put(Trial { additions, fit, validation, seconds, error: None });
+        }
     }
 
     /// Without its missing effects, the fit of the given model may have moved masses and frictions far away. So the forces start

@@ -44,15 +44,12 @@ pub struct PhaseShare {
 /// Share of its largest speed below which a piston counts as standing.
 const STANDING: f64 = 0.05;
 
-/// Share of the stroke within which a piston is at its end.
-const AT_AN_END: f64 = 0.02;
-
 /// Motion phase of this cylinder's piston at each sample, from its displacement (m) and velocity (m/s). Samples that
 /// were not measured count as moving.
 pub fn motion_phases(displacement: &[f64], velocity: &[f64], cylinder: &Cylinder) -> Vec<MotionPhase> {
     let fastest = velocity.iter().filter(|speed| speed.is_finite()).fold(0.0_f64, |most, speed| most.max(speed.abs()));
     let phase = |(position, speed): (&f64, &f64)| {
-        if cylinder.is_at_an_end(*position, AT_AN_END) {
+        if cylinder.is_at_an_end(*position) {
             MotionPhase::AtAnEnd
         } else if speed.abs() < STANDING * fastest {
             MotionPhase::Standing

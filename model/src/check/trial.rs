@@ -30,7 +30,7 @@ const SAMPLES: usize = 200;
 /// [`RunError`] if the machine cannot rest at mid-stroke or the simulation fails.
 pub fn trial(model: &Model, cylinder: usize) -> Result<Option<Trial>, RunError> {
     let Some(chambers) = model.machine.cylinders.get(cylinder).and_then(|one| one.chambers) else { return Ok(None) };
-    let half_stroke = model.machine.cylinders[cylinder].stroke / 2.0;
+    let [retracted, extended] = model.machine.cylinders[cylinder].ends;
     let mut last = Ok(None);
     for duration in DURATIONS {
         let ways = [-1.0, 1.0].map(|way| thrown_open(model, cylinder, way * chambers.full_command(), duration));
@@ -42,7 +42,7 @@ pub fn trial(model: &Model, cylinder: usize) -> Result<Option<Trial>, RunError> 
             }
         };
         let within = |run: &Recording| {
-            run.cylinders[cylinder].displacement.iter().all(|displacement| displacement.abs() < half_stroke)
+            run.cylinders[cylinder].displacement.iter().all(|place| (retracted..extended).contains(place))
         };
         last = Ok(Some(summary(cylinder, duration, [&retracting, &extending])));
         if within(&retracting) && within(&extending) {

@@ -22,4 +22,4 @@ pub use own_rows::{OwnRows, Reach};
 pub use rounding::{EndStopCorrection, Rounding};
 pub use rows::Rows;
 pub use situation::{Piston, Situation};
-pub use system::{System, Workspace};
+pub use system::{KnownCylinder, System, Workspace};

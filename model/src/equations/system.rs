@@ -39,6 +39,17 @@ pub struct Workspace<'m, T> {
     torque: Vec<T>,
 }
 
+/// What is known of a cylinder at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KnownCylinder {
+    /// Joint coordinate, rad or m.
+    pub joint: f64,
+    /// Piston velocity, m/s.
+    pub velocity: f64,
+    /// Pressures, Pa: cap side, rod side.
+    pub pressures: [f64; 2],
+}
+
 impl<'m> System<'m> {
     /// The equations of a model.
     pub fn new(model: &'m Model) -> Self {
@@ -331,22 +342,21 @@ impl<'m> System<'m> {
         }
     }
 
-    /// Writes the known values of one cylinder to `state`: joint coordinate (rad, m), piston velocity (m/s), cap and rod pressure
-    /// (Pa).
-    pub fn set_cylinder<T: Number>(
-        &self,
-        cylinder: usize,
-        joint: f64,
-        velocity: f64,
-        pressures: [f64; 2],
-        state: &mut [T],
-    ) {
+    /// Writes known motion and pressures to `state`: of each cylinder what `known` gives for its number, and the pump pressure, Pa,
+    /// where the machine has a pump line. Effects' own states stay as they are.
+    pub fn set_measured<T: Number>(&self, known: impl Fn(usize) -> KnownCylinder, pump_pressure: f64, state: &mut [T]) {
         let layout = &self.layout;
-        state[layout.joint(cylinder)] = T::from(joint);
-        state[layout.rate(cylinder)] = T::from(velocity / self.model.machine.cylinders[cylinder].linkage.lever(joint));
-        if let (Some(cap), Some(rod)) = (layout.cap_pressure(cylinder), layout.rod_pressure(cylinder)) {
-            state[cap] = T::from(pressures[0]);
-            state[rod] = T::from(pressures[1]);
+        for (number, cylinder) in self.model.machine.cylinders.iter().enumerate() {
+            let KnownCylinder { joint, velocity, pressures } = known(number);
+            state[layout.joint(number)] = T::from(joint);
+            state[layout.rate(number)] = T::from(velocity / cylinder.linkage.lever(joint));
+            if let (Some(cap), Some(rod)) = (layout.cap_pressure(number), layout.rod_pressure(number)) {
+                state[cap] = T::from(pressures[0]);
+                state[rod] = T::from(pressures[1]);
+            }
+        }
+        if let Some(pump) = layout.pump {
+            state[pump] = T::from(pump_pressure);
         }
     }
 

@@ -123,6 +123,8 @@ impl Bench<'_, '_> {
             Site::PumpLine | Site::Machine => machine.cylinders.first(),
         };
         let stroke = cylinder.map_or(1.0, Cylinder::usual_travel);
+        let ends =
+            cylinder.filter(|cylinder| !cylinder.is_motor()).map_or([-stroke / 2.0, stroke / 2.0], |one| one.ends);
         let chambers = cylinder.and_then(|cylinder| cylinder.chambers);
         let pressure = match machine.supply {
             Supply::PressureSource(source) => source.pressure,
@@ -136,7 +138,7 @@ impl Bench<'_, '_> {
         let force = chambers.map_or(1e4, |chambers| chambers.cap_area * pressure);
         let opening = chambers.map_or(0.0, |chambers| chambers.full_command());
         let mut ranges = vec![
-            [-stroke / 2.0, stroke / 2.0],
+            ends,
             [-speed, speed],
             [0.0, pressure],
             [0.0, pressure],

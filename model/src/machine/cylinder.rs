@@ -23,14 +23,30 @@ pub struct Cylinder {
     pub imposed_motion: Option<ImposedMotion>,
 }
 
+/// Share of the stroke within which a piston is at its end: more than a stop yields and a sensor is off.
+const AT_AN_END: f64 = 0.02;
+
+/// Share of the stroke within which a piston may touch its stop, whose force is then uncertain: the stop is stiff.
+const AT_A_STOP: f64 = 0.005;
+
 impl Cylinder {
     /// Whether it is a motor.
     pub fn is_motor(&self) -> bool {
         self.stroke.is_infinite()
     }
 
+    /// Whether a piston at this displacement (m) is at one of its ends; never for a motor.
+    pub fn is_at_an_end(&self, displacement: f64) -> bool {
+        self.is_near_an_end(displacement, AT_AN_END)
+    }
+
+    /// Whether a piston at this displacement (m) may touch one of its stops; never for a motor.
+    pub fn is_at_a_stop(&self, displacement: f64) -> bool {
+        self.is_near_an_end(displacement, AT_A_STOP)
+    }
+
     /// Whether a piston at this displacement (m) is within `share` of the stroke from one of its ends; never for a motor.
-    pub fn is_at_an_end(&self, displacement: f64, share: f64) -> bool {
+    pub fn is_near_an_end(&self, displacement: f64, share: f64) -> bool {
         let [retracted, extended] = self.ends;
         let near = share * self.stroke;
         displacement <= retracted + near || displacement >= extended - near

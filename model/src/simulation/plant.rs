@@ -121,8 +121,8 @@ impl<'m, 's> Plant<'m, 's> {
             .enumerate()
             .map(|(index, cylinder)| {
                 let displacement = cylinder.linkage.displacement(self.state[layout.joint(index)]);
-                let most = INSIDE * cylinder.stroke / 2.0;
-                if displacement.is_finite() { displacement.clamp(-most, most) } else { 0.0 }
+                let [retracted, extended] = cylinder.ends.map(|end| INSIDE * end);
+                if displacement.is_finite() { displacement.clamp(retracted, extended) } else { 0.0 }
             })
             .collect();
         self.set_areas(&vec![0.0; displacements.len()]);

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use excavator_model::Model;
 use excavator_model::document::{built_in, parse_catalogue};
 use excavator_model::effects::{Catalogue, Effect, Kind, Number, Site};
-use excavator_model::equations::{Inputs, LawStates, Situation, System};
+use excavator_model::equations::{Inputs, KnownCylinder, LawStates, Situation, System};
 use excavator_model::formula::{FormulaText, Law, ParameterText};
 use excavator_model::scalar::{Dual, constant, derivative, variable};
 use excavator_model::simulation::{Tolerances, simulate_from_rest};
@@ -307,7 +307,8 @@ fn memory_follows_measured_signals() {
     let mut state = vec![0.0; system.layout().len];
     let (bend, _) = system.law_states().next().unwrap();
     let mut bend_at = |time: f64| {
-        system.set_cylinder(0, model.machine.cylinders[0].linkage.joint(0.0), velocity, [2e6, 2e6], &mut state);
+        let joint = model.machine.cylinders[0].linkage.joint(0.0);
+        system.set_measured(|_| KnownCylinder { joint, velocity, pressures: [2e6, 2e6] }, 0.0, &mut state);
         laws.follow(&system, &parameters, time, &Inputs::zero(1), &mut state);
         state[bend]
     };

@@ -11,7 +11,7 @@ use excavator_msgs::{ArmState, EnergyState, OrificeCommand};
 use super::{Board, Hosts, serve};
 use crate::cli::DashboardArguments;
 use crate::error::VerbError;
-use crate::verbs::print;
+use crate::printing::print;
 use excavator_ros::{Health, RosArguments, Supervisor, TopicQos};
 
 /// Time between two frames: 25 per second.

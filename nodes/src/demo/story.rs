@@ -18,7 +18,7 @@ use crate::cli::{DemoArguments, Overwriting};
 use crate::error::VerbError;
 use crate::output::{NextStep, Progress, Stage, candidate_table, number, stage_table};
 use crate::outputs::write;
-use crate::verbs::{print, print_next};
+use crate::printing::{print, print_next};
 
 /// Every story has its own files.
 const NEVER: Overwriting = Overwriting { force: false };

@@ -174,6 +174,9 @@ mod tests {
     use std::cell::{Cell, RefCell};
     use std::time::Duration;
 
+    use excavator_model::document::{built_in, parse};
+    use excavator_model::effects::Catalogue;
+
     use super::*;
 
     fn goal() -> Goal {
@@ -201,6 +204,34 @@ mod tests {
         let told = told.into_inner();
         assert!(told.windows(2).all(|pair| pair[0].1 <= pair[1].1), "{told:?}");
         assert!(told.iter().filter(|(stage, _)| stage == "identifying").count() > 4, "{told:?}");
+    }
+
+    /// The numbers of `excavator identify`, to the last digit, with and without an added effect.
+    #[test]
+    fn a_goal_is_identified_as_the_terminal_does_it() {
+        let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/../bags/samples");
+        for effects in [vec![], vec!["valve_dead_zone@arm".to_string()]] {
+            let library = Library::new("", samples).unwrap();
+            let (cancelled, deadline) = (AtomicBool::new(false), Instant::now() + HOUR);
+            let goal = Goal { effects: effects.clone(), ..goal() };
+            let outcome = identify(&goal, &Bounds { library: &library, cancelled: &cancelled, deadline }, &|_, _| ());
+            let told = parse("told", &outcome.unwrap().model, &Catalogue::built_in()).unwrap();
+
+            let model = with_effects(&built_in("zx30u-arm").unwrap(), &effects).unwrap();
+            let method = if effects.is_empty() { Method::WeakForm } else { Method::OutputError };
+            let bag = std::path::Path::new(samples).join("arm-swing");
+            let recording = Mapping::default().preparation(Extent::default()).recording(&bag, &model).unwrap();
+            let study = Study::of_fitted(model, vec![recording]);
+            let found = study.identify(method, &|_| ControlFlow::Continue(())).unwrap().result.model;
+            let numbers = |model: &Model| -> Vec<_> {
+                model.parameters().map(|(_, one)| (one.value, one.standard_error, one.margin_95)).collect()
+            };
+            assert_eq!(numbers(&told), numbers(&found), "{effects:?}");
+            let done: Vec<&str> = told.history.iter().map(|entry| entry.what.as_str()).collect();
+            let identified = format!("parameters identified ({method})");
+            assert_eq!(done.last(), Some(&identified.as_str()));
+            assert_eq!(done.len(), 1 + effects.len(), "{done:?}");
+        }
     }
 
     #[test]

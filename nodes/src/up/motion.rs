@@ -146,7 +146,7 @@ mod tests {
                     let (joint, rate) = swing.at(f64::from(step) / 200.0, duration);
                     assert!(joint.is_finite() && rate.is_finite(), "{name}: {}", swing.cylinder.name);
                     let at = swing.cylinder.linkage.displacement(joint);
-                    assert!(!swing.cylinder.is_at_an_end(at, 0.15), "{name}: {} at {at} m", swing.cylinder.name);
+                    assert!(!swing.cylinder.is_near_an_end(at, 0.15), "{name}: {} at {at} m", swing.cylinder.name);
                 }
             }
         }

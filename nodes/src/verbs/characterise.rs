@@ -5,11 +5,11 @@ use std::path::Path;
 use excavator_identification::characterisation::Characterisation;
 use excavator_study::Study;
 
-use super::{print, print_next};
 use crate::cli::{CharacteriseArguments, Extent};
 use crate::error::VerbError;
 use crate::output::{NextStep, characterisation_table, refusals};
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_next};
 use crate::sources;
 
 pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {

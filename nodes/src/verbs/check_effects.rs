@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use excavator_model::formula::{Checked, Law, ROWS, check, variables};
 use excavator_model::{Model, ModelEffect, addition_name, site_name};
 
-use super::print;
 use crate::cli::OwnEffects;
 use crate::error::VerbError;
 use crate::output::{chart, number};
+use crate::printing::print;
 use crate::sources;
 
 /// Checks every law in these files on the machine of a model, and draws it.

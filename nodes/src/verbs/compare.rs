@@ -5,11 +5,11 @@ use std::path::Path;
 use excavator_report::{comparison_sentence, others_sentence};
 use excavator_study::Study;
 
-use super::{print, print_detail, print_next};
 use crate::cli::CompareArguments;
 use crate::error::VerbError;
 use crate::output::{NextStep, comparison_table, correlation_table, phase_table};
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_detail, print_next};
 use crate::sources;
 
 pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {

@@ -7,11 +7,11 @@ use excavator_study::diagnosis_file::DiagnosisFile;
 use excavator_study::results::{DesignOrder, Determined, Outcome, Separated};
 use excavator_study::sentences::{determination_sentence, separation_sentence};
 
-use super::{print, print_detail, print_next};
 use crate::cli::DesignArguments;
 use crate::error::VerbError;
 use crate::output::{NextStep, Progress, number, pair_table, write_json};
 use crate::outputs::{self, Inputs, write};
+use crate::printing::{print, print_detail, print_next};
 use crate::sources;
 
 pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {

@@ -10,11 +10,12 @@ use excavator_report::{NONE_TRIED, guess_sentence, verdict_sentence};
 use excavator_study::StudyFile;
 use excavator_study::results::Diagnosed;
 
-use super::{print, print_detail, print_next, saved_study};
+use super::saved_study;
 use crate::cli::{DiagnoseArguments, ModelChoice, Recordings};
 use crate::error::VerbError;
 use crate::output::{NextStep, Progress, candidate_table};
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_detail, print_next};
 use crate::sources;
 use crate::verbosity::Verbosity;
 

@@ -6,11 +6,12 @@ use excavator_model::document::built_in;
 use excavator_model::effects::{ActsOn, AnyEffect, Card, Effect, Family, Kind, ParameterCard, Site};
 use serde_json::{Value, json};
 
-use super::{check_effects, print};
+use super::check_effects;
 use crate::cli::EffectsArguments;
 use crate::error::VerbError;
 use crate::output::{effect_table, number, write_json};
 use crate::outputs::{self, Inputs};
+use crate::printing::print;
 use crate::sources;
 
 pub fn run(arguments: &EffectsArguments) -> Result<(), VerbError> {

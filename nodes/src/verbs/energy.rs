@@ -15,11 +15,11 @@ use excavator_study::block_reader::{needs_a_map, read_beside};
 use excavator_study::recordings::LEDGER_BLOCK;
 use excavator_study::sentences::ledger_sentence;
 
-use super::{print, print_next};
 use crate::cli::{EnergyArguments, Extent, Mapping};
 use crate::error::VerbError;
 use crate::output::{NextStep, energy_table, ledger_table, write_json};
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_next};
 use crate::{sources, terminal};
 
 /// Most blocks queued for the analysis.

@@ -10,11 +10,11 @@ use excavator_report::implausible_sentence;
 use excavator_study::Study;
 use excavator_study::sentences::{identification_sentence, profile_sentence};
 
-use super::{print, print_detail, print_next};
 use crate::cli::IdentifyArguments;
 use crate::error::VerbError;
 use crate::output::{NextStep, number, parameter_table, remedy_lines};
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_detail, print_next};
 use crate::sources;
 
 pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {

@@ -10,11 +10,11 @@ use excavator_bags::{Topics, write_recording};
 use excavator_model::recording::is_measured;
 use rosbag2::WriteOptions;
 
-use super::{print, print_next};
 use crate::cli::{ImportArguments, ModelChoice, OwnEffects};
 use crate::error::VerbError;
 use crate::output::NextStep;
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_next};
 use crate::sources;
 use crate::terminal;
 

@@ -11,11 +11,11 @@ use excavator_model::document::{BUILT_IN, built_in};
 use rosbag2::{BagInfo, Timing, info_with};
 use serde_json::{Value, json};
 
-use super::{print, print_next};
 use crate::cli::InfoArguments;
 use crate::error::VerbError;
 use crate::output::{NextStep, number, right, table, write_json};
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_next};
 
 /// Smallest clock offset that is reported, s: networks and recorders add less.
 const NOTABLE_DELAY: f64 = 0.1;

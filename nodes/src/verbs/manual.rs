@@ -2,12 +2,12 @@
 
 use clap_complete::Shell;
 
-use super::{print, print_text};
 use crate::cli::ManualVerb;
 use crate::error::VerbError;
 #[cfg(feature = "live")]
 use crate::manual::parameters_page;
 use crate::manual::{command, results_page, verbs_page, write_man_pages, write_schemas};
+use crate::printing::{print, print_text};
 
 /// Prints the completions of a shell.
 pub fn completions(shell: Shell) {

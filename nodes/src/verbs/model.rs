@@ -10,11 +10,12 @@ use excavator_model::machine::{Cylinder, Drive, Supply};
 use excavator_model::{Model, addition_name, site_name, urdf};
 use serde_json::{Value, json};
 
-use super::{new_model, print, print_text, valve_test};
+use super::{new_model, valve_test};
 use crate::cli::{ModelCheckArguments, ModelChoice, ModelVerb};
 use crate::error::VerbError;
 use crate::output::{finite, number, write_json};
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_text};
 use crate::sources;
 
 pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {

@@ -7,11 +7,11 @@ use excavator_model::Model;
 use excavator_report::proposal_sentence;
 use excavator_study::results::Outcome;
 
-use super::{print, print_next};
 use crate::cli::ProposeArguments;
 use crate::error::VerbError;
 use crate::output::{NextStep, Progress, proposal_table};
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_next};
 use crate::sources;
 
 pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {

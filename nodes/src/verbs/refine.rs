@@ -8,11 +8,12 @@ use excavator_report::refinement_sentence;
 use excavator_study::StudyFile;
 use excavator_study::results::Refined;
 
-use super::{print, print_next, saved_study};
+use super::saved_study;
 use crate::cli::{ModelChoice, Recordings, RefineArguments};
 use crate::error::VerbError;
 use crate::output::{NextStep, Progress, Stage, parameter_table, remedy_lines, stage_table, write_json};
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_next};
 use crate::sources;
 
 pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {

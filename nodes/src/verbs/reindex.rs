@@ -2,10 +2,10 @@
 
 use rosbag2::{Reindexed, ReindexedFile, printable, reindex};
 
-use super::{print, print_next};
 use crate::cli::ReindexArguments;
 use crate::error::VerbError;
 use crate::output::NextStep;
+use crate::printing::{print, print_next};
 
 pub fn run(arguments: &ReindexArguments) -> Result<(), VerbError> {
     let done = reindex(&arguments.bag, arguments.keep)?;

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use excavator_study::StudyFile;
 
-use super::{diagnose, print_next, saved_study};
+use super::{diagnose, saved_study};
 use crate::cli::ReportArguments;
 use crate::error::VerbError;
 use crate::outputs::{self, Inputs};
+use crate::printing::print_next;
 
 pub fn run(arguments: &ReportArguments) -> Result<(), VerbError> {
     let (path, json) = (&arguments.study, arguments.json.json.as_deref());

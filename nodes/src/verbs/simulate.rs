@@ -10,11 +10,11 @@ use excavator_study::profile_file::ProfileFile;
 use excavator_study::simulated::simulate_profile;
 use rosbag2::WriteOptions;
 
-use super::{print, print_next};
 use crate::cli::{Extent, SimulateArguments};
 use crate::error::VerbError;
 use crate::output::NextStep;
 use crate::outputs;
+use crate::printing::{print, print_next};
 use crate::{sources, terminal};
 
 pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {

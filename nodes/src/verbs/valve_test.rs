@@ -9,11 +9,11 @@ use excavator_model::machine::{CommandUnit, Drive};
 use excavator_model::{Model, ModelError};
 
 use super::new_model::number;
-use super::{print, print_next};
 use crate::cli::ValveTestArguments;
 use crate::error::VerbError;
 use crate::output::{NextStep, number as in_digits};
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_next};
 use crate::sources;
 
 /// Standard errors from zero above which a dead zone or a play counts as real.

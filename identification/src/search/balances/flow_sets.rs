@@ -11,7 +11,7 @@ use super::super::Addition;
 use super::super::starts::plain_starts;
 use super::super::trial::key_of;
 use super::flow_fit::{Balances, FlowFit, Step};
-use super::{FlowSet, flow_additions};
+use super::{FlowSet, FlowSets, flow_additions};
 use crate::regression::FlowGround;
 
 /// Number of sets of one size that are extended.
@@ -20,6 +20,8 @@ const WIDTH: usize = 2;
 const FITTED: usize = 4;
 /// Decrease of the misfit that one more effect must bring.
 const LEAST: f64 = 0.01;
+/// Distance from the misfit of the best set within which a set with another effect in place of one of its own is its rival.
+const RIVAL: f64 = 0.1;
 
 struct Node {
     additions: Vec<Addition>,
@@ -35,15 +37,16 @@ struct Grounds<'a> {
     recordings: &'a [&'a Recording],
 }
 
-/// The best sets of at most `most_effects` for the flow balances of `model`, best first. Empty if they cannot be evaluated.
+/// The best sets of at most `most_effects` for the flow balances of `model`, and the rivals of the first. Both are empty if the
+/// balances cannot be evaluated.
 pub(in super::super) fn flow_sets(
     model: &Model,
     most_effects: usize,
     identification: &[&Recording],
     validation: &[&Recording],
-) -> Vec<FlowSet> {
-    let Some(grounds) = Grounds::new(model, identification, validation) else { return Vec::new() };
-    let Some(given) = grounds.node(Vec::new(), model) else { return Vec::new() };
+) -> FlowSets {
+    let Some(grounds) = Grounds::new(model, identification, validation) else { return FlowSets::default() };
+    let Some(given) = grounds.node(Vec::new(), model) else { return FlowSets::default() };
     let mut known: BTreeMap<Vec<String>, (f64, FlowSet)> = BTreeMap::from([(Vec::new(), given.set())]);
     let mut best = given.misfit;
     let mut wide = vec![given];
@@ -68,7 +71,10 @@ pub(in super::super) fn flow_sets(
     }
     let mut all: Vec<(f64, FlowSet)> = known.into_values().collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    all.into_iter().take_while(|(misfit, _)| *misfit < best + LEAST).map(|(_, set)| set).collect()
+    let best: Vec<FlowSet> =
+        all.into_iter().take_while(|(misfit, _)| *misfit < best + LEAST).map(|(_, set)| set).collect();
+    let rivals = best.first().map_or_else(Vec::new, |first| grounds.rivals(first));
+    FlowSets { best, rivals }
 }
 
 impl Node {
@@ -93,6 +99,23 @@ impl<'a> Grounds<'a> {
         let fit = self.fitted_balances.fit(&self.fitted, start)?;
         let misfit = 0.5 * (fit.misfit + self.other_balances.evaluate(&self.others, &fit.model)?);
         Some(Node { additions, fit, misfit })
+    }
+
+    /// Sets that do about as well with another effect in place of one of their own.
+    fn rivals(&self, best: &FlowSet) -> Vec<FlowSet> {
+        let Some(least) = self.node(best.additions.clone(), &best.model).map(|node| node.misfit + RIVAL) else {
+            return Vec::new();
+        };
+        let mut rivals = Vec::new();
+        for replaced in &best.additions {
+            let mut model = best.model.clone();
+            model.effects.retain(|effect| !effect.is(&replaced.physics.card().name, replaced.site));
+            let rest = best.additions.iter().filter(|one| *one != replaced).cloned().collect();
+            let Some(parent) = self.node(rest, &model) else { continue };
+            let near = |child: &Node| child.misfit < least && !child.additions.contains(replaced);
+            rivals.extend(self.children(&parent).into_iter().filter(near).map(|child| child.set().1));
+        }
+        rivals
     }
 
     /// The most promising sets with one effect more.

@@ -26,6 +26,15 @@ pub(super) struct FlowSet {
     pub model: Model,
 }
 
+/// The sets that the flow balances ask for.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FlowSets {
+    /// The best, in this order.
+    pub best: Vec<FlowSet>,
+    /// Sets that do about as well as the first of these, with another effect in place of one of its own.
+    pub rivals: Vec<FlowSet>,
+}
+
 /// Whether the recordings have all that the flow balances need: motion, both pressures and the opening of every cylinder, and
 /// the pressure of a pump line. A command does not tell where the spool was.
 pub(super) fn flows_are_measured(model: &Model, recordings: &[&Recording]) -> bool {

@@ -7,7 +7,7 @@ use super::{Balance, CylinderBalance, EffectTerm};
 use crate::Model;
 use crate::effects::{ActsOn, Site};
 use crate::energy::Accountant;
-use crate::equations::{Inputs, LawStates, System};
+use crate::equations::{Inputs, KnownCylinder, LawStates, System};
 use crate::machine::Supply;
 use crate::recording::{CylinderSample, Sample};
 
@@ -266,20 +266,23 @@ impl<'m, 's> Monitor<'m, 's> {
         let sample = &waiting.sample;
         let mut state = vec![0.0; layout.len];
         let mut inputs = Inputs::zero(machine.cylinders.len());
-        for (number, cylinder) in machine.cylinders.iter().enumerate() {
-            let measured = sample.cylinders.get(number).copied().unwrap_or_else(CylinderSample::unmeasured);
+        let cylinder_sample =
+            |number: usize| sample.cylinders.get(number).copied().unwrap_or_else(CylinderSample::unmeasured);
+        let known = |number: usize| {
+            let measured = cylinder_sample(number);
             let joint = if measured.displacement.is_finite() {
-                cylinder.linkage.joint(measured.displacement)
+                machine.cylinders[number].linkage.joint(measured.displacement)
             } else {
                 measured.joint_angle
             };
             let pressures = [measured.cap_pressure, measured.rod_pressure];
-            self.system.set_cylinder(number, joint, self.velocity(waiting, number), pressures, &mut state);
+            KnownCylinder { joint, velocity: self.velocity(waiting, number), pressures }
+        };
+        self.system.set_measured(known, sample.pump_pressure, &mut state);
+        for (number, cylinder) in machine.cylinders.iter().enumerate() {
+            let measured = cylinder_sample(number);
             inputs.orifice_area[number] = if cylinder.chambers.is_some() { measured.orifice_area } else { 0.0 };
             inputs.rod_force[number] = if cylinder.chambers.is_some() { 0.0 } else { measured.rod_force };
-        }
-        if let Some(pump) = layout.pump {
-            state[pump] = sample.pump_pressure;
         }
         let or = |value: f64, constant: f64| if value.is_finite() { value } else { constant };
         inputs.supply_pressure = match machine.supply {

@@ -9,11 +9,11 @@ use std::path::Path;
 
 use excavator_model::template::model_text;
 
-use super::{print, print_next};
 use crate::cli::NewModelArguments;
 use crate::error::VerbError;
 use crate::output::NextStep;
 use crate::outputs::{self, Inputs};
+use crate::printing::{print, print_next};
 
 pub fn run(arguments: &NewModelArguments) -> Result<(), VerbError> {
     outputs::check(&[("-o", arguments.output.as_deref())], &Inputs::default(), arguments.overwriting)?;

@@ -67,7 +67,7 @@ fn a_demo_moves_by_itself_and_shows_itself() {
     assert!(most - least > 0.02, "{} m in {} states: {log}", most - least, states.len());
     let model = excavator_model::document::built_in("zx30u-arm").unwrap();
     let arm = &model.machine.cylinders[0];
-    assert!(!arm.is_at_an_end(least, 0.1) && !arm.is_at_an_end(most, 0.1), "{least} m to {most} m: {log}");
+    assert!(!arm.is_near_an_end(least, 0.1) && !arm.is_near_an_end(most, 0.1), "{least} m to {most} m: {log}");
 }
 
 #[test]
