@@ -9,7 +9,7 @@ use excavator_identification::refinement::Additions;
 use excavator_model::Model as Physics;
 use excavator_model::recording::Recording as Signals;
 use excavator_study::diagnosis_file::DiagnosisFile;
-use excavator_study::recordings::{Use, checked, telling};
+use excavator_study::recordings::{Use, checked, most_informative};
 use excavator_study::results::{DesignOrder, Determined, Outcome as Told, Progress, Separated};
 use excavator_study::{Study, WorkError};
 use pyo3::exceptions::PyValueError;
@@ -46,9 +46,9 @@ impl Desk {
     }
 
     /// Checks a recording. Of a long one, uses the most informative stretches.
-    fn telling(&mut self, content: &Content, model: &Physics) -> Result<Signals, WorkError> {
+    fn most_informative(&mut self, content: &Content, model: &Physics) -> Result<Signals, WorkError> {
         let whole = &content.signals;
-        let part = if self.usage.whole { None } else { telling(whole, content.is_mapped, model)? };
+        let part = if self.usage.whole { None } else { most_informative(whole, content.is_mapped, model)? };
         let Some((part, choice)) = part else { return self.as_used(whole.clone(), content, model) };
         self.remarks.push(format!("{}: {choice}; whole=True uses all", whole.source));
         self.as_used(part, content, model)
@@ -60,7 +60,7 @@ impl Desk {
     }
 
     fn all(&mut self, contents: &[Arc<Content>], model: &Physics) -> Result<Vec<Signals>, WorkError> {
-        contents.iter().map(|content| self.telling(content, model)).collect()
+        contents.iter().map(|content| self.most_informative(content, model)).collect()
     }
 
     /// A study of the recordings for the fit and of those for validation.
@@ -103,7 +103,7 @@ pub fn compare(
     let (model, against) = (model.physics(), against.map(Model::physics));
     let (recording, repeat) = (recording.content(), repeat.map(Recording::content));
     done(py, None, usage, move |desk, _| {
-        let used = desk.telling(&recording, &model)?;
+        let used = desk.most_informative(&recording, &model)?;
         let again = repeat.map(|repeat| desk.checked(&repeat, &model)).transpose()?;
         Study::of_recording((*model).clone(), used).compare(against.as_deref(), again.as_ref())
     })

@@ -95,7 +95,7 @@ pub(super) fn diagnosis_sections(diagnosis: &Diagnosis, comparisons: &[Compariso
     if !named.is_empty() {
         let title = if named.len() == 1 { "The effect" } else { "The effects" };
         let recordings: Vec<&Recording> = comparisons.iter().map(|comparison| &comparison.measured).collect();
-        let body = html! { @for candidate in &named { (effect_card(candidate, &recordings)) } };
+        let body = html! { @for candidate in &named { (effect_card(diagnosis, candidate, &recordings)) } };
         sections.push(Section { anchor: "effects", title: title.into(), body });
     }
     if let Some(left) = &diagnosis.unexplained {

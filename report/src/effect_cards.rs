@@ -1,6 +1,6 @@
 //! Shows the catalogue's card of an effect.
 
-use excavator_identification::diagnosis::{Candidate, contribution};
+use excavator_identification::diagnosis::{Candidate, Diagnosis, contribution};
 use excavator_model::recording::Recording;
 use maud::{Markup, html};
 
@@ -8,11 +8,13 @@ use super::effect_plot::effect_plot;
 use super::parameter_table;
 use super::verdict_text::place_of;
 
-/// Card, picture on `recordings` and fitted parameters of a named candidate.
-pub(super) fn effect_card(candidate: &Candidate<'_>, recordings: &[&Recording]) -> Markup {
+/// Card, picture on `recordings` and fitted parameters of a named candidate: beside all other effects of the favoured hypothesis, if it
+/// is one of them.
+pub(super) fn effect_card(diagnosis: &Diagnosis, candidate: &Candidate<'_>, recordings: &[&Recording]) -> Markup {
     let card = candidate.addition.physics.card();
+    let trial = Some(diagnosis.best()).filter(|best| best.adds(candidate.addition)).unwrap_or(candidate.trial);
     // If the picture cannot be made, the card has only text.
-    let shown = contribution(candidate.trial, candidate.addition, recordings).ok().flatten();
+    let shown = contribution(trial, candidate.addition, recordings).ok().flatten();
     html! {
         div.card {
             h3 { (capitalised(&place_of(candidate))) " " code.code-name { (card.name) "@" (candidate.place()) } }
@@ -24,8 +26,8 @@ pub(super) fn effect_card(candidate: &Candidate<'_>, recordings: &[&Recording]) 
                 dt { "Energy" } dd { (card.energy) }
                 dt { "Source" } dd { (card.source) }
             }
-            @if let Some(shown) = &shown { (effect_plot(&candidate.trial.fit.model.machine, shown)) }
-            (parameter_table::of_effect(&candidate.trial.fit.model, candidate.name(), candidate.addition.site))
+            @if let Some(shown) = &shown { (effect_plot(&trial.fit.model.machine, shown)) }
+            (parameter_table::of_effect(&trial.fit.model, candidate.name(), candidate.addition.site))
         }
     }
 }

@@ -55,7 +55,7 @@ pub fn blocks(recording: &Recording, samples: usize) -> impl Iterator<Item = Rec
 ///
 /// # Errors
 /// [`RegressionError`] if the recording lacks inputs.
-pub fn telling(
+pub fn most_informative(
     recording: &Recording,
     is_mapped: bool,
     model: &Model,

@@ -57,6 +57,6 @@ impl Ground {
 
     /// Whether the measured signals mean the same with this additional effect.
     pub fn keeps_signals(effect: &dyn Effect) -> bool {
-        !effect.reads_course() && !effect.is_an_instruments()
+        !effect.reads_input_rate() && !effect.is_an_instruments()
     }
 }

@@ -41,7 +41,7 @@ pub struct Effort {
     pub promised_starts: usize,
     /// If the best of these reaches less than this share of the predicted improvement, all starts are tried: the
     /// addition is too large for the linear prediction.
-    pub borne_out: f64,
+    pub least_reached_share: f64,
     /// If the best finalist explains less than this share of the misfit, all others are fitted too.
     pub little_share: f64,
     /// If the best finalist explains at least this share of the misfit and little more than noise remains, the
@@ -78,7 +78,7 @@ impl Default for Effort {
             further_finalists: 6,
             trusted_distance: 1.2,
             promised_starts: 2,
-            borne_out: 0.5,
+            least_reached_share: 0.5,
             little_share: 0.25,
             most_share: 0.8,
             rival_share: 0.5,

@@ -84,7 +84,7 @@ impl<'a> Track<'a> {
         };
         let first = starts.into_iter().take(effort.promised_starts).map(|start| start.model).collect();
         let Ok(start) = most_promising(first, &recordings, settings) else { return all() };
-        if self.base.loss() - start.promise.loss_after >= effort.borne_out * improvement {
+        if self.base.loss() - start.promise.loss_after >= effort.least_reached_share * improvement {
             return Ok(start);
         }
         Ok(all().ok().filter(|other| other.promise.loss_after < start.promise.loss_after).unwrap_or(start))

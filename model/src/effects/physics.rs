@@ -180,13 +180,13 @@ pub trait Physics: Send + Sync {
     }
 
     /// Whether the effect reads the rate of the input, by [`Physics::read`].
-    fn reads_course(&self) -> bool {
+    fn reads_input_rate(&self) -> bool {
         false
     }
 
     /// The true opening (m²) of the input, given its reading and the reading's rates before and after this instant (m²/s). Called
-    /// only for effects with [`Physics::reads_course`], before any [`Physics::spool`].
-    fn read<T: Scalar>(&self, _parameters: &[T], reading: T, _course: [T; 2]) -> T {
+    /// only for effects with [`Physics::reads_input_rate`], before any [`Physics::spool`].
+    fn read<T: Scalar>(&self, _parameters: &[T], reading: T, _rates: [T; 2]) -> T {
         reading
     }
 
@@ -296,7 +296,7 @@ hooks! {
         fn has_memory() -> bool;
         fn state_scale(state: usize) -> f64;
         fn reads_metering_flows() -> bool;
-        fn reads_course() -> bool;
+        fn reads_input_rate() -> bool;
         fn adjusts_others() -> bool;
     }
     in number type T {
@@ -317,7 +317,7 @@ hooks! {
 impl dyn Effect + '_ {
     /// Whether it changes only what instruments report.
     pub fn is_an_instruments(&self) -> bool {
-        !(self.has_power() || self.has_memory() || self.adjusts_others() || self.reads_course())
+        !(self.has_power() || self.has_memory() || self.adjusts_others() || self.reads_input_rate())
     }
 }
 

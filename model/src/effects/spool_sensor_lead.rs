@@ -86,7 +86,7 @@ impl Physics for SpoolSensorLead {
         false
     }
 
-    fn reads_course(&self) -> bool {
+    fn reads_input_rate(&self) -> bool {
         true
     }
 

@@ -69,11 +69,11 @@ impl Physics for SpoolSensorOffset {
         false
     }
 
-    fn reads_course(&self) -> bool {
+    fn reads_input_rate(&self) -> bool {
         true
     }
 
-    fn read<T: Scalar>(&self, parameters: &[T], reading: T, _course: [T; 2]) -> T {
+    fn read<T: Scalar>(&self, parameters: &[T], reading: T, _rates: [T; 2]) -> T {
         reading - parameters[0]
     }
 }

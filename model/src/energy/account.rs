@@ -250,7 +250,7 @@ impl<T: Number> Account<'_, '_, T> {
                     pump_line -= cap + rod;
                 }
                 if (has_mass || has_weight) && !effect.acts_always() {
-                    mechanical += self.brought_along(number);
+                    mechanical += self.carried_power(number);
                 }
                 let only_stores = (has_mass || has_weight || has_spring) && effect.acts_always();
                 EffectPower {
@@ -269,7 +269,7 @@ impl<T: Number> Account<'_, '_, T> {
 
     /// Power of a mass that is picked up or put down, W: the rate of the energy that effect `number` stores, with everything
     /// constant except time.
-    fn brought_along(&mut self, number: usize) -> T {
+    fn carried_power(&mut self, number: usize) -> T {
         let now = self.workspace.situation.time;
         let instant = INSTANT * self.system.model().machine.size().time();
         let mut stored_at = |time: T| {

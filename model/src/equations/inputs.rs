@@ -39,8 +39,8 @@ pub struct Inputs<T> {
     pub orifice_area: Vec<T>,
     /// Rate of change of that opening before and after this instant, m²/s, per cylinder. The two differ at a sample,
     /// where the input has a kink. Zero unless an effect of the model needs it
-    /// ([`crate::effects::Physics::reads_course`]).
-    pub orifice_course: Vec<[T; 2]>,
+    /// ([`crate::effects::Physics::reads_input_rate`]).
+    pub orifice_rates: Vec<[T; 2]>,
     /// Force that drives the piston, per cylinder, N; used only by cylinders without chambers. It is measured on the rod;
     /// for an imposed motion it includes the force of the measured pressures.
     pub rod_force: Vec<T>,
@@ -61,7 +61,7 @@ impl<T: Scalar> Inputs<T> {
         Inputs {
             time: zero,
             orifice_area: vec![zero; cylinders],
-            orifice_course: vec![[zero; 2]; cylinders],
+            orifice_rates: vec![[zero; 2]; cylinders],
             rod_force: vec![zero; cylinders],
             imposed: vec![
                 ImposedState {
@@ -83,7 +83,7 @@ impl<T: Scalar> Inputs<T> {
     pub fn copy_from(&mut self, other: &Self) {
         self.time = other.time;
         self.orifice_area.copy_from_slice(&other.orifice_area);
-        self.orifice_course.copy_from_slice(&other.orifice_course);
+        self.orifice_rates.copy_from_slice(&other.orifice_rates);
         self.rod_force.copy_from_slice(&other.rod_force);
         self.imposed.copy_from_slice(&other.imposed);
         self.supply_pressure = other.supply_pressure;
@@ -99,7 +99,7 @@ impl Inputs<Dual> {
         for (slot, &value) in self.orifice_area.iter_mut().zip(&plain.orifice_area) {
             *slot = constant(value);
         }
-        for (slot, rates) in self.orifice_course.iter_mut().zip(&plain.orifice_course) {
+        for (slot, rates) in self.orifice_rates.iter_mut().zip(&plain.orifice_rates) {
             *slot = rates.map(constant);
         }
         for (slot, &value) in self.rod_force.iter_mut().zip(&plain.rod_force) {

@@ -27,7 +27,7 @@ impl System<'_> {
         let effect = &self.model().effects[owner].physics;
         let feeds_others = self.reads_metering_flows() && effect.card().acts_on == ActsOn::Valve;
         let is_imposed = self.layout().rod_forces.is_some();
-        if effect.adjusts_others() || effect.reads_course() || feeds_others || is_imposed {
+        if effect.adjusts_others() || effect.reads_input_rate() || feeds_others || is_imposed {
             Reach::Others
         } else if effect.is_an_instruments() {
             Reach::Instruments

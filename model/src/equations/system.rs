@@ -16,7 +16,7 @@ pub struct System<'m> {
     /// Effects that change the values other effects see.
     adjusting: Vec<usize>,
     /// Effects that read the rate of the input.
-    readers_of_course: Vec<usize>,
+    readers_of_input_rate: Vec<usize>,
     /// Effects with memory.
     remembering: Vec<usize>,
     /// Whether an effect needs the metering flows.
@@ -65,8 +65,8 @@ impl<'m> System<'m> {
             .collect();
         let adjusting =
             (0..model.effects.len()).filter(|&number| model.effects[number].physics.adjusts_others()).collect();
-        let readers_of_course =
-            (0..model.effects.len()).filter(|&number| model.effects[number].physics.reads_course()).collect();
+        let readers_of_input_rate =
+            (0..model.effects.len()).filter(|&number| model.effects[number].physics.reads_input_rate()).collect();
         let remembering =
             (0..model.effects.len()).filter(|&number| model.effects[number].physics.has_memory()).collect();
         let reads_metering_flows = model.effects.iter().any(|effect| effect.physics.reads_metering_flows());
@@ -76,7 +76,7 @@ impl<'m> System<'m> {
             layout: Layout::of(model),
             parameter_ranges,
             adjusting,
-            readers_of_course,
+            readers_of_input_rate,
             remembering,
             reads_metering_flows,
             own_instruments,
@@ -275,13 +275,13 @@ impl<'m> System<'m> {
             piston.command = inputs.orifice_area[index];
             piston.spool = piston.command;
         }
-        for &number in &self.readers_of_course {
+        for &number in &self.readers_of_input_rate {
             let effect = &self.model.effects[number];
             let Site::Cylinder(index) = effect.site else { continue };
             let (first, last) = self.parameter_ranges[number];
             let piston = &mut situation.pistons[index];
-            let course = inputs.orifice_course[index];
-            piston.spool = T::hooks(&*effect.physics).read(&parameters[first..last], piston.spool, course);
+            let rates = inputs.orifice_rates[index];
+            piston.spool = T::hooks(&*effect.physics).read(&parameters[first..last], piston.spool, rates);
         }
         self.observe_valves(situation, parameters, state, rates);
     }

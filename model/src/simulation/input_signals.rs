@@ -102,7 +102,7 @@ impl InputSignals {
             .enumerate()
             .map(|(cylinder, (interpolation, values))| {
                 // A held command is used as it is, because its true time of action is unknown.
-                (*interpolation == Interpolation::Linear && reads_course(model, cylinder))
+                (*interpolation == Interpolation::Linear && reads_input_rate(model, cylinder))
                     .then(|| secants(&recording.time, values))
             })
             .collect();
@@ -263,7 +263,7 @@ impl InputSignals {
                 Interpolation::Hold => values[index],
             };
         }
-        for (slot, rates) in inputs.orifice_course.iter_mut().zip(&self.orifice_rate) {
+        for (slot, rates) in inputs.orifice_rates.iter_mut().zip(&self.orifice_rate) {
             if let Some(rates) = rates {
                 let [before, here, after] =
                     [index.saturating_sub(1), index, next.min(rates.len() - 1)].map(|i| rates[i]);
@@ -291,8 +291,8 @@ fn changes_sign(values: &[f64]) -> bool {
     values.iter().any(|&value| value > 0.0) && values.iter().any(|&value| value < 0.0)
 }
 
-fn reads_course(model: &Model, cylinder: usize) -> bool {
-    model.effects.iter().any(|effect| effect.site == Site::Cylinder(cylinder) && effect.physics.reads_course())
+fn reads_input_rate(model: &Model, cylinder: usize) -> bool {
+    model.effects.iter().any(|effect| effect.site == Site::Cylinder(cylinder) && effect.physics.reads_input_rate())
 }
 
 /// Rates between neighbouring samples, with the last one repeated to match the number of samples.

@@ -43,7 +43,7 @@ fn lift(inputs: &Inputs<f64>) -> Inputs<Dual> {
     Inputs {
         time: constant(inputs.time),
         orifice_area: inputs.orifice_area.iter().map(|&value| constant(value)).collect(),
-        orifice_course: inputs.orifice_course.iter().map(|rates| rates.map(constant)).collect(),
+        orifice_rates: inputs.orifice_rates.iter().map(|rates| rates.map(constant)).collect(),
         rod_force: inputs.rod_force.iter().map(|&value| constant(value)).collect(),
         imposed: inputs.imposed.iter().map(|state| state.each(|&value| constant(value))).collect(),
         supply_pressure: constant(inputs.supply_pressure),

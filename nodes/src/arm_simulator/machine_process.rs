@@ -52,7 +52,7 @@ pub(super) struct Order {
     pub areas: Vec<f64>,
     /// Whether the valve closes for safety, per valve.
     pub closing: Vec<bool>,
-    /// Samples to go on by: more than one where the node was late.
+    /// Samples to advance: more than one if the node was late.
     pub samples: u32,
     /// Time without an order after which the valves close, s.
     pub lease: f64,

@@ -41,9 +41,9 @@ impl Shape {
             Dimension::Velocity if size > 10.0 => {
                 Some(("mm/s", format!("numbers up to {most} are no metres per second")))
             }
-            Dimension::Pressure if size < 1e3 => Some(("bar", format!("numbers up to {most} are no pascals"))),
+            Dimension::Pressure if size < 1e3 => Some(("bar", format!("values up to {most} are too small for Pa"))),
             Dimension::Pressure if size < 5e4 => {
-                Some(("kPa", format!("numbers up to {most} are no pascals, and much for bar")))
+                Some(("kPa", format!("values up to {most} are too small for Pa and large for bar")))
             }
             Dimension::Angle if size > 7.0 => {
                 Some(("deg", format!("numbers up to {most} are more than a turn in radians")))

@@ -18,7 +18,7 @@ use values::Cells;
 /// Reads the table in a file. `Err` contains the fault in one line.
 pub(super) fn parse(bytes: Bytes, limits: &ReadLimits) -> Result<Table, TableFault> {
     if !bytes.starts_with(b"PAR1") {
-        return Err("it is no Parquet file: it does not begin with PAR1".into());
+        return Err("it is not a Parquet file: it does not begin with PAR1".into());
     }
     if !bytes.ends_with(b"PAR1") {
         return Err("the end is missing: a Parquet file can only be read whole".into());

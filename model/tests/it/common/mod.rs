@@ -172,7 +172,7 @@ pub fn random_inputs(machine: &Machine, random: &mut Random) -> Inputs<f64> {
     for area in &mut inputs.orifice_area {
         *area = random.between(-1.14e-4, 1.14e-4);
     }
-    for (rates, area) in inputs.orifice_course.iter_mut().zip(&inputs.orifice_area) {
+    for (rates, area) in inputs.orifice_rates.iter_mut().zip(&inputs.orifice_area) {
         // As of an opening that turns about where it is.
         *rates = [100.0 * area, -60.0 * area];
     }
