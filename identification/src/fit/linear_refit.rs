@@ -6,8 +6,8 @@ use excavator_model::recording::Recording;
 use nalgebra::{DMatrix, DVector};
 
 use super::normal_equations::RawSums;
-use super::output_error::{LONGEST_SHIFT, bounded_step, held_at_bounds, parameter_step};
 use super::problem::Problem;
+use super::step::{LONGEST_SHIFT, bounded_step, held_at_bounds, parameter_step, scales};
 use super::{FitError, FitSettings, Instrument};
 
 /// Normal equations of a model, linearised at its present values, on one recording. Equations of several recordings add
@@ -146,16 +146,4 @@ impl Free {
         let scales = scales(model, &fitted);
         Free { fitted, scales }
     }
-}
-
-/// Scale of each of these parameters, in its unit: its magnitude, or the typical value if it is zero.
-pub(crate) fn scales(model: &Model, parameters: &[usize]) -> Vec<f64> {
-    let all: Vec<(f64, f64)> = model.parameters().map(|(_, one)| (one.value.abs(), one.card.typical.abs())).collect();
-    parameters
-        .iter()
-        .map(|&index| {
-            let (value, typical) = all[index];
-            if value != 0.0 { value } else { typical }
-        })
-        .collect()
 }

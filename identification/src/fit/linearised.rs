@@ -6,8 +6,8 @@ use excavator_model::recording::Recording;
 use nalgebra::DVector;
 
 use super::normal_equations::{RawSums, SegmentSums};
-use super::output_error::{error_sizes, loss_per_reading, parameter_step};
 use super::problem::Problem;
+use super::step::{error_sizes, loss_per_reading, parameter_step};
 use super::{FitError, FitSettings};
 
 /// One simulation with sensitivities, that predicts steps in any choice of further parameters.

@@ -4,51 +4,19 @@
 //! equations before they are added up. A general solver would factor one dense Jacobian with a column for each initial
 //! state of each segment.
 
-use std::sync::Arc;
-
 use std::ops::ControlFlow;
 
-use excavator_model::effects::ParameterCard;
+use excavator_model::Model;
 use excavator_model::equations::System;
 use excavator_model::recording::Recording;
-use excavator_model::simulation::SimulationError;
-use excavator_model::{Model, SignalError};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::covariance::clustered_covariance;
 use super::normal_equations::{RawSums, SegmentSums};
 use super::problem::Problem;
+use super::step::{bounded_step, error_sizes, held_at_bounds, loss_per_reading, parameter_step};
 use super::trial::loss_of;
-use super::{FitSettings, Instrument, Watch};
-
-/// Why a fit failed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum FitError {
-    /// The recordings lack signals that the model needs.
-    #[error(transparent)]
-    Signal(#[from] SignalError),
-    /// The model cannot be simulated at the start values.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// No output of the model is measured.
-    #[error("the recordings measure no output of {machine}; displacement or a pressure is needed")]
-    NothingMeasured {
-        /// The machine.
-        machine: String,
-    },
-    /// No stretch of a recording is long enough.
-    #[error("the recordings have no stretch of at least 20 samples without a gap that begins with a measured position")]
-    TooShort,
-    /// An effect acts in a window of time, and the recordings do not show where to search for it.
-    #[error(
-        "the time at which it acts cannot be found: the force balance needs signals that the recordings do not have"
-    )]
-    NoActiveWindow,
-    /// The watch function stopped the fit.
-    #[error("stopped on request")]
-    Stopped,
-}
+use super::{FitError, FitSettings, Instrument, Watch};
 
 /// Result of a fit.
 #[derive(Debug, Clone)]
@@ -238,91 +206,6 @@ pub(super) fn run(
         }
     }
     Ok(result(model, problem, current, steps, converged))
-}
-
-/// Loss of a model whose instruments have these errors; see [`Fit::loss`].
-pub(super) fn loss_per_reading(errors: &[f64], noise: &[f64]) -> f64 {
-    errors.iter().zip(noise).map(|(error, noise)| 2.0 * (error / noise).max(1e-3).ln()).sum::<f64>()
-        / noise.len() as f64
-}
-
-/// Root mean square error of each instrument over all segments, not below its noise.
-pub(super) fn error_sizes(sums: &[RawSums], noise: &[f64]) -> Vec<f64> {
-    noise
-        .iter()
-        .enumerate()
-        .map(|(number, noise)| {
-            let squares: f64 = sums.iter().map(|segment| segment.squared_errors()[number]).sum();
-            let count: usize = sums.iter().map(|segment| segment.counts()[number]).sum();
-            (squares / count.max(1) as f64).sqrt().max(*noise)
-        })
-        .collect()
-}
-
-/// Fitted parameters at a bound that the next step would cross. They are held in that step.
-pub(super) fn held_at_bounds(sums: &[SegmentSums], values: &[f64], fitted: &[usize], bounds: &[[f64; 2]]) -> Vec<bool> {
-    fitted
-        .iter()
-        .enumerate()
-        .map(|(number, &index)| {
-            let downhill: f64 = sums.iter().map(|segment| segment.gradient[number]).sum();
-            let [lowest, highest] = bounds[index];
-            (values[index] <= lowest && downhill < 0.0) || (values[index] >= highest && downhill > 0.0)
-        })
-        .collect()
-}
-
-pub(super) fn parameter_step(sums: &[SegmentSums], held: &[bool], damping: f64) -> Option<DVector<f64>> {
-    let fitted = held.len();
-    if fitted == 0 {
-        return Some(DVector::zeros(0));
-    }
-    let mut information = DMatrix::zeros(fitted, fitted);
-    let mut gradient = DVector::zeros(fitted);
-    for segment in sums {
-        information += &segment.information;
-        gradient += &segment.gradient;
-    }
-    let largest = information.diagonal().max();
-    for (index, &held) in held.iter().enumerate() {
-        if held {
-            information.row_mut(index).fill(0.0);
-            information.column_mut(index).fill(0.0);
-            information[(index, index)] = largest;
-            gradient[index] = 0.0;
-        }
-        // The floor keeps parameters that the recording does not show at their values.
-        information[(index, index)] += damping * information[(index, index)] + 1e-12 * largest;
-    }
-    information.cholesky().map(|factor| factor.solve(&gradient))
-}
-
-/// Largest step of the edges of a time window, s. The recordings show an edge only near its present position, so it has
-/// to move step by step. A long step ends outside the recording, and nothing leads back from there.
-pub(super) const LONGEST_SHIFT: f64 = 1.0;
-
-/// All values after a step of the fitted ones, which stay within their bounds, and the step that was actually taken, in
-/// scales.
-pub(super) fn bounded_step(
-    values: &[f64],
-    step: &DVector<f64>,
-    fitted: &[usize],
-    scales: &[f64],
-    cards: &[Arc<ParameterCard>],
-    bounds: &[[f64; 2]],
-    longest_shift: f64,
-) -> (Vec<f64>, DVector<f64>) {
-    let mut stepped = values.to_vec();
-    let mut taken = DVector::zeros(fitted.len());
-    for (number, &index) in fitted.iter().enumerate() {
-        let card = &cards[index];
-        let most = if card.start.is_a_time() { longest_shift } else { f64::INFINITY };
-        let wanted = values[index] + (step[number] * scales[number]).clamp(-most, most);
-        let [lowest, highest] = bounds[index];
-        stepped[index] = wanted.clamp(lowest, highest);
-        taken[number] = (stepped[index] - values[index]) / scales[number];
-    }
-    (stepped, taken)
 }
 
 fn result(model: &Model, problem: Problem<'_, '_>, state: State, steps: usize, converged: bool) -> Fit {

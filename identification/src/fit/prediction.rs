@@ -8,8 +8,9 @@ use excavator_model::recording::Recording;
 use nalgebra::DVector;
 
 use super::normal_equations::RawSums;
-use super::output_error::{bounded_step, error_sizes, held_at_bounds, loss_per_reading, parameter_step, run};
+use super::output_error::run;
 use super::problem::Problem;
+use super::step::{bounded_step, error_sizes, held_at_bounds, loss_per_reading, parameter_step};
 use super::{Fit, FitError, FitSettings};
 
 /// Prediction of a Gauss-Newton step from a model's parameters.

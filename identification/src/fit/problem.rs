@@ -10,9 +10,9 @@ use excavator_model::simulation::Tolerances;
 use rayon::prelude::*;
 
 use super::normal_equations::{BLOCK_DURATION, InitialStatePrior, RawSums, SegmentSums, Shared};
-use super::output_error::LONGEST_SHIFT;
 use super::priors::ParameterPriors;
-use super::{FitError, FitSettings, Instrument, Segment, SegmentedRecording, instruments, scales};
+use super::step::{LONGEST_SHIFT, scales};
+use super::{FitError, FitSettings, Instrument, Segment, SegmentedRecording, instruments};
 
 /// A model, recordings and the choice of free parameters.
 pub(super) struct Problem<'s, 'm> {

@@ -1,6 +1,7 @@
 //! Why a regression gives no numbers.
 
 use excavator_model::SignalError;
+use excavator_model::recording::Recording;
 
 use crate::fit::FitError;
 
@@ -47,4 +48,9 @@ pub enum RegressionError {
         /// Parameters that take part in the combination.
         names: Vec<String>,
     },
+}
+
+/// Names of recordings for a message.
+pub(super) fn sources(recordings: &[&Recording]) -> String {
+    recordings.iter().map(|recording| recording.source.as_str()).collect::<Vec<_>>().join(", ")
 }

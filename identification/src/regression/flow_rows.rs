@@ -10,9 +10,9 @@ use excavator_model::{Imposed, Model};
 use nalgebra::DMatrix;
 
 use super::equation::{Equation, EquationKind, equations_by};
+use super::sensor_noise::{SensorNoise, sensor_noise};
 use super::simulated::simulated;
-use super::weak_row::{SensorNoise, weak_row};
-use super::weak_rows::sensor_noise;
+use super::weak_row::weak_row;
 use super::window::{Window, windows};
 use super::{Observation, RegressionError, observe};
 

@@ -9,9 +9,11 @@ use excavator_model::simulation::undistorted;
 use nalgebra::DMatrix;
 
 use super::equation::equations;
+use super::sensor_noise::SensorNoise;
+use super::sensor_noise::sensor_noise;
 use super::simulated::simulated;
-use super::weak_row::{SensorNoise, weak_row};
-use super::weak_rows::{moves, sensor_noise};
+use super::weak_row::weak_row;
+use super::weak_rows::moves;
 use super::window::windows;
 use super::{RegressionError, WeakFormSettings, observe};
 

@@ -7,8 +7,8 @@ use excavator_model::recording::Recording;
 use nalgebra::{DMatrix, DVector};
 
 use super::equation::{Equation, EquationKind, equations};
+use super::error::sources;
 use super::solution::{ConditionNumber, condition_numbers};
-use super::weak_form::sources;
 use super::{EquationGauge, Regression, RegressionError, observe};
 
 /// Length of the moving average, samples (\[A\] Section 3.1: "43-order").

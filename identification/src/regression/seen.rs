@@ -5,9 +5,8 @@ use excavator_model::effects::Effect;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::undistorted;
 
+use super::sensor_noise::{SensorNoise, sensor_noise};
 use super::simulated::{Simulated, simulated};
-use super::weak_row::SensorNoise;
-use super::weak_rows::sensor_noise;
 use super::{Observation, RegressionError, observe_guided};
 
 /// One recording as a model sees it.

@@ -5,20 +5,8 @@ use nalgebra::DVector;
 
 use super::Observation;
 use super::equation::{Equation, EquationKind, Sensor, Term};
+use super::sensor_noise::SensorNoise;
 use super::window::Window;
-
-/// Standard deviation of each sensor's noise in one recording.
-#[derive(Debug, Clone)]
-pub(super) struct SensorNoise {
-    /// m, per cylinder.
-    pub displacement: Vec<f64>,
-    /// Pa, per cylinder: cap side, rod side.
-    pub pressures: Vec<[f64; 2]>,
-    /// m², per cylinder.
-    pub spool: Vec<f64>,
-    /// Pa.
-    pub pump_pressure: f64,
-}
 
 /// Residual of an equation against a test function, with its regressors.
 pub(super) struct WeakRow {

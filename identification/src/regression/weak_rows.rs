@@ -4,12 +4,12 @@ use excavator_model::Model;
 use excavator_model::effects::{Corner, Site};
 use excavator_model::equations::System;
 use excavator_model::machine::Linkage;
-use excavator_model::recording::{Recording, noise_level, standard_deviation};
+use excavator_model::recording::Recording;
 use nalgebra::DVector;
 
 use super::equation::{EquationKind, equations};
 use super::seen::Seen;
-use super::weak_row::{SensorNoise, weak_row};
+use super::weak_row::weak_row;
 use super::window::{Window, windows};
 use super::{Observation, RegressionError, WeakFormSettings, observe};
 
@@ -96,25 +96,4 @@ pub(super) fn moves(kind: EquationKind, window: &Window, observation: &Observati
     let EquationKind::Motion(cylinder) = kind else { return true };
     let speeds = &observation.cylinders[cylinder].velocity[window.first..window.first + window.weights.len()];
     speeds.iter().all(|speed| speed.abs() > slowest)
-}
-
-pub(super) fn sensor_noise(recording: &Recording, model: &Model) -> Result<SensorNoise, RegressionError> {
-    // A noiseless (simulated) signal would give its rows infinite weight. Rounding alone is of this size.
-    let level = |signal: &[f64]| noise_level(signal).max(1e-6 * standard_deviation(signal)).max(1e-15);
-    let mut noise = SensorNoise {
-        displacement: vec![],
-        pressures: vec![],
-        spool: vec![],
-        pump_pressure: level(&recording.pump_pressure),
-    };
-    for cylinder in &model.machine.cylinders {
-        let signals = recording.cylinder(&cylinder.name).map_err(excavator_model::SignalError::from)?;
-        let lever = cylinder.linkage.lever(cylinder.linkage.joint(0.0)).abs();
-        let from_angle = level(&signals.joint_angle) * lever;
-        let measured = signals.displacement.iter().any(|value| value.is_finite());
-        noise.displacement.push(if measured { level(&signals.displacement) } else { from_angle });
-        noise.pressures.push([level(&signals.cap_pressure), level(&signals.rod_pressure)]);
-        noise.spool.push(level(&signals.orifice_area));
-    }
-    Ok(noise)
 }

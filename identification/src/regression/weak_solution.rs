@@ -6,9 +6,9 @@ use excavator_model::recording::Recording;
 use nalgebra::{DMatrix, DVector};
 
 use super::equation::EquationKind;
+use super::error::sources;
 use super::solution::{ConditionNumber, condition_numbers};
 use super::weak_covariance::{STRETCH, jackknife};
-use super::weak_form::sources;
 use super::weak_rows::Row;
 use super::{EquationGauge, Regression, RegressionError, WeakFormSettings};
 use crate::fit::ParameterPriors;

@@ -13,9 +13,10 @@ use excavator_model::simulation::undistorted;
 use nalgebra::DMatrix;
 
 use super::equation::{Equation, EquationKind, equations};
+use super::sensor_noise::sensor_noise;
 use super::simulated::simulated;
 use super::weak_row::weak_row;
-use super::weak_rows::{moves, sensor_noise};
+use super::weak_rows::moves;
 use super::window::{Window, windows};
 use super::{Observation, RegressionError, WeakFormSettings, observe_guided};
 

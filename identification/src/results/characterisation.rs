@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{DeadZone, Friction, Gain, ValveLeakage, finite};
+use super::{DeadZone, Friction, Gain, Outcome, ValveLeakage, finite};
 use crate::characterisation::{self, Edge, Refusal};
 
 /// Valves and friction, read off recordings without a simulation.
@@ -35,35 +35,6 @@ pub struct CylinderCharacterisation {
     pub friction: Outcome<Friction>,
 }
 
-/// What was found, or why it was not.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
-#[schemars(inline)]
-pub enum Outcome<T> {
-    /// Not found.
-    Refused(Refused),
-    /// Found.
-    Found(T),
-}
-
-/// Why something was not found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[non_exhaustive]
-pub struct Refused {
-    /// Which signal or manoeuvre is missing, with numbers.
-    pub refused: String,
-}
-
-/// An estimate, in the unit of the quantity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[non_exhaustive]
-pub struct Estimate {
-    /// Value.
-    pub value: Option<f64>,
-    /// Standard error of the value.
-    pub std_error: Option<f64>,
-}
-
 impl Characterisation {
     /// Of what the procedures found of every cylinder.
     pub fn of(found: &[characterisation::Characterisation]) -> Self {
@@ -86,19 +57,4 @@ impl CylinderCharacterisation {
 
 fn by_edge<T, R>(found: &[(Edge, Result<T, Refusal>)], of: impl Fn(&T) -> R) -> BTreeMap<String, Outcome<R>> {
     found.iter().map(|(edge, one)| (edge.key().to_string(), Outcome::of(one, &of))).collect()
-}
-
-impl<R> Outcome<R> {
-    pub(super) fn of<T>(found: &Result<T, Refusal>, of: impl Fn(&T) -> R) -> Self {
-        match found {
-            Ok(found) => Outcome::Found(of(found)),
-            Err(refusal) => Outcome::Refused(Refused { refused: refusal.to_string() }),
-        }
-    }
-}
-
-impl Estimate {
-    pub(super) fn of(estimate: characterisation::Estimate) -> Self {
-        Estimate { value: finite(estimate.value), std_error: finite(estimate.error) }
-    }
 }

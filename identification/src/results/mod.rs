@@ -13,6 +13,7 @@ mod determination;
 mod diagnosis;
 mod energies;
 mod energy;
+mod estimate;
 mod friction;
 mod gain;
 mod given_value;
@@ -32,7 +33,7 @@ mod unexplained;
 mod valve_leakage;
 
 pub use candidate::{Bootstrap, Candidate};
-pub use characterisation::{Characterisation, CylinderCharacterisation, Estimate, Outcome, Refused};
+pub use characterisation::{Characterisation, CylinderCharacterisation};
 pub use comparison::{Baseline, Baselines, Comparison, OtherComparison};
 pub use determination::Determination;
 pub use diagnosis::{
@@ -40,6 +41,7 @@ pub use diagnosis::{
 };
 pub use energies::{CylinderEnergies, EffectEnergies, Energies};
 pub use energy::{Cycle, Energy, LedgerCondition, LedgerPlace, PhaseDelays, PumpLine, ValveSection};
+pub use estimate::{Estimate, Outcome, Refused};
 pub use friction::{Friction, FrictionTerm};
 pub use gain::{DeadZone, Gain, GainPoint, Polynomial};
 pub use given_value::GivenValue;

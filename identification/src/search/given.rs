@@ -1,7 +1,5 @@
 //! Fits the given model.
 
-use std::time::Instant;
-
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 
@@ -67,17 +65,6 @@ pub(super) fn second_fit(
     first: f64,
 ) -> Option<Fit> {
     fit(&with_nuisances(model, identification), identification, settings).ok().filter(|second| second.loss() < first)
-}
-
-/// A fit of the given model as the first trial.
-///
-/// # Errors
-/// [`FitError`] if it cannot be evaluated on the validation recordings.
-pub(super) fn given_trial(fit: Fit, validation: &[&Recording], settings: &FitSettings) -> Result<Trial, FitError> {
-    let begin = Instant::now();
-    let evaluated = evaluate(&fit.model, validation, settings)?;
-    let seconds = begin.elapsed().as_secs_f64();
-    Ok(Trial { additions: Vec::new(), fit, validation: evaluated, seconds, error: None })
 }
 
 /// A better fit of the given model that was found through an addition. If the fit of the given model ended in a local

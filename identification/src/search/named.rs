@@ -2,7 +2,6 @@
 
 use excavator_model::recording::Recording;
 
-use super::given::given_trial;
 use super::pool::Pool;
 use super::transient::evaluate_on_others;
 use super::{Addition, AdditionError, Effort, Trial};
@@ -21,7 +20,7 @@ pub(crate) fn score_named(
     settings: &FitSettings,
     policy: &Policy,
 ) -> Result<Scores, AdditionError> {
-    let first = given_trial(given.clone(), validation, settings)?;
+    let first = Trial::given(given.clone(), validation, settings)?;
     let mut known = first.validation.model.clone();
     // Its values before the fit do not matter here: nothing is chosen.
     let mut pool = Pool::new(&given.model, first, identification, validation);

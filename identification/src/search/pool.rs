@@ -6,7 +6,6 @@ use excavator_model::Model;
 use excavator_model::effects::Text;
 use excavator_model::recording::Recording;
 
-use super::given::given_trial;
 use super::input_floor::input_floor;
 use super::trial::key_of;
 use super::{Addition, AdditionError, Effort, Trial, scoring};
@@ -89,7 +88,7 @@ impl<'a> Pool<'a> {
     /// # Errors
     /// [`FitError`] if the fit cannot be evaluated on the validation recordings.
     pub(super) fn restarted(self, settings: &FitSettings, given: Fit) -> Result<Self, FitError> {
-        let given = given_trial(given, self.validation, settings)?;
+        let given = Trial::given(given, self.validation, settings)?;
         let mut pool = Pool::new(&self.data_sheet, given, self.identification, self.validation);
         pool.done = self.done.into_iter().filter(|(_, key)| key.len() > 1).collect();
         self.trials.into_iter().filter(|trial| trial.additions.len() > 1).for_each(|trial| pool.put(trial));

@@ -10,10 +10,10 @@ use excavator_model::Model;
 use excavator_model::recording::Recording;
 
 use super::balances::{flow_sets, flows_are_measured};
-use super::given::{First, better_given, first_fit, given_trial, second_fit};
+use super::given::{First, better_given, first_fit, second_fit};
 use super::pool::{Move, Pool};
 use super::stepwise::Stepwise;
-use super::{Effort, progress::Milestones};
+use super::{Effort, Trial, progress::Milestones};
 use crate::decision::{Kind, Policy, Verdict, leaves_nothing};
 use crate::fit::{Fit, FitError};
 
@@ -35,7 +35,7 @@ pub fn search<'a>(
     let First { fit, is_trusted } = first_fit(model, identification, &effort.fit)?;
     milestones.pass();
     let steps = Stepwise { effort, policy, milestones: &milestones };
-    let mut pool = Pool::new(model, given_trial(fit, validation, &effort.fit)?, identification, validation);
+    let mut pool = Pool::new(model, Trial::given(fit, validation, &effort.fit)?, identification, validation);
     pool.look_at_inputs(effort, policy);
     if leaves_nothing(&pool.scores, 0, policy) {
         return Ok(pool);

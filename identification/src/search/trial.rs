@@ -7,7 +7,7 @@ use excavator_model::{Model, ModelEffect};
 
 use super::transient::{evaluate_in_windows_of, evaluate_on_others, is_transient};
 use super::{Addition, AdditionError};
-use crate::fit::{Fit, FitError, FitSettings, simplified};
+use crate::fit::{Fit, FitError, FitSettings, evaluate, simplified};
 
 /// A model that was tried: the given one with some additions, fitted to the identification recordings and evaluated on the
 /// validation recordings.
@@ -27,6 +27,17 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// A fit of the given model as the first trial.
+    ///
+    /// # Errors
+    /// [`FitError`] if it cannot be evaluated on the validation recordings.
+    pub(super) fn given(fit: Fit, validation: &[&Recording], settings: &FitSettings) -> Result<Trial, FitError> {
+        let begin = Instant::now();
+        let evaluated = evaluate(&fit.model, validation, settings)?;
+        let seconds = begin.elapsed().as_secs_f64();
+        Ok(Trial { additions: Vec::new(), fit, validation: evaluated, seconds, error: None })
+    }
+
     /// This trial with one more addition, whose fit `fit` began at time `begin`, evaluated on the validation
     /// recordings.
     ///
