@@ -66,6 +66,21 @@ pub struct ClosedValve {
     pub holds: Vec<Hold>,
 }
 
+impl ClosedValve {
+    /// Subtracts this leakage from the flows of a track, so that the rest went through open edges.
+    pub fn take_off(&self, track: &mut Track) {
+        for index in 0..track.time.len() {
+            let (pump, tank) = (track.pump_pressure[index], track.tank_pressure[index]);
+            if let Ok(cap) = &self.cap {
+                track.cap_flow[index] -= cap.flow(pump, track.cap_pressure[index], tank);
+            }
+            if let Ok(rod) = &self.rod {
+                track.rod_flow[index] -= rod.flow(pump, track.rod_pressure[index], tank);
+            }
+        }
+    }
+}
+
 impl ChamberLeakage {
     /// Flow into the chamber, m³/s: \[B\] Eq. 12.
     pub fn flow(&self, pump: f64, chamber: f64, tank: f64) -> f64 {

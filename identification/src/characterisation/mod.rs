@@ -103,7 +103,7 @@ fn characterise_cylinder(model: &Model, cylinder: usize, recordings: &[&Recordin
     };
     let leakage = valve_leakage(&tracks);
     if let Ok(leakage) = &leakage {
-        tracks.iter_mut().for_each(|track| track.take_off(leakage));
+        tracks.iter_mut().for_each(|track| leakage.take_off(track));
     }
     let dead_zones = dead_zones(&tracks);
     let gains = directional_gains(&tracks, &dead_zones);

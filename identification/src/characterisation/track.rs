@@ -5,7 +5,6 @@ use excavator_model::effects::Site;
 use excavator_model::machine::{Chambers, Size, Supply};
 use excavator_model::recording::{Recording, is_measured};
 
-use super::closed_valve::ClosedValve;
 use super::edge::{Edge, Side};
 use super::refusal::Refusal;
 use crate::energy::Parabola;
@@ -193,19 +192,6 @@ impl Track {
                 + swell(chambers.rod_volume(self.stroke, position), &self.rod_pressure)
                 - past_seals * (cap - rod)
                 + rod_out * rod;
-        }
-    }
-
-    /// Subtracts the valve's own leakage from the flows, so that the rest went through open edges.
-    pub fn take_off(&mut self, leakage: &ClosedValve) {
-        for index in 0..self.time.len() {
-            let (pump, tank) = (self.pump_pressure[index], self.tank_pressure[index]);
-            if let Ok(cap) = &leakage.cap {
-                self.cap_flow[index] -= cap.flow(pump, self.cap_pressure[index], tank);
-            }
-            if let Ok(rod) = &leakage.rod {
-                self.rod_flow[index] -= rod.flow(pump, self.rod_pressure[index], tank);
-            }
         }
     }
 

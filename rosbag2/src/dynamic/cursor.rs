@@ -1,6 +1,7 @@
 //! A read position in the bytes of a message. Allocates nothing, and rejects lengths that exceed the bytes.
 
-use super::layout::{Count, Kind, Layout, Primitive};
+use super::defined_member::Count;
+use super::layout::{Kind, Layout, Primitive};
 use crate::cdr::CdrError;
 
 /// Bytes after the encapsulation, from which alignment counts, and the number read so far.

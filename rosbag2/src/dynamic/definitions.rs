@@ -5,22 +5,13 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use super::common_interfaces;
+use super::defined_member::DefinedMember;
 use super::error::LayoutError;
 use super::fields::short_name;
-use super::layout::Count;
 use super::{ros2idl, ros2msg};
 use crate::Error;
 use crate::limits::{Limit, ReadLimits};
 use crate::regular_file::read_regular_text;
-
-/// One member of a definition.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct DefinedMember {
-    pub name: String,
-    /// A primitive by its `ros2msg` name, or `package/Type`.
-    pub type_name: String,
-    pub count: Count,
-}
 
 /// Types by their short names, `package/Type`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::defined_member::Count;
 use super::definitions::Definitions;
 use super::error::LayoutError;
 use super::fields::short_name;
@@ -52,17 +53,6 @@ pub enum Kind {
     Struct(usize),
     /// A type that writers encode differently (`wstring`, `long double`): nothing after it can be read.
     Unreadable(String),
-}
-
-/// How many elements a member has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Count {
-    /// A single value.
-    One,
-    /// An array of fixed length.
-    Fixed(usize),
-    /// A sequence whose length is in the message.
-    Sequence,
 }
 
 /// One member of a struct.

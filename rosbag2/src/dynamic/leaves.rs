@@ -1,8 +1,9 @@
 //! Lists the paths of all numbers in a message, from which a map can choose.
 
 use super::cursor::Cursor;
+use super::defined_member::Count;
 use super::field_path::{FieldPath, Index, Step};
-use super::layout::{Count, Kind, Layout};
+use super::layout::{Kind, Layout};
 use crate::cdr::CdrError;
 
 /// Elements listed per array: an image has a million numbers, none of them a signal.

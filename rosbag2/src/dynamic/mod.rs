@@ -3,6 +3,7 @@
 
 mod common_interfaces;
 mod cursor;
+mod defined_member;
 mod definitions;
 mod error;
 mod field_path;
@@ -13,9 +14,10 @@ mod ros2idl;
 mod ros2msg;
 mod selector;
 
+pub use defined_member::Count;
 pub use definitions::Definitions;
 pub use error::{LayoutError, PathError};
 pub use field_path::{FieldPath, Index, Step};
-pub use layout::{Count, Kind, Layout, Member, Primitive, StructLayout};
+pub use layout::{Kind, Layout, Member, Primitive, StructLayout};
 pub use leaves::numeric_leaves;
 pub use selector::Selector;

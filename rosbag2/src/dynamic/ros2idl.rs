@@ -2,9 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::definitions::DefinedMember;
+use super::defined_member::{Count, DefinedMember};
 use super::error::LayoutError;
-use super::layout::Count;
 
 /// A type as written, with typedefs already resolved.
 #[derive(Debug, Clone)]

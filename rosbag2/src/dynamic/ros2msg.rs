@@ -2,10 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::definitions::DefinedMember;
+use super::defined_member::{Count, DefinedMember};
 use super::error::LayoutError;
 use super::fields::{self, short_name};
-use super::layout::Count;
 
 /// A run of `=` of at least this length separates definitions; not every writer uses exactly 80.
 const SHORTEST_SEPARATOR: usize = 10;

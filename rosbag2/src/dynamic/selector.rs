@@ -1,9 +1,10 @@
 //! Resolves a field path in a layout and reads the numbers.
 
 use super::cursor::Cursor;
+use super::defined_member::Count;
 use super::error::PathError;
 use super::field_path::{FieldPath, Index};
-use super::layout::{Count, Kind, Layout, Member, Primitive, StructLayout};
+use super::layout::{Kind, Layout, Member, Primitive, StructLayout};
 use crate::cdr::CdrError;
 
 /// As in [`cdr::decode`](crate::cdr::decode): the rest must be padding.
