@@ -4,9 +4,10 @@ use std::path::Path;
 
 use excavator_model::recording::Recording;
 
-use super::document::{SignalSource, TopicMap};
+use super::document::TopicMap;
 use super::error::MapError;
 use super::resample::{Policy, resample};
+use super::signal_source::SignalSource;
 use super::track::Track;
 use super::wanted::{Computed, Wanted};
 use crate::reading::{ReadReport, count_late, gaps, steps_back};

@@ -1,7 +1,7 @@
 //! Converts the number in a message or cell to the value of a signal.
 
-use super::document::SignalSource;
 use super::error::MapError;
+use super::signal_source::SignalSource;
 use super::unit::{Dimension, Unit};
 
 /// Value of the signal = `factor` · number in SI units + `offset`.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::document::ClockSource;
+use super::clock_source::ClockSource;
 use super::error::MapError;
 use crate::table::TableFormat;
 

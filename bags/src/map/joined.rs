@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::document::{ColumnName, TopicMap};
+use super::clock_source::ColumnName;
+use super::document::TopicMap;
 use super::error::MapError;
 use super::join::Join;
 use super::table_clock::{Dating, TableClock};

@@ -8,8 +8,8 @@ use rosbag2::dynamic::{Definitions, FieldPath, Kind, Layout, Selector};
 use rosbag2::{RawMessage, RawMessages, Topic};
 
 use super::assemble::{Input, Samples};
+use super::clock_source::Stamp;
 use super::conversion::Conversion;
-use super::document::Stamp;
 use super::error::MapError;
 use super::wanted::Wanted;
 use crate::BagError;

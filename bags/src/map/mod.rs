@@ -28,6 +28,7 @@
 //! ```
 
 mod assemble;
+mod clock_source;
 mod conversion;
 mod document;
 mod error;
@@ -44,13 +45,15 @@ mod read_mapped;
 mod read_table;
 mod resample;
 mod signal;
+mod signal_source;
 mod table_clock;
 mod track;
 mod unit;
 mod wanted;
 
+pub use clock_source::{ClockSource, ColumnName, Stamp};
 pub use conversion::Conversion;
-pub use document::{ClockSource, ColumnName, Resampling, SignalSource, Stamp, TopicMap};
+pub use document::TopicMap;
 pub use error::MapError;
 pub(crate) use guess::clock_of_table;
 pub use guess::{Confidence, Guess, GuessedSignal, Hints, Possibility, guess};
@@ -61,4 +64,5 @@ pub use pieces::read_pieces;
 pub use quantity::Quantity;
 pub use read_mapped::{Origin, read_mapped, read_recording_or_mapped, read_signals};
 pub use signal::{SignalKind, SignalName};
+pub use signal_source::{Resampling, SignalSource};
 pub use unit::{Dimension, Unit};

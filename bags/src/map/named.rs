@@ -9,9 +9,10 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::clock_source::{ColumnName, Stamp};
 use super::conversion::Conversion;
-use super::document::{ColumnName, Resampling, Stamp, check_place, check_times};
 use super::error::MapError;
+use super::signal_source::{Resampling, check_place, check_times};
 
 /// What a name in a formula stands for: a column of a table, or a field of a topic.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]

@@ -5,7 +5,8 @@ use std::path::Path;
 use excavator_model::recording::Recording;
 
 use super::assemble::{Input, Samples, assemble, constants};
-use super::document::{ColumnName, TopicMap};
+use super::clock_source::ColumnName;
+use super::document::TopicMap;
 use super::error::MapError;
 use super::joined::{self, Span, TimedTable};
 use super::table_clock::{Dating, TableClock};

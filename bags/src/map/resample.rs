@@ -1,6 +1,6 @@
 //! Resamples a signal to the times of the clock.
 
-use super::document::Resampling;
+use super::signal_source::Resampling;
 use super::track::Track;
 
 /// Maximum distance for linear interpolation, in median intervals of the signal: one or two lost messages are bridged,

@@ -1,6 +1,6 @@
 //! Determines when the rows of a table were recorded.
 
-use super::document::ClockSource;
+use super::clock_source::ClockSource;
 use super::error::MapError;
 use super::unit::{Dimension, Unit};
 use crate::table::{Column, Table, Values};

@@ -5,11 +5,13 @@ use std::path::Path;
 
 use excavator_model::formula::ColumnFormula;
 
+use super::clock_source::ColumnName;
 use super::conversion::Conversion;
-use super::document::{ColumnName, Resampling, SignalSource, TopicMap};
+use super::document::TopicMap;
 use super::error::MapError;
 use super::named::NamedColumn;
 use super::signal::SignalKind;
+use super::signal_source::{Resampling, SignalSource};
 
 /// Values to read: those of a signal, or of a name in formulas.
 #[derive(Debug, Clone)]

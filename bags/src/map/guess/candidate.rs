@@ -2,8 +2,9 @@
 
 use rosbag2::dynamic::FieldPath;
 
-use super::super::document::{ClockSource, ColumnName, SignalSource};
+use super::super::clock_source::{ClockSource, ColumnName};
 use super::super::signal::SignalName;
+use super::super::signal_source::SignalSource;
 use super::super::unit::{Dimension, Unit};
 
 /// Source of the numbers.

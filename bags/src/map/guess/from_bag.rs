@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rosbag2::dynamic::{FieldPath, Index, Layout, Selector, numeric_leaves};
 use rosbag2::{RawMessages, Topic};
 
-use super::super::document::ClockSource;
+use super::super::clock_source::ClockSource;
 use super::super::signal::SignalKind;
 use super::super::unit::{Dimension, Unit};
 use super::candidate::{Candidate, Found, Origin, words};

@@ -1,6 +1,6 @@
 //! Finds the candidates in a table.
 
-use super::super::document::{ClockSource, ColumnName};
+use super::super::clock_source::{ClockSource, ColumnName};
 use super::super::table_clock::time_column;
 use super::super::unit::{Dimension, Unit};
 use super::candidate::{Candidate, Found, Origin, words};

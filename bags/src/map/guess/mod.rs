@@ -12,7 +12,9 @@ mod text;
 use std::path::Path;
 
 use self::candidate::Found;
-use super::document::{ClockSource, SignalSource, TopicMap};
+use super::clock_source::ClockSource;
+use super::document::TopicMap;
+use super::signal_source::SignalSource;
 use crate::BagError;
 use crate::table::{Table, TableFormat};
 
