@@ -49,7 +49,7 @@ pub struct Policy {
     pub bad_moment: f64,
     /// Share of the named effects that were there, of those named alone, by two and by more by a verdict that leaves something
     /// unexplained. A law outside the catalogue is often imitated by one effect of it, or by two, and hardly by three. From stored
-    /// machines (`docs/blind-benchmark.md`): 2 of 37, 3 of 18 and 9 of 12.
+    /// machines (`docs/blind-benchmark.md`): 3 of 31, 3 of 18 and 10 of 11.
     pub trust_when_unexplained: [f64; 3],
     /// Mean squared residual of a balance, over the variance of its noise, up to which a remainder is noise. Right models leave 0.3
     /// to 1.3 at 500 Hz.
@@ -79,7 +79,7 @@ impl Default for Policy {
             largest_remainder: 0.1,
             doubtful_share: 0.7,
             bad_moment: 4.0,
-            trust_when_unexplained: [0.05, 0.2, 0.7],
+            trust_when_unexplained: [0.08, 0.2, 0.85],
             noise_in_balance: 2.0,
             most_of_misfit: 0.7,
             share_of_a_law: 0.5,

@@ -42,7 +42,7 @@ impl Stepwise<'_> {
         self.milestones.tell("rivals in the flow balances", 0.5);
         let trial = pool.trials[number].clone();
         let give_up_above = trial.fit.loss() + self.effort.needed_beyond_doubt;
-        let settings = FitSettings { give_up_above, ..self.effort.fit };
+        let settings = FitSettings { give_up_above, maximum_steps: self.effort.settling_steps, ..self.effort.fit };
         for rival in &sets.rivals {
             let begin = Instant::now();
             let replaced = first.additions.iter().find(|one| !rival.additions.contains(one));
