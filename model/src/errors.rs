@@ -21,6 +21,18 @@ pub enum ModelError {
         /// The reason.
         reason: String,
     },
+    /// A hook of the effect would never be called.
+    #[error(
+        "effect {effect} has the hook `{hook}`, which is never called, because its `{method}` is false: return true there"
+    )]
+    Unannounced {
+        /// Effect name.
+        effect: String,
+        /// The hook of [`Physics`](crate::effects::Physics).
+        hook: &'static str,
+        /// The method that announces it.
+        method: &'static str,
+    },
     /// The model already has this effect there.
     #[error("{machine} already has {effect} at \"{site}\"")]
     AlreadyPresent {

@@ -3,7 +3,10 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::effects::{self, ActsOn, AnyEffect, Catalogue, Corner, Effect, Finding, Needs, ParameterCard, Site, Text};
+use crate::effects::{
+    self, ActsOn, AnyEffect, Catalogue, Corner, Effect, Finding, Needs, ParameterCard, Site, Text, Unannounced,
+    unannounced,
+};
 use crate::errors::ModelError;
 use crate::machine::{Drive, Machine, Size, Supply};
 
@@ -351,7 +354,8 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`ModelError::WrongSite`], [`ModelError::AlreadyPresent`].
+    /// [`ModelError::WrongSite`], [`ModelError::AlreadyPresent`]; [`ModelError::Unannounced`] for an effect from elsewhere with a hook
+    /// that would never be called.
     pub fn with_effect(&self, physics: &AnyEffect, site: Site) -> Result<Model, ModelError> {
         if self.has(&physics.card().name, site) {
             return Err(ModelError::AlreadyPresent {
@@ -360,8 +364,15 @@ impl Model {
                 machine: self.machine.name.clone(),
             });
         }
+        let effect = ModelEffect::new(physics, &self.machine, site)?;
+        if Catalogue::built_in().find(effect.name()).is_err() {
+            let typical: Vec<f64> = effect.parameters.iter().map(|parameter| parameter.card.typical).collect();
+            if let Some(Unannounced { hook, method }) = unannounced(&**physics, &self.machine, site, &typical) {
+                return Err(ModelError::Unannounced { effect: effect.name().to_string(), hook, method });
+            }
+        }
         let mut model = self.clone();
-        model.effects.push(ModelEffect::new(physics, &self.machine, site)?);
+        model.effects.push(effect);
         Ok(model)
     }
 

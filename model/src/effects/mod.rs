@@ -9,6 +9,7 @@
 //! To add a built-in effect, write a file with a unit struct and its [`Physics`], and add a line to `built_in.rs`. A user effect
 //! needs no Rust ([`crate::formula`]), or is a [`Physics`] in another crate, added with [`Catalogue::with`].
 
+mod announced;
 mod built_in;
 mod card;
 mod catalogue;
@@ -67,6 +68,7 @@ mod vented_rod_side;
 mod viscous_damping;
 
 pub use crate::machine::Growth;
+pub use announced::{Unannounced, unannounced};
 pub use card::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Site, Start, Text, text};
 pub use catalogue::{AnyEffect, Catalogue, TwiceInCatalogue, UnknownEffect};
 pub use physics::{Effect, Hooks, Number, Physics};

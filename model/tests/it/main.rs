@@ -2,6 +2,7 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, missing_docs)]
 
+mod announced_hooks;
 mod common;
 mod documents;
 mod effect_cards;
