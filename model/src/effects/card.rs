@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::Prior;
+use super::site::Site;
 use crate::machine::{Growth, Machine, Size};
 
 /// A text of a card: static for built-in effects, owned for formulas.
@@ -41,17 +42,6 @@ pub enum Needs {
     Valve,
     /// Chambers fed by their own pump.
     Pump,
-}
-
-/// Where one instance of an effect acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Site {
-    /// At the cylinder (or joint) with this index.
-    Cylinder(usize),
-    /// At the pump line.
-    PumpLine,
-    /// The whole machine: one effect with one set of parameters for all cylinders and the pump line.
-    Machine,
 }
 
 /// A corner in a law that the equations round, and whose rounding an effect of family [`Family::Rounding`] changes.

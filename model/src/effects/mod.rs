@@ -15,6 +15,7 @@ mod card;
 mod catalogue;
 mod physics;
 mod prior;
+mod site;
 
 mod accumulator;
 mod asymmetric_friction;
@@ -69,10 +70,11 @@ mod viscous_damping;
 
 pub use crate::machine::Growth;
 pub use announced::{Unannounced, unannounced};
-pub use card::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Site, Start, Text, text};
+pub use card::{ActsOn, Card, Corner, Family, Kind, Needs, ParameterCard, Start, Text, text};
 pub use catalogue::{AnyEffect, Catalogue, TwiceInCatalogue, UnknownEffect};
 pub use physics::{Effect, Hooks, Number, Physics};
 pub use prior::{Finding, Prior, PriorScale, RecordingScales, Spread};
+pub use site::Site;
 
 use crate::equations::Rows;
 use crate::scalar::Scalar;

@@ -170,6 +170,7 @@ fn recording(name: &str, library: &Library, wanted: &Model) -> Result<Recording,
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use std::cell::{Cell, RefCell};
     use std::time::Duration;
