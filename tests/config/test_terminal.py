@@ -8,7 +8,7 @@ from recipes import LIVE, OFFLINE, prepare, verbs
 from terminal import lines_of, on_a_terminal, untidy
 
 # Their searches take half a minute each.
-SEARCHES = {"demo", "diagnose", "propose"}
+SEARCHES = {"demo", "diagnose", "report", "propose"}
 WORKS = [
     pytest.param(verb, words, id=" ".join(words[:3]), marks=[pytest.mark.full] if verb in SEARCHES else [])
     for verb, recipe in OFFLINE.items()
