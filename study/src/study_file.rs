@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_identification::decision::Scores;
 use excavator_identification::diagnosis::DiagnosisRecord;
 use excavator_identification::energy::MissingPower;
 use excavator_identification::proposal::Guess;
@@ -117,16 +116,6 @@ impl StudyFile {
     /// [`WorkError::Json`].
     pub fn text(&self) -> Result<String, WorkError> {
         Ok(serde_json::to_string(self)? + "\n")
-    }
-
-    /// What the verdict was decided from.
-    pub fn scores(&self) -> &Scores {
-        self.diagnosis.scores()
-    }
-
-    /// The result, as `diagnose --json` writes it.
-    pub fn result(&self) -> &results::Diagnosis {
-        &self.result
     }
 
     /// The diagnosis, without its recordings.

@@ -14,7 +14,7 @@ pub struct ClockSource {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub topic: Option<String>,
     /// Bags: which stamps.
-    #[serde(default, skip_serializing_if = "is_default")]
+    #[serde(default, skip_serializing_if = "super::is_default")]
     pub stamp: Stamp,
     /// Tables: the column with the time; without, `time`, `t`, `timestamp` or `stamp` if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -96,8 +96,4 @@ impl ClockSource {
             None => Ok(()),
         }
     }
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }

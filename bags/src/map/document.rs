@@ -31,10 +31,10 @@ pub struct TopicMap {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dbc: Option<PathBuf>,
     /// At which times the recording has samples.
-    #[serde(default, skip_serializing_if = "is_default")]
+    #[serde(default, skip_serializing_if = "super::is_default")]
     pub clock: ClockSource,
     /// How a text table is laid out; most of it is found out without.
-    #[serde(default, skip_serializing_if = "is_default")]
+    #[serde(default, skip_serializing_if = "super::is_default")]
     pub table: TableFormat,
     /// Other tables of the same time, whose columns are available too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -120,8 +120,4 @@ impl FromStr for TopicMap {
         map.check()?;
         Ok(map)
     }
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }

@@ -18,10 +18,10 @@ pub struct Join {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub offset: Option<f64>,
     /// Its times; as [`TopicMap::clock`](super::TopicMap).
-    #[serde(default, skip_serializing_if = "is_default")]
+    #[serde(default, skip_serializing_if = "super::is_default")]
     pub clock: ClockSource,
     /// Its layout; as [`TopicMap::table`](super::TopicMap).
-    #[serde(default, skip_serializing_if = "is_default")]
+    #[serde(default, skip_serializing_if = "super::is_default")]
     pub table: TableFormat,
 }
 
@@ -44,8 +44,4 @@ impl Join {
         }
         self.clock.check(&place)
     }
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }

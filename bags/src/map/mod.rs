@@ -66,3 +66,8 @@ pub use read_mapped::{Origin, read_mapped, read_recording_or_mapped, read_signal
 pub use signal::{SignalKind, SignalName};
 pub use signal_source::{Resampling, SignalSource};
 pub use unit::{Dimension, Unit};
+
+/// Whether a key of a map file can be left out.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

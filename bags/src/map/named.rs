@@ -36,7 +36,7 @@ pub struct NamedColumn {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
     /// Bags: which time the message has.
-    #[serde(skip_serializing_if = "is_default")]
+    #[serde(skip_serializing_if = "super::is_default")]
     pub stamp: Stamp,
     /// Added to that time, s.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -68,10 +68,6 @@ impl NamedColumn {
         check_times(&place, self.maximum_gap, self.time_shift)?;
         Conversion::of_name(&place, self.unit.as_deref()).map(drop)
     }
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }
 
 /// As a table of keys.

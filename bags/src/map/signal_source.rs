@@ -62,7 +62,7 @@ pub struct SignalSource {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sign: Option<i8>,
     /// Bags: which time the message has.
-    #[serde(default, skip_serializing_if = "is_default")]
+    #[serde(default, skip_serializing_if = "super::is_default")]
     pub stamp: Stamp,
     /// Added to that time, s: negative for a sensor whose stamps are late.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -139,8 +139,4 @@ pub(super) fn check_times(place: &str, maximum_gap: Option<f64>, time_shift: Opt
         return Err(bad("time_shift", shift, "under 1e6 s"));
     }
     Ok(())
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }

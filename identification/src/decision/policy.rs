@@ -21,14 +21,14 @@ pub struct Policy {
     /// Decrease of the log error ratio on the validation recordings that an attributed effect must bring. Smaller: small
     /// imperfections, which every model has, are attributed.
     pub least_improvement: f64,
+    /// The same if the model is adequate without the effect. Real machines have imperfections that no simulator has.
+    pub least_improvement_when_adequate: f64,
     /// Share of an improvement that must show on the recordings that were fitted. An effect that helps only where nothing was fitted
     /// does so by chance.
     pub share_where_fitted: f64,
     /// Log error ratio on all recordings up to which nothing is left that another effect could explain: half of what it would have
     /// to bring.
     pub nothing_left: f64,
-    /// The same if the model is adequate without the effect. Real machines have imperfections that no simulator has.
-    pub least_improvement_when_adequate: f64,
     /// Standard errors, from the scatter between stretches of the recordings, by which an improvement must differ from zero.
     /// Without the least improvement, 3 alone would keep the chance of one false attribution among 30 candidates near 4 %.
     pub least_significance: f64,

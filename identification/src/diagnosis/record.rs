@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Diagnosis, Remainder, Share, Unexplained};
 use crate::decision::{Policy, Scores, ScoresError, Verdict};
 use crate::fit::{Fit, Instrument};
+use crate::results::finite;
 use crate::search::{Addition, Trial, Unpromising};
 
 /// What [`Diagnosis`] holds, without what only a search needs: covariances, and errors that the scores have as well.
@@ -106,10 +107,6 @@ pub enum RecordError {
     },
 }
 
-fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
-}
-
 fn number(value: Option<f64>) -> f64 {
     value.unwrap_or(f64::NAN)
 }
@@ -143,11 +140,6 @@ impl DiagnosisRecord {
                 curve: one.curve.iter().map(|point| point.map(finite)).collect(),
             }),
         }
-    }
-
-    /// What the verdict was decided from.
-    pub fn scores(&self) -> &Scores {
-        &self.scores
     }
 
     /// The diagnosis of `given`, whose catalogue has every effect that was tried.

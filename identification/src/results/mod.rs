@@ -59,6 +59,6 @@ pub use unexplained::Unexplained;
 pub use valve_leakage::{ChamberLeakage, ValveLeakage};
 
 /// A number as JSON can hold it.
-fn finite(value: f64) -> Option<f64> {
+pub(crate) fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

@@ -1,21 +1,18 @@
 //! Sets of several effects that the flow balances ask for, in the whole machine.
 
-use std::time::Instant;
-
 use excavator_model::Model;
 
 use super::balances::{FlowSet, FlowSets, unread, with_flows_of};
 use super::pool::{Move, Pool};
 use super::stepwise::Stepwise;
-use super::transient::evaluate_in_windows_of;
-use super::{Addition, Effort, Trial};
+use super::{Addition, Effort};
 use crate::decision::{Kind, Policy, leaves_nothing, log_error_ratio};
-use crate::fit::{FitSettings, fit, with_nuisances};
+use crate::fit::{FitSettings, with_nuisances};
 
 impl Stepwise<'_> {
     /// Fits the sets of the flow balances to the whole machine, extends the best while it leaves something, and takes away what
     /// is not needed. Returns whether several effects then explain the recordings.
-    pub fn join(&self, model: &Model, sets: &FlowSets, pool: &mut Pool<'_>) -> bool {
+    pub fn join(&self, model: &Model, sets: &FlowSets<'_>, pool: &mut Pool<'_>) -> bool {
         self.fit_joined(model, &sets.best, pool);
         while let Some((next, number)) = next_of_joined(pool, self.effort, self.policy) {
             self.take(next, number, pool);
@@ -37,14 +34,13 @@ impl Stepwise<'_> {
     }
 
     /// Fits hypothesis `number` with the rivals of its effects on the flows in their place.
-    fn fit_rivals(&self, number: usize, sets: &FlowSets, pool: &mut Pool<'_>) {
+    fn fit_rivals(&self, number: usize, sets: &FlowSets<'_>, pool: &mut Pool<'_>) {
         let Some(first) = sets.best.first() else { return };
         self.milestones.tell("rivals in the flow balances", 0.5);
         let trial = pool.trials[number].clone();
         let give_up_above = trial.fit.loss() + self.effort.needed_beyond_doubt;
         let settings = FitSettings { give_up_above, maximum_steps: self.effort.settling_steps, ..self.effort.fit };
-        for rival in &sets.rivals {
-            let begin = Instant::now();
+        for rival in sets.rivals() {
             let replaced = first.additions.iter().find(|one| !rival.additions.contains(one));
             let replacing = rival.additions.iter().find(|one| !first.additions.contains(one));
             let (Some(replaced), Some(replacing)) = (replaced, replacing) else { continue };
@@ -59,13 +55,8 @@ impl Stepwise<'_> {
             let mut start = trial.model_without(replaced);
             let found = rival.model.effect(&replacing.physics.card().name, replacing.site).cloned();
             start.effects.extend(found);
-            let Ok(fit) = fit(&start, pool.identification(), &settings) else { continue };
-            let known = &trial.validation.model;
-            let Ok(validation) = evaluate_in_windows_of(&fit.model, known, pool.validation(), &settings) else {
-                continue;
-            };
-            let seconds = begin.elapsed().as_secs_f64();
-            pool.put(Trial { additions, fit, validation, seconds, error: None });
+            let fitted = pool.fitted(additions, &start, &trial.validation.model, &settings);
+            fitted.into_iter().for_each(|one| pool.put(one));
         }
     }
 
@@ -78,23 +69,15 @@ impl Stepwise<'_> {
         for set in several {
             let mut least = f64::INFINITY;
             for forces in [&plain, &fitted] {
-                let begin = Instant::now();
                 self.milestones.tell("the effects of the flow balances together", 0.5);
                 let (maximum_steps, give_up_above) = (self.effort.settling_steps, least);
                 let settings = FitSettings { maximum_steps, give_up_above, ..self.effort.fit };
                 let start = with_flows_of(forces, &set.model);
-                let Ok(fit) = fit(&start, pool.identification(), &settings) else { continue };
-                if fit.loss() >= least {
-                    continue;
-                }
-                least = fit.loss();
                 let known = &pool.given().validation.model;
-                let Ok(validation) = evaluate_in_windows_of(&fit.model, known, pool.validation(), &settings) else {
-                    continue;
-                };
-                let additions = set.additions.clone();
-                let seconds = begin.elapsed().as_secs_f64();
-                pool.put(Trial { additions, fit, validation, seconds, error: None });
+                let Some(trial) = pool.fitted(set.additions.clone(), &start, known, &settings) else { continue };
+                // Of two fits of the same set, the pool keeps the better one.
+                least = least.min(trial.fit.loss());
+                pool.put(trial);
                 let last = pool.find_additions(&set.additions);
                 if last.is_some_and(|last| leaves_nothing(&pool.scores, last, self.policy)) {
                     return;

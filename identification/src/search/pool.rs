@@ -1,16 +1,18 @@
 //! The pool of all trials so far.
 
 use std::collections::BTreeSet;
+use std::time::Instant;
 
 use excavator_model::Model;
 use excavator_model::effects::Text;
 use excavator_model::recording::Recording;
 
 use super::input_floor::input_floor;
+use super::transient::evaluate_in_windows_of;
 use super::trial::key_of;
 use super::{Addition, AdditionError, Effort, Trial, scoring};
 use crate::decision::{Policy, Scores, Verdict, decide, log_error_ratio};
-use crate::fit::{Fit, FitError, FitSettings};
+use crate::fit::{Fit, FitError, FitSettings, fit};
 
 /// An effect that was not promising enough for a full fit.
 #[derive(Debug, Clone)]
@@ -124,6 +126,21 @@ impl<'a> Pool<'a> {
     /// Recordings that evidence is taken from.
     pub(super) fn validation(&self) -> &'a [&'a Recording] {
         self.validation
+    }
+
+    /// A trial with these additions, fitted from `start` and evaluated with the windows of `known`. Returns `None` if one of both
+    /// fails.
+    pub(super) fn fitted(
+        &self,
+        additions: Vec<Addition>,
+        start: &Model,
+        known: &Model,
+        settings: &FitSettings,
+    ) -> Option<Trial> {
+        let begin = Instant::now();
+        let fit = fit(start, self.identification, settings).ok()?;
+        let validation = evaluate_in_windows_of(&fit.model, known, self.validation, settings).ok()?;
+        Some(Trial { additions, fit, validation, seconds: begin.elapsed().as_secs_f64(), error: None })
     }
 
     /// Adds a trial, or replaces the one with the same additions if the new fit is better.

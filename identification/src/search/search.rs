@@ -45,7 +45,7 @@ pub fn search<'a>(
         milestones.tell("the flow balances by themselves", 0.0);
         let sets = flow_sets(model, effort.most_effects, identification, validation);
         milestones.pass();
-        steps.join(model, &sets, &mut pool)
+        sets.is_some_and(|sets| steps.join(model, &sets, &mut pool))
     };
     if !is_explained {
         milestones.tell("fit of the given model", 0.5);

@@ -14,7 +14,7 @@ use super::track::Track;
 use super::transient::evaluate_in_windows_of;
 use super::{Addition, Effort, Trial};
 use crate::decision::{Policy, log_error_ratio};
-use crate::fit::{FitSettings, fit, fit_predicted, predict};
+use crate::fit::{FitSettings, fit_predicted, predict};
 
 /// Settings and callbacks for making moves.
 pub(super) struct Stepwise<'a> {
@@ -44,14 +44,11 @@ impl Stepwise<'_> {
     /// Continues a fit that reached its step limit. Otherwise any addition would continue the unconverged fit and
     /// appear to explain something.
     fn settle(&self, number: usize, pool: &mut Pool<'_>) {
-        let begin = Instant::now();
-        let trial = pool.trials[number].clone();
+        let trial = &pool.trials[number];
         let settings = FitSettings { maximum_steps: self.effort.settling_steps, ..self.effort.fit };
-        let Ok(fit) = fit(&trial.fit.model, pool.identification(), &settings) else { return };
-        let known = &trial.validation.model;
-        let Ok(validation) = evaluate_in_windows_of(&fit.model, known, pool.validation(), &settings) else { return };
-        let seconds = trial.seconds + begin.elapsed().as_secs_f64();
-        pool.put(Trial { fit, validation, seconds, ..trial });
+        let (additions, before) = (trial.additions.clone(), trial.seconds);
+        let settled = pool.fitted(additions, &trial.fit.model, &trial.validation.model, &settings);
+        settled.into_iter().for_each(|after| pool.put(Trial { seconds: before + after.seconds, ..after }));
     }
 
     fn prune(&self, number: usize, pool: &mut Pool<'_>) {

@@ -11,7 +11,7 @@ use super::super::Addition;
 use super::super::starts::plain_starts;
 use super::super::trial::key_of;
 use super::flow_fit::{Balances, FlowFit, Step};
-use super::{FlowSet, FlowSets, flow_additions};
+use super::{FlowSet, flow_additions};
 use crate::regression::FlowGround;
 
 /// Number of sets of one size that are extended.
@@ -37,16 +37,22 @@ struct Grounds<'a> {
     recordings: &'a [&'a Recording],
 }
 
-/// The best sets of at most `most_effects` for the flow balances of `model`, and the rivals of the first. Both are empty if the
-/// balances cannot be evaluated.
-pub(in super::super) fn flow_sets(
+/// The sets that the flow balances ask for.
+pub(in super::super) struct FlowSets<'a> {
+    grounds: Grounds<'a>,
+    /// The best, in this order.
+    pub best: Vec<FlowSet>,
+}
+
+/// The best sets of at most `most_effects` for the flow balances of `model`. `None` if these cannot be evaluated.
+pub(in super::super) fn flow_sets<'a>(
     model: &Model,
     most_effects: usize,
-    identification: &[&Recording],
+    identification: &'a [&'a Recording],
     validation: &[&Recording],
-) -> FlowSets {
-    let Some(grounds) = Grounds::new(model, identification, validation) else { return FlowSets::default() };
-    let Some(given) = grounds.node(Vec::new(), model) else { return FlowSets::default() };
+) -> Option<FlowSets<'a>> {
+    let grounds = Grounds::new(model, identification, validation)?;
+    let given = grounds.node(Vec::new(), model)?;
     let mut known: BTreeMap<Vec<String>, (f64, FlowSet)> = BTreeMap::from([(Vec::new(), given.set())]);
     let mut best = given.misfit;
     let mut wide = vec![given];
@@ -73,8 +79,14 @@ pub(in super::super) fn flow_sets(
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let best: Vec<FlowSet> =
         all.into_iter().take_while(|(misfit, _)| *misfit < best + LEAST).map(|(_, set)| set).collect();
-    let rivals = best.first().map_or_else(Vec::new, |first| grounds.rivals(first));
-    FlowSets { best, rivals }
+    Some(FlowSets { grounds, best })
+}
+
+impl FlowSets<'_> {
+    /// Sets that do about as well as the first, with another effect in place of one of its own.
+    pub fn rivals(&self) -> Vec<FlowSet> {
+        self.best.first().map_or_else(Vec::new, |first| self.grounds.rivals(first))
+    }
 }
 
 impl Node {

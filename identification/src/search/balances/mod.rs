@@ -15,7 +15,7 @@ use super::Addition;
 use super::addition::additions;
 use crate::regression::Ground;
 
-pub(super) use flow_sets::flow_sets;
+pub(super) use flow_sets::{FlowSets, flow_sets};
 
 /// A set of effects that the flow balances ask for.
 #[derive(Debug, Clone)]
@@ -24,15 +24,6 @@ pub(super) struct FlowSet {
     pub additions: Vec<Addition>,
     /// The model with them. The parameters of its flows are fitted, all others are as given.
     pub model: Model,
-}
-
-/// The sets that the flow balances ask for.
-#[derive(Debug, Clone, Default)]
-pub(super) struct FlowSets {
-    /// The best, in this order.
-    pub best: Vec<FlowSet>,
-    /// Sets that do about as well as the first of these, with another effect in place of one of its own.
-    pub rivals: Vec<FlowSet>,
 }
 
 /// Whether the recordings have all that the flow balances need: motion, both pressures and the opening of every cylinder, and
