@@ -108,6 +108,7 @@ pub fn identify_watched(
     method: Method,
     watch: Watch<'_>,
 ) -> Result<Identified, IdentifyError> {
+    let model = &model.clone().with_limits_around_given();
     let first = |done: f64| watch(SHARE_OF_REGRESSION * done);
     let then = |done: f64| watch(SHARE_OF_REGRESSION + (1.0 - SHARE_OF_REGRESSION) * done);
     let regression = match method {

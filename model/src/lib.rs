@@ -16,6 +16,7 @@ pub mod energy;
 pub mod equations;
 mod errors;
 pub mod formula;
+mod limits;
 pub mod machine;
 mod model;
 pub mod prelude;

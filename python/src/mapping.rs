@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use excavator_bags::map::{Hints, TopicMap, guess};
+use excavator_bags::map::{TopicMap, guess};
 use pyo3::prelude::*;
 
 use crate::errors::{ReadError, of_bag, of_map};
@@ -41,7 +41,7 @@ impl Map {
 #[pyo3(signature = (path, cylinder = "arm"))]
 pub fn guess_map(py: Python<'_>, path: PathBuf, cylinder: &str) -> PyResult<String> {
     py.detach(|| {
-        let guessed = guess(Path::new(&path), Hints { cylinder, strokes: &[] }).map_err(of_bag)?;
+        let guessed = guess(Path::new(&path), cylinder).map_err(of_bag)?;
         guessed.to_text().map_err(of_map)
     })
 }

@@ -67,6 +67,10 @@ pub enum WorkError {
     Unreadable { path: PathBuf, source: std::io::Error },
     #[error("{} is not the recording of the study: its content has changed; run the diagnosis again", path.display())]
     Changed { path: PathBuf },
+    #[error("{}: {reason}", path.display())]
+    ValveTest { path: PathBuf, reason: String },
+    #[error("{} is not a data sheet: {reason}", path.display())]
+    SheetSyntax { path: PathBuf, reason: String },
     #[error("no recording to compare the model with")]
     NoRecording,
     #[error("cannot write JSON: {0}")]

@@ -12,6 +12,8 @@
 //! | [`sentences`] | result sentences that no page contains |
 //! | [`numbers`] | numbers formatted for users |
 //! | [`simulated`] | simulations of commands, from rest |
+//! | [`sheet`] | a data sheet as a file |
+//! | [`valve_test`] | a static valve test from a table |
 //! | [`profile_file`], [`diagnosis_file`], [`recording_files`] | files that one verb writes and another reads |
 //!
 //! This crate prints nothing. It returns remarks for the user.
@@ -48,9 +50,12 @@ pub mod recording_part;
 pub mod recordings;
 pub mod results;
 pub mod sentences;
+pub mod sheet;
 pub mod simulated;
+mod steady_model;
 mod study;
 mod study_file;
+pub mod valve_test;
 
 pub use error::WorkError;
 pub use json_text::json_text;

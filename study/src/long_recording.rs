@@ -14,7 +14,7 @@ use excavator_model::recording::Recording;
 use crate::WorkError;
 use crate::block_reader::{needs_a_map, read_beside};
 use crate::recording_part::Part;
-use crate::recordings::{BLOCK, is_long};
+use crate::recordings::{BLOCK, at_useful_rate, is_long};
 
 /// Blocks that may be queued for the selection.
 const WAITING: usize = 1;
@@ -32,8 +32,9 @@ pub(crate) fn recording_or_stretches(
 ) -> Result<(Recording, ReadReport, Option<Chosen>), WorkError> {
     let (whole, part) = Part::split(path)?;
     if !whole.exists() || needs_a_map(&whole, origin.map) {
-        let (recording, report) = read_recording_or_mapped(&whole, origin)?;
-        let recording = in_part(recording, part, path)?;
+        let (recording, mut report) = read_recording_or_mapped(&whole, origin)?;
+        let (recording, reduced) = at_useful_rate(in_part(recording, part, path)?);
+        report.notes.extend(reduced);
         if !is_long(recording.len(), recording.recorded_time(), model) {
             return Ok((recording, report, None));
         }

@@ -23,6 +23,28 @@ pub const BLOCK: usize = 180_000;
 /// Samples in memory at a time for an energy ledger, ten seconds at 1 kHz.
 pub const LEDGER_BLOCK: usize = 10_000;
 
+/// Rate that the dynamics of hydraulic machines need, Hz: their oil resonates below 100 Hz, and their valves follow up to 150 Hz.
+const USEFUL_RATE: f64 = 500.0;
+
+/// Recordings of at least this many times [`USEFUL_RATE`] are averaged down. Below, too little is gained.
+const LEAST_REDUCTION: f64 = 3.0;
+
+/// A recording at a rate that the machine's dynamics need, with a remark if it was averaged down to it. Means of neighbouring samples
+/// keep what happens slowly, and have less noise.
+pub(crate) fn at_useful_rate(recording: Recording) -> (Recording, Option<String>) {
+    let rate = 1.0 / recording.sample_interval();
+    if !rate.is_finite() || rate < LEAST_REDUCTION * USEFUL_RATE {
+        return (recording, None);
+    }
+    let count = (rate / USEFUL_RATE).floor() as usize;
+    let remark = format!(
+        "{:.4} kHz is more than the machine's dynamics need: averaged to {:.0} Hz",
+        1e-3 * rate,
+        rate / count as f64
+    );
+    (recording.averaged(count), Some(remark))
+}
+
 /// User settings for recordings.
 #[derive(Debug, Clone, Copy)]
 pub struct Use<'u> {
@@ -96,12 +118,14 @@ pub fn choice(used: &Recording, chosen: &Chosen) -> String {
 /// [`WorkError::Check`] if a check refuses the recording, [`WorkError::Condition`] if a condition cannot be parsed.
 pub fn checked(
     name: &str,
-    mut recording: Recording,
+    recording: Recording,
     report: &ReadReport,
     usage: &Use<'_>,
     model: &Model,
     remarks: &mut Vec<String>,
 ) -> Result<Recording, WorkError> {
+    let (mut recording, reduced) = at_useful_rate(recording);
+    remarks.extend(reduced.map(|line| format!("{name}: {line}")));
     leave_pump_pressure_out(model, &mut recording, &report.left_out);
     for overruled in checks::check(model, &recording, usage.accept)? {
         remarks.push(format!("accepted: {overruled}"));

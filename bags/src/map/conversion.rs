@@ -25,7 +25,7 @@ impl Conversion {
             Some(name) => unit_named(&signal, name)?,
         };
         let scale = match &source.scale {
-            Some(scale) => scale.ratio_to_si(&signal, unit.dimension, dimension)?,
+            Some(scale) => scale.ratio_to_si(&signal, unit.dimension, |found| source.signal.kind.takes(found))?,
             None if source.signal.kind.takes(unit.dimension) => 1.0,
             None => {
                 return Err(MapError::WrongDimension {

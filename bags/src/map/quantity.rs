@@ -28,8 +28,14 @@ impl Quantity {
         }
     }
 
-    /// The SI value of a ratio `to` per `from`.
-    pub(super) fn ratio_to_si(&self, signal: &str, from: Dimension, to: Dimension) -> Result<f64, MapError> {
+    /// The SI value of a ratio: a unit that the signal takes, per one of dimension `from`. A volume per turn makes a flow of the
+    /// speed of a pump.
+    pub(super) fn ratio_to_si(
+        &self,
+        signal: &str,
+        from: Dimension,
+        takes: impl Fn(Dimension) -> bool,
+    ) -> Result<f64, MapError> {
         let bad = || self.bad(signal, "scale", "25 bar/V");
         match self {
             Quantity::Number(number) => finite(*number, signal, "scale"),
@@ -37,9 +43,12 @@ impl Quantity {
                 let (number, units) = split(text).ok_or_else(bad)?;
                 // Units can contain slashes: l/min per rpm, mm/s per V, l/min per rad/s.
                 let ratio = units.match_indices('/').find_map(|(at, slash)| {
-                    let over = Unit::named(&units[..at]).filter(|unit| unit.dimension == to)?;
-                    let under = Unit::named(&units[at + slash.len()..]).filter(|unit| unit.dimension == from)?;
-                    Some(over.factor() / under.factor())
+                    let (over, under) = (&units[..at], Unit::named(&units[at + slash.len()..])?);
+                    if from == Dimension::RotationalSpeed && under.dimension == Dimension::Angle && takes(Dimension::Flow) {
+                        return Some(volume(over)? / under.factor());
+                    }
+                    let over = Unit::named(over).filter(|unit| takes(unit.dimension))?;
+                    (under.dimension == from).then(|| over.factor() / under.factor())
                 });
                 Ok(number * ratio.ok_or_else(bad)?)
             }
@@ -53,6 +62,14 @@ impl Quantity {
         };
         MapError::BadQuantity { signal: signal.to_string(), key, text, example }
     }
+}
+
+/// SI value of a unit of volume, which no signal has.
+fn volume(name: &str) -> Option<f64> {
+    const VOLUMES: [(&str, f64); 6] =
+        [("m3", 1.0), ("l", 1e-3), ("ml", 1e-6), ("cm3", 1e-6), ("ccm", 1e-6), ("in3", 1.638_706_4e-5)];
+    let name = name.trim().replace('³', "3").replace('^', "");
+    VOLUMES.iter().find(|(known, _)| *known == name).map(|(_, factor)| *factor)
 }
 
 fn finite(number: f64, signal: &str, key: &'static str) -> Result<f64, MapError> {

@@ -66,17 +66,20 @@ fn rows(table: &Table, wanted: &[Wanted]) -> usize {
 }
 
 impl Table {
+    /// The column with this heading, with or without its unit.
+    pub fn named(&self, name: &str) -> Option<&Column> {
+        let find = |fits: &dyn Fn(&Column) -> bool| self.columns.iter().find(|column| fits(column));
+        let (bare, unit) = heading_of(name);
+        find(&|column| column.name == *name)
+            .or_else(|| find(&|column| unit.is_some() && column.name == bare && column.unit == unit))
+            .or_else(|| find(&|column| column.name.eq_ignore_ascii_case(name)))
+    }
+
     /// The column with this name, or with this number from 1. A name may include the unit of the heading.
     pub(super) fn column(&self, name: &ColumnName) -> Result<&Column, MapError> {
-        let find = |fits: &dyn Fn(&Column) -> bool| self.columns.iter().find(|column| fits(column));
         let found = match name {
             ColumnName::Number(number) => number.checked_sub(1).and_then(|index| self.columns.get(index)),
-            ColumnName::Name(name) => {
-                let (bare, unit) = heading_of(name);
-                find(&|column| column.name == *name)
-                    .or_else(|| find(&|column| unit.is_some() && column.name == bare && column.unit == unit))
-                    .or_else(|| find(&|column| column.name.eq_ignore_ascii_case(name)))
-            }
+            ColumnName::Name(name) => self.named(name),
         };
         found.ok_or_else(|| MapError::NoColumn {
             wanted: name.to_string(),

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use excavator_model::machine::CommandUnit;
+
 /// The dimension of a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
@@ -22,6 +24,17 @@ pub enum Dimension {
 }
 
 impl Dimension {
+    /// The dimension of the input of a drive.
+    pub fn of_command(unit: CommandUnit) -> Dimension {
+        match unit {
+            CommandUnit::SquareMetre => Dimension::Area,
+            CommandUnit::Volt => Dimension::Voltage,
+            CommandUnit::Ampere => Dimension::Current,
+            CommandUnit::One => Dimension::Number,
+            CommandUnit::CubicMetrePerSecond => Dimension::Flow,
+        }
+    }
+
     /// The unit used in recordings; °C for temperatures.
     pub fn si_unit(self) -> &'static str {
         match self {
@@ -82,6 +95,30 @@ const fn unit(name: &'static str, dimension: Dimension, multiply: f64, divide: f
 const INCH: f64 = 0.0254;
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
 const GALLON: f64 = 3.785_411_784e-3;
+
+/// Other spellings of units, in lower case.
+const SPELLINGS: [(&str, &str); 20] = [
+    ("volt", "V"),
+    ("volts", "V"),
+    ("amps", "A"),
+    ("ampere", "A"),
+    ("milliamps", "mA"),
+    ("gal/min", "gpm"),
+    ("usgpm", "gpm"),
+    ("litre/min", "l/min"),
+    ("liter/min", "l/min"),
+    ("rev/min", "rpm"),
+    ("r/min", "rpm"),
+    ("u/min", "rpm"),
+    ("psig", "psi"),
+    ("sec", "s"),
+    ("secs", "s"),
+    ("seconds", "s"),
+    ("msec", "ms"),
+    ("inch", "in"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+];
 
 /// All units; the SI unit is the first of its dimension.
 const UNITS: [Unit; 64] = {
@@ -185,6 +222,8 @@ impl Unit {
             Some(rest) => format!("deg{rest}"),
             None => name,
         };
+        let spelling = SPELLINGS.iter().find(|(other, _)| name.eq_ignore_ascii_case(other));
+        let name = spelling.map_or(name, |(_, usual)| usual.to_string());
         UNITS
             .iter()
             .find(|unit| unit.name == name)

@@ -7,10 +7,12 @@ pub(crate) fn split(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim().trim_start_matches('\u{feff}').trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {
         if let Some((name, rest)) = heading.rsplit_once(open)
-            && let Some(unit) = rest.trim_end().strip_suffix(close)
+            && let Some((unit, after)) = rest.split_once(close)
             && let Some(unit) = Unit::named(unit)
         {
-            return (name.trim().to_string(), Some(unit.name.to_string()));
+            // In `Flow (GPM) - Plot 0` the unit remains part of the name, since users refer to the column by that name.
+            let name = if after.trim().is_empty() { name.trim() } else { heading };
+            return (name.to_string(), Some(unit.name.to_string()));
         }
     }
     for separator in [" / ", " in ", ", ", "_", " "] {
@@ -60,6 +62,8 @@ mod tests {
             ("x_1", "x_1", None),
             ("3 bar", "3 bar", None),
             ("1 [bar]", "1", Some("bar")),
+            ("Flow (GPM) - Plot 0", "Flow (GPM) - Plot 0", Some("gpm")),
+            ("Voltage (volt)", "Voltage", Some("V")),
             ("count (of parts)", "count (of parts)", None),
             ("", "", None),
         ] {

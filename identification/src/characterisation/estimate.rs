@@ -1,11 +1,14 @@
 //! A value with its standard error.
 
+use serde::Serialize;
+
 /// An estimate with its standard error, both in the unit of the quantity.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Estimate {
     /// Value.
     pub value: f64,
     /// Standard error.
+    #[serde(rename = "std_error")]
     pub error: f64,
 }
 

@@ -7,6 +7,8 @@
 //! | [`dead_zones`] | flow over root of the pressure drop while the opening runs up and down | IV-B |
 //! | [`directional_gains`] | steady stretches at many openings | Eq. 7-11 |
 //! | [`friction`] | steady stretches at many speeds | Eq. 16 |
+//! | [`drive_curve`] | steady stretches at many inputs: null, dead zone and gain of a valve, losses of a pump | – |
+//! | stops | places where the motion ends although the piston is driven on | – |
 //!
 //! Each procedure uses the results of the previous one: known leakage is subtracted from flows, and gains count from the edge of
 //! the dead zone. If a recording does not suit a procedure, [`Refusal`] states which signal or which manoeuvre is missing, with
@@ -16,6 +18,7 @@ mod chamber_row;
 mod closed_valve;
 mod dead_zone;
 mod directional_gain;
+mod drive_curve;
 mod edge;
 mod estimate;
 mod friction;
@@ -23,6 +26,7 @@ mod load;
 mod polynomial;
 mod refusal;
 mod static_valve;
+mod stops;
 mod stretches;
 mod sweeps;
 mod track;
@@ -30,16 +34,20 @@ mod track;
 pub use closed_valve::{ChamberLeakage, ClosedValve, Hold, valve_leakage};
 pub use dead_zone::{DeadZone, EdgeCurve, dead_zones};
 pub use directional_gain::{DirectionalGain, GainPoint, directional_gains};
+pub use drive_curve::{DriveCurve, PumpLosses, drive_curve};
 pub use edge::{Direction, Edge, Side};
 pub use estimate::Estimate;
 pub use friction::{ForcePoint, FrictionCurve, FrictionTerm, friction};
 pub use polynomial::Polynomial;
 pub use refusal::Refusal;
-pub use static_valve::{FlowReading, StaticEdge, static_valve};
+pub use static_valve::{FlowReading, StaticEdge, StaticTestError, StaticValve, static_valve};
 pub use track::Track;
 
 use excavator_model::Model;
+use excavator_model::machine::CommandUnit;
 use excavator_model::recording::Recording;
+
+use stops::stops;
 
 /// Results of the procedures for one cylinder.
 #[derive(Debug, Clone)]
@@ -48,6 +56,8 @@ pub struct Characterisation {
     pub cylinder: String,
     /// Largest orifice area umax of its valve section, m²; openings are plotted as shares of it. 1 without chambers.
     pub maximum_orifice_area: f64,
+    /// Unit of its input.
+    pub unit: CommandUnit,
     /// Leakage of the closed valve.
     pub leakage: Result<ClosedValve, Refusal>,
     /// Dead zone and hysteresis of each metering edge, in the order of [`Edge::ALL`].
@@ -56,6 +66,10 @@ pub struct Characterisation {
     pub gains: Vec<(Edge, Result<DirectionalGain, Refusal>)>,
     /// Friction against speed.
     pub friction: Result<FrictionCurve, Refusal>,
+    /// Flow of the drive against its input.
+    pub drive: Result<DriveCurve, Refusal>,
+    /// Where the piston meets its stops, m: retracted and extended.
+    pub stops: [Option<Estimate>; 2],
 }
 
 impl Characterisation {
@@ -81,10 +95,13 @@ fn characterise_cylinder(model: &Model, cylinder: usize, recordings: &[&Recordin
     let found = Characterisation {
         cylinder: constants.name.clone(),
         maximum_orifice_area: constants.chambers.map_or(1.0, |chambers| chambers.full_command()),
+        unit: constants.chambers.map_or(CommandUnit::One, |chambers| chambers.drive.command_unit()),
         leakage: Err(Refusal::NoValve { cylinder: constants.name.clone() }),
         dead_zones: Vec::new(),
         gains: Vec::new(),
         friction: Err(Refusal::NoValve { cylinder: constants.name.clone() }),
+        drive: Err(Refusal::NoValve { cylinder: constants.name.clone() }),
+        stops: [None, None],
     };
     let tracks: Result<Vec<Track>, Refusal> =
         recordings.iter().map(|recording| Track::of(model, cylinder, recording)).collect();
@@ -97,16 +114,42 @@ fn characterise_cylinder(model: &Model, cylinder: usize, recordings: &[&Recordin
                 dead_zones: Edge::ALL.iter().map(|edge| (*edge, Err(every(edge)))).collect(),
                 gains: Edge::ALL.iter().map(|edge| (*edge, Err(every(edge)))).collect(),
                 friction: Err(refusal.clone()),
+                drive: Err(refusal.clone()),
                 ..found
             };
         }
     };
+    let friction = friction(model, cylinder, recordings, &tracks);
+    let drive = drive_curve(model, cylinder, &tracks);
+    let null = drive.as_ref().ok().and_then(DriveCurve::null).map_or(0.0, |null| null.value);
+    let stops = stops(&tracks, null);
+    if let Some(refusal) = pump_pressure_unknown(&tracks) {
+        let of_edges = || Edge::ALL.iter().map(|edge| *edge);
+        return Characterisation {
+            leakage: Err(refusal.clone()),
+            dead_zones: of_edges().map(|edge| (edge, Err(refusal.clone()))).collect(),
+            gains: of_edges().map(|edge| (edge, Err(refusal.clone()))).collect(),
+            friction,
+            drive,
+            stops,
+            ..found
+        };
+    }
     let leakage = valve_leakage(&tracks);
     if let Ok(leakage) = &leakage {
         tracks.iter_mut().for_each(|track| leakage.take_off(track));
     }
     let dead_zones = dead_zones(&tracks);
     let gains = directional_gains(&tracks, &dead_zones);
-    let friction = friction(model, cylinder, recordings, &tracks);
-    Characterisation { leakage, dead_zones, gains, friction, ..found }
+    Characterisation { leakage, dead_zones, gains, friction, drive, stops, ..found }
+}
+
+/// Why procedures that need the pressure drop of every edge have no result, if neither recording nor model has a pump pressure.
+fn pump_pressure_unknown(tracks: &[Track]) -> Option<Refusal> {
+    let without = tracks.iter().find(|track| track.pump_pressure.iter().all(|pressure| pressure.is_nan()))?;
+    Some(Refusal::MissingSignal {
+        source_name: without.source.clone(),
+        signal: "pump_pressure".to_string(),
+        needed_for: "gives the pressure drops of the edges towards the pump",
+    })
 }

@@ -38,6 +38,23 @@ pub enum Refusal {
         /// The cylinder.
         cylinder: String,
     },
+    /// The input has too few levels at which the piston moves steadily.
+    #[error(
+        "{found} steady stretches at {levels} different inputs; {needed} at {needed_levels} are needed. Hold several inputs of both signs until the piston has moved evenly"
+    )]
+    TooFewLevels {
+        /// Steady stretches.
+        found: usize,
+        /// Different inputs among them.
+        levels: usize,
+        /// Steady stretches that are needed.
+        needed: usize,
+        /// Different inputs that are needed.
+        needed_levels: usize,
+    },
+    /// Flow and input have no straight line.
+    #[error("{0}")]
+    Curve(String),
     /// The valve is hardly ever closed for long enough.
     #[error(
         "{} with closed valve (opening within {limit:.1e} m2) of at least {least:.2} s, the longest {longest:.2} s; {needed} are needed. Close the valve for {suggested:.0} s and longer, after moves in both directions",

@@ -38,7 +38,7 @@ pub struct Track {
     pub time: Vec<f64>,
     /// Half width of the parabolas, s.
     pub half_width: f64,
-    /// Opening as measured, or as commanded if there is no sensor, m². Empty without a valve.
+    /// Opening as measured, or as commanded if there is no sensor, m², from the model's null on. Empty without a valve.
     pub opening: Vec<f64>,
     /// The smoothed opening, m².
     pub smooth_opening: Vec<f64>,
@@ -52,7 +52,7 @@ pub struct Track {
     pub cap_pressure: Vec<f64>,
     /// Rod side pressure, Pa.
     pub rod_pressure: Vec<f64>,
-    /// Pump or supply pressure, Pa.
+    /// Pump or supply pressure, Pa; `NaN` if neither is known.
     pub pump_pressure: Vec<f64>,
     /// Tank pressure, Pa.
     pub tank_pressure: Vec<f64>,
@@ -124,8 +124,8 @@ impl Track {
             Supply::PumpLine(line) => (None, line.tank_pressure),
             Supply::None => (Some(0.0), 0.0),
         };
-        let pump_pressure = constant_or(&recording.pump_pressure, supply)
-            .ok_or_else(|| missing("pump_pressure", "gives the pressure drops of the edges towards the pump"))?;
+        let pump_pressure =
+            constant_or(&recording.pump_pressure, supply).unwrap_or_else(|| vec![f64::NAN; samples]);
         let tank_pressure = constant_or(&recording.tank_pressure, Some(tank)).unwrap_or_default();
         // A machine without a load cell records a column of zeros.
         let measured_force = is_measured(&signals.rod_force) && signals.rod_force.iter().any(|&force| force != 0.0);
@@ -134,6 +134,7 @@ impl Track {
             let known = own == format!("{name}.bulk_modulus");
             known.then(|| (parameter.value, parameter.standard_error.unwrap_or(0.0)))
         });
+        let null = value("valve_null").unwrap_or(0.0);
         let size = model.machine.size_at(Site::Cylinder(cylinder));
         let mut track = Track {
             source: recording.source.clone(),
@@ -148,7 +149,7 @@ impl Track {
             time: recording.time.clone(),
             smooth_opening: vec![f64::NAN; opening.len()],
             opening_rate: vec![f64::NAN; opening.len()],
-            opening,
+            opening: opening.into_iter().map(|reading| reading - null).collect(),
             displacement,
             velocity: vec![f64::NAN; samples],
             cap_pressure,

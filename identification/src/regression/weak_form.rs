@@ -98,6 +98,7 @@ fn identified(
         model.unknown_parameters().into_iter().partition(is_rounding);
     let mut held: Vec<(usize, String)> =
         rounding.into_iter().map(|index| (index, "only fits of simulated outputs show it".to_string())).collect();
+    let given = model;
     let mut model = model.clone();
     let rounds = settings.rounds.max(1);
     let mut round = 0;
@@ -138,7 +139,7 @@ fn identified(
             round += 1;
             continue;
         }
-        let outside = if settings.hold_at_bounds { outside(&solution) } else { Vec::new() };
+        let outside = if settings.hold_at_bounds { outside(given, &solution) } else { Vec::new() };
         if outside.is_empty() || outside.len() == unknown.len() {
             solution.not_identified.extend(held);
             return Ok(solution);
@@ -176,15 +177,26 @@ fn one_of(model: &Model, names: &[String], unknown: &mut Vec<usize>) -> Option<(
     Some((held, reason))
 }
 
-/// Identified parameters outside their possible range, with the nearest possible value and the reason.
-fn outside(solution: &Regression) -> Vec<(usize, f64, String)> {
+/// Identified parameters that reached the end of their possible range, with the value at which they are held and the reason. An inertia
+/// or a bulk modulus is held at its given value, which is known roughly; any other parameter at the nearest possible value.
+fn outside(given: &Model, solution: &Regression) -> Vec<(usize, f64, String)> {
+    let before = given.parameter_values();
     solution
         .model
         .parameters()
         .enumerate()
         .filter(|(index, _)| solution.fitted.contains(index))
         .filter_map(|(index, (_, parameter))| {
-            let bound = parameter.value.clamp(parameter.card.minimum, parameter.card.maximum);
+            let card = &parameter.card;
+            let bound = parameter.value.clamp(card.minimum, card.maximum);
+            if parameter.has_limits_around_given() && (bound <= card.minimum || bound >= card.maximum) {
+                let reason = format!(
+                    "the recordings do not show it within {:.3e} to {:.3e}; held at the given {:.3e}. Accelerate more, or give a \
+                     better value",
+                    card.minimum, card.maximum, before[index]
+                );
+                return Some((index, before[index], reason));
+            }
             let reason = format!(
                 "the recordings would have it at {:.3e}, beyond what is possible; held at {bound:.3e}. Something that the \
                  model lacks acts in its place, or the recordings do not show it",

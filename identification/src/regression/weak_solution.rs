@@ -136,7 +136,12 @@ impl Columns {
             let change = step[column] / lengths[column];
             let value = &mut values[parameter];
             *value = match self.kinds[column] {
-                Kind::Reciprocal => 1.0 / (1.0 / *value + change).max(1.0 / cards[parameter].maximum),
+                Kind::Reciprocal => {
+                    let [least, most] = [cards[parameter].minimum, cards[parameter].maximum];
+                    1.0 / (1.0 / *value + change).clamp(1.0 / most, 1.0 / least)
+                }
+                // A mass of zero or less cannot be simulated; friction and leakage may pass through zero on the way.
+                Kind::Linear if cards[parameter].minimum > 0.0 => (*value + change).max(cards[parameter].minimum),
                 Kind::Linear => *value + change,
                 Kind::Shape => (*value + change).clamp(priors.bounds[parameter][0], priors.bounds[parameter][1]),
             };

@@ -30,6 +30,7 @@ pub fn search<'a>(
     policy: &Policy,
     progress: &(dyn Fn(&str, f64) + Sync),
 ) -> Result<Pool<'a>, FitError> {
+    let model = &model.clone().with_limits_around_given();
     let milestones = Milestones::new(progress);
     milestones.tell("fit of the given model", 0.0);
     let First { fit, is_trusted } = first_fit(model, identification, &effort.fit)?;

@@ -26,6 +26,7 @@ pub(super) fn built_in() -> Vec<AnyEffect> {
         Arc::new(friction_corner::FrictionCorner),
         Arc::new(orifice_transition::OrificeTransition),
         Arc::new(end_stop_correction::EndStopCorrection),
+        Arc::new(valve_null::ValveNull),
         Arc::new(pressure_compensation::PressureCompensation),
         Arc::new(load_sensing_pump::LoadSensingPump),
         Arc::new(accumulator::Accumulator),

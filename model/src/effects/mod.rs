@@ -65,6 +65,7 @@ mod valve_gain_curve;
 mod valve_hysteresis;
 mod valve_lag;
 mod valve_leakage;
+mod valve_null;
 mod vented_rod_side;
 mod viscous_damping;
 

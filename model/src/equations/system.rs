@@ -365,18 +365,28 @@ impl<'m> System<'m> {
         self.layout.effect_states.iter().any(|&(_, states)| states > 0)
     }
 
-    /// Sets the effects' own states. Spools are set to these openings (m², one per cylinder; missing ones are zero), settled or
-    /// as measured. Other states take their initial values.
+    /// Sets the effects' own states. Spools are set to the openings of these inputs (m², one per cylinder; missing ones are zero),
+    /// settled or as measured. Other states take their initial values.
     pub fn set_effect_states(&self, openings: &[f64], state: &mut [f64]) {
+        let parameters = self.model.parameter_values();
+        let mut spools = openings.to_vec();
+        for (number, effect) in self.model.effects.iter().enumerate() {
+            if let Site::Cylinder(cylinder) = effect.site
+                && let Some(spool) = spools.get_mut(cylinder)
+                && effect.physics.reads_input_rate()
+            {
+                let own = &parameters[self.parameters_of(number)];
+                *spool = f64::hooks(&*effect.physics).read(own, *spool, [0.0; 2]);
+            }
+        }
         for number in 0..self.model.effects.len() {
             if let Site::Cylinder(cylinder) = self.model.effects[number].site {
-                state[self.states_of(number)].fill(openings.get(cylinder).copied().unwrap_or(0.0));
+                state[self.states_of(number)].fill(spools.get(cylinder).copied().unwrap_or(0.0));
             }
         }
         if self.remembering.is_empty() {
             return;
         }
-        let parameters = self.model.parameter_values();
         let mut inputs = Inputs::zero(self.layout.joints);
         for (slot, &area) in inputs.orifice_area.iter_mut().zip(openings) {
             *slot = area;

@@ -44,7 +44,7 @@ impl CommandUnit {
     }
 
     /// Unit of a flow per square root of pressure drop and per input.
-    fn flow_gain(self) -> &'static str {
+    pub fn flow_gain(self) -> &'static str {
         match self {
             CommandUnit::SquareMetre => "m/(s sqrt(Pa))",
             CommandUnit::Volt => "m3/(s V sqrt(Pa))",

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{ModelChoice, Overwriting};
+use super::{Json, Overwriting, OwnEffects};
 
 /// What an engineer says of a machine. Numbers with their units, as on a data sheet.
 #[derive(Debug, Clone, Default, Args)]
@@ -112,26 +112,40 @@ pub enum DriveChoice {
 /// A table of a static valve test, and the model that it goes into.
 #[derive(Debug, Clone, Args)]
 pub struct ValveTestArguments {
-    #[command(flatten)]
-    pub model: ModelChoice,
     /// Table of the test (.csv, .xlsx, .mat, .parquet).
     #[arg(long, value_name = "FILE")]
     pub table: PathBuf,
-    /// Heading of the column with the valve's input; in the model's unit, or with a unit in its heading.
-    #[arg(long, value_name = "COLUMN")]
-    pub input: String,
-    /// Heading of the column with the flow over one edge; its unit stands in the heading.
-    #[arg(long, value_name = "COLUMN")]
-    pub flow: String,
-    /// Pressure drop over that edge: "35 bar".
+    /// Pressure drop over the metering edge that the flow passes: "35 bar".
     #[arg(long, value_name = "PRESSURE")]
     pub drop: String,
+    /// Heading of the column with the valve's input; without, the only column that can be it.
+    #[arg(long, value_name = "COLUMN")]
+    pub input: Option<String>,
+    /// Unit of the input; without, that of the heading, or of the model.
+    #[arg(long, value_name = "UNIT")]
+    pub input_unit: Option<String>,
+    /// Heading of the column with the flow over one edge; without, the only column with a unit of flow.
+    #[arg(long, value_name = "COLUMN")]
+    pub flow: Option<String>,
+    /// Unit of the flow; without, that of the heading.
+    #[arg(long, value_name = "UNIT")]
+    pub flow_unit: Option<String>,
+    /// Input at which the valve is closed, for a test of one side: "5 V".
+    #[arg(long, value_name = "INPUT", allow_hyphen_values = true)]
+    pub null: Option<String>,
+    /// Model that gets the result: built-in name or TOML file. Without, the result is printed only.
+    #[arg(long, requires = "output")]
+    pub model: Option<String>,
+    #[command(flatten)]
+    pub own: OwnEffects,
     /// The cylinder; without, the model's first one.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", requires = "model")]
     pub cylinder: Option<String>,
     /// Model file to write.
-    #[arg(short, long, value_name = "MODEL")]
-    pub output: PathBuf,
+    #[arg(short, long, value_name = "MODEL", requires = "model")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
     #[command(flatten)]
     pub overwriting: Overwriting,
 }

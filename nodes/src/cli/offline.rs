@@ -111,6 +111,9 @@ pub struct CharacteriseArguments {
     pub model: ModelChoice,
     #[command(flatten)]
     pub mapping: Mapping,
+    /// Model file to write, with null, gains, friction, weight and stops as they were read: starts for identify and diagnose.
+    #[arg(short, long, value_name = "MODEL")]
+    pub output: Option<PathBuf>,
     /// Write a page with gains, normalised flow, transients and friction, with their bands.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
@@ -224,6 +227,9 @@ pub struct ImportArguments {
     /// Model that the recording is for, which says names and strokes of cylinders.
     #[arg(long, value_name = "MODEL", requires = "guess")]
     pub model: Option<String>,
+    /// Data sheet (TOML) that says what columns measure: `[columns.HEADING]` with signal, scale and zero.
+    #[arg(long, value_name = "FILE", requires = "guess")]
+    pub sheet: Option<PathBuf>,
     /// Bag to write; with --guess, the file for the map.
     #[arg(short, long, value_name = "BAG|MAP", required_unless_present = "guess")]
     pub output: Option<PathBuf>,

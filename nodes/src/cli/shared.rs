@@ -13,7 +13,7 @@ use excavator_study::{Study, WorkError};
 
 use crate::terminal::remark;
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Clone, Args)]
 pub struct Json {
     /// Write the result as JSON to this file ("-": standard output, instead of the table).
     #[arg(long, value_name = "FILE")]

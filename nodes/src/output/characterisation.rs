@@ -1,7 +1,8 @@
 //! Prints a characterisation.
 
 use comfy_table::{Cell, Table};
-use excavator_identification::characterisation::{Characterisation, Estimate, Refusal};
+use excavator_identification::characterisation::{Characterisation, DriveCurve, Estimate, Refusal};
+use excavator_model::machine::CommandUnit;
 use excavator_report::leakage_unit;
 
 use super::number;
@@ -14,6 +15,7 @@ pub fn characterisation_table(found: &Characterisation) -> Table {
         let cells = [right(number(estimate.value)), right(number(1.96 * estimate.error))];
         rows.add_row([Cell::new(what), cells[0].clone(), cells[1].clone(), Cell::new(unit)]);
     };
+    let (factor, shown) = found.unit.for_people();
     for (edge, gain) in &found.gains {
         let Ok(gain) = gain else { continue };
         let (Some(first), Some(last)) = (gain.points.first(), gain.points.last()) else { continue };
@@ -23,14 +25,14 @@ pub fn characterisation_table(found: &Characterisation) -> Table {
                 let x = point.opening / gain.maximum;
                 let place = if curve.degree() == 0 { String::new() } else { format!(" at {:.0} %", 100.0 * x) };
                 let what = format!("gain {}, opening {word}{place} (degree {})", edge.name(), curve.degree());
-                row(what, Estimate { value: curve.at(x), error: curve.error_at(x) }, "m/(s sqrt(Pa))");
+                row(what, Estimate { value: curve.at(x), error: curve.error_at(x) }, found.unit.flow_gain());
             }
         }
     }
     for (edge, zone) in &found.dead_zones {
         let Ok(zone) = zone else { continue };
-        row(format!("dead zone {}", edge.name()), scaled(zone.dead_zone, 1e6), "mm2");
-        row(format!("hysteresis {}", edge.name()), scaled(zone.hysteresis, 1e6), "mm2");
+        row(format!("dead zone {}", edge.name()), scaled(zone.dead_zone, factor), shown);
+        row(format!("hysteresis {}", edge.name()), scaled(zone.hysteresis, factor), shown);
     }
     if let Ok(leakage) = &found.leakage {
         let (factor, unit) = leakage_unit();
@@ -41,6 +43,12 @@ pub fn characterisation_table(found: &Characterisation) -> Table {
             row(format!("time constant {name}"), side.time_constant, "s");
             row(format!("static gain {name}"), side.static_gain, "-");
         }
+    }
+    if let Ok(drive) = &found.drive {
+        drive_rows(drive, found.unit, &mut row);
+    }
+    for (name, stop) in ["stop of the retracted rod", "stop of the extended rod"].iter().zip(found.stops) {
+        stop.into_iter().for_each(|stop| row((*name).to_string(), scaled(stop, 1e3), "mm"));
     }
     if let Ok(friction) = &found.friction {
         for term in &friction.terms {
@@ -54,6 +62,26 @@ pub fn characterisation_table(found: &Characterisation) -> Table {
         }
     }
     rows
+}
+
+/// Null, dead zones and gains of a valve, or the losses of a pump.
+fn drive_rows(drive: &DriveCurve, unit: CommandUnit, row: &mut impl FnMut(String, Estimate, &str)) {
+    let (factor, shown) = unit.for_people();
+    match drive {
+        DriveCurve::Valve(valve) => {
+            row("null of the valve".into(), scaled(valve.null, factor), shown);
+            for (way, edge) in ["extending", "retracting"].iter().zip(valve.sides) {
+                let Some(edge) = edge else { continue };
+                row(format!("dead zone {way}, steady"), scaled(edge.dead_zone, factor), shown);
+                row(format!("gain {way}, steady"), edge.gain, unit.flow_gain());
+            }
+        }
+        DriveCurve::Pump(pump) => {
+            row("flow of the pump over its flow without losses".into(), pump.share, "-");
+            let (factor, unit) = leakage_unit();
+            row("leakage between both sides".into(), scaled(pump.leakage, factor), &unit);
+        }
+    }
 }
 
 /// One line per reason, with the names of the values that were not found because of it.
@@ -75,6 +103,9 @@ pub fn refusals(found: &Characterisation) -> Vec<String> {
             leakage.cap.as_ref().err().into_iter().for_each(|refusal| tell("leakage at the cap side".into(), refusal));
             leakage.rod.as_ref().err().into_iter().for_each(|refusal| tell("leakage at the rod side".into(), refusal));
         }
+    }
+    if let Err(refusal) = &found.drive {
+        tell("curve of the drive".into(), refusal);
     }
     if let Err(refusal) = &found.friction {
         tell("friction".into(), refusal);

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use excavator_identification::characterisation::Characterisation;
+use excavator_model::document::to_text;
 use excavator_study::Study;
 
 use crate::cli::{CharacteriseArguments, Extent};
@@ -13,7 +14,11 @@ use crate::printing::{print, print_next};
 use crate::sources;
 
 pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
-    let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let outputs = [
+        ("-o", arguments.output.as_deref()),
+        ("--report", arguments.report.as_deref()),
+        ("--json", arguments.json.json.as_deref()),
+    ];
     let inputs = Inputs::recordings(&arguments.bags, arguments.mapping.map.as_deref()).and_all(arguments.model.files());
     outputs::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
@@ -32,6 +37,9 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
             refusals(one).iter().for_each(|line| print(line));
         }
         print_next(&next(arguments));
+    }
+    if let Some(path) = &arguments.output {
+        outputs::write(path, &to_text(&characterised.steady_model()?)?, arguments.overwriting)?;
     }
     let (report, json) = (arguments.report.as_deref(), arguments.json.json.as_deref());
     outputs::write_told(&characterised, report, json, arguments.overwriting)

@@ -8,6 +8,7 @@ use std::path::Path;
 use excavator_bags::map::{Confidence, Guess, Hints, guess, read_pieces};
 use excavator_bags::{Topics, write_recording};
 use excavator_model::recording::is_measured;
+use excavator_study::sheet::Sheet;
 use rosbag2::WriteOptions;
 
 use crate::cli::{ImportArguments, ModelChoice, OwnEffects};
@@ -30,20 +31,17 @@ pub fn run(arguments: &ImportArguments) -> Result<(), VerbError> {
 
 fn guess_map(arguments: &ImportArguments, data: &Path) -> Result<(), VerbError> {
     // The map beside the data is not an input here, and may be replaced.
-    let inputs = Inputs::recording(data);
+    let inputs = Inputs::recording(data).and_all(arguments.sheet.iter().cloned());
     outputs::check(&[("-o", arguments.output.as_deref())], &inputs, arguments.overwriting)?;
     let model = arguments
         .model
         .as_ref()
         .map(|model| sources::model(&ModelChoice { model: model.clone(), own: OwnEffects::default() }));
-    let cylinders = model.transpose()?.map_or_else(Vec::new, |model| model.machine.cylinders);
-    let strokes: Vec<(String, f64)> = cylinders
-        .iter()
-        .filter(|cylinder| !cylinder.is_motor())
-        .map(|cylinder| (cylinder.name.clone(), cylinder.stroke))
-        .collect();
-    let cylinder = arguments.cylinder.as_deref().or_else(|| Some(&*cylinders.first()?.name)).unwrap_or("arm");
-    let mut guessed = guess(data, Hints { cylinder, strokes: &strokes })?;
+    let machine = model.transpose()?.map(|model| model.machine);
+    let first = machine.as_ref().and_then(|machine| Some(&*machine.cylinders.first()?.name));
+    let cylinder = arguments.cylinder.as_deref().or(first).unwrap_or("arm");
+    let sheet = arguments.sheet.as_deref().map(Sheet::read).transpose()?.unwrap_or_default();
+    let mut guessed = guess(data, Hints { cylinder, machine: machine.as_ref(), columns: &sheet.columns })?;
     let (input, output) = (std::io::stdin(), std::io::stderr());
     if input.is_terminal() && output.is_terminal() {
         questions::ask(&mut guessed, &mut input.lock(), &mut output.lock())?;

@@ -6,6 +6,7 @@ use excavator_model::Model;
 use excavator_report::characterisation_page;
 
 use super::Outcome;
+use crate::steady_model::with_steady_values;
 use crate::{Study, WorkError, json_text};
 
 /// Result of `characterise`.
@@ -28,6 +29,14 @@ impl Characterised {
     /// What was found, cylinder by cylinder.
     pub fn found(&self) -> &[Characterisation] {
         &self.found
+    }
+
+    /// The model with what was found: null, gains, losses of a pump, friction, weight and stops, as starts for a fit.
+    ///
+    /// # Errors
+    /// [`WorkError::Model`] if a cylinder cannot have a null.
+    pub fn steady_model(&self) -> Result<Model, WorkError> {
+        Ok(with_steady_values(&self.model, &self.found)?)
     }
 
     /// Name of the machine.

@@ -5,13 +5,15 @@ use std::collections::{BTreeSet, HashSet};
 use excavator_model::display::pressure_text;
 use excavator_model::recording::has_noise;
 
+use super::super::quantity::Quantity;
 use super::super::signal::{SignalKind, SignalName};
 use super::super::unit::{Dimension, Unit};
-use super::candidate::Candidate;
+use super::candidate::{Candidate, Origin};
 use super::confidence::{alternatives, confidence};
 use super::names;
 use super::shapes::{Shape, derivative, rest, short};
-use super::{Confidence, GuessedSignal, Hints, Possibility};
+use super::{Confidence, GuessedSignal, Hints, Possibility, SheetColumn, ZeroAt};
+use crate::table::heading_of;
 
 /// Below this score, a name alone is not sufficient.
 const LEAST_SCORE: f64 = 0.5;
@@ -35,17 +37,27 @@ pub(super) struct Pair {
 /// The signals, and the labels of unused candidates.
 pub(super) fn choose(candidates: Vec<Candidate>, hints: Hints<'_>) -> (Vec<GuessedSignal>, Vec<String>) {
     let shapes: Vec<Option<Shape>> = candidates.iter().map(|candidate| Shape::of(&candidate.values)).collect();
-    let mut pairs = pairs(&candidates, &shapes);
+    let mut pairs = pairs(&candidates, &shapes, hints);
     pairs.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.candidate.cmp(&b.candidate)));
     let (mut used, mut taken, mut signals) = (HashSet::new(), HashSet::new(), Vec::new());
-    let named: BTreeSet<&str> = candidates.iter().filter_map(|candidate| names::cylinder(&candidate.words)).collect();
+    let cylinder_in = |words: &[String]| names::cylinder(words).filter(|name| hints.may_have_cylinder(name));
+    let named: BTreeSet<&str> = candidates.iter().filter_map(|candidate| cylinder_in(&candidate.words)).collect();
     // If the names mention only one cylinder, all signals belong to it.
     let cylinder = if named.len() == 1 { named.first().copied().unwrap_or(hints.cylinder) } else { hints.cylinder };
-    let own = |candidate: usize| names::cylinder(&candidates[candidate].words).unwrap_or(cylinder).to_string();
+    let own = |candidate: usize| cylinder_in(&candidates[candidate].words).unwrap_or(cylinder).to_string();
     let name_of = |pair: &Pair| {
         let cylinder = pair.kind.is_of_cylinder().then(|| own(pair.candidate));
         SignalName { cylinder, kind: pair.kind }
     };
+    let mut by_sheet = Vec::new();
+    for (index, candidate) in candidates.iter().enumerate() {
+        let Some(column) = described(candidate, hints) else { continue };
+        let kind = column.signal.0;
+        let name = SignalName { cylinder: kind.is_of_cylinder().then(|| own(index)), kind };
+        used.insert(index);
+        taken.insert(name.clone());
+        by_sheet.push(from_sheet(candidate, shapes[index], name, column, hints));
+    }
     for (place, pair) in pairs.iter().enumerate() {
         let name = name_of(pair);
         if pair.score < LEAST_SCORE || used.contains(&pair.candidate) || taken.contains(&name) {
@@ -79,10 +91,47 @@ pub(super) fn choose(candidates: Vec<Candidate>, hints: Hints<'_>) -> (Vec<Guess
             guessed.alternatives = possible.collect();
         }
     }
-    let mut signals: Vec<GuessedSignal> = signals.into_iter().map(|(_, guessed)| guessed).collect();
+    let mut signals: Vec<GuessedSignal> =
+        by_sheet.into_iter().chain(signals.into_iter().map(|(_, guessed)| guessed)).collect();
     signals.sort_by(|a, b| a.source.signal.cmp(&b.source.signal));
     let left = (0..candidates.len()).filter(|index| !used.contains(index)).map(|index| candidates[index].label());
     (signals, left.collect())
+}
+
+/// What the owner says of this column; its heading may be given with or without the unit.
+fn described<'h>(candidate: &Candidate, hints: Hints<'h>) -> Option<&'h SheetColumn> {
+    let Origin::Column(name) = &candidate.origin else { return None };
+    hints.columns.iter().find(|(heading, _)| *heading == name || heading_of(heading).0 == *name).map(|(_, column)| column)
+}
+
+/// A column as the signal that its owner says it is.
+fn from_sheet(
+    candidate: &Candidate,
+    shape: Option<Shape>,
+    name: SignalName,
+    column: &SheetColumn,
+    hints: Hints<'_>,
+) -> GuessedSignal {
+    let stroke = hints.stroke(name.cylinder.as_ref());
+    let Possibility { mut source, label, reason, unit_reason } =
+        possibility(candidate, shape, name, "the data sheet says so", hints);
+    source.scale = column.scale.clone().or(source.scale);
+    source.sign = column.sign;
+    if column.zero.is_some() {
+        source.offset = None;
+    }
+    if let (Some(zero), Some(stroke)) = (column.zero, stroke) {
+        let half = 500.0 * stroke;
+        let (sign, offset) = match zero {
+            ZeroAt::Retracted => (column.sign, Some(-half)),
+            ZeroAt::Extended => (column.sign.or(Some(-1)), Some(half)),
+            ZeroAt::Middle => (column.sign, None),
+        };
+        source.sign = sign;
+        source.offset = offset.map(|offset| Quantity::Text(format!("{offset} mm")));
+    }
+    let confidence = Confidence::Chosen;
+    GuessedSignal { source, label, reason, unit_reason, confidence, alternatives: Vec::new() }
 }
 
 /// A candidate as a signal: its map entry, and the reasons.
@@ -99,23 +148,28 @@ fn possibility(
         reason += "; it has noise, so it was measured: it runs straight between samples, where a command is held";
     }
     let (kind, stroke) = (name.kind, hints.stroke(name.cylinder.as_ref()));
-    let (unit, mut unit_reason) = unit(candidate, shape, kind.dimension());
+    // The input has the dimension that the model's drive takes; without a model, any that an input can have.
+    let is_input = matches!(kind, SignalKind::OrificeArea | SignalKind::OrificeCommand);
+    let of_drive = hints.input(name.cylinder.as_ref()).filter(|_| is_input);
+    let takes = |found: Dimension| of_drive.map_or(kind.takes(found), |wanted| found == wanted);
+    let wanted = of_drive.unwrap_or(kind.dimension());
+    let (unit, mut unit_reason) = unit(candidate, shape, wanted);
     if let Some((own, who)) = &candidate.unit
-        && kind.takes(own.dimension)
+        && takes(own.dimension)
     {
         unit_reason.clone_from(who);
     }
     let mut source = candidate.source(name, unit.as_ref().map(|unit| unit.name));
-    if let Some(unit) = unit.as_ref().filter(|unit| !kind.takes(unit.dimension)) {
+    if let Some(unit) = unit.as_ref().filter(|unit| !takes(unit.dimension)) {
         // The map needs a scale here, which only the sensor's data sheet provides.
-        let text = format!("1 {}/{}", kind.dimension().si_unit(), unit.name);
-        source.scale = Some(super::super::Quantity::Text(text));
+        let text = format!("1 {}/{}", wanted.si_unit(), unit.name);
+        source.scale = Some(Quantity::Text(text));
     }
     if kind == SignalKind::Displacement && shape.is_some_and(|shape| shape.least >= 0.0) {
         match stroke {
             Some(stroke) => {
                 let half = 500.0 * stroke;
-                source.offset = Some(super::super::Quantity::Text(format!("-{half} mm")));
+                source.offset = Some(Quantity::Text(format!("-{half} mm")));
                 reason += "; never below 0, so it counts from one end: the offset is half the stroke of the model";
             }
             None => reason += "; never below 0: if it counts from one end, put mid-stroke as offset (\"-300 mm\")",
@@ -124,8 +178,8 @@ fn possibility(
     if kind == SignalKind::OrificeCommand
         && let Some((value, share)) = rest(&candidate.values)
     {
-        let unit = unit.filter(|unit| unit.dimension == Dimension::Area).unwrap_or(Unit::si(Dimension::Area));
-        source.offset = Some(super::super::Quantity::Text(format!("{} {}", -value, unit.name)));
+        let unit = unit.filter(|unit| takes(unit.dimension)).unwrap_or(Unit::si(wanted));
+        source.offset = Some(Quantity::Text(format!("{} {}", -value, unit.name)));
         reason += &format!(
             "; rests at {value} for {:.0} % of the time, which is taken for closed (the offset goes with the scale)",
             100.0 * share
@@ -134,12 +188,12 @@ fn possibility(
     Possibility { source, label: candidate.label(), reason, unit_reason }
 }
 
-fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {
+fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>], hints: Hints<'_>) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for (index, candidate) in candidates.iter().enumerate() {
         let Some(shape) = shapes[index] else { continue };
         for kind in SignalKind::ALL {
-            if let Some((score, reason)) = by_name_and_unit(kind, candidate) {
+            if let Some((score, reason)) = by_name_and_unit(kind, candidate, hints) {
                 // A signal that never changes is weak evidence, except for tank pressure, flow and oil temperature.
                 let may_rest =
                     matches!(kind, SignalKind::TankPressure | SignalKind::PumpFlow | SignalKind::OilTemperature);
@@ -155,10 +209,14 @@ fn pairs(candidates: &[Candidate], shapes: &[Option<Shape>]) -> Vec<Pair> {
 }
 
 /// The score from name, unit and type together.
-fn by_name_and_unit(kind: SignalKind, candidate: &Candidate) -> Option<(f64, String)> {
+fn by_name_and_unit(kind: SignalKind, candidate: &Candidate, hints: Hints<'_>) -> Option<(f64, String)> {
     let wanted = kind.dimension();
     let named = names::score(kind, &candidate.words);
     match candidate.dimension {
+        // A pump of its own that drives a cylinder: its speed is the input, except for the displacement per revolution.
+        Some(Dimension::RotationalSpeed) if hints.has_pump_drive() => {
+            (kind == SignalKind::OrificeCommand).then(|| (0.9, "speed of the pump that drives the cylinder".to_string()))
+        }
         // The flow of the pump, except for the displacement per revolution.
         Some(Dimension::RotationalSpeed) if kind == SignalKind::PumpFlow && names::is_of_pump(&candidate.words) => {
             Some((LEAST_SCORE, "speed of the pump".to_string()))
@@ -301,7 +359,7 @@ fn unit(candidate: &Candidate, shape: Option<Shape>, dimension: Dimension) -> (O
         let why = match unit.dimension == dimension {
             true => who.clone(),
             false if unit.dimension == Dimension::RotationalSpeed => {
-                format!("{who}; the scale is a placeholder: put the pump's, like \"0.028 l/min/rpm\"")
+                format!("{who}; the scale is a placeholder: put the pump's, like \"28 cm3/rev\"")
             }
             false if dimension == Dimension::Area => {
                 format!("{who}; the scale is a placeholder: put the valve's opening per {}", unit.name)

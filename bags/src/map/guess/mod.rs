@@ -7,14 +7,20 @@ mod from_bag;
 mod from_table;
 mod names;
 mod shapes;
+mod sheet_column;
 mod text;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
+use excavator_model::machine::{Cylinder, Drive, Machine};
+
 use self::candidate::Found;
+pub use self::sheet_column::{SheetColumn, ZeroAt};
 use super::clock_source::ClockSource;
 use super::document::TopicMap;
 use super::signal_source::SignalSource;
+use super::unit::Dimension;
 use crate::BagError;
 use crate::table::{Table, TableFormat};
 
@@ -48,20 +54,47 @@ impl Confidence {
 pub struct Hints<'h> {
     /// The cylinder of signals whose names do not contain one.
     pub cylinder: &'h str,
-    /// Strokes of cylinders by name, m.
-    pub strokes: &'h [(String, f64)],
+    /// The machine, with the strokes of its cylinders and the inputs of their drives.
+    pub machine: Option<&'h Machine>,
+    /// What the owner says of columns, by heading.
+    pub columns: &'h BTreeMap<String, SheetColumn>,
 }
+
+/// For a table that nobody describes.
+pub static NO_COLUMNS: BTreeMap<String, SheetColumn> = BTreeMap::new();
 
 impl<'h> From<&'h str> for Hints<'h> {
     /// Only the name of a cylinder is known.
     fn from(cylinder: &'h str) -> Self {
-        Hints { cylinder, strokes: &[] }
+        Hints { cylinder, machine: None, columns: &NO_COLUMNS }
     }
 }
 
 impl Hints<'_> {
-    fn stroke(&self, cylinder: Option<&String>) -> Option<f64> {
-        self.strokes.iter().find(|(name, _)| Some(name) == cylinder).map(|(_, stroke)| *stroke)
+    fn known(&self, name: Option<&String>) -> Option<&Cylinder> {
+        let cylinders = &self.machine?.cylinders;
+        cylinders.iter().find(|cylinder| Some(&cylinder.name) == name)
+    }
+
+    /// Stroke of a cylinder, m; `None` for a motor.
+    fn stroke(&self, name: Option<&String>) -> Option<f64> {
+        self.known(name).filter(|cylinder| !cylinder.is_motor()).map(|cylinder| cylinder.stroke)
+    }
+
+    /// Dimension of the input of its drive.
+    fn input(&self, name: Option<&String>) -> Option<Dimension> {
+        Some(Dimension::of_command(self.known(name)?.chambers?.drive.command_unit()))
+    }
+
+    /// Whether the machine may have a cylinder of this name: any, if the machine is not known.
+    fn may_have_cylinder(&self, name: &str) -> bool {
+        self.machine.is_none_or(|machine| machine.cylinders.iter().any(|cylinder| cylinder.name == name))
+    }
+
+    /// Whether a pump of its own drives a cylinder: its speed is the input.
+    fn has_pump_drive(&self) -> bool {
+        let drives = self.machine.into_iter().flat_map(|machine| &machine.cylinders).filter_map(|one| one.chambers);
+        drives.into_iter().any(|chambers| matches!(chambers.drive, Drive::Pump { .. }))
     }
 }
 

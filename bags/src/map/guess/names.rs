@@ -64,7 +64,12 @@ pub(super) fn score(kind: SignalKind, words: &[String]) -> Option<(f64, String)>
     let command = find(words, &COMMANDS);
     let opening = find(words, &OPENINGS);
     match kind {
-        SignalKind::OrificeCommand => command,
+        // The reference of a position is no input of a valve.
+        SignalKind::OrificeCommand => command.filter(|(_, word)| {
+            let motion = [Dimension::Length, Dimension::Angle];
+            let names_motion = |dimension| find(words, quantity(dimension)).is_some_and(|(_, of)| of.len() > 2);
+            !motion.into_iter().any(names_motion) || word.starts_with('v')
+        }),
         SignalKind::OrificeArea => opening.filter(|_| command.as_ref().is_none_or(|(_, word)| word.starts_with("v"))),
         // A command is not a measurement.
         _ if command.as_ref().is_some_and(|(_, word)| word.len() > 1 && !word.starts_with("v")) => None,

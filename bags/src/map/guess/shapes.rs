@@ -49,6 +49,8 @@ impl Shape {
                 Some(("deg", format!("numbers up to {most} are more than a turn in radians")))
             }
             Dimension::Flow if size > 0.1 => Some(("l/min", format!("numbers up to {most} are no m3/s"))),
+            // A valve of 5 A is a heater; 5 mA is the null of a servo valve.
+            Dimension::Current if size > 5.0 => Some(("mA", format!("numbers up to {most} are no amperes of a valve"))),
             Dimension::Area if size > 0.1 => Some(("mm2", format!("numbers up to {most} are no m2"))),
             Dimension::Temperature if self.least > 200.0 => {
                 Some(("K", format!("numbers from {} are no oil in degC", short(self.least))))

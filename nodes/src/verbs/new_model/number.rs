@@ -63,14 +63,14 @@ pub fn plain<const N: usize>(option: &str, text: &str, example: &str) -> Result<
 }
 
 /// The input of a valve: its value in the model's unit, and the dimension.
-pub fn command(text: &str) -> Result<(f64, Dimension), VerbError> {
+pub fn command(option: &str, text: &str) -> Result<(f64, Dimension), VerbError> {
     split(text)
         .and_then(|(number, unit)| Some((number, unit.clone(), Unit::named(&unit)?)))
         .filter(|(_, _, unit)| {
             matches!(unit.dimension, Dimension::Area | Dimension::Voltage | Dimension::Current | Dimension::Number)
         })
         .map(|(number, _, unit)| (number * unit.factor(), unit.dimension))
-        .ok_or_else(|| wrong("--command", text, "10 V"))
+        .ok_or_else(|| wrong(option, text, "10 V"))
 }
 
 #[cfg(test)]
@@ -85,11 +85,11 @@ mod tests {
         assert!((other("--motor", "50 cm³", "m3", "").unwrap() - 5e-5).abs() < 1e-18);
         assert!((other("--inertia", "40 kg m^2", "kg m2", "").unwrap() - 40.0).abs() < 1e-12);
         assert_eq!(plain::<3>("--cylinder", "16/10 x 100 mm", "").unwrap(), [16.0, 10.0, 100.0]);
-        assert_eq!(command("20 mA").unwrap(), (0.02, Dimension::Current));
+        assert_eq!(command("--command", "20 mA").unwrap(), (0.02, Dimension::Current));
         for (text, said) in [("bar", "70 bar"), ("70", "70 bar"), ("70 mm", "70 bar"), ("1e999 bar", "70 bar")] {
             let error = of("--supply", text, Dimension::Pressure, "70 bar").unwrap_err().to_string();
             assert!(error.contains(text) && error.contains(said), "{error}");
         }
-        assert!(plain::<3>("--cylinder", "16/10", "16/10 x 100").is_err() && command("5 bar").is_err());
+        assert!(plain::<3>("--cylinder", "16/10", "16/10 x 100").is_err() && command("--command", "5 bar").is_err());
     }
 }

@@ -20,7 +20,7 @@ pub fn data_sheet(arguments: &NewModelArguments) -> Result<DataSheet, VerbError>
             drop: pressure("--rated-drop", &arguments.rated_drop)?,
         }),
     };
-    let command = match arguments.command.as_deref().map(number::command).transpose()? {
+    let command = match arguments.command.as_deref().map(|text| number::command("--command", text)).transpose()? {
         None => None,
         Some((area, Dimension::Area)) => Some(ValveCommand::Area(area)),
         Some((volts, Dimension::Voltage)) => Some(ValveCommand::Volts(volts)),

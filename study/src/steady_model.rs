@@ -1,0 +1,99 @@
+//! Writes what steady stretches tell into a model, as starts for a fit.
+
+use excavator_identification::characterisation::{Characterisation, DriveCurve, Estimate};
+use excavator_model::effects::Site;
+use excavator_model::{Model, ModelError};
+
+/// Standard errors from zero above which a null counts as real.
+const CLEAR: f64 = 3.0;
+
+/// Share of the full input below which a null does not matter: valves are adjusted to one per cent.
+const LEAST_NULL: f64 = 0.01;
+
+/// Largest relative error of a value that replaces a start.
+const USEFUL: f64 = 0.5;
+
+/// `model` with the values that the procedures found: null, gains, losses of a pump, friction, weight, stops. Dead zones, lags and other
+/// friction laws are left out: they are effects, which a diagnosis names.
+///
+/// # Errors
+/// [`ModelError`] if a cylinder cannot have a null.
+pub(crate) fn with_steady_values(model: &Model, found: &[Characterisation]) -> Result<Model, ModelError> {
+    let mut model = model.clone();
+    for one in found {
+        let Some(place) = model.machine.cylinder_index(&one.cylinder) else { continue };
+        let mut writer = Writer { model: &mut model, site: Site::Cylinder(place) };
+        match &one.drive {
+            Ok(DriveCurve::Valve(valve)) => {
+                let full = one.maximum_orifice_area;
+                if valve.null.value.abs() > (CLEAR * valve.null.error).max(LEAST_NULL * full) {
+                    // Held: a dead zone has the null in its middle, and a fit could move both.
+                    writer.set_held("valve_null", valve.null)?;
+                }
+                let gains = ["flow_gain_cap", "flow_gain_rod"].into_iter().zip(valve.sides);
+                gains.for_each(|(name, side)| side.into_iter().for_each(|edge| writer.set(name, edge.gain)));
+            }
+            Ok(DriveCurve::Pump(pump)) => {
+                writer.set("pump_flow_share", pump.share);
+                writer.set("internal_leakage", pump.leakage);
+            }
+            Err(_) => (),
+        }
+        if let Ok(friction) = &one.friction {
+            for (effect, name) in [("coulomb_friction", "coulomb_friction"), ("viscous_damping", "viscous_damping")] {
+                friction.coefficient(effect).into_iter().for_each(|value| writer.set(name, value));
+            }
+            friction.load_share.into_iter().for_each(|share| writer.scale("gravity", share));
+        }
+        let ends = &mut model.machine.cylinders[place].ends;
+        for (end, stop) in ends.iter_mut().zip(one.stops) {
+            *end = stop.map_or(*end, |stop| stop.value);
+        }
+    }
+    Ok(model)
+}
+
+struct Writer<'m> {
+    model: &'m mut Model,
+    site: Site,
+}
+
+const SOURCE: &str = "read from steady stretches";
+
+impl Writer<'_> {
+    /// Sets a parameter that the model has and a fit may change, if the value is positive and its error small.
+    fn set(&mut self, name: &str, value: Estimate) {
+        let is_useful = value.value > 0.0 && value.relative_error() < USEFUL;
+        let own = self.model.effects.iter_mut().filter(|effect| effect.site == self.site);
+        let parameter = own.flat_map(|effect| &mut effect.parameters).find(|one| one.card.name == name && !one.known);
+        if let (true, Some(parameter)) = (is_useful, parameter) {
+            (parameter.value, parameter.source) = (value.value, SOURCE.to_string());
+            (parameter.standard_error, parameter.margin_95) = (Some(value.error), None);
+        }
+    }
+
+    /// Multiplies the parameters of an effect by a share that is not far from one.
+    fn scale(&mut self, effect: &str, share: Estimate) {
+        let is_useful = share.value > 0.0 && share.relative_error() < USEFUL;
+        let own = self.model.effects.iter_mut().filter(|one| is_useful && one.is(effect, self.site));
+        for parameter in own.flat_map(|effect| &mut effect.parameters).filter(|one| !one.known) {
+            parameter.value *= share.value;
+            parameter.source = SOURCE.to_string();
+        }
+    }
+
+    /// Sets the only parameter of an effect, which is added if the model lacks it, and holds it.
+    fn set_held(&mut self, effect: &str, value: Estimate) -> Result<(), ModelError> {
+        if !self.model.effects.iter().any(|one| one.is(effect, self.site)) {
+            let Ok(physics) = self.model.catalogue.find(effect) else { return Ok(()) };
+            *self.model = self.model.with_effect(&physics, self.site)?;
+        }
+        let own = self.model.effects.iter_mut().find(|one| one.is(effect, self.site));
+        for parameter in own.into_iter().flat_map(|one| &mut one.parameters) {
+            // The reading counts from the null that the model already has.
+            parameter.value += value.value;
+            (parameter.known, parameter.source) = (true, SOURCE.to_string());
+        }
+        Ok(())
+    }
+}
