@@ -30,8 +30,9 @@ pub(crate) fn with_steady_values(model: &Model, found: &[Characterisation]) -> R
                     // Held: a dead zone has the null in its middle, and a fit could move both.
                     writer.set_held("valve_null", valve.null)?;
                 }
-                let gains = ["flow_gain_cap", "flow_gain_rod"].into_iter().zip(valve.sides);
-                gains.for_each(|(name, side)| side.into_iter().for_each(|edge| writer.set(name, edge.gain)));
+                let gains = ["flow_gain_cap", "flow_gain_rod"].into_iter().zip(valve.gains);
+                gains.for_each(|(name, gain)| gain.into_iter().for_each(|gain| writer.set(name, gain)));
+                valve.leakage.into_iter().for_each(|leakage| writer.set("internal_leakage", leakage));
             }
             Ok(DriveCurve::Pump(pump)) => {
                 writer.set("pump_flow_share", pump.share);

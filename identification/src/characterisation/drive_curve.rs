@@ -6,9 +6,10 @@ use excavator_model::machine::Drive;
 use nalgebra::{Matrix2, Vector2};
 use serde::Serialize;
 
+use super::edge::Side;
 use super::estimate::Estimate;
 use super::refusal::Refusal;
-use super::static_valve::{FlowReading, StaticEdge, StaticValve, valve_curve};
+use super::static_valve::{FlowReading, StaticTestError, StaticValve, valve_curve};
 use super::stretches::{Steady, different, steady};
 use super::track::Track;
 
@@ -16,10 +17,25 @@ use super::track::Track;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriveCurve {
-    /// A valve. Gains count flow into the chamber that drives, per input and root of the pressure drop over its edge.
-    Valve(StaticValve),
+    /// A valve.
+    Valve(ValveCurve),
     /// A pump of its own, in a closed circuit.
     Pump(PumpLosses),
+}
+
+/// A valve: `Q = gain (|u - null| - dead zone) sqrt(drop)` at each chamber.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ValveCurve {
+    /// Input at the middle of the closed valve, in its unit.
+    pub null: Estimate,
+    /// Input beyond the null that moves no oil, extending and retracting.
+    pub dead_zones: [Option<Estimate>; 2],
+    /// Flow per input and root of the pressure drop of cap and rod side, m³/(s sqrt(Pa)) per unit of the input.
+    pub gains: [Option<Estimate>; 2],
+    /// Leakage past the seals of the piston, m³/(s Pa); `None` if only one chamber's flow is used.
+    pub leakage: Option<Estimate>,
+    /// Number of steady stretches.
+    pub stretches: usize,
 }
 
 /// Losses of a pump that drives a cylinder: `A+ v = share q - leakage (p+ - p-)`, with the flow q without losses.
@@ -67,33 +83,126 @@ pub fn drive_curve(model: &Model, cylinder: usize, tracks: &[Track]) -> Result<D
         Drive::Valve { .. } => {
             let margin = model.effects.iter().find(|effect| effect.is("pressure_compensation", Site::Cylinder(cylinder)));
             let margin = margin.and_then(|effect| effect.parameters.first()).map(|parameter| parameter.value);
-            let readings: Vec<FlowReading> =
-                stretches.iter().filter_map(|(track, stretch)| reading(track, stretch, margin)).collect();
-            if readings.is_empty() {
-                return Err(Refusal::MissingSignal {
-                    source_name: stretches[0].0.source.clone(),
-                    signal: "pump_pressure".to_string(),
-                    needed_for: "gives the pressure drop of the edge that drives",
-                });
-            }
-            valve_curve(&readings).map(DriveCurve::Valve).map_err(|error| Refusal::Curve(error.to_string()))
+            let is_known = stretches.iter().all(|(_, stretch)| stretch.pressures[2].is_finite());
+            let curve = match margin {
+                None if is_known => with_leakage(&stretches),
+                None => {
+                    return Err(Refusal::MissingSignal {
+                        source_name: stretches[0].0.source.clone(),
+                        signal: "pump_pressure".to_string(),
+                        needed_for: "gives the pressure drop of the edge that drives",
+                    });
+                }
+                Some(margin) => compensated(&stretches, margin),
+            };
+            curve.map(DriveCurve::Valve).map_err(|error| Refusal::Curve(error.to_string()))
         }
     }
 }
 
-/// Flow into the chamber that drives, and the drop over its edge: that of a compensator, if the valve has one.
-fn reading(track: &Track, stretch: &Steady, margin: Option<f64>) -> Option<FlowReading> {
+/// A compensated valve, of the chamber that drives: the compensator sets the drop over its edge.
+fn compensated(stretches: &[(&Track, Steady)], margin: f64) -> Result<ValveCurve, StaticTestError> {
+    let readings: Vec<FlowReading> = stretches.iter().filter_map(|(track, one)| reading(track, one, margin)).collect();
+    let valve = valve_curve(&readings)?;
+    Ok(ValveCurve {
+        null: valve.null,
+        dead_zones: valve.sides.map(|side| side.map(|edge| edge.dead_zone)),
+        gains: valve.sides.map(|side| side.map(|edge| edge.gain)),
+        leakage: None,
+        stretches: readings.len(),
+    })
+}
+
+/// Inputs at which the lines of a chamber meet zero flow, extending and retracting.
+fn crossings(valve: &StaticValve) -> [Option<Estimate>; 2] {
+    [0, 1].map(|index| {
+        let edge = valve.sides[index]?;
+        let sign = if index == 0 { 1.0 } else { -1.0 };
+        Some(Estimate { value: sign * valve.null.value + edge.dead_zone.value, ..edge.dead_zone })
+    })
+}
+
+/// A valve whose four edges have known drops. Leakage past the piston shifts the lines of both chambers, by different inputs; since both
+/// chambers are closed by one spool, the leakage is the one with which their lines meet zero flow at the same input.
+fn with_leakage(stretches: &[(&Track, Steady)]) -> Result<ValveCurve, StaticTestError> {
+    let chambers = |leakage: f64| -> Result<[StaticValve; 2], StaticTestError> {
+        let of = |side: Side| -> Vec<FlowReading> {
+            stretches.iter().filter_map(|(track, one)| chamber_reading(track, one, side, leakage)).collect()
+        };
+        Ok([valve_curve(&of(Side::Cap))?, valve_curve(&of(Side::Rod))?])
+    };
+    // The lines shift in proportion to the leakage, nearly: one secant step from a leakage that matters.
+    let flow = stretches.iter().map(|(track, one)| track.areas.0 * one.speed.value.abs()).fold(f64::INFINITY, f64::min);
+    let pressure = stretches.iter().map(|(_, one)| (one.pressures[0] - one.pressures[1]).abs()).fold(0.0_f64, f64::max);
+    let unit = 0.1 * flow / pressure.max(1.0);
+    let (plain, shifted) = (chambers(0.0)?, chambers(unit)?);
+    let [first, second] = [&plain, &shifted].map(|pair| [crossings(&pair[0]), crossings(&pair[1])]);
+    let (mut information, mut downhill) = (0.0, 0.0);
+    for index in 0..2 {
+        let (Some(cap), Some(rod)) = (first[0][index], first[1][index]) else { continue };
+        let (Some(cap_shifted), Some(rod_shifted)) = (second[0][index], second[1][index]) else { continue };
+        let apart = cap.value - rod.value;
+        let slope = (cap_shifted.value - rod_shifted.value - apart) / unit;
+        let weight = 1.0 / (cap.error * cap.error + rod.error * rod.error).max(f64::MIN_POSITIVE);
+        information += weight * slope * slope;
+        downhill -= weight * slope * apart;
+    }
+    let leakage = Estimate { value: (downhill / information).max(0.0), error: 1.0 / information.sqrt() };
+    let leakage = Some(leakage).filter(|one| one.value.is_finite() && one.error.is_finite());
+    let found = chambers(leakage.map_or(0.0, |one| one.value))?;
+    let [cap, rod] = [crossings(&found[0]), crossings(&found[1])];
+    let uncertain = leakage.map_or(0.0, |one| one.error / unit);
+    let closes = [0, 1].map(|index| {
+        let both: Vec<Estimate> = [cap[index], rod[index]].into_iter().flatten().collect();
+        let mean = Estimate::mean(&both)?;
+        let shift = (second[0][index]?.value - first[0][index]?.value) * uncertain;
+        Some(Estimate { error: mean.error.hypot(shift), ..mean })
+    });
+    let null = match closes {
+        [Some(above), Some(below)] => Estimate {
+            value: 0.5 * (above.value - below.value),
+            error: 0.5 * above.error.hypot(below.error),
+        },
+        _ => Estimate { value: 0.0, error: f64::INFINITY },
+    };
+    let zone = |index: usize, sign: f64| closes[index].map(|one| Estimate { value: one.value - sign * null.value, ..one });
+    let gain = |valve: &StaticValve| {
+        let both: Vec<Estimate> = valve.sides.iter().flatten().map(|edge| edge.gain).collect();
+        Estimate::mean(&both)
+    };
+    Ok(ValveCurve {
+        null,
+        dead_zones: [zone(0, 1.0), zone(1, -1.0)],
+        gains: [gain(&found[0]), gain(&found[1])],
+        leakage,
+        stretches: stretches.len(),
+    })
+}
+
+/// Flow through the edge of a chamber with this leakage past the piston, and the drop over it; positive where the rod extends.
+fn chamber_reading(track: &Track, stretch: &Steady, side: Side, leakage: f64) -> Option<FlowReading> {
+    let [cap, rod, pump, tank] = stretch.pressures;
+    let extends = stretch.speed.value > 0.0;
+    let (area, drop) = match (side, extends) {
+        (Side::Cap, true) => (track.areas.0, pump - cap),
+        (Side::Cap, false) => (track.areas.0, cap - tank),
+        (Side::Rod, true) => (track.areas.1, rod - tank),
+        (Side::Rod, false) => (track.areas.1, pump - rod),
+    };
+    let flow = area * stretch.speed.value + leakage * (cap - rod);
+    let is_usable = drop.is_finite() && drop > 0.0 && (flow > 0.0) == extends;
+    is_usable.then_some(FlowReading { input: stretch.opening.value, flow, pressure_drop: drop })
+}
+
+/// Flow into the chamber that drives, and the drop over its edge: that of the compensator, unless the pump gives less.
+fn reading(track: &Track, stretch: &Steady, margin: f64) -> Option<FlowReading> {
     let [cap, rod, pump, _] = stretch.pressures;
     let extends = stretch.speed.value > 0.0;
     let (area, chamber) = if extends { (track.areas.0, cap) } else { (track.areas.1, rod) };
-    let measured = pump - chamber;
-    let drop = match margin {
-        Some(margin) if measured.is_finite() => measured.min(margin),
-        Some(margin) => margin,
-        None => measured,
-    };
-    let reading = FlowReading { input: stretch.opening.value, flow: area * stretch.speed.value, pressure_drop: drop };
-    (drop.is_finite() && drop > 0.0 && reading.input.is_finite()).then_some(reading)
+    let drop = if (pump - chamber).is_finite() { margin.min(pump - chamber) } else { margin };
+    let reading =
+        FlowReading { input: stretch.opening.value, flow: area * stretch.speed.value, pressure_drop: drop };
+    (drop > 0.0 && reading.input.is_finite()).then_some(reading)
 }
 
 /// Least squares over the stretches, each with the error of its speed; the spread of their residuals is taken into account.
@@ -134,14 +243,6 @@ impl DriveCurve {
         match self {
             DriveCurve::Valve(valve) => Some(valve.null),
             DriveCurve::Pump(_) => None,
-        }
-    }
-
-    /// The sides of the valve, above the null and below.
-    pub fn sides(&self) -> [Option<StaticEdge>; 2] {
-        match self {
-            DriveCurve::Valve(valve) => valve.sides,
-            DriveCurve::Pump(_) => [None, None],
         }
     }
 }

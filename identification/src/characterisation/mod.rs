@@ -34,7 +34,7 @@ mod track;
 pub use closed_valve::{ChamberLeakage, ClosedValve, Hold, valve_leakage};
 pub use dead_zone::{DeadZone, EdgeCurve, dead_zones};
 pub use directional_gain::{DirectionalGain, GainPoint, directional_gains};
-pub use drive_curve::{DriveCurve, PumpLosses, drive_curve};
+pub use drive_curve::{DriveCurve, PumpLosses, ValveCurve, drive_curve};
 pub use edge::{Direction, Edge, Side};
 pub use estimate::Estimate;
 pub use friction::{ForcePoint, FrictionCurve, FrictionTerm, friction};

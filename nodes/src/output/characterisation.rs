@@ -70,11 +70,15 @@ fn drive_rows(drive: &DriveCurve, unit: CommandUnit, row: &mut impl FnMut(String
     match drive {
         DriveCurve::Valve(valve) => {
             row("null of the valve".into(), scaled(valve.null, factor), shown);
-            for (way, edge) in ["extending", "retracting"].iter().zip(valve.sides) {
-                let Some(edge) = edge else { continue };
-                row(format!("dead zone {way}, steady"), scaled(edge.dead_zone, factor), shown);
-                row(format!("gain {way}, steady"), edge.gain, unit.flow_gain());
+            for (way, zone) in ["extending", "retracting"].iter().zip(valve.dead_zones) {
+                zone.into_iter().for_each(|zone| row(format!("dead zone {way}, steady"), scaled(zone, factor), shown));
             }
+            for (side, gain) in ["cap", "rod"].iter().zip(valve.gains) {
+                gain.into_iter().for_each(|gain| row(format!("gain of the {side} side, steady"), gain, unit.flow_gain()));
+            }
+            let (factor, unit) = leakage_unit();
+            let leakage = valve.leakage.map(|leakage| scaled(leakage, factor));
+            leakage.into_iter().for_each(|leakage| row("leakage past the piston, steady".into(), leakage, &unit));
         }
         DriveCurve::Pump(pump) => {
             row("flow of the pump over its flow without losses".into(), pump.share, "-");
