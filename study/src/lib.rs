@@ -39,6 +39,7 @@ pub mod diagnosis_file;
 mod error;
 mod json_text;
 mod long_recording;
+mod model_files;
 pub mod numbers;
 pub mod prelude;
 pub mod preparation;
@@ -54,5 +55,6 @@ mod study_file;
 
 pub use error::WorkError;
 pub use json_text::json_text;
+pub use model_files::model_named;
 pub use study::Study;
 pub use study_file::{StudyFile, StudyOptions};

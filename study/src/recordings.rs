@@ -24,7 +24,7 @@ pub const BLOCK: usize = 180_000;
 pub const LEDGER_BLOCK: usize = 10_000;
 
 /// User settings for recordings.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Default, Clone, Copy)]
 pub struct Use<'u> {
     /// Names of the checks that are overruled if they refuse a recording.
     pub accept: &'u [String],

@@ -12,7 +12,7 @@ use super::queue::{Job, Queue};
 use super::server::IdentifyAction;
 use super::types::{Feedback, Outcome};
 use super::work::{Bounds, Ended, identify};
-use crate::error::VerbError;
+use crate::error::NodeError;
 use excavator_ros::{Health, Logger, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
 /// Longest time until the worker notices that the node ends.
@@ -21,7 +21,7 @@ const GLANCE: Duration = Duration::from_millis(200);
 const NAMED: usize = 80;
 
 /// All parameters, with units, ranges and defaults.
-pub(crate) fn parameters() -> Vec<Parameter> {
+pub fn parameters() -> Vec<Parameter> {
     let text = |name, description| Parameter::new(name, Value::String(String::new()), description).read_only();
     vec![
         text("model_folder", "folder below which goals may name model files; empty: goals read no model files"),
@@ -42,8 +42,8 @@ pub(crate) fn parameters() -> Vec<Parameter> {
 /// Runs the node until a stop is requested.
 ///
 /// # Errors
-/// [`VerbError`] when it cannot start.
-pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
+/// [`NodeError`] when it cannot start.
+pub fn run(ros: &RosArguments) -> Result<(), NodeError> {
     let supervisor = Supervisor::start_large("identification", ros, parameters())?;
     let given = &supervisor.parameters;
     let library = Library::new(&given.text("model_folder"), &given.text("bag_folder")).map_err(RosError::Parameter)?;

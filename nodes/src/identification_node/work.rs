@@ -11,14 +11,13 @@ use excavator_identification::validation::compare;
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
 use excavator_model::{HistoryEntry, Model, addition_name, site_name};
-use excavator_study::Study;
+use excavator_study::preparation::Preparation;
+use excavator_study::{Study, WorkError};
 
 use super::library::{Library, QUOTED, Unusable};
 use super::printable::printable;
-use super::refusals::tell_operator;
+use super::refusals::{remark, tell_operator};
 use super::types::{Goal, Outcome};
-use crate::cli::{Extent, Mapping};
-use crate::error::VerbError;
 
 /// Why there is no outcome.
 #[derive(Debug)]
@@ -30,7 +29,7 @@ pub(super) enum Ended {
     /// A model or bag of the goal cannot be used.
     Unusable(Unusable),
     /// The identification failed.
-    Failed(VerbError),
+    Failed(WorkError),
 }
 
 impl From<Unusable> for Ended {
@@ -58,10 +57,10 @@ impl Bounds<'_> {
     }
 }
 
-impl From<VerbError> for Ended {
-    fn from(error: VerbError) -> Self {
+impl From<WorkError> for Ended {
+    fn from(error: WorkError) -> Self {
         match error {
-            VerbError::Identify(
+            WorkError::Identify(
                 IdentifyError::Fit(FitError::Stopped)
                 | IdentifyError::Regression(RegressionError::Fit(FitError::Stopped)),
             ) => Ended::Cancelled,
@@ -90,7 +89,7 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
     let given = bounds.library.model(&goal.model)?;
     let wanted = with_effects(&given, &goal.effects)?;
     if goal.bags.is_empty() {
-        return Err(VerbError::NoBags.into());
+        return Err(Unusable::NoBags.into());
     }
     let mut recordings = Vec::new();
     for (index, bag) in goal.bags.iter().enumerate() {
@@ -104,12 +103,12 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
         Err(_) => ControlFlow::Break(()),
     };
     let study = Study::of_fitted(wanted, recordings);
-    let identified = study.identify(method, &watch).map_err(VerbError::from)?.result.model;
+    let identified = study.identify(method, &watch)?.result.model;
     let (mut signals, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
     let share = 1.0 / study.identification.len() as f64;
     for (index, recording) in study.identification.iter().enumerate() {
         stage("comparing", 0.7 + 0.3 * share * index as f64)?;
-        let compared = |model: &Model| compare(model, recording).map_err(VerbError::from);
+        let compared = |model: &Model| compare(model, recording).map_err(WorkError::from);
         let pairs = compared(&given)?.signals.into_iter().zip(compared(&identified)?.signals);
         for (number, (old, new)) in pairs.enumerate() {
             if index == 0 {
@@ -132,12 +131,12 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
         mean(&before),
         mean(&after)
     );
-    let model = to_text(&identified).map_err(VerbError::from)?;
+    let model = to_text(&identified).map_err(WorkError::from)?;
     Ok(Outcome { model, signals, nmse_before: before, nmse_after: after, success: true, message })
 }
 
 /// The model with the effects of a goal; its history tells that they were added.
-fn with_effects(given: &Model, effects: &[String]) -> Result<Model, VerbError> {
+fn with_effects(given: &Model, effects: &[String]) -> Result<Model, WorkError> {
     let mut wanted = given.clone();
     for effect in effects {
         for (physics, site) in wanted.parse_addition(effect)? {
@@ -158,10 +157,9 @@ fn with_effects(given: &Model, effects: &[String]) -> Result<Model, VerbError> {
 /// A bag of the library as a recording. A reader's message may quote a file, so it goes to the console only.
 fn recording(name: &str, library: &Library, wanted: &Model) -> Result<Recording, Ended> {
     let path = library.bag(name)?;
-    let mapping = Mapping::default();
-    let found = mapping.preparation(Extent::default()).recording(&path, wanted).map_err(VerbError::from);
-    found.map_err(|error| match error {
-        VerbError::Recording(_) | VerbError::Bag(_) => {
+    let preparation = Preparation { remark: &remark, ..Preparation::default() };
+    preparation.recording(&path, wanted).map_err(|error| match error {
+        WorkError::Recording(_) | WorkError::Bag(_) => {
             tell_operator(&error.to_string());
             Ended::Unusable(Unusable::NotARecording(printable(name, QUOTED)))
         }
@@ -221,7 +219,7 @@ mod tests {
             let model = with_effects(&built_in("zx30u-arm").unwrap(), &effects).unwrap();
             let method = if effects.is_empty() { Method::WeakForm } else { Method::OutputError };
             let bag = std::path::Path::new(samples).join("arm-swing");
-            let recording = Mapping::default().preparation(Extent::default()).recording(&bag, &model).unwrap();
+            let recording = Preparation::default().recording(&bag, &model).unwrap();
             let study = Study::of_fitted(model, vec![recording]);
             let found = study.identify(method, &|_| ControlFlow::Continue(())).unwrap().result.model;
             let numbers = |model: &Model| -> Vec<_> {

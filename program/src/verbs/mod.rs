@@ -46,18 +46,18 @@ pub fn run(verb: Verb, ros: &RosWords) -> Result<(), VerbError> {
         Verb::Model(which) => model::run(&which),
         Verb::Info(arguments) => info::run(&arguments),
         #[cfg(feature = "live")]
-        Verb::Record(arguments) => crate::record::run(&arguments, &ros.arguments),
+        Verb::Record(arguments) => node::record(arguments, &ros.arguments),
         #[cfg(feature = "live")]
-        Verb::Play(arguments) => crate::play::run(&arguments, &ros.arguments),
+        Verb::Play(arguments) => node::play(arguments, &ros.arguments),
         #[cfg(feature = "live")]
         Verb::Up(arguments) => crate::up::run(&arguments, &ros.words),
         #[cfg(feature = "dashboard")]
-        Verb::Dashboard(arguments) => crate::dashboard::run(&arguments, &ros.arguments),
+        Verb::Dashboard(arguments) => node::dashboard(arguments, &ros.arguments),
         #[cfg(feature = "live")]
-        Verb::Node(which) => node::run(which, &ros.arguments),
+        Verb::Node(which) => node::run(&which, &ros.arguments),
         Verb::Import(arguments) => import::run(&arguments),
         #[cfg(feature = "live")]
-        Verb::Machine => crate::arm_simulator::run_machine(),
+        Verb::Machine => node::machine(),
         Verb::Completions { shell } => {
             manual::completions(shell);
             Ok(())

@@ -1,6 +1,7 @@
 //! The player's node.
 
 use std::collections::{BTreeSet, HashMap};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -14,8 +15,7 @@ use rustdds::{QosPolicies, QosPolicyBuilder};
 use super::commands::{is_command, left_out_line, stamped_now};
 use super::keys::Keys;
 use super::schedule::Schedule;
-use crate::cli::PlayArguments;
-use crate::error::VerbError;
+use crate::error::NodeError;
 use excavator_ros::raw::RawOutlet;
 use excavator_ros::{Health, Outlet, PublishError, RosArguments, Supervisor, TopicQos};
 
@@ -24,29 +24,48 @@ const GLANCE: Duration = Duration::from_millis(20);
 /// Time for readers to receive the last messages.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// Plays until the bag ends or a stop is requested.
+/// What is played, and how.
+#[derive(Debug, Clone)]
+pub struct PlayOptions {
+    /// Bag.
+    pub bag: PathBuf,
+    /// How many times as fast as it was.
+    pub rate: f64,
+    /// Whether it begins again at the end.
+    pub repeat: bool,
+    /// Seconds that are left out at the beginning.
+    pub start_offset: f64,
+    /// Topics to play; if empty, all but commands.
+    pub topics: Vec<String>,
+    /// How many times per second bag time is published on `/clock`, if at all.
+    pub clock: Option<f64>,
+    /// Time for readers to appear before the first message, s.
+    pub delay: f64,
+    /// Whether it begins paused.
+    pub start_paused: bool,
+}
+
+/// Plays until the bag ends or a stop is requested. Topics are published under other names by the remappings of `ros`.
 ///
 /// # Errors
-/// [`VerbError`] if the bag cannot be read or the graph cannot be joined.
-pub fn run(arguments: &PlayArguments, ros: &RosArguments) -> Result<(), VerbError> {
-    let mut ros = ros.clone();
-    ros.remaps.extend(arguments.remaps()?);
+/// [`NodeError`] if the bag cannot be read or the graph cannot be joined.
+pub fn run(options: &PlayOptions, ros: &RosArguments) -> Result<(), NodeError> {
     // Problems with the bag are reported before the node joins the graph.
-    let bag = RawMessages::open(&arguments.bag)?;
+    let bag = RawMessages::open(&options.bag)?;
     drop(bag);
-    let supervisor = Supervisor::start_large("bag_player", &ros, Vec::new())?;
-    let clock = match arguments.clock {
+    let supervisor = Supervisor::start_large("bag_player", ros, Vec::new())?;
+    let clock = match options.clock {
         Some(_) => Some(supervisor.link.publish("/clock", TopicQos::reliable(10))?),
         None => None,
     };
-    let pause = Arc::new(AtomicBool::new(arguments.start_paused));
+    let pause = Arc::new(AtomicBool::new(options.start_paused));
     let keys = Keys::listen(Arc::clone(&pause));
     let stop = supervisor.stop_flag();
     let outcome = std::thread::scope(|scope| {
         let playing = scope.spawn(|| {
             let mut player = Player {
                 supervisor: &supervisor,
-                arguments,
+                options,
                 pause: &pause,
                 stop: &stop,
                 clock,
@@ -87,7 +106,7 @@ struct Counts {
 
 struct Player<'p> {
     supervisor: &'p Supervisor,
-    arguments: &'p PlayArguments,
+    options: &'p PlayOptions,
     pause: &'p AtomicBool,
     stop: &'p AtomicBool,
     clock: Option<Outlet<Clock>>,
@@ -100,18 +119,18 @@ struct Player<'p> {
 }
 
 impl Player<'_> {
-    fn play(&mut self) -> Result<(), VerbError> {
-        for topic in RawMessages::open(&self.arguments.bag)?.topics() {
+    fn play(&mut self) -> Result<(), NodeError> {
+        for topic in RawMessages::open(&self.options.bag)?.topics() {
             self.open(&topic)?;
         }
         if !self.left_out.is_empty() {
             self.supervisor.logger.warn(left_out_line(&self.left_out));
         }
         // Discovery takes up to a tenth of a second. Without this pause readers would miss the beginning.
-        self.rest(Duration::from_secs_f64(self.arguments.delay));
+        self.rest(Duration::from_secs_f64(self.options.delay));
         loop {
             self.once()?;
-            if !self.arguments.repeat || self.stopped() {
+            if !self.options.repeat || self.stopped() {
                 break;
             }
         }
@@ -122,11 +141,11 @@ impl Player<'_> {
     }
 
     /// One pass over the bag.
-    fn once(&mut self) -> Result<(), VerbError> {
-        let offset = (self.arguments.start_offset * 1e9) as u64;
+    fn once(&mut self) -> Result<(), NodeError> {
+        let offset = (self.options.start_offset * 1e9) as u64;
         let mut schedule: Option<Schedule> = None;
         let mut begin = None;
-        let mut messages = RawMessages::open(&self.arguments.bag)?;
+        let mut messages = RawMessages::open(&self.options.bag)?;
         for message in messages.by_ref() {
             let message = message?;
             let start = *begin.get_or_insert(message.log_time.saturating_add(offset));
@@ -135,7 +154,7 @@ impl Player<'_> {
             }
             let schedule = schedule.get_or_insert_with(|| {
                 self.next_tick = start;
-                Schedule::new(start, self.arguments.rate, Instant::now())
+                Schedule::new(start, self.options.rate, Instant::now())
             });
             if !self.wait(schedule, message.log_time) {
                 return Ok(());
@@ -180,7 +199,7 @@ impl Player<'_> {
 
     /// Publishes bag time at the requested rate.
     fn tick(&mut self, bag_time: u64) {
-        let (Some(clock), Some(rate)) = (&self.clock, self.arguments.clock) else { return };
+        let (Some(clock), Some(rate)) = (&self.clock, self.options.clock) else { return };
         if bag_time < self.next_tick {
             return;
         }
@@ -191,7 +210,7 @@ impl Player<'_> {
         let _ = clock.publish(Clock { clock: time });
     }
 
-    fn send(&mut self, message: RawMessage) -> Result<(), VerbError> {
+    fn send(&mut self, message: RawMessage) -> Result<(), NodeError> {
         if !self.wanted(&message.topic) {
             return Ok(());
         }
@@ -219,14 +238,14 @@ impl Player<'_> {
     }
 
     fn wanted(&self, topic: &Topic) -> bool {
-        let asked_for = self.arguments.topics.contains(&topic.name);
-        let named = asked_for || (self.arguments.topics.is_empty() && !is_command(&topic.name, &topic.type_name));
+        let asked_for = self.options.topics.contains(&topic.name);
+        let named = asked_for || (self.options.topics.is_empty() && !is_command(&topic.name, &topic.type_name));
         // Two sources of `/clock` would contradict each other.
         named && !(topic.name == "/clock" && self.clock.is_some())
     }
 
-    fn open(&mut self, topic: &Topic) -> Result<(), VerbError> {
-        if self.arguments.topics.is_empty() && is_command(&topic.name, &topic.type_name) {
+    fn open(&mut self, topic: &Topic) -> Result<(), NodeError> {
+        if self.options.topics.is_empty() && is_command(&topic.name, &topic.type_name) {
             self.left_out.insert(topic.name.clone());
         }
         if !self.wanted(topic) || self.outlets.contains_key(&topic.name) {

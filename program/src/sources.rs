@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use excavator_model::Model;
-use excavator_model::document::{built_in, parse, parse_catalogue};
+use excavator_model::document::parse_catalogue;
 use excavator_model::effects::Catalogue;
-#[cfg(feature = "live")]
-use excavator_ros::{Parameter, Value};
+use excavator_study::model_named;
 use rosbag2::{ReadLimits, read_regular_text};
 
 use crate::cli;
@@ -14,34 +13,12 @@ use crate::error::VerbError;
 
 /// A model by its built-in name or file, with the user's own effects.
 pub fn model(choice: &cli::ModelChoice) -> Result<Model, VerbError> {
-    model_with(&choice.model, &catalogue(&choice.own)?)
+    Ok(model_named(&choice.model, &catalogue(&choice.own)?)?)
 }
 
 /// A second model, with the catalogues of the first.
 pub fn another_model(name: &str, first: &cli::ModelChoice) -> Result<Model, VerbError> {
-    model_with(name, &catalogue(&first.own)?)
-}
-
-/// The parameter that names a node's model, if the node does not use the published one.
-#[cfg(feature = "live")]
-pub fn model_parameter() -> Parameter {
-    let meaning = "built-in model or model file (.toml); empty: the model on arm/model";
-    Parameter::new("model", Value::String(String::new()), meaning).read_only()
-}
-
-/// Like `model`, with the effects of the program and of the model's own file.
-#[cfg(feature = "live")]
-pub fn model_named(name: &str) -> Result<Model, VerbError> {
-    model_with(name, &Catalogue::built_in())
-}
-
-fn model_with(name: &str, catalogue: &Catalogue) -> Result<Model, VerbError> {
-    let path = Path::new(name);
-    if !path.exists() && !name.ends_with(".toml") {
-        return Ok(Model { catalogue: catalogue.clone(), ..built_in(name)? });
-    }
-    let text = read_regular_text(path, ReadLimits::DEFAULT.document)?;
-    Ok(parse(name, &text, catalogue)?)
+    Ok(model_named(name, &catalogue(&first.own)?)?)
 }
 
 /// The effects of the program and of these catalogue files. Of a folder, every TOML file is read, sorted by name.

@@ -11,11 +11,11 @@ const MOST_COLUMNS: usize = 100;
 /// Parameters of a node by its name on the command line, in the order of their declaration.
 pub(super) fn of(kind: &str) -> Vec<Parameter> {
     match kind {
-        "arm-simulator" => crate::arm_simulator::parameters(),
-        "arm-bridge" => crate::arm_bridge::parameters(),
-        "joint-controller" => crate::joint_controller::parameters(),
-        "energy-monitor" => crate::energy_monitor::parameters(),
-        "identification" => crate::identification_node::parameters(),
+        "arm-simulator" => excavator_nodes::arm_simulator::parameters(),
+        "arm-bridge" => excavator_nodes::arm_bridge::parameters(),
+        "joint-controller" => excavator_nodes::joint_controller::parameters(),
+        "energy-monitor" => excavator_nodes::energy_monitor::parameters(),
+        "identification" => excavator_nodes::identification_node::parameters(),
         _ => Vec::new(),
     }
 }

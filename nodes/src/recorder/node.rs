@@ -11,8 +11,7 @@ use rosbag2::{BagWriter, WriteOptions};
 use super::offered::{OfferedTopic, asked, topics};
 use super::selection::Selection;
 use super::writing::{Order, Outcome, write};
-use crate::cli::RecordArguments;
-use crate::error::VerbError;
+use crate::error::NodeError;
 use excavator_ros::raw::RawInlet;
 use excavator_ros::{Health, RosArguments, Supervisor};
 
@@ -21,28 +20,37 @@ const LOOK: Duration = Duration::from_millis(200);
 /// Messages that may wait to be written: a minute at 1 kHz.
 const WAITING: usize = 60_000;
 
+/// What is recorded, and where to.
+#[derive(Debug, Clone, Default)]
+pub struct RecordingOptions {
+    /// Names of topics, seen from the namespace of the node; with neither names nor a pattern, all topics are recorded.
+    pub topics: Vec<String>,
+    /// Also topics whose whole name matches this regular expression.
+    pub pattern: Option<String>,
+    /// Not those whose whole name matches this one.
+    pub exclude: Option<String>,
+    /// Also topics with a part that begins with an underscore.
+    pub hidden_topics: bool,
+    /// Bag to write; without, its name is `rosbag2_` and the time.
+    pub bag: Option<PathBuf>,
+    /// Time after which the recording ends, s.
+    pub duration: Option<f64>,
+    /// How the bag is written.
+    pub writing: WriteOptions,
+}
+
 /// Records until a stop is requested, or for the given duration.
 ///
 /// # Errors
-/// [`VerbError`] if it cannot start, or the bag cannot be written.
-pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbError> {
+/// [`NodeError`] if it cannot start, or the bag cannot be written.
+pub fn run(options: &RecordingOptions, ros: &RosArguments) -> Result<(), NodeError> {
     let supervisor = Supervisor::start_large("bag_recorder", ros, Vec::new())?;
-    let names: Vec<String> = if arguments.all {
-        Vec::new()
-    } else {
-        let full = |name: &String| supervisor.link.identity().resolve(name);
-        arguments.topics.iter().map(full).collect::<Result<_, _>>()?
-    };
-    let pattern = if arguments.all { None } else { arguments.regex.as_deref() };
-    let selection = Selection::new(names, pattern, arguments.exclude.as_deref(), arguments.include_hidden_topics)?;
-    let folder = arguments.output.clone().unwrap_or_else(default_folder);
-    let options = WriteOptions {
-        compression: arguments.compression.into(),
-        most_file_bytes: arguments.max_bag_size,
-        most_file_nanoseconds: arguments.max_bag_duration.map(|seconds| (seconds * 1e9) as u64),
-        ..WriteOptions::default()
-    };
-    let bag = BagWriter::create(&folder, &options)?;
+    let full = |name: &String| supervisor.link.identity().resolve(name);
+    let names = options.topics.iter().map(full).collect::<Result<_, _>>()?;
+    let selection =
+        Selection::new(names, options.pattern.as_deref(), options.exclude.as_deref(), options.hidden_topics)?;
+    let folder = options.bag.clone().unwrap_or_else(default_folder);
+    let bag = BagWriter::create(&folder, &options.writing)?;
     supervisor.logger.info(format!("recording to {}", folder.display()));
     let dropped = Arc::new(AtomicU64::new(0));
     let gone = Mutex::new(None);
@@ -69,7 +77,7 @@ pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbEr
         let looking = scope.spawn(|| {
             let mut recorder =
                 Recorder { supervisor: &supervisor, selection, sender, dropped, gone: &gone, known: Vec::new() };
-            let end = arguments.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
+            let end = options.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
             while !stop.load(Ordering::Relaxed) {
                 recorder.look();
                 std::thread::sleep(LOOK);
@@ -91,14 +99,14 @@ pub fn run(arguments: &RecordArguments, ros: &RosArguments) -> Result<(), VerbEr
         supervisor.logger.warn(format!("nobody published {name}"));
     }
     let result = match written {
-        Ok(written) => written.map_err(VerbError::from).and_then(|outcome| tell(&supervisor, &folder, &outcome)),
+        Ok(written) => written.map_err(NodeError::from).and_then(|outcome| tell(&supervisor, &folder, &outcome)),
         Err(_) => Ok(()),
     };
     supervisor.leave();
     result
 }
 
-fn tell(supervisor: &Supervisor, folder: &Path, outcome: &Outcome) -> Result<(), VerbError> {
+fn tell(supervisor: &Supervisor, folder: &Path, outcome: &Outcome) -> Result<(), NodeError> {
     let topics = &outcome.topics;
     let total: u64 = topics.iter().map(|topic| topic.messages).sum();
     for topic in topics {
@@ -113,7 +121,7 @@ fn tell(supervisor: &Supervisor, folder: &Path, outcome: &Outcome) -> Result<(),
         return Ok(());
     }
     let files: Vec<String> = outcome.gone.iter().map(ToString::to_string).collect();
-    Err(VerbError::RecordingGone { bag: folder.to_path_buf(), files: files.join(", ") })
+    Err(NodeError::RecordingGone { bag: folder.to_path_buf(), files: files.join(", ") })
 }
 
 /// A name such as `rosbag2_2026_11_21-06_00_00`, as `ros2 bag record` uses it.

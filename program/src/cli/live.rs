@@ -4,8 +4,14 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
-use super::numbers::{not_negative, positive};
+#[cfg(feature = "dashboard")]
+use excavator_nodes::dashboard::PageOptions;
+use excavator_nodes::player::PlayOptions;
+use excavator_nodes::recorder::RecordingOptions;
 use excavator_ros::{Remap, RosError};
+use rosbag2::WriteOptions;
+
+use super::numbers::{not_negative, positive};
 
 /// Live ROS 2 nodes. Each takes --ros-args (-r FROM:=TO, -r __node:=NAME, -r __ns:=NAMESPACE, -p NAME:=VALUE,
 /// --params-file FILE, --log-level LEVEL).
@@ -76,6 +82,27 @@ pub struct RecordArguments {
     pub compression: BagCompression,
 }
 
+impl From<RecordArguments> for RecordingOptions {
+    fn from(arguments: RecordArguments) -> Self {
+        // All of them: neither names nor a pattern.
+        let (topics, pattern) = if arguments.all { (Vec::new(), None) } else { (arguments.topics, arguments.regex) };
+        RecordingOptions {
+            topics,
+            pattern,
+            exclude: arguments.exclude,
+            hidden_topics: arguments.include_hidden_topics,
+            bag: arguments.output,
+            duration: arguments.duration,
+            writing: WriteOptions {
+                compression: arguments.compression.into(),
+                most_file_bytes: arguments.max_bag_size,
+                most_file_nanoseconds: arguments.max_bag_duration.map(|seconds| (seconds * 1e9) as u64),
+                ..WriteOptions::default()
+            },
+        }
+    }
+}
+
 #[derive(Debug, Args)]
 pub struct UpArguments {
     /// Move every cylinder by itself, and show the dashboard.
@@ -108,6 +135,13 @@ pub struct DashboardArguments {
     /// Name under which browsers may ask for the page, beside localhost and its address; may be given several times.
     #[arg(long, value_name = "NAME")]
     pub allow_host: Vec<String>,
+}
+
+#[cfg(feature = "dashboard")]
+impl From<DashboardArguments> for PageOptions {
+    fn from(DashboardArguments { port, host, allow_host }: DashboardArguments) -> Self {
+        PageOptions { port, host, allowed_hosts: allow_host }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -151,5 +185,20 @@ impl PlayArguments {
                 None => Err(RosError::Arguments(format!("--remap {rule} is not of the form FROM:=TO"))),
             })
             .collect()
+    }
+}
+
+impl From<PlayArguments> for PlayOptions {
+    fn from(arguments: PlayArguments) -> Self {
+        PlayOptions {
+            bag: arguments.bag,
+            rate: arguments.rate,
+            repeat: arguments.repeat,
+            start_offset: arguments.start_offset,
+            topics: arguments.topics,
+            clock: arguments.clock,
+            delay: arguments.delay,
+            start_paused: arguments.start_paused,
+        }
     }
 }

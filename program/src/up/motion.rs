@@ -9,15 +9,16 @@ use std::path::Path;
 
 use excavator_bags::{topic_to_write, write_message};
 use excavator_model::Model;
+use excavator_model::effects::Catalogue;
 use excavator_model::machine::Cylinder;
 use excavator_msgs::common::JointState;
 use excavator_msgs::{Header, Time};
+use excavator_nodes::arm_state::joint_name;
+use excavator_nodes::joint_controller::JointLaw;
+use excavator_study::model_named;
 use rosbag2::{BagWriter, Qos, WriteOptions};
 
-use crate::arm_state::joint_name;
 use crate::error::VerbError;
-use crate::joint_controller::JointLaw;
-use crate::sources;
 
 /// Topic of the joint commands in the bag.
 const TOPIC: &str = "/robot_joint_commands";
@@ -41,7 +42,7 @@ impl Motion {
     /// # Errors
     /// [`VerbError`] for an unknown model, or one without a valve, and for a temporary folder that cannot be written.
     pub fn of(model: &str) -> Result<Self, VerbError> {
-        let model = sources::model_named(model)?;
+        let model = model_named(model, &Catalogue::built_in())?;
         let swings = swings(&model)?;
         let folder = tempfile::tempdir()?;
         write(&folder.path().join("motion"), &swings, duration(&model))?;
@@ -75,7 +76,7 @@ struct Swing {
 
 /// The swing of every cylinder that has a valve.
 fn swings(model: &Model) -> Result<Vec<Swing>, VerbError> {
-    let laws = JointLaw::of(model).map_err(VerbError::Machine)?;
+    let laws = JointLaw::of(model).map_err(VerbError::Motion)?;
     let driven: Vec<_> = model
         .machine
         .cylinders
@@ -84,7 +85,7 @@ fn swings(model: &Model) -> Result<Vec<Swing>, VerbError> {
         .filter_map(|(cylinder, law)| Some((cylinder, law.as_ref()?)))
         .collect();
     if driven.is_empty() {
-        return Err(VerbError::Machine(format!("{} has no valve, so --demo cannot move it", model.machine.name)));
+        return Err(VerbError::Motion(format!("{} has no valve, so --demo cannot move it", model.machine.name)));
     }
     let share = SPEED / driven.len() as f64;
     let swings = driven.into_iter().map(|(cylinder, law)| {

@@ -17,7 +17,7 @@ impl RosWords {
     /// Splits a command line into these arguments and all others.
     ///
     /// # Errors
-    /// [`VerbError::Ros`] for arguments that cannot be parsed.
+    /// [`VerbError::Node`] for arguments that cannot be parsed.
     #[cfg(feature = "live")]
     pub fn split(all: &[String]) -> Result<(Self, Vec<String>), VerbError> {
         let (arguments, others) = excavator_ros::RosArguments::parse(all)?;
