@@ -11,6 +11,7 @@ use excavator_identification::results;
 use excavator_model::Model;
 use excavator_model::recording::Recording;
 use excavator_report::energy_page;
+use excavator_study::WorkError;
 use excavator_study::block_reader::{needs_a_map, read_beside};
 use excavator_study::recordings::LEDGER_BLOCK;
 use excavator_study::sentences::ledger_sentence;
@@ -64,7 +65,7 @@ fn next(arguments: &EnergyArguments, closes: bool, duration: f64) -> NextStep {
 }
 
 /// A bag of our own topics is read in blocks, whatever its length. A recording that needs a map is read whole.
-fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAnalysis, VerbError> {
+fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAnalysis, WorkError> {
     let settings = EnergySettings::default();
     if needs_a_map(bag, mapping.map.as_deref()) {
         return Ok(analyse(model, &mapping.preparation(Extent { whole: true }).whole(bag, model)?, settings)?);
