@@ -3,17 +3,15 @@
 mod cli;
 pub mod demo;
 mod error;
+mod files;
 mod manual;
 mod missing;
-mod output;
-mod outputs;
-mod printing;
+mod next_step;
 mod ros_words;
 mod sources;
 mod terminal;
 #[cfg(feature = "live")]
 mod up;
-mod verbosity;
 mod verbs;
 
 use std::process::ExitCode;
@@ -33,7 +31,7 @@ pub fn run_command_line() -> ExitCode {
         arguments.verbosity().choose();
         PressureUnit::from(arguments.units).show();
         verbs::run(arguments.verb, &ros)?;
-        printing::all_was_printed()
+        terminal::all_was_printed()
     });
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

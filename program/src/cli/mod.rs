@@ -12,7 +12,7 @@ use clap::{Parser, Subcommand};
 
 use excavator_model::display::PressureUnit;
 
-use crate::verbosity::Verbosity;
+use crate::terminal::Verbosity;
 
 #[cfg(feature = "live")]
 pub use live::*;

@@ -8,6 +8,7 @@ use excavator_identification::refinement::{Additions, refine};
 use excavator_model::document::{built_in, to_text};
 use excavator_model::recording::Recording;
 use excavator_report::{refinement_page, verdict_sentence};
+use excavator_study::numbers::number;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rosbag2::WriteOptions;
@@ -16,9 +17,9 @@ use super::sealed::Sealed;
 use super::{manoeuvre, plant};
 use crate::cli::{DemoArguments, Overwriting};
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, Stage, candidate_table, number, stage_table};
-use crate::outputs::write;
-use crate::printing::{print, print_next};
+use crate::files::write;
+use crate::next_step::{NextStep, print_next};
+use crate::terminal::{Progress, Stage, candidate_table, print, stage_table};
 
 /// Every story has its own files.
 const NEVER: Overwriting = Overwriting { force: false };

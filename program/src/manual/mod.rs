@@ -11,7 +11,7 @@ mod verbs_page;
 use clap::{Command, CommandFactory};
 
 use crate::cli::Arguments;
-use crate::output::filled;
+use crate::terminal::filled;
 
 pub use man::write_man_pages;
 #[cfg(feature = "live")]

@@ -2,8 +2,7 @@
 
 use excavator_ros::{Parameter, Value};
 
-use crate::output::filled;
-use crate::terminal;
+use crate::terminal::{self, filled};
 
 /// Width of a help text on a wide terminal, equal to clap's limit.
 const MOST_COLUMNS: usize = 100;

@@ -14,7 +14,7 @@ use nix::unistd::Pid;
 
 use crate::cli::UpArguments;
 use crate::error::VerbError;
-use crate::printing::print;
+use crate::terminal::print;
 use motion::Motion;
 
 use excavator_ros::{Environment, RosArguments, Signals, end_with_this_process};

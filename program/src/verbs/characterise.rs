@@ -7,15 +7,15 @@ use excavator_study::Study;
 
 use crate::cli::{CharacteriseArguments, Extent};
 use crate::error::VerbError;
-use crate::output::{NextStep, characterisation_table, refusals};
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_next};
+use crate::files::{self, Inputs};
+use crate::next_step::{NextStep, print_next};
 use crate::sources;
+use crate::terminal::{characterisation_table, print, refusals};
 
 pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
     let inputs = Inputs::recordings(&arguments.bags, arguments.mapping.map.as_deref()).and_all(arguments.model.files());
-    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let preparation = arguments.mapping.preparation(Extent { whole: true });
     let recordings = preparation.recordings(&arguments.bags, &model)?;
@@ -34,7 +34,7 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
         print_next(&next(arguments));
     }
     let (report, json) = (arguments.report.as_deref(), arguments.json.json.as_deref());
-    outputs::write_told(&characterised, report, json, arguments.overwriting)
+    files::write_told(&characterised, report, json, arguments.overwriting)
 }
 
 /// A fit needs the whole recordings, not only the parts that the procedures use.

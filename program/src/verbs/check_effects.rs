@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use excavator_model::formula::{Checked, Law, ROWS, check, variables};
 use excavator_model::{Model, ModelEffect, addition_name, site_name};
+use excavator_study::numbers::number;
 
 use crate::cli::OwnEffects;
 use crate::error::VerbError;
-use crate::output::{chart, number};
-use crate::printing::print;
 use crate::sources;
+use crate::terminal::{chart, print};
 
 /// Checks every law in these files on the machine of a model, and draws it.
 ///

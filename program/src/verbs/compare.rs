@@ -7,16 +7,16 @@ use excavator_study::Study;
 
 use crate::cli::CompareArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, comparison_table, correlation_table, phase_table};
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_detail, print_next};
+use crate::files::{self, Inputs};
+use crate::next_step::{NextStep, print_next};
 use crate::sources;
+use crate::terminal::{comparison_table, correlation_table, phase_table, print, print_detail};
 
 pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
     let bags = std::iter::once(&arguments.bag).chain(&arguments.repeat);
     let inputs = Inputs::recordings(bags, arguments.mapping.map.as_deref()).and_all(arguments.model.files());
-    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let preparation = arguments.mapping.preparation(arguments.extent);
     let recording = preparation.recording(&arguments.bag, &model)?;
@@ -36,5 +36,5 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
         let (why, duration) = ("find out what the model is missing", comparison.measured.duration());
         print_next(&NextStep::diagnosis_of_halves(why, &arguments.model, &arguments.bag, duration, &arguments.mapping));
     }
-    outputs::write_told(&compared, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
+    files::write_told(&compared, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
 }

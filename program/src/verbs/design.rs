@@ -4,20 +4,21 @@ use std::path::Path;
 
 use excavator_identification::design::{ParameterDesign, Plan, SeparationDesign};
 use excavator_study::diagnosis_file::DiagnosisFile;
+use excavator_study::numbers::number;
 use excavator_study::results::{DesignOrder, Determined, Outcome, Separated};
 use excavator_study::sentences::{determination_sentence, separation_sentence};
 
 use crate::cli::DesignArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, number, pair_table, write_json};
-use crate::outputs::{self, Inputs, write};
-use crate::printing::{print, print_detail, print_next};
+use crate::files::{self, Inputs, write, write_json};
+use crate::next_step::{NextStep, print_next};
 use crate::sources;
+use crate::terminal::{Progress, pair_table, print, print_detail};
 
 pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {
     let outputs = [("-o", Some(arguments.output.as_path())), ("--json", arguments.json.json.as_deref())];
     let inputs = arguments.diagnosis.iter().fold(Inputs::default().and_all(arguments.model.files()), Inputs::and);
-    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let diagnosis = arguments.diagnosis.as_deref().map(DiagnosisFile::read).transpose()?;
     let order = DesignOrder {

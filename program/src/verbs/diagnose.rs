@@ -13,11 +13,10 @@ use excavator_study::results::Diagnosed;
 use super::saved_study;
 use crate::cli::{DiagnoseArguments, ModelChoice, Recordings};
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, candidate_table};
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_detail, print_next};
+use crate::files::{self, Inputs};
+use crate::next_step::{NextStep, print_next};
 use crate::sources;
-use crate::verbosity::Verbosity;
+use crate::terminal::{Progress, Verbosity, candidate_table, print, print_detail};
 
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     let outputs = [
@@ -27,7 +26,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
     ];
     let inputs = Inputs::recordings(arguments.recordings.bags(), arguments.recordings.mapping.map.as_deref())
         .and_all(arguments.model.files());
-    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.overwriting)?;
     let study = arguments.recordings.study(sources::model(&arguments.model)?)?;
     let progress = Progress::new();
     let diagnosed = study.diagnose(&|what: &str, done: f64| progress.tell(what, done))?;
@@ -36,14 +35,14 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         let recordings = &arguments.recordings;
         let options = saved_study::options(&arguments.model, recordings);
         let bags = [recordings.identification.as_slice(), recordings.validation.as_slice()];
-        outputs::write(path, &StudyFile::of(&diagnosed, options, bags)?.text()?, arguments.overwriting)?;
+        files::write(path, &StudyFile::of(&diagnosed, options, bags)?.text()?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&diagnosed);
         let step = next(&arguments.model, &arguments.recordings, arguments.save.as_deref(), &diagnosed.diagnosis);
         print_next(&step);
     }
-    outputs::write_told(&diagnosed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
+    files::write_told(&diagnosed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
 }
 
 /// The next command, which depends on the verdict, and on whether the study was saved.

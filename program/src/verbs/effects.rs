@@ -4,15 +4,15 @@ use std::path::Path;
 
 use excavator_model::document::built_in;
 use excavator_model::effects::{ActsOn, AnyEffect, Card, Effect, Family, Kind, ParameterCard, Site};
+use excavator_study::numbers::number;
 use serde_json::{Value, json};
 
 use super::check_effects;
 use crate::cli::EffectsArguments;
 use crate::error::VerbError;
-use crate::output::{effect_table, number, write_json};
-use crate::outputs::{self, Inputs};
-use crate::printing::print;
+use crate::files::{self, Inputs, write_json};
 use crate::sources;
+use crate::terminal::{effect_table, print};
 
 pub fn run(arguments: &EffectsArguments) -> Result<(), VerbError> {
     if arguments.language {
@@ -23,7 +23,7 @@ pub fn run(arguments: &EffectsArguments) -> Result<(), VerbError> {
         return check_effects::run(&arguments.check, &arguments.model);
     }
     let outputs = [("--json", arguments.json.json.as_deref())];
-    outputs::check(&outputs, &Inputs::default(), arguments.overwriting)?;
+    files::check(&outputs, &Inputs::default(), arguments.overwriting)?;
     let catalogue = sources::catalogue(&arguments.own)?;
     let wanted: Vec<AnyEffect> = match &arguments.name {
         Some(name) => vec![catalogue.find(name)?],

@@ -18,9 +18,9 @@ use excavator_study::sentences::ledger_sentence;
 
 use crate::cli::{EnergyArguments, Extent, Mapping};
 use crate::error::VerbError;
-use crate::output::{NextStep, energy_table, ledger_table, write_json};
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_next};
+use crate::files::{self, Inputs, write_json};
+use crate::next_step::{NextStep, print_next};
+use crate::terminal::{energy_table, ledger_table, print};
 use crate::{sources, terminal};
 
 /// Most blocks queued for the analysis.
@@ -30,7 +30,7 @@ pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
     let inputs =
         Inputs::recordings([&arguments.bag], arguments.mapping.map.as_deref()).and_all(arguments.model.files());
-    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let analysis = analyse_bag(&model, &arguments.bag, &arguments.mapping)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
@@ -39,7 +39,7 @@ pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
         print_next(&next(arguments, missing.is_empty(), analysis.duration));
     }
     if let Some(path) = &arguments.report {
-        outputs::write(path, &energy_page(&model, &analysis), arguments.overwriting)?;
+        files::write(path, &energy_page(&model, &analysis), arguments.overwriting)?;
     }
     if let Some(path) = &arguments.json.json {
         write_json(path, &results::Energy::of(&model, &analysis), arguments.overwriting)?;

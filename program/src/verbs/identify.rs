@@ -8,33 +8,34 @@ use excavator_model::Model;
 use excavator_model::document::to_text;
 use excavator_report::implausible_sentence;
 use excavator_study::Study;
+use excavator_study::numbers::number;
 use excavator_study::sentences::{identification_sentence, profile_sentence};
 
 use crate::cli::IdentifyArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, number, parameter_table, remedy_lines};
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_detail, print_next};
+use crate::files::{self, Inputs};
+use crate::next_step::{NextStep, print_next};
 use crate::sources;
+use crate::terminal::{parameter_table, print, print_detail, remedy_lines};
 
 pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
     let outputs = [("-o", arguments.output.as_deref()), ("--json", arguments.json.json.as_deref())];
     let inputs = Inputs::recordings(&arguments.bag, arguments.mapping.map.as_deref());
     // With --force the output may replace the input model, which keeps its history.
-    outputs::check(&outputs, &inputs, arguments.overwriting)?;
-    outputs::check(&outputs[1..], &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs[1..], &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let recordings = arguments.mapping.preparation(arguments.extent).recordings(&arguments.bag, &model)?;
     let goes_on = |_| ControlFlow::Continue(());
     let identified = Study::of_fitted(model, recordings).identify(arguments.method.into(), &goes_on)?;
     if let Some(path) = &arguments.output {
-        outputs::write(path, &to_text(&identified.result.model)?, arguments.overwriting)?;
+        files::write(path, &to_text(&identified.result.model)?, arguments.overwriting)?;
     }
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&identified.given, &identified.result);
         print_next(&next(arguments));
     }
-    outputs::write_told(&identified, None, arguments.json.json.as_deref(), arguments.overwriting)
+    files::write_told(&identified, None, arguments.json.json.as_deref(), arguments.overwriting)
 }
 
 /// Compare the identified model with the recording, or save the model first.

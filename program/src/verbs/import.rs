@@ -12,11 +12,10 @@ use rosbag2::WriteOptions;
 
 use crate::cli::{ImportArguments, ModelChoice, OwnEffects};
 use crate::error::VerbError;
-use crate::output::NextStep;
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_next};
+use crate::files::{self, Inputs};
+use crate::next_step::{NextStep, print_next};
 use crate::sources;
-use crate::terminal;
+use crate::terminal::{self, print};
 
 pub fn run(arguments: &ImportArguments) -> Result<(), VerbError> {
     match (&arguments.output, arguments.data.as_slice()) {
@@ -31,7 +30,7 @@ pub fn run(arguments: &ImportArguments) -> Result<(), VerbError> {
 fn guess_map(arguments: &ImportArguments, data: &Path) -> Result<(), VerbError> {
     // The map beside the data is not an input here, and may be replaced.
     let inputs = Inputs::recording(data);
-    outputs::check(&[("-o", arguments.output.as_deref())], &inputs, arguments.overwriting)?;
+    files::check(&[("-o", arguments.output.as_deref())], &inputs, arguments.overwriting)?;
     let model = arguments
         .model
         .as_ref()
@@ -50,9 +49,9 @@ fn guess_map(arguments: &ImportArguments, data: &Path) -> Result<(), VerbError> 
     }
     tell_unsure(&guessed);
     let text = guessed.to_text().map_err(excavator_bags::BagError::from)?;
-    outputs::standard_output(&text)?;
+    files::standard_output(&text)?;
     match &arguments.output {
-        Some(path) if path != Path::new("-") => outputs::write(path, &text, arguments.overwriting),
+        Some(path) if path != Path::new("-") => files::write(path, &text, arguments.overwriting),
         _ => Ok(()),
     }
 }
@@ -68,7 +67,7 @@ fn tell_unsure(guessed: &Guess) {
 
 fn import(arguments: &ImportArguments, bag: &Path) -> Result<(), VerbError> {
     let inputs = Inputs::recordings(&arguments.data, arguments.map.as_deref()).and_all(arguments.join.iter().cloned());
-    outputs::check_bag(bag, &inputs, arguments.overwriting)?;
+    files::check_bag(bag, &inputs, arguments.overwriting)?;
     let (recording, report) = read_pieces(&arguments.data, arguments.map.as_deref(), &arguments.join)?;
     for problem in report.problems() {
         match arguments.data.as_slice() {

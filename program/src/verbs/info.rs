@@ -8,14 +8,15 @@ use excavator_bags::table::Table as DataTable;
 use excavator_bags::{BagError, ColumnInfo, SignalsInfo, TableInfo, own_definitions};
 use excavator_model::display::PressureUnit;
 use excavator_model::document::{BUILT_IN, built_in};
+use excavator_study::numbers::number;
 use rosbag2::{BagInfo, Timing, info_with};
 use serde_json::{Value, json};
 
 use crate::cli::InfoArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, number, right, table, write_json};
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_next};
+use crate::files::{self, Inputs, write_json};
+use crate::next_step::{NextStep, print_next};
+use crate::terminal::{print, right, table};
 
 /// Smallest clock offset that is reported, s: networks and recorders add less.
 const NOTABLE_DELAY: f64 = 0.1;
@@ -23,7 +24,7 @@ const NOTABLE_DELAY: f64 = 0.1;
 pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     let path = &arguments.bag;
     let inputs = Inputs::recordings([path], arguments.map.as_deref());
-    outputs::check(&[("--json", arguments.json.json.as_deref())], &inputs, arguments.overwriting)?;
+    files::check(&[("--json", arguments.json.json.as_deref())], &inputs, arguments.overwriting)?;
     if DataTable::is_table(path) && arguments.map.is_none() && TopicMap::beside(path).is_none() {
         return table_without_map(arguments);
     }

@@ -7,7 +7,7 @@ use crate::error::VerbError;
 #[cfg(feature = "live")]
 use crate::manual::parameters_page;
 use crate::manual::{command, results_page, verbs_page, write_man_pages, write_schemas};
-use crate::printing::{print, print_text};
+use crate::terminal::{print, print_text};
 
 /// Prints the completions of a shell.
 pub fn completions(shell: Shell) {

@@ -8,15 +8,15 @@ use excavator_model::display::PressureUnit;
 use excavator_model::document::{reference, schema};
 use excavator_model::machine::{Cylinder, Drive, Supply};
 use excavator_model::{Model, addition_name, site_name, urdf};
+use excavator_study::numbers::number;
 use serde_json::{Value, json};
 
 use super::{new_model, valve_test};
 use crate::cli::{ModelCheckArguments, ModelChoice, ModelVerb};
 use crate::error::VerbError;
-use crate::output::{finite, number, write_json};
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_text};
+use crate::files::{self, Inputs, finite, write_json};
 use crate::sources;
+use crate::terminal::{print, print_text};
 
 pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {
     match verb {
@@ -41,7 +41,7 @@ pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {
 fn check(arguments: &ModelCheckArguments) -> Result<(), VerbError> {
     let choice = ModelChoice { model: arguments.file.clone(), own: arguments.own.clone() };
     let inputs = Inputs::default().and_all(choice.files());
-    outputs::check(&[("--json", arguments.json.json.as_deref())], &inputs, arguments.overwriting)?;
+    files::check(&[("--json", arguments.json.json.as_deref())], &inputs, arguments.overwriting)?;
     let model = sources::model(&choice)?;
     let trials: Vec<Option<Trial>> =
         (0..model.machine.cylinders.len()).map(|cylinder| trial(&model, cylinder).ok().flatten()).collect();

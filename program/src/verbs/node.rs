@@ -37,7 +37,7 @@ pub fn play(arguments: PlayArguments, ros: &RosArguments) -> Result<(), VerbErro
 /// Shows the live topics on a page.
 #[cfg(feature = "dashboard")]
 pub fn dashboard(arguments: DashboardArguments, ros: &RosArguments) -> Result<(), VerbError> {
-    let tell = |page: &str| crate::printing::print(&format!("dashboard: {page}"));
+    let tell = |page: &str| crate::terminal::print(&format!("dashboard: {page}"));
     Ok(excavator_nodes::dashboard::run(&arguments.into(), ros, tell)?)
 }
 

@@ -9,10 +9,10 @@ use excavator_study::results::Outcome;
 
 use crate::cli::ProposeArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, proposal_table};
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_next};
+use crate::files::{self, Inputs};
+use crate::next_step::{NextStep, print_next};
 use crate::sources;
+use crate::terminal::{Progress, print, proposal_table};
 
 pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
     let outputs = [
@@ -22,7 +22,7 @@ pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
     ];
     let inputs = Inputs::recordings(arguments.recordings.bags(), arguments.recordings.mapping.map.as_deref())
         .and_all(arguments.model.files());
-    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let study = arguments.recordings.study(model)?;
     let progress = Progress::new();
@@ -34,9 +34,9 @@ pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
     if let Some(path) = &arguments.output
         && let Some(laws) = proposed.file()?
     {
-        outputs::write(path, &laws, arguments.overwriting)?;
+        files::write(path, &laws, arguments.overwriting)?;
     }
-    outputs::write_told(&proposed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
+    files::write_told(&proposed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
 }
 
 /// Prints proposals, with the suggested next command.

@@ -11,10 +11,10 @@ use excavator_study::results::Refined;
 use super::saved_study;
 use crate::cli::{ModelChoice, Recordings, RefineArguments};
 use crate::error::VerbError;
-use crate::output::{NextStep, Progress, Stage, parameter_table, remedy_lines, stage_table, write_json};
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_next};
+use crate::files::{self, Inputs, write_json};
+use crate::next_step::{NextStep, print_next};
 use crate::sources;
+use crate::terminal::{Progress, Stage, parameter_table, print, remedy_lines, stage_table};
 
 pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
     let study = arguments.diagnosis.as_deref().map(StudyFile::read).transpose()?;
@@ -30,12 +30,12 @@ pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
         (Some(study), Some(path)) => as_diagnosed(study, path, &recordings, arguments)?,
         _ => searched(arguments, &choice, &recordings)?,
     };
-    outputs::write(&arguments.output, &to_text(&refined.refinement.model)?, arguments.overwriting)?;
+    files::write(&arguments.output, &to_text(&refined.refinement.model)?, arguments.overwriting)?;
     if arguments.json.json.as_deref() != Some(Path::new("-")) {
         show(&refined.refinement);
         end(arguments, &choice, &recordings);
     }
-    outputs::write_told(&refined, arguments.report.as_deref(), None, arguments.overwriting)?;
+    files::write_told(&refined, arguments.report.as_deref(), None, arguments.overwriting)?;
     if let Some(path) = &arguments.json.json {
         let written = arguments.output.display().to_string();
         write_json(path, &refined.result(Some(&written)), arguments.overwriting)?;
@@ -49,8 +49,8 @@ fn check_outputs(arguments: &RefineArguments, choice: &ModelChoice, recordings: 
     let inputs = Inputs::recordings(recordings.bags(), recordings.mapping.map.as_deref());
     let inputs = inputs.and_all(arguments.diagnosis.clone());
     // With --force the output may replace the input model, which keeps its history.
-    outputs::check(&outputs, &inputs, arguments.overwriting)?;
-    outputs::check(&others, &inputs.and_all(choice.files()), arguments.overwriting)
+    files::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&others, &inputs.and_all(choice.files()), arguments.overwriting)
 }
 
 fn searched(arguments: &RefineArguments, choice: &ModelChoice, recordings: &Recordings) -> Result<Refined, VerbError> {

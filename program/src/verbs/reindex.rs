@@ -4,8 +4,8 @@ use rosbag2::{Reindexed, ReindexedFile, printable, reindex};
 
 use crate::cli::ReindexArguments;
 use crate::error::VerbError;
-use crate::output::NextStep;
-use crate::printing::{print, print_next};
+use crate::next_step::{NextStep, print_next};
+use crate::terminal::print;
 
 pub fn run(arguments: &ReindexArguments) -> Result<(), VerbError> {
     let done = reindex(&arguments.bag, arguments.keep)?;

@@ -7,8 +7,8 @@ use excavator_study::StudyFile;
 use super::{diagnose, saved_study};
 use crate::cli::ReportArguments;
 use crate::error::VerbError;
-use crate::outputs::{self, Inputs};
-use crate::printing::print_next;
+use crate::files::{self, Inputs};
+use crate::next_step::print_next;
 
 pub fn run(arguments: &ReportArguments) -> Result<(), VerbError> {
     let (path, json) = (&arguments.study, arguments.json.json.as_deref());
@@ -16,7 +16,7 @@ pub fn run(arguments: &ReportArguments) -> Result<(), VerbError> {
     let (model, recordings) = (saved_study::model(&study), saved_study::recordings(&study));
     let outputs = [("--report", arguments.report.as_deref()), ("--json", json)];
     let inputs = Inputs::recordings(recordings.bags(), recordings.mapping.map.as_deref()).and_all([path.clone()]);
-    outputs::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.overwriting)?;
     let files = study.validation.clone();
     let mut diagnosed = study.diagnosed(path)?;
     if arguments.report.is_some() {
@@ -28,5 +28,5 @@ pub fn run(arguments: &ReportArguments) -> Result<(), VerbError> {
         diagnose::show(&diagnosed);
         print_next(&diagnose::next(&model, &recordings, Some(path), &diagnosed.diagnosis));
     }
-    outputs::write_told(&diagnosed, arguments.report.as_deref(), json, arguments.overwriting)
+    files::write_told(&diagnosed, arguments.report.as_deref(), json, arguments.overwriting)
 }

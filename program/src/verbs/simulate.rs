@@ -12,15 +12,15 @@ use rosbag2::WriteOptions;
 
 use crate::cli::{Extent, SimulateArguments};
 use crate::error::VerbError;
-use crate::output::NextStep;
-use crate::outputs;
-use crate::printing::{print, print_next};
+use crate::files;
+use crate::next_step::{NextStep, print_next};
+use crate::terminal::print;
 use crate::{sources, terminal};
 
 pub fn run(arguments: &SimulateArguments) -> Result<(), VerbError> {
-    let inputs = outputs::Inputs::recordings([&arguments.input], arguments.mapping.map.as_deref())
+    let inputs = files::Inputs::recordings([&arguments.input], arguments.mapping.map.as_deref())
         .and_all(arguments.model.files());
-    outputs::check_bag(&arguments.output, &inputs, arguments.overwriting)?;
+    files::check_bag(&arguments.output, &inputs, arguments.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let simulated = if arguments.input.extension().is_some_and(|extension| extension == "toml") {
         with_profile(&model, &arguments.input)?

@@ -7,14 +7,15 @@ use excavator_model::document::to_text;
 use excavator_model::effects::Site;
 use excavator_model::machine::{CommandUnit, Drive};
 use excavator_model::{Model, ModelError};
+use excavator_study::numbers::number as in_digits;
 
 use super::new_model::number;
 use crate::cli::ValveTestArguments;
 use crate::error::VerbError;
-use crate::output::{NextStep, number as in_digits};
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_next};
+use crate::files::{self, Inputs};
+use crate::next_step::{NextStep, print_next};
 use crate::sources;
+use crate::terminal::print;
 
 /// Standard errors from zero above which a dead zone or a play counts as real.
 const CLEAR: f64 = 3.0;
@@ -24,7 +25,7 @@ const LEAST_SHARE: f64 = 0.003;
 
 pub fn run(arguments: &ValveTestArguments) -> Result<(), VerbError> {
     let inputs = Inputs::recordings([&arguments.table], None).and_all(arguments.model.files());
-    outputs::check(&[("-o", Some(&arguments.output))], &inputs, arguments.overwriting)?;
+    files::check(&[("-o", Some(&arguments.output))], &inputs, arguments.overwriting)?;
     let mut model = sources::model(&arguments.model)?;
     let place = match &arguments.cylinder {
         None => 0,
@@ -54,7 +55,7 @@ pub fn run(arguments: &ValveTestArguments) -> Result<(), VerbError> {
     for (side, edge) in [("input above zero", positive), ("input below zero", negative)] {
         print(&of_edge(&name, side, &edge, unit));
     }
-    outputs::write(&arguments.output, &to_text(&model)?, arguments.overwriting)?;
+    files::write(&arguments.output, &to_text(&model)?, arguments.overwriting)?;
     print(&format!("written: {}", arguments.output.display()));
     let output = arguments.output.display().to_string();
     let step = NextStep::new("try the machine", "model").word("check").word(output);

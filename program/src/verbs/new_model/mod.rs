@@ -11,12 +11,12 @@ use excavator_model::template::model_text;
 
 use crate::cli::NewModelArguments;
 use crate::error::VerbError;
-use crate::output::NextStep;
-use crate::outputs::{self, Inputs};
-use crate::printing::{print, print_next};
+use crate::files::{self, Inputs};
+use crate::next_step::{NextStep, print_next};
+use crate::terminal::print;
 
 pub fn run(arguments: &NewModelArguments) -> Result<(), VerbError> {
-    outputs::check(&[("-o", arguments.output.as_deref())], &Inputs::default(), arguments.overwriting)?;
+    files::check(&[("-o", arguments.output.as_deref())], &Inputs::default(), arguments.overwriting)?;
     let answered;
     let arguments = if arguments.drive.is_some() {
         arguments
@@ -31,7 +31,7 @@ pub fn run(arguments: &NewModelArguments) -> Result<(), VerbError> {
     let text = model_text(&sheet::data_sheet(arguments)?).map_err(|error| VerbError::NewModel(error.to_string()))?;
     match arguments.output.as_deref() {
         Some(path) if path != Path::new("-") => {
-            outputs::write(path, &text, arguments.overwriting)?;
+            files::write(path, &text, arguments.overwriting)?;
             print(&format!(
                 "A model of {} with starts for the parameters of cylinder \"{}\" is in {}.",
                 arguments.name,
@@ -41,6 +41,6 @@ pub fn run(arguments: &NewModelArguments) -> Result<(), VerbError> {
             print_next(&NextStep::new("try the machine", "model").word("check").word(path.display().to_string()));
             Ok(())
         }
-        _ => outputs::standard_output(&text),
+        _ => files::standard_output(&text),
     }
 }

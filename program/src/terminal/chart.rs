@@ -1,6 +1,6 @@
 //! Draws a curve with characters.
 
-use super::number;
+use excavator_study::numbers::number;
 
 /// Rows of a chart.
 const ROWS: usize = 7;

@@ -8,8 +8,8 @@ use std::io::IsTerminal;
 
 pub use rosbag2::printable;
 
-use crate::output::filled;
-use crate::verbosity::Verbosity;
+use super::Verbosity;
+use super::paragraph::filled;
 
 /// What our own text contains besides printable characters: line ends, and bold headings of tables. A name that contains these
 /// can at most be bold or start a new line.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use excavator_study::recording_part::Part;
 
 use crate::cli::{Mapping, ModelChoice, Recordings};
+use crate::terminal::{command, print_fitted};
 
 /// Both halves of a recording of `duration` s, for a command that needs one to fit and another for validation. If `bag` is
 /// already a part of a recording, the user has to fill in the second.
@@ -91,8 +92,12 @@ impl NextStep {
     }
 
     /// The sentence and the command.
-    pub fn text(&self, width: Option<usize>) -> String {
-        let command = super::paragraph::command(&self.words, width);
-        format!("Next, {}:\n{command}", self.why)
+    fn text(&self, width: Option<usize>) -> String {
+        format!("Next, {}:\n{}", self.why, command(&self.words, width))
     }
+}
+
+/// Prints the suggested next command.
+pub fn print_next(step: &NextStep) {
+    print_fitted(|width| step.text(width));
 }

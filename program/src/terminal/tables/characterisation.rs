@@ -3,9 +3,9 @@
 use comfy_table::{Cell, Table};
 use excavator_identification::characterisation::{Characterisation, Estimate, Refusal};
 use excavator_report::leakage_unit;
+use excavator_study::numbers::number;
 
-use super::number;
-use super::tables::{right, table};
+use super::{right, table};
 
 /// All values found for a cylinder, with 95 % intervals.
 pub fn characterisation_table(found: &Characterisation) -> Table {

@@ -1,4 +1,4 @@
-//! Writes the output files of a verb.
+//! What is written: the output files of a verb.
 //!
 //! [`check`] and [`check_bag`] check them before the verb computes, so that a minute of work does not end at a folder that does
 //! not exist. [`write`] checks again and writes to a temporary file beside the target. The complete file is then renamed to the
@@ -9,6 +9,7 @@
 //! (standard output) are written directly.
 
 mod inputs;
+mod json;
 mod place;
 mod told;
 mod write;
@@ -17,6 +18,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 pub use inputs::Inputs;
+pub use json::{finite, write_json};
 pub use told::write_told;
 pub use write::{standard_output, write};
 

@@ -3,9 +3,9 @@
 use comfy_table::{Cell, ContentArrangement, Table};
 use excavator_identification::proposal::Proposals;
 use excavator_report::law_result;
+use excavator_study::numbers::number;
 
-use super::number;
-use super::tables::{right, table};
+use super::{right, table};
 
 /// Proposals, the best first.
 pub fn proposal_table(found: &Proposals) -> Table {

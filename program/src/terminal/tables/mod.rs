@@ -1,4 +1,14 @@
-//! Prints tables.
+//! Results as tables.
+
+mod characterisation;
+mod energy;
+mod pairs;
+mod proposals;
+
+pub use characterisation::{characterisation_table, refusals};
+pub use energy::{energy_table, ledger_table};
+pub use pairs::pair_table;
+pub use proposals::proposal_table;
 
 use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
 use comfy_table::{Attribute, Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};

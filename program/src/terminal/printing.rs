@@ -3,10 +3,9 @@
 use std::io::{Error, ErrorKind, Write};
 use std::sync::OnceLock;
 
+use super::paragraph::filled;
+use super::{Verbosity, text as safe, width};
 use crate::error::VerbError;
-use crate::output::{NextStep, filled};
-use crate::terminal;
-use crate::verbosity::Verbosity;
 
 /// The first error while printing.
 static NOT_PRINTED: OnceLock<Error> = OnceLock::new();
@@ -15,8 +14,13 @@ static NOT_PRINTED: OnceLock<Error> = OnceLock::new();
 ///
 /// A closed pipe is not an error. [`all_was_printed`] reports any other.
 pub fn print(text: &str) {
+    print_fitted(|width| filled(text, width));
+}
+
+/// As [`print()`], for text that is wrapped by its own rules. `text` receives the width; `None` without a terminal.
+pub fn print_fitted(text: impl FnOnce(Option<usize>) -> String) {
     if Verbosity::chosen() > Verbosity::Quiet {
-        write(&filled(text, terminal::width()));
+        write(&text(width()));
     }
 }
 
@@ -32,15 +36,8 @@ pub fn print_detail(text: &str) {
     }
 }
 
-/// Prints the suggested next command.
-pub fn print_next(step: &NextStep) {
-    if Verbosity::chosen() > Verbosity::Quiet {
-        write(&step.text(terminal::width()));
-    }
-}
-
 fn write(text: &str) {
-    match writeln!(std::io::stdout(), "{}", terminal::text(text)) {
+    match writeln!(std::io::stdout(), "{}", safe(text)) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => drop(NOT_PRINTED.set(error)),
         _ => (),
     }

@@ -1,4 +1,4 @@
-//! Writes results as JSON.
+//! Results as JSON.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::error::VerbError;
 
 /// Writes a result as JSON to a file, or to standard output for "-".
 pub fn write_json(path: &Path, result: &impl Serialize, overwriting: Overwriting) -> Result<(), VerbError> {
-    crate::outputs::write(path, &json_text(result)?, overwriting)
+    super::write(path, &json_text(result)?, overwriting)
 }
 
 /// JSON has no NaN: a value that is not finite becomes null.

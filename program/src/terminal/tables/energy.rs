@@ -5,9 +5,9 @@ use excavator_identification::energy::{EnergyAnalysis, Totals};
 use excavator_model::Model;
 use excavator_model::effects::ActsOn;
 use excavator_model::site_name;
+use excavator_study::numbers::number;
 
-use super::number;
-use super::tables::{fixed, right, table};
+use super::{fixed, right, table};
 
 /// The flow of energy: over the recording, and per cycle if the work repeats.
 pub fn energy_table(model: &Model, analysis: &EnergyAnalysis) -> Table {

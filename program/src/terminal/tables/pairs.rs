@@ -2,9 +2,9 @@
 
 use comfy_table::{Cell, Table};
 use excavator_identification::design::SeparationDesign;
+use excavator_study::numbers::number;
 
-use super::number;
-use super::tables::{right, table};
+use super::{right, table};
 
 /// The expected result for every pair.
 pub fn pair_table(design: &SeparationDesign) -> Table {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::terminal::printable;
+use super::printable;
 
 /// A progress bar with a short description of the current step.
 pub struct Progress {
