@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 use excavator_identification::identify;
 
-use super::{Extent, Json, Mapping, ModelChoice, NewModelArguments, Overwriting, OwnEffects, ValveTestArguments};
+use super::{Extent, Mapping, ModelChoice, NewModelArguments, Overwriting, OwnEffects, ResultFile, ValveTestArguments};
 
 #[derive(Debug, Args)]
 pub struct DemoArguments {
@@ -71,9 +71,7 @@ pub struct IdentifyArguments {
     #[arg(long, value_enum, default_value_t = Method::WeakForm)]
     pub method: Method,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 #[derive(Debug, Args)]
@@ -97,9 +95,7 @@ pub struct CompareArguments {
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 #[derive(Debug, Args)]
@@ -115,9 +111,7 @@ pub struct CharacteriseArguments {
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 #[derive(Debug, Args)]
@@ -133,9 +127,7 @@ pub struct EnergyArguments {
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 #[derive(Debug, Args)]
@@ -154,9 +146,7 @@ pub struct EffectsArguments {
     #[arg(long, conflicts_with_all = ["name", "catalogue", "check", "json"])]
     pub language: bool,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 #[derive(Debug, Subcommand)]
@@ -182,9 +172,7 @@ pub struct ModelCheckArguments {
     #[command(flatten)]
     pub own: OwnEffects,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 #[derive(Debug, Args)]
@@ -198,9 +186,7 @@ pub struct InfoArguments {
     #[arg(long, value_name = "NAMESPACE", conflicts_with = "map")]
     pub namespace: Option<String>,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 #[derive(Debug, Args)]

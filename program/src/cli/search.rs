@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::numbers::{positive, profile_duration, stroke_margin};
-use super::{Extent, Json, Mapping, ModelChoice, Overwriting, OwnEffects, Recordings};
+use super::{Extent, Mapping, ModelChoice, OwnEffects, Recordings, ResultFile};
 
 #[derive(Debug, Args)]
 pub struct DiagnoseArguments {
@@ -20,9 +20,7 @@ pub struct DiagnoseArguments {
     #[arg(long, value_name = "STUDY.json")]
     pub save: Option<PathBuf>,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 #[derive(Debug, Args)]
@@ -38,9 +36,7 @@ pub struct ProposeArguments {
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 #[derive(Debug, Args)]
@@ -80,9 +76,7 @@ pub struct RefineArguments {
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 impl RefineArguments {
@@ -130,9 +124,7 @@ pub struct DesignArguments {
     #[arg(long, value_name = "PA", default_value_t = 2e7, value_parser = positive)]
     pub highest_pressure: f64,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }
 
 #[derive(Debug, Args)]
@@ -144,7 +136,5 @@ pub struct ReportArguments {
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     #[command(flatten)]
-    pub json: Json,
-    #[command(flatten)]
-    pub overwriting: Overwriting,
+    pub result: ResultFile,
 }

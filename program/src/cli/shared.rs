@@ -1,6 +1,6 @@
 //! Arguments that several verbs share.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -13,18 +13,33 @@ use excavator_study::{Study, WorkError};
 
 use crate::terminal::remark;
 
-#[derive(Debug, Args)]
-pub struct Json {
-    /// Write the result as JSON to this file ("-": standard output, instead of the table).
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
-}
-
 #[derive(Debug, Default, Clone, Copy, Args)]
 pub struct Overwriting {
     /// Replace files that exist; never one that this command reads.
     #[arg(long)]
     pub force: bool,
+}
+
+/// Where the result of a verb goes.
+#[derive(Debug, Args)]
+pub struct ResultFile {
+    /// Write the result as JSON to this file ("-": standard output, instead of the table).
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+}
+
+impl ResultFile {
+    /// The output of `--json`, as it is checked.
+    pub fn output(&self) -> (&'static str, Option<&Path>) {
+        ("--json", self.json.as_deref())
+    }
+
+    /// Whether standard output is for people: not where it takes the JSON.
+    pub fn is_shown(&self) -> bool {
+        self.json.as_deref() != Some(Path::new("-"))
+    }
 }
 
 #[derive(Debug, Default, Clone, Args)]

@@ -9,17 +9,15 @@
 //! (standard output) are written directly.
 
 mod inputs;
-mod json;
 mod place;
-mod told;
+mod results;
 mod write;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 pub use inputs::Inputs;
-pub use json::{finite, write_json};
-pub use told::write_told;
+pub use results::{finite, write_json, write_page, write_told};
 pub use write::{standard_output, write};
 
 use crate::cli::Overwriting;

@@ -1,7 +1,5 @@
 //! `excavator characterise`
 
-use std::path::Path;
-
 use excavator_identification::characterisation::Characterisation;
 use excavator_study::Study;
 
@@ -13,14 +11,14 @@ use crate::sources;
 use crate::terminal::{characterisation_table, print, refusals};
 
 pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
-    let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let outputs = [("--report", arguments.report.as_deref()), arguments.result.output()];
     let inputs = Inputs::recordings(&arguments.bags, arguments.mapping.map.as_deref()).and_all(arguments.model.files());
-    files::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.result.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let preparation = arguments.mapping.preparation(Extent { whole: true });
     let recordings = preparation.recordings(&arguments.bags, &model)?;
     let characterised = Study::of_fitted(model, recordings).characterise();
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    if arguments.result.is_shown() {
         for one in characterised.found() {
             let (results, all) = (one.results(), Characterisation::MOST_RESULTS);
             print(&format!(
@@ -33,8 +31,7 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
         }
         print_next(&next(arguments));
     }
-    let (report, json) = (arguments.report.as_deref(), arguments.json.json.as_deref());
-    files::write_told(&characterised, report, json, arguments.overwriting)
+    files::write_told(&characterised, arguments.report.as_deref(), &arguments.result)
 }
 
 /// A fit needs the whole recordings, not only the parts that the procedures use.

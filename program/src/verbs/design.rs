@@ -16,9 +16,9 @@ use crate::sources;
 use crate::terminal::{Progress, pair_table, print, print_detail};
 
 pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {
-    let outputs = [("-o", Some(arguments.output.as_path())), ("--json", arguments.json.json.as_deref())];
+    let outputs = [("-o", Some(arguments.output.as_path())), arguments.result.output()];
     let inputs = arguments.diagnosis.iter().fold(Inputs::default().and_all(arguments.model.files()), Inputs::and);
-    files::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.result.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let diagnosis = arguments.diagnosis.as_deref().map(DiagnosisFile::read).transpose()?;
     let order = DesignOrder {
@@ -46,19 +46,17 @@ pub fn run(arguments: &DesignArguments) -> Result<(), VerbError> {
 fn between_rivals(arguments: &DesignArguments, found: &Separated) -> Result<(), VerbError> {
     let design = found.design();
     let written = write_profile(arguments, found)?;
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    if arguments.result.is_shown() {
         show(design, written, arguments);
     }
-    if let Some(path) = &arguments.json.json {
-        write_json(path, &found.result(name_of(written).as_deref()), arguments.overwriting)?;
-    }
+    write_json(&found.result(name_of(written).as_deref()), &arguments.result)?;
     if written.is_some() { Ok(()) } else { Err(VerbError::NothingSeparates(sentence(design))) }
 }
 
 /// Writes the profile, if one was found. Returns its file.
 fn write_profile<'a>(arguments: &'a DesignArguments, found: &impl Outcome) -> Result<Option<&'a Path>, VerbError> {
     let Some(profile) = found.file()? else { return Ok(None) };
-    write(&arguments.output, &profile, arguments.overwriting)?;
+    write(&arguments.output, &profile, arguments.result.overwriting)?;
     Ok(Some(&arguments.output))
 }
 
@@ -109,15 +107,13 @@ fn show_use(path: &Path, arguments: &DesignArguments) {
 fn for_parameter(arguments: &DesignArguments, found: &Determined) -> Result<(), VerbError> {
     let design = found.design();
     let written = write_profile(arguments, found)?;
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    if arguments.result.is_shown() {
         show_parameter(design);
         if let Some(path) = written {
             show_use(path, arguments);
         }
     }
-    if let Some(path) = &arguments.json.json {
-        write_json(path, &found.result(name_of(written).as_deref()), arguments.overwriting)?;
-    }
+    write_json(&found.result(name_of(written).as_deref()), &arguments.result)?;
     if written.is_some() {
         return Ok(());
     }

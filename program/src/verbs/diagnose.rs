@@ -19,14 +19,11 @@ use crate::sources;
 use crate::terminal::{Progress, Verbosity, candidate_table, print, print_detail};
 
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
-    let outputs = [
-        ("--report", arguments.report.as_deref()),
-        ("--save", arguments.save.as_deref()),
-        ("--json", arguments.json.json.as_deref()),
-    ];
+    let outputs =
+        [("--report", arguments.report.as_deref()), ("--save", arguments.save.as_deref()), arguments.result.output()];
     let inputs = Inputs::recordings(arguments.recordings.bags(), arguments.recordings.mapping.map.as_deref())
         .and_all(arguments.model.files());
-    files::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.result.overwriting)?;
     let study = arguments.recordings.study(sources::model(&arguments.model)?)?;
     let progress = Progress::new();
     let diagnosed = study.diagnose(&|what: &str, done: f64| progress.tell(what, done))?;
@@ -35,14 +32,14 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), VerbError> {
         let recordings = &arguments.recordings;
         let options = saved_study::options(&arguments.model, recordings);
         let bags = [recordings.identification.as_slice(), recordings.validation.as_slice()];
-        files::write(path, &StudyFile::of(&diagnosed, options, bags)?.text()?, arguments.overwriting)?;
+        files::write(path, &StudyFile::of(&diagnosed, options, bags)?.text()?, arguments.result.overwriting)?;
     }
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    if arguments.result.is_shown() {
         show(&diagnosed);
         let step = next(&arguments.model, &arguments.recordings, arguments.save.as_deref(), &diagnosed.diagnosis);
         print_next(&step);
     }
-    files::write_told(&diagnosed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
+    files::write_told(&diagnosed, arguments.report.as_deref(), &arguments.result)
 }
 
 /// The next command, which depends on the verdict, and on whether the study was saved.

@@ -1,7 +1,5 @@
 //! `excavator effects`
 
-use std::path::Path;
-
 use excavator_model::document::built_in;
 use excavator_model::effects::{ActsOn, AnyEffect, Card, Effect, Family, Kind, ParameterCard, Site};
 use excavator_study::numbers::number;
@@ -22,24 +20,21 @@ pub fn run(arguments: &EffectsArguments) -> Result<(), VerbError> {
     if !arguments.check.is_empty() {
         return check_effects::run(&arguments.check, &arguments.model);
     }
-    let outputs = [("--json", arguments.json.json.as_deref())];
-    files::check(&outputs, &Inputs::default(), arguments.overwriting)?;
+    let outputs = [arguments.result.output()];
+    files::check(&outputs, &Inputs::default(), arguments.result.overwriting)?;
     let catalogue = sources::catalogue(&arguments.own)?;
     let wanted: Vec<AnyEffect> = match &arguments.name {
         Some(name) => vec![catalogue.find(name)?],
         None => catalogue.iter().cloned().collect(),
     };
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    if arguments.result.is_shown() {
         match wanted.as_slice() {
             [one] if arguments.name.is_some() => page(&**one)?,
             all => list(all),
         }
     }
-    if let Some(path) = &arguments.json.json {
-        let cards = wanted.iter().map(|effect| card_json(&**effect)).collect::<Result<Vec<Value>, _>>()?;
-        write_json(path, &json!({ "effects": cards }), arguments.overwriting)?;
-    }
-    Ok(())
+    let cards = wanted.iter().map(|effect| card_json(&**effect)).collect::<Result<Vec<Value>, _>>()?;
+    write_json(&json!({ "effects": cards }), &arguments.result)
 }
 
 fn place(acts_on: ActsOn) -> &'static str {

@@ -1,50 +1,29 @@
 //! `excavator energy`
 
-use std::ops::ControlFlow;
-use std::path::Path;
-use std::sync::mpsc::Receiver;
-
-use excavator_identification::energy::{
-    Analyser, EnergyAnalysis, EnergyError, EnergySettings, MissingPower, analyse, missing_power,
-};
-use excavator_identification::results;
+use excavator_identification::energy::{EnergyAnalysis, MissingPower};
 use excavator_model::Model;
-use excavator_model::recording::Recording;
-use excavator_report::energy_page;
-use excavator_study::WorkError;
-use excavator_study::block_reader::{needs_a_map, read_beside};
-use excavator_study::recordings::LEDGER_BLOCK;
 use excavator_study::sentences::ledger_sentence;
 
-use crate::cli::{EnergyArguments, Extent, Mapping};
+use crate::cli::{EnergyArguments, Extent};
 use crate::error::VerbError;
-use crate::files::{self, Inputs, write_json};
+use crate::files::{self, Inputs};
 use crate::next_step::{NextStep, print_next};
+use crate::sources;
 use crate::terminal::{energy_table, ledger_table, print};
-use crate::{sources, terminal};
-
-/// Most blocks queued for the analysis.
-const WAITING: usize = 4;
 
 pub fn run(arguments: &EnergyArguments) -> Result<(), VerbError> {
-    let outputs = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let outputs = [("--report", arguments.report.as_deref()), arguments.result.output()];
     let inputs =
         Inputs::recordings([&arguments.bag], arguments.mapping.map.as_deref()).and_all(arguments.model.files());
-    files::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.result.overwriting)?;
     let model = sources::model(&arguments.model)?;
-    let analysis = analyse_bag(&model, &arguments.bag, &arguments.mapping)?;
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
-        let missing = missing_power(&model, &analysis);
-        show(&model, &analysis, &missing);
-        print_next(&next(arguments, missing.is_empty(), analysis.duration));
+    let energetic = arguments.mapping.preparation(Extent { whole: true }).energy(&arguments.bag, model)?;
+    if arguments.result.is_shown() {
+        let missing = energetic.missing();
+        show(&energetic.model, &energetic.analysis, &missing);
+        print_next(&next(arguments, missing.is_empty(), energetic.analysis.duration));
     }
-    if let Some(path) = &arguments.report {
-        files::write(path, &energy_page(&model, &analysis), arguments.overwriting)?;
-    }
-    if let Some(path) = &arguments.json.json {
-        write_json(path, &results::Energy::of(&model, &analysis), arguments.overwriting)?;
-    }
-    Ok(())
+    files::write_told(&energetic, arguments.report.as_deref(), &arguments.result)
 }
 
 /// If power is missing, a diagnosis finds the cause; else the signals may still differ.
@@ -62,27 +41,6 @@ fn next(arguments: &EnergyArguments, closes: bool, duration: f64) -> NextStep {
         duration,
         &arguments.mapping,
     )
-}
-
-/// A bag of our own topics is read in blocks, whatever its length. A recording that needs a map is read whole.
-fn analyse_bag(model: &Model, bag: &Path, mapping: &Mapping) -> Result<EnergyAnalysis, WorkError> {
-    let settings = EnergySettings::default();
-    if needs_a_map(bag, mapping.map.as_deref()) {
-        return Ok(analyse(model, &mapping.preparation(Extent { whole: true }).whole(bag, model)?, settings)?);
-    }
-    let work = |blocks: Receiver<Recording>| {
-        let mut analyser = Analyser::new(model, settings);
-        for block in blocks {
-            analyser.push(&block)?;
-        }
-        Ok::<_, EnergyError>(analyser)
-    };
-    let all = |block| (Some(block), ControlFlow::Continue(()));
-    let (report, analysis) = read_beside(bag, mapping.origin().namespace, LEDGER_BLOCK, WAITING, all, work)?;
-    for problem in report.problems() {
-        terminal::remark(&format!("{}: {problem}", bag.display()));
-    }
-    Ok(analysis?.finish()?)
 }
 
 fn show(model: &Model, analysis: &EnergyAnalysis, missing: &[MissingPower]) {

@@ -19,23 +19,23 @@ use crate::sources;
 use crate::terminal::{parameter_table, print, print_detail, remedy_lines};
 
 pub fn run(arguments: &IdentifyArguments) -> Result<(), VerbError> {
-    let outputs = [("-o", arguments.output.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let outputs = [("-o", arguments.output.as_deref()), arguments.result.output()];
     let inputs = Inputs::recordings(&arguments.bag, arguments.mapping.map.as_deref());
     // With --force the output may replace the input model, which keeps its history.
-    files::check(&outputs, &inputs, arguments.overwriting)?;
-    files::check(&outputs[1..], &inputs.and_all(arguments.model.files()), arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.result.overwriting)?;
+    files::check(&outputs[1..], &inputs.and_all(arguments.model.files()), arguments.result.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let recordings = arguments.mapping.preparation(arguments.extent).recordings(&arguments.bag, &model)?;
     let goes_on = |_| ControlFlow::Continue(());
     let identified = Study::of_fitted(model, recordings).identify(arguments.method.into(), &goes_on)?;
     if let Some(path) = &arguments.output {
-        files::write(path, &to_text(&identified.result.model)?, arguments.overwriting)?;
+        files::write(path, &to_text(&identified.result.model)?, arguments.result.overwriting)?;
     }
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    if arguments.result.is_shown() {
         show(&identified.given, &identified.result);
         print_next(&next(arguments));
     }
-    files::write_told(&identified, None, arguments.json.json.as_deref(), arguments.overwriting)
+    files::write_told(&identified, None, &arguments.result)
 }
 
 /// Compare the identified model with the recording, or save the model first.

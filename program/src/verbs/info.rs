@@ -24,7 +24,7 @@ const NOTABLE_DELAY: f64 = 0.1;
 pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     let path = &arguments.bag;
     let inputs = Inputs::recordings([path], arguments.map.as_deref());
-    files::check(&[("--json", arguments.json.json.as_deref())], &inputs, arguments.overwriting)?;
+    files::check(&[arguments.result.output()], &inputs, arguments.result.overwriting)?;
     if DataTable::is_table(path) && arguments.map.is_none() && TopicMap::beside(path).is_none() {
         return table_without_map(arguments);
     }
@@ -37,7 +37,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     });
     let bag = bag?;
     let signals = signals.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    if arguments.result.is_shown() {
         match (&bag, &signals) {
             (Some(bag), _) => show_bag(bag),
             (None, Ok((signals, _))) => {
@@ -62,9 +62,9 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
             Err(_) => (),
         }
     }
-    if let Some(file) = &arguments.json.json {
+    if arguments.result.json.is_some() {
         let signals = signals.as_ref().map(|(signals, _)| signals);
-        write_json(file, &to_json(bag.as_ref(), &signals)?, arguments.overwriting)?;
+        write_json(&to_json(bag.as_ref(), &signals)?, &arguments.result)?;
     }
     // A bag without our topics is not a failure; an unreadable table or map is.
     match signals {
@@ -76,7 +76,7 @@ pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
 /// Shows the columns of a table. Without a map it is unknown which signals they are.
 fn table_without_map(arguments: &InfoArguments) -> Result<(), VerbError> {
     let info = TableInfo::read(&arguments.bag)?;
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    if arguments.result.is_shown() {
         let most = info.columns.iter().map(|column| column.rows).max().unwrap_or_default();
         let (path, columns) = (arguments.bag.display(), info.columns.len());
         print(&format!("The table {path} has {most} rows, {columns} columns and no map."));
@@ -96,10 +96,7 @@ fn table_without_map(arguments: &InfoArguments) -> Result<(), VerbError> {
         print("signals: none; a map says which column is which signal");
         print_next(&guess(&arguments.bag));
     }
-    match &arguments.json.json {
-        Some(file) => write_json(file, &serde_json::to_value(&info)?, arguments.overwriting),
-        None => Ok(()),
-    }
+    write_json(&serde_json::to_value(&info)?, &arguments.result)
 }
 
 /// One end of a column's range.

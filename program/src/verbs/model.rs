@@ -1,7 +1,6 @@
 //! `excavator model`
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use excavator_model::check::{Oddity, Oscillation, Trial, oddities, oscillations, trial};
 use excavator_model::display::PressureUnit;
@@ -41,12 +40,12 @@ pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {
 fn check(arguments: &ModelCheckArguments) -> Result<(), VerbError> {
     let choice = ModelChoice { model: arguments.file.clone(), own: arguments.own.clone() };
     let inputs = Inputs::default().and_all(choice.files());
-    files::check(&[("--json", arguments.json.json.as_deref())], &inputs, arguments.overwriting)?;
+    files::check(&[arguments.result.output()], &inputs, arguments.result.overwriting)?;
     let model = sources::model(&choice)?;
     let trials: Vec<Option<Trial>> =
         (0..model.machine.cylinders.len()).map(|cylinder| trial(&model, cylinder).ok().flatten()).collect();
     let (oscillations, odd) = (oscillations(&model), oddities(&model));
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    if arguments.result.is_shown() {
         let name = &model.machine.name;
         print(&match odd.len() {
             0 => format!("No number is suspicious in {name}."),
@@ -65,9 +64,7 @@ fn check(arguments: &ModelCheckArguments) -> Result<(), VerbError> {
             .for_each(|name| print(&format!("note: no [[effects]] entry uses formula {name}")));
         odd.iter().for_each(|oddity| print(&format!("suspicious: {oddity}")));
     }
-    if let Some(path) = &arguments.json.json {
-        write_json(path, &to_json(&model, &trials, &oscillations, &odd), arguments.overwriting)?;
-    }
+    write_json(&to_json(&model, &trials, &oscillations, &odd), &arguments.result)?;
     match odd.len() {
         0 => Ok(()),
         oddities => Err(VerbError::OddModel { name: arguments.file.clone(), oddities }),

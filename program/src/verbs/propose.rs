@@ -15,28 +15,25 @@ use crate::sources;
 use crate::terminal::{Progress, print, proposal_table};
 
 pub fn run(arguments: &ProposeArguments) -> Result<(), VerbError> {
-    let outputs = [
-        ("-o", arguments.output.as_deref()),
-        ("--report", arguments.report.as_deref()),
-        ("--json", arguments.json.json.as_deref()),
-    ];
+    let outputs =
+        [("-o", arguments.output.as_deref()), ("--report", arguments.report.as_deref()), arguments.result.output()];
     let inputs = Inputs::recordings(arguments.recordings.bags(), arguments.recordings.mapping.map.as_deref())
         .and_all(arguments.model.files());
-    files::check(&outputs, &inputs, arguments.overwriting)?;
+    files::check(&outputs, &inputs, arguments.result.overwriting)?;
     let model = sources::model(&arguments.model)?;
     let study = arguments.recordings.study(model)?;
     let progress = Progress::new();
     let proposed = study.propose(&|what: &str, done: f64| progress.tell(what, done))?;
     drop(progress);
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    if arguments.result.is_shown() {
         show(arguments, &proposed.model, &proposed.found);
     }
     if let Some(path) = &arguments.output
         && let Some(laws) = proposed.file()?
     {
-        files::write(path, &laws, arguments.overwriting)?;
+        files::write(path, &laws, arguments.result.overwriting)?;
     }
-    files::write_told(&proposed, arguments.report.as_deref(), arguments.json.json.as_deref(), arguments.overwriting)
+    files::write_told(&proposed, arguments.report.as_deref(), &arguments.result)
 }
 
 /// Prints proposals, with the suggested next command.

@@ -30,27 +30,23 @@ pub fn run(arguments: &RefineArguments) -> Result<(), VerbError> {
         (Some(study), Some(path)) => as_diagnosed(study, path, &recordings, arguments)?,
         _ => searched(arguments, &choice, &recordings)?,
     };
-    files::write(&arguments.output, &to_text(&refined.refinement.model)?, arguments.overwriting)?;
-    if arguments.json.json.as_deref() != Some(Path::new("-")) {
+    files::write(&arguments.output, &to_text(&refined.refinement.model)?, arguments.result.overwriting)?;
+    if arguments.result.is_shown() {
         show(&refined.refinement);
         end(arguments, &choice, &recordings);
     }
-    files::write_told(&refined, arguments.report.as_deref(), None, arguments.overwriting)?;
-    if let Some(path) = &arguments.json.json {
-        let written = arguments.output.display().to_string();
-        write_json(path, &refined.result(Some(&written)), arguments.overwriting)?;
-    }
-    Ok(())
+    files::write_page(&refined, arguments.report.as_deref(), arguments.result.overwriting)?;
+    write_json(&refined.result(Some(&arguments.output.display().to_string())), &arguments.result)
 }
 
 fn check_outputs(arguments: &RefineArguments, choice: &ModelChoice, recordings: &Recordings) -> Result<(), VerbError> {
-    let others = [("--report", arguments.report.as_deref()), ("--json", arguments.json.json.as_deref())];
+    let others = [("--report", arguments.report.as_deref()), arguments.result.output()];
     let outputs = [("-o", Some(arguments.output.as_path())), others[0], others[1]];
     let inputs = Inputs::recordings(recordings.bags(), recordings.mapping.map.as_deref());
     let inputs = inputs.and_all(arguments.diagnosis.clone());
     // With --force the output may replace the input model, which keeps its history.
-    files::check(&outputs, &inputs, arguments.overwriting)?;
-    files::check(&others, &inputs.and_all(choice.files()), arguments.overwriting)
+    files::check(&outputs, &inputs, arguments.result.overwriting)?;
+    files::check(&others, &inputs.and_all(choice.files()), arguments.result.overwriting)
 }
 
 fn searched(arguments: &RefineArguments, choice: &ModelChoice, recordings: &Recordings) -> Result<Refined, VerbError> {
