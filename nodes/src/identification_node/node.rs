@@ -11,7 +11,7 @@ use super::printable::printable;
 use super::queue::{Job, Queue};
 use super::server::IdentifyAction;
 use super::types::{Feedback, Outcome};
-use super::work::{Bounds, Ended, identify};
+use super::work::{Bounds, Ended, identify, out_of_time};
 use crate::error::NodeError;
 use excavator_ros::{Health, Logger, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
@@ -116,12 +116,4 @@ impl Worker {
         };
         let _ = self.told.send(News::Ended { id: job.id, outcome });
     }
-}
-
-/// The message for a goal that exceeded its time limit.
-pub(super) fn out_of_time(limit: Duration) -> String {
-    format!(
-        "not done within {:.0} s; give fewer or shorter recordings, or start the node with a longer time_limit",
-        limit.as_secs_f64()
-    )
 }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use excavator_identification::fit::FitError;
 use excavator_identification::identify::{IdentifyError, Method};
@@ -36,6 +36,14 @@ impl From<Unusable> for Ended {
     fn from(unusable: Unusable) -> Self {
         Ended::Unusable(unusable)
     }
+}
+
+/// The message for a goal that exceeded its time limit.
+pub(super) fn out_of_time(limit: Duration) -> String {
+    format!(
+        "not done within {:.0} s; give fewer or shorter recordings, or start the node with a longer time_limit",
+        limit.as_secs_f64()
+    )
 }
 
 /// Limits of the work on a goal.
@@ -171,7 +179,6 @@ fn recording(name: &str, library: &Library, wanted: &Model) -> Result<Recording,
 #[allow(clippy::unwrap_used)]
 mod tests {
     use std::cell::{Cell, RefCell};
-    use std::time::Duration;
 
     use excavator_model::document::{built_in, parse};
     use excavator_model::effects::Catalogue;

@@ -76,7 +76,7 @@ pub fn show(diagnosed: &Diagnosed) {
 const LEAST_SHARE: f64 = 0.05;
 
 /// Prints a diagnosis.
-pub fn show_diagnosis(model: &Model, diagnosis: &Diagnosis) {
+fn show_diagnosis(model: &Model, diagnosis: &Diagnosis) {
     print(&verdict_sentence(model, diagnosis));
     if diagnosis.tried() == 0 {
         print(NONE_TRIED);
