@@ -12,6 +12,7 @@ pub mod diagnosis;
 pub mod energy;
 pub mod fit;
 pub mod identify;
+mod nullable;
 pub mod plausibility;
 pub mod prelude;
 pub mod proposal;

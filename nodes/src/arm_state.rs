@@ -70,7 +70,7 @@ pub(crate) fn arm_state(sample: &Sample, model: &Model, oil_temperature: f64) ->
 }
 
 /// The name that the joint of a cylinder has in joint states and robot descriptions.
-pub(crate) fn joint_name(cylinder: &str) -> String {
+pub fn joint_name(cylinder: &str) -> String {
     format!("{cylinder}_joint")
 }
 

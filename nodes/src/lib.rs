@@ -1,84 +1,41 @@
-//! The program `excavator`: verbs on recordings, and the simulated machine of its demo.
+//! Live nodes for instrumented hydraulic machines: each a function that runs until a stop is requested.
+//!
+//! A node takes its ROS arguments and plain options. It knows no command line and no terminal: what it has to say goes to its log, to
+//! its diagnostics, or back to the caller.
+//!
+//! | module | node |
+//! |---|---|
+//! | [`arm_simulator`] | a model as a machine, in a process of its own behind the command gate |
+//! | [`arm_bridge`] | datagrams, CAN frames and topics of other makers as states |
+//! | [`joint_controller`] | joint commands of ros2_control as openings of valves |
+//! | [`energy_monitor`] | the energy balance of the machine, state by state |
+//! | [`identification_node`] | the action that identifies a model from bags |
+//! | [`recorder`], [`player`] | topics into a bag, and back |
+//! | `dashboard` | the live topics as a page, with the feature of that name |
+//!
+//! Between them stand [`arm_state`], which converts states of the machine, and `command_gate`, through which every command to a valve
+//! passes.
 
-#[cfg(feature = "live")]
-mod arm_bridge;
-#[cfg(feature = "live")]
-mod arm_simulator;
-#[cfg(feature = "live")]
-mod arm_state;
-mod cli;
-#[cfg(feature = "live")]
+pub mod arm_bridge;
+pub mod arm_simulator;
+pub mod arm_state;
 mod command_gate;
 #[cfg(feature = "dashboard")]
 pub mod dashboard;
-pub mod demo;
-#[cfg(feature = "live")]
-mod energy_monitor;
+pub mod energy_monitor;
 mod error;
-#[cfg(feature = "live")]
-mod identification_node;
-#[cfg(feature = "live")]
-mod joint_controller;
-mod manual;
-mod missing;
-mod output;
-mod outputs;
-#[cfg(feature = "live")]
-mod play;
-mod printing;
-#[cfg(feature = "live")]
-mod record;
-mod ros_words;
-mod sources;
-mod terminal;
-#[cfg(feature = "live")]
-mod up;
-mod verbosity;
-mod verbs;
+pub mod identification_node;
+pub mod joint_controller;
+mod models;
+pub mod player;
+pub mod recorder;
+
+pub use error::NodeError;
 
 #[cfg(feature = "can")]
 #[doc(hidden)]
 pub use arm_bridge::can::fuzzing;
 
-use std::process::ExitCode;
-
-use clap::FromArgMatches;
-use excavator_model::display::PressureUnit;
-
-/// Runs the command line of this process.
-pub fn run_command_line() -> ExitCode {
-    let all: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
-    let outcome = ros_words::RosWords::split(&all).and_then(|(ros, words)| {
-        let parsed = manual::command().try_get_matches_from(&words);
-        // Only help and error messages contain a usage.
-        let parsed = parsed.or_else(|_| manual::command_within(terminal::width()).try_get_matches_from(words));
-        let arguments = parsed.and_then(|found| cli::Arguments::from_arg_matches(&found));
-        let arguments = arguments.unwrap_or_else(|refusal| refuse(&refusal));
-        arguments.verbosity().choose();
-        PressureUnit::from(arguments.units).show();
-        verbs::run(arguments.verb, &ros)?;
-        printing::all_was_printed()
-    });
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            terminal::complain(&format!("excavator: {error}"), error.excerpt());
-            ExitCode::from(error.exit_code())
-        }
-    }
-}
-
-/// Prints the error in the command line, or the help, and exits. The text may contain foreign file names.
-fn refuse(refusal: &clap::Error) -> ! {
-    if let Some(reason) = missing::reason(refusal) {
-        terminal::complain(&format!("excavator: {reason}"), "");
-        std::process::exit(refusal.exit_code());
-    }
-    let is_odd = |word: std::ffi::OsString| terminal::printable(&word.to_string_lossy()) != word.to_string_lossy();
-    if std::env::args_os().any(is_odd) {
-        // Without colours: a name could hide escape sequences among them.
-        eprint!("{}", terminal::text(&refusal.render().to_string()));
-        std::process::exit(refusal.exit_code());
-    }
-    refusal.exit()
-}
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

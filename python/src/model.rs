@@ -4,17 +4,18 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use excavator_model::document::{BUILT_IN, built_in, parse, parse_catalogue, to_text};
+use excavator_model::document::{BUILT_IN, parse, parse_catalogue, to_text};
 use excavator_model::effects::{Catalogue, Site};
 use excavator_model::template::examples;
 use excavator_model::{Model as Physics, site_name, site_named};
+use excavator_study::model_named;
 use excavator_study::profile_file::ProfileFile;
 use excavator_study::simulated::{simulate_commands, simulate_profile};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use rosbag2::{ReadLimits, read_regular_text};
 
-use crate::errors::{ModelError, of_bag, of_document, of_model};
+use crate::errors::{ModelError, of_bag, of_document, of_model, of_work};
 use crate::recording::Recording;
 use crate::{json, work};
 
@@ -67,12 +68,7 @@ impl Model {
     /// A built-in model, or one from a file.
     #[staticmethod]
     fn load(name: PathBuf) -> PyResult<Self> {
-        let text = name.display().to_string();
-        if !name.exists() && !text.ends_with(".toml") {
-            return built_in(&text).map(Model::of).map_err(of_document);
-        }
-        let file = read_regular_text(&name, ReadLimits::DEFAULT.document).map_err(of_bag)?;
-        parse(&text, &file, &Catalogue::built_in()).map(Model::of).map_err(of_document)
+        model_named(&name.display().to_string(), &Catalogue::built_in()).map(Model::of).map_err(of_work)
     }
 
     /// From the text of a model file.

@@ -7,6 +7,7 @@ use maud::{Markup, html};
 use super::effect_plot::effect_plot;
 use super::parameter_table;
 use super::verdict_text::place_of;
+use super::words::capitalised;
 
 /// Card, picture on `recordings` and fitted parameters of a named candidate: beside all other effects of the favoured hypothesis, if it
 /// is one of them.
@@ -30,9 +31,4 @@ pub(super) fn effect_card(diagnosis: &Diagnosis, candidate: &Candidate<'_>, reco
             (parameter_table::of_effect(&trial.fit.model, candidate.name(), candidate.addition.site))
         }
     }
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }

@@ -19,11 +19,11 @@ const fn unit(factor: f64, symbol: &str) -> Unit<'_> {
 }
 
 /// Displacements.
-pub(super) const MILLIMETRE: Unit<'static> = unit(1e3, "mm");
+const MILLIMETRE: Unit<'static> = unit(1e3, "mm");
 /// Speeds.
-pub(super) const MILLIMETRE_PER_SECOND: Unit<'static> = unit(1e3, "mm/s");
+const MILLIMETRE_PER_SECOND: Unit<'static> = unit(1e3, "mm/s");
 /// Openings.
-pub(super) const SQUARE_MILLIMETRE: Unit<'static> = unit(1e6, "mm²");
+const SQUARE_MILLIMETRE: Unit<'static> = unit(1e6, "mm²");
 /// Forces of cylinders.
 pub(super) const KILONEWTON: Unit<'static> = unit(1e-3, "kN");
 /// Flows.

@@ -25,10 +25,8 @@ use super::networks::networks;
 use super::patience::{BUILDING, let_go, within};
 use super::probe::{Probe, Probes};
 use super::reminder::ask_again;
+use super::rtps::{Prefix, prefix_of};
 use super::threads::{Died, Threads};
-
-/// GUID prefix of a participant.
-pub(super) type Prefix = [u8; 12];
 
 /// Why the link must be rebuilt.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -293,12 +291,6 @@ impl Scout {
         let (participant, _) = participant?;
         Ok(Scout { participant, threads })
     }
-}
-
-pub(super) fn prefix_of(bytes: &[u8]) -> Prefix {
-    let mut prefix = Prefix::default();
-    prefix.iter_mut().zip(bytes).for_each(|(slot, byte)| *slot = *byte);
-    prefix
 }
 
 /// Names and addresses of the networks that are up.

@@ -19,7 +19,7 @@ use rustdds::{DomainParticipant, RTPSEntity, Timestamp, WriteOptionsBuilder};
 use serde::Serialize;
 
 use super::connection::Connection;
-use super::raw::{RawAdapter, RawBytes};
+use super::raw_bytes::{RawAdapter, RawBytes};
 use super::rtps::{Packet, entity, parameter, sequence_number};
 use super::services::SERVICE_DEPTH;
 use super::{Mapping, PublishError, TopicQos};

@@ -74,6 +74,7 @@ pub mod prelude;
 mod probe;
 mod qos;
 pub mod raw;
+mod raw_bytes;
 mod reminder;
 mod rtps;
 mod security;

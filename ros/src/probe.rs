@@ -21,9 +21,9 @@ use rustdds::no_key::{DataWriter, SimpleDataReader};
 use rustdds::{DomainParticipant, RTPSEntity, Timestamp, TopicKind};
 
 use super::TopicQos;
-use super::health::{Prefix, prefix_of};
 use super::patience::{BUILDING, let_go, within};
-use super::raw::{RawAdapter, RawBytes};
+use super::raw_bytes::{RawAdapter, RawBytes};
+use super::rtps::{Prefix, prefix_of};
 
 /// Time for a peer to answer before it is suspected: ten times what it takes beside four busy loops.
 const ANSWER: Duration = Duration::from_secs(3);

@@ -1,4 +1,4 @@
-//! Messages as bytes, of any type.
+//! Readers and writers of topics of any type.
 
 use std::pin::pin;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -6,73 +6,15 @@ use std::time::Duration;
 
 use futures::StreamExt;
 use rustdds::bytes::Bytes;
-use rustdds::no_key::{DataWriter, Decode, DefaultDecoder, DeserializerAdapter, SerializerAdapter};
+use rustdds::no_key::DataWriter;
 use rustdds::policy::Durability;
-use rustdds::{GUID, QosPolicies, RepresentationIdentifier, Timestamp, WriteOptionsBuilder};
+use rustdds::{GUID, QosPolicies, Timestamp, WriteOptionsBuilder};
 
 use super::clock::system_nanoseconds;
 use super::connection::{Closed, Connection, Endpoint, Install, Task};
 use super::dds_names::{dds_topic, dds_type};
+use super::raw_bytes::{RawAdapter, RawBytes};
 use super::{Link, PublishError, RosError};
-
-/// Length of the encapsulation in front of every message.
-const ENCAPSULATION: usize = 4;
-
-/// A message with its four bytes of encapsulation.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct RawBytes(pub(super) Bytes);
-
-/// Never happens: bytes are always bytes.
-#[derive(Debug, thiserror::Error)]
-#[error("bytes that are none")]
-pub(super) struct NoError;
-
-pub(super) struct RawAdapter;
-
-#[derive(Clone)]
-pub(super) struct RawDecoder;
-
-impl DeserializerAdapter<RawBytes> for RawAdapter {
-    type Error = NoError;
-    type Decoded = RawBytes;
-
-    fn supported_encodings() -> &'static [RepresentationIdentifier] {
-        &[RepresentationIdentifier::CDR_LE, RepresentationIdentifier::CDR_BE]
-    }
-
-    fn transform_decoded(decoded: RawBytes) -> RawBytes {
-        decoded
-    }
-}
-
-impl DefaultDecoder<RawBytes> for RawAdapter {
-    type Decoder = RawDecoder;
-    const DECODER: RawDecoder = RawDecoder;
-}
-
-impl<'de> Decode<'de, RawBytes> for RawDecoder {
-    type Error = NoError;
-
-    fn decode_bytes(self, content: &'de [u8], encoding: RepresentationIdentifier) -> Result<RawBytes, NoError> {
-        let little = u8::from(encoding != RepresentationIdentifier::CDR_BE);
-        let mut bytes = Vec::with_capacity(ENCAPSULATION + content.len());
-        bytes.extend_from_slice(&[0, little, 0, 0]);
-        bytes.extend_from_slice(content);
-        Ok(RawBytes(bytes.into()))
-    }
-}
-
-impl SerializerAdapter<RawBytes> for RawAdapter {
-    type Error = NoError;
-
-    fn output_encoding() -> RepresentationIdentifier {
-        RepresentationIdentifier::CDR_LE
-    }
-
-    fn to_bytes(value: &RawBytes) -> Result<Bytes, NoError> {
-        Ok(value.0.slice(ENCAPSULATION.min(value.0.len())..))
-    }
-}
 
 /// A message as received.
 #[derive(Debug, Clone)]
@@ -245,20 +187,5 @@ impl Endpoint for RawOutlet {
 
     fn close(&self) -> Closed {
         Closed::writer(self.writer.lock().unwrap_or_else(PoisonError::into_inner).take())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bytes_survive_the_round_trip() {
-        let decoded = RawDecoder.decode_bytes(&[1, 2, 3], RepresentationIdentifier::CDR_LE);
-        assert!(matches!(&decoded, Ok(RawBytes(bytes)) if bytes[..] == [0, 1, 0, 0, 1, 2, 3]));
-        let encoded = decoded.and_then(|raw| RawAdapter::to_bytes(&raw));
-        assert!(matches!(encoded, Ok(bytes) if bytes[..] == [1, 2, 3]));
-        let big = RawDecoder.decode_bytes(&[1], RepresentationIdentifier::CDR_BE);
-        assert!(matches!(big, Ok(RawBytes(bytes)) if bytes[..] == [0, 0, 0, 0, 1]));
     }
 }

@@ -17,6 +17,15 @@ const FAST_DDS: [u8; 2] = [1, 15];
 /// Largest datagram over IPv4, bytes.
 const LARGEST: usize = 65_507;
 
+/// GUID prefix of a participant.
+pub(super) type Prefix = [u8; 12];
+
+pub(super) fn prefix_of(bytes: &[u8]) -> Prefix {
+    let mut prefix = Prefix::default();
+    prefix.iter_mut().zip(bytes).for_each(|(slot, byte)| *slot = *byte);
+    prefix
+}
+
 /// Kinds of submessages, RTPS 9.4.5.
 mod kind {
     pub const ACKNACK: u8 = 0x06;

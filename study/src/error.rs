@@ -59,7 +59,7 @@ pub enum WorkError {
     ProfileCylinder { machine: String, cylinder: String, known: String },
     #[error("{} is not what `excavator diagnose --save` or `--json` writes: {reason}", path.display())]
     DiagnosisSyntax { path: PathBuf, reason: String },
-    #[error("{} has no tie: {found}; name rivals with --between", path.display())]
+    #[error("{} has no tie: {found}", path.display())]
     NoTie { path: PathBuf, found: String },
     #[error("{} is no study: {reason}", path.display())]
     StudySyntax { path: PathBuf, reason: String },

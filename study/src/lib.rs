@@ -41,6 +41,7 @@ pub mod diagnosis_file;
 mod error;
 mod json_text;
 mod long_recording;
+mod model_files;
 pub mod numbers;
 pub mod prelude;
 pub mod preparation;
@@ -59,5 +60,6 @@ pub mod valve_test;
 
 pub use error::WorkError;
 pub use json_text::json_text;
+pub use model_files::model_named;
 pub use study::Study;
 pub use study_file::{StudyFile, StudyOptions};

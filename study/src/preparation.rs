@@ -25,6 +25,13 @@ pub struct Preparation<'p> {
     pub remark: &'p dyn Fn(&str),
 }
 
+impl Default for Preparation<'_> {
+    /// Nothing is overruled or left out, and nobody listens to remarks.
+    fn default() -> Self {
+        Preparation { origin: Origin::default(), usage: Use::default(), whole: false, remark: &|_| () }
+    }
+}
+
 impl Preparation<'_> {
     /// All of a recording, checked against the model. `BAG@20..40` is the part from 20 s to 40 s.
     ///

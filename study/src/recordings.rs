@@ -46,7 +46,7 @@ pub(crate) fn at_useful_rate(recording: Recording) -> (Recording, Option<String>
 }
 
 /// User settings for recordings.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Default, Clone, Copy)]
 pub struct Use<'u> {
     /// Names of the checks that are overruled if they refuse a recording.
     pub accept: &'u [String],

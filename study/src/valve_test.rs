@@ -173,8 +173,8 @@ impl ValveTested {
     /// readings keeps its gain.
     ///
     /// # Errors
-    /// [`ModelError`] if the cylinder at `place` cannot have one of the effects.
-    pub fn put_into(&self, model: &mut Model, place: usize, table: &Path) -> Result<(), ModelError> {
+    /// [`WorkError::Model`] if the cylinder at `place` cannot have one of the effects.
+    pub fn put_into(&self, model: &mut Model, place: usize, table: &Path) -> Result<(), WorkError> {
         let site = Site::Cylinder(place);
         let source = format!("static test {}", table.display());
         let full = match model.machine.cylinders[place].chambers.map(|chambers| chambers.drive) {

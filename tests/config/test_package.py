@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from interfaces import CONFIG, REPOSITORY
 
-PACKAGE = REPOSITORY / "nodes"
+PACKAGE = REPOSITORY / "program"
 CMAKE = (PACKAGE / "CMakeLists.txt").read_text()
 PROGRAM = Path(os.environ.get("EXCAVATOR_BINARY", REPOSITORY / "target/debug/excavator")).resolve()
 
@@ -41,6 +41,6 @@ def test_package_xml_names_what_launch_files_import():
 
 
 def test_both_packages_and_the_program_have_one_version():
-    versions = {ElementTree.parse(REPOSITORY / name / "package.xml").getroot().findtext("version") for name in ("nodes", "msgs")}
+    versions = {ElementTree.parse(REPOSITORY / name / "package.xml").getroot().findtext("version") for name in ("program", "msgs")}
     (version,) = re.findall(r'\[workspace.package\]\nversion = "([\d.]+)"', (REPOSITORY / "Cargo.toml").read_text())
     assert versions == {version}

@@ -17,7 +17,7 @@ LIVE = ["hostile::full::", "full::live_"]
 LIVE_AT_ONCE = "4"
 PUBLISHED = [
     "excavator-msgs", "rosbag2", "excavator-model", "excavator-bags", "excavator-identification", "excavator-report", "excavator-ros",
-    "excavator-store", "excavator-study", "excavator",
+    "excavator-store", "excavator-study", "excavator-nodes", "excavator",
 ]  # fmt: skip
 
 

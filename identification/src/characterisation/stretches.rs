@@ -1,6 +1,6 @@
 //! Finds stretches of time in which the valve does not move.
 
-use excavator_model::recording::noise_level;
+use excavator_model::recording::{median_interval, noise_level};
 
 use super::edge::{Edge, Side};
 use super::estimate::Estimate;
@@ -107,15 +107,6 @@ fn velocity_change(track: &Track) -> Vec<f64> {
             }
         })
         .collect()
-}
-
-fn median_interval(time: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if steps.is_empty() {
-        return f64::NAN;
-    }
-    let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// Standard error of the opening's rate from the noise of its sensor, m²/s.

@@ -232,11 +232,6 @@ impl Scores {
 }
 
 impl Hypothesis {
-    /// Whether both add the same effects at the same places, in any order.
-    pub fn adds_the_same(&self, other: &Hypothesis) -> bool {
-        self.effects.len() == other.effects.len() && self.effects.iter().all(|effect| other.has(effect))
-    }
-
     /// Whether it adds the effect.
     pub fn has(&self, effect: &EffectScore) -> bool {
         self.effects.iter().any(|own| own.is_same(effect))

@@ -4,6 +4,8 @@ use excavator_model::Model;
 use excavator_model::recording::Recording;
 use excavator_model::simulation::{Profile, Segment};
 use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::manoeuvre::general;
 use super::ride::Rider;
@@ -13,27 +15,31 @@ use super::trial_run::{best_fit, record, try_out};
 use super::{DesignError, DesignSettings, Plan, Rival, TrialRun, library};
 use crate::decision::Policy;
 use crate::fit::{FitError, FitSettings, LinearRefit, evaluate, fit};
+use crate::nullable::Nullable;
 
-/// Expected separation of a pair of rivals under the proposed profile. Either rival may be the truth; every number is the worse
-/// of the two directions.
-#[derive(Debug, Clone, PartialEq)]
+/// What is expected of two rivals under the profile; of both directions, in which either is the truth, the worse one counts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PairSeparation {
     /// Name of one rival.
     pub first: String,
     /// Name of the other.
     pub second: String,
-    /// Difference of their losses on moderate sines to which both were fitted; `None` if the rivals came with fitted values.
+    /// Difference of their losses on moderate sines that both were fitted to; `null` where rivals came with fitted values.
+    #[serde(rename = "improvement_on_sines")]
     pub improvement_before: Option<f64>,
-    /// Distance in standard deviations of sensor noise after a linearised refit: root of the sum over all readings of the squared
-    /// remaining difference.
+    /// Distance in standard deviations of sensor noise, after a linearised refit.
+    #[serde(with = "Nullable")]
     pub distance: f64,
-    /// Improvement that corresponds to this distance, without noise on the spools.
+    /// Fall of the log error ratio that goes with the distance, without noise on the spools.
+    #[serde(with = "Nullable")]
     pub linear_improvement: f64,
-    /// Improvement of the truth in the trial run.
+    /// Fall of the log error ratio from the other to the truth in the trial run.
+    #[serde(with = "Nullable")]
     pub expected_improvement: f64,
-    /// The same in standard errors.
+    /// The same in its own standard errors.
+    #[serde(with = "Nullable")]
     pub expected_significance: f64,
-    /// Whether a diagnosis would no longer report them as tied.
+    /// Whether a diagnosis would no longer call them tied.
     pub separated: bool,
 }
 

@@ -5,23 +5,28 @@ use excavator_model::recording::Recording;
 use excavator_model::simulation::Profile;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::ride::Rider;
 use super::{DesignError, DesignSettings, Rival};
 use crate::decision::{block_costs_of, improvement_on_blocks};
 use crate::fit::{Fit, FitError, evaluate, fit};
+use crate::nullable::Nullable;
 use crate::search::{AdditionError, fit_addition, misfit, side};
 
-/// Result of a trial run in which one rival is the truth and another is compared with it.
-#[derive(Debug, Clone, PartialEq)]
+/// One rival as the truth, and another one held against it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TrialRun {
-    /// Name of the rival that generated the recordings.
+    /// Name of the rival that made the recordings.
     pub truth: String,
     /// Name of the rival that was fitted to them.
     pub other: String,
-    /// By how much the log error ratio of the truth is lower on the recording that was not fitted.
+    /// By how much less the log error ratio of the truth is on the recording that was not fitted.
+    #[serde(with = "Nullable")]
     pub improvement: f64,
-    /// The improvement in its own standard errors, from the scatter between stretches.
+    /// The same in its own standard errors.
+    #[serde(with = "Nullable")]
     pub significance: f64,
 }
 

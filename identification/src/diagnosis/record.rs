@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Diagnosis, Remainder, Share, Unexplained};
 use crate::decision::{Policy, Scores, ScoresError, Verdict};
 use crate::fit::{Fit, Instrument};
-use crate::results::finite;
+use crate::nullable::finite;
 use crate::search::{Addition, Trial, Unpromising};
 
 /// What [`Diagnosis`] holds, without what only a search needs: covariances, and errors that the scores have as well.

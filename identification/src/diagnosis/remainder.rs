@@ -1,20 +1,26 @@
 //! What a model leaves in each balance.
 
 use excavator_model::Model;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::residual_points::{Point, mean_squares};
+use crate::nullable::Nullable;
 use crate::regression::EquationKind;
 
 /// What is left in one balance.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Balance")]
 pub struct Remainder {
-    /// `arm.motion`, `arm.cap_continuity`, ...
+    /// Name of the equation: `arm.motion`.
     pub equation: String,
-    /// Mean squared residual of the given model over the variance of its noise.
+    /// Mean squared residual of the given model over the variance of its noise: 1 is noise alone.
+    #[serde(with = "Nullable")]
     pub before: f64,
-    /// The same of the model with the effects that the verdict supports.
+    /// The same with the effects that the verdict supports.
+    #[serde(with = "Nullable")]
     pub after: f64,
-    /// Whether noise is all that is left with these effects.
+    /// Whether noise is all that is left with them.
     pub is_noise: bool,
 }
 

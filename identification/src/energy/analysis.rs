@@ -1,8 +1,11 @@
 //! Results of an energy analysis.
 
 use excavator_model::Model;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{PlaceJudgement, Totals, Traces};
+use crate::nullable::Nullable;
 
 /// Energies per cycle of the work.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,17 +20,18 @@ pub struct Cycle {
     pub deviation: Totals,
 }
 
-/// Phase lag, in degrees, of one rate of the Hamiltonian behind another at the excitation frequency; \[A\] requires less than 90.
-/// `None` if one of them has no component there.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// By how many degrees one rate of the stored energy lags behind another one at the frequency of the excitation. `null` where one of
+/// them has no component there.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PhaseDelays {
     /// Frequency, Hz.
+    #[serde(with = "Nullable")]
     pub frequency: f64,
-    /// Analytical behind experimental.
+    /// Analytical behind experimental, degrees.
     pub analytical: Option<f64>,
-    /// Numerical behind experimental.
+    /// Numerical behind experimental, degrees.
     pub numerical: Option<f64>,
-    /// Numerical behind analytical.
+    /// Numerical behind analytical, degrees.
     pub numerical_behind_analytical: Option<f64>,
 }
 

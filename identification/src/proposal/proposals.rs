@@ -7,7 +7,7 @@ use excavator_model::{ModelEffect, site_name};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::grammar::rounded;
+use super::grammar::{PROPOSED, rounded};
 use super::merits::{Merits, law_of, merits};
 use super::survey::Survey;
 use crate::decision::Verdict;
@@ -151,9 +151,6 @@ fn ranked(diagnosis: &Diagnosis) -> Vec<usize> {
 pub(super) fn is_new(text: &FormulaText) -> bool {
     text.source == PROPOSED || text.source == CURVE
 }
-
-/// Source text of a proposed law.
-pub(super) const PROPOSED: &str = "proposed from recordings";
 
 /// Source text of a table of a curve.
 pub(super) const CURVE: &str = "curve of a residual";

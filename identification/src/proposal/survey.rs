@@ -3,17 +3,19 @@
 use std::collections::BTreeMap;
 
 use excavator_model::{Model, site_name};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::promise::Promised;
+use crate::nullable::Nullable;
 
-/// A row of the equations, or a variable, with the share of the error that terms in that row, or with that variable,
-/// would remove.
-#[derive(Debug, Clone, PartialEq)]
+/// A row of the equations or a variable, by what single terms promise.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
-    /// `piston_force@arm`, or `v`.
+    /// `piston_force@arm`, or a variable as formulas write it: `v`.
     pub name: String,
-    /// Share of the largest predicted decrease of the loss. For a row: the decrease predicted for its best term. For a
-    /// variable: the part that the best term without it does not reach.
+    /// Share, 0 to 1.
+    #[serde(with = "Nullable")]
     pub share: f64,
 }
 

@@ -2,8 +2,11 @@
 
 use excavator_model::Model;
 use nalgebra::DMatrix;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::fit::Simplified;
+use crate::nullable::Nullable;
 
 /// Result of a regression.
 #[derive(Debug, Clone)]
@@ -50,16 +53,18 @@ pub struct ConditionNumber {
     pub scaled: f64,
 }
 
-/// Goodness of fit of an equation.
-#[derive(Debug, Clone, PartialEq)]
+/// How well an equation is met.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EquationGauge {
     /// Name: `arm.motion`, `pump.continuity`.
     pub equation: String,
-    /// Mean squared residual relative to sensor noise; 1 if nothing is missing.
+    /// Mean squared residual over what sensor noise explains; 1 where nothing is missing. `null` for least squares, which knows no noise.
+    #[serde(with = "Nullable")]
     pub chi_squared_per_row: f64,
-    /// Root mean square of the residual relative to the size of the equation.
+    /// Root mean square of the residual, as a share of the equation's own size.
+    #[serde(with = "Nullable")]
     pub relative_residual: f64,
-    /// Rows.
+    /// Rows of the equation.
     pub rows: usize,
 }
 

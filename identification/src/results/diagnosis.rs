@@ -37,7 +37,7 @@ pub struct Diagnosis {
     pub nuisances: Vec<Nuisance>,
     /// What is left in each balance on the validation recordings, the largest first.
     #[serde(default)]
-    pub balances: Vec<Balance>,
+    pub balances: Vec<diagnosis::Remainder>,
     /// Where the residual of the given model is, the largest share first.
     #[serde(default, rename = "where")]
     pub shares: Vec<ResidualShare>,
@@ -101,20 +101,6 @@ pub struct Nuisance {
     /// Its parameters.
     #[serde(default)]
     pub parameters: Vec<Parameter>,
-}
-
-/// What is left in one balance.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[non_exhaustive]
-pub struct Balance {
-    /// Name of the equation: `arm.motion`.
-    pub equation: String,
-    /// Mean squared residual of the given model over the variance of its noise: 1 is noise alone.
-    pub before: Option<f64>,
-    /// The same with the effects that the verdict supports.
-    pub after: Option<f64>,
-    /// Whether noise is all that is left with them.
-    pub is_noise: bool,
 }
 
 /// What is left in the balance that leaves most.
@@ -198,7 +184,7 @@ impl Diagnosis {
             effects: SelectedEffect::all(diagnosis),
             remains: Remains::of(diagnosis),
             nuisances: Nuisance::shown(given, &diagnosis.supported().fit.model),
-            balances: diagnosis.remainders.iter().map(Balance::of).collect(),
+            balances: diagnosis.remainders.clone(),
             shares: diagnosis.map.iter().map(ResidualShare::of).collect(),
             unexplained: diagnosis.unexplained.as_ref().map(Unexplained::of),
             construction: Construction::of(diagnosis),
@@ -238,17 +224,6 @@ impl Nuisance {
                 parameters: Parameter::of_effect(fitted, effect.name(), effect.site),
             })
             .collect()
-    }
-}
-
-impl Balance {
-    fn of(remainder: &diagnosis::Remainder) -> Self {
-        Balance {
-            equation: remainder.equation.clone(),
-            before: finite(remainder.before),
-            after: finite(remainder.after),
-            is_noise: remainder.is_noise,
-        }
     }
 }
 

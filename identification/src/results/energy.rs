@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Energies, MissingPower, finite};
-use crate::energy::{self, EnergyAnalysis, Regime, missing_power};
+use crate::energy::{self, EnergyAnalysis, PhaseDelays, Regime, missing_power};
 
 /// Where the energy of a recording went, and whether the model's ledger closes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -82,21 +82,6 @@ pub struct ValveSection {
     pub into_cylinder: Option<f64>,
 }
 
-/// By how many degrees one rate of the stored energy lags behind another one at the frequency of the excitation. `null` where one of
-/// them has no component there.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[non_exhaustive]
-pub struct PhaseDelays {
-    /// Frequency, Hz.
-    pub frequency: Option<f64>,
-    /// Analytical behind experimental, degrees.
-    pub analytical: Option<f64>,
-    /// Numerical behind experimental, degrees.
-    pub numerical: Option<f64>,
-    /// Numerical behind analytical, degrees.
-    pub numerical_behind_analytical: Option<f64>,
-}
-
 /// The ledger at one place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
@@ -139,7 +124,7 @@ impl Energy {
     /// Of an analysis of a recording under `model`.
     pub fn of(model: &Model, analysis: &EnergyAnalysis) -> Self {
         let phases = analysis.traces.cylinders.iter();
-        let phases = phases.filter_map(|trace| Some((trace.name.clone(), PhaseDelays::of(trace.phase.as_ref()?))));
+        let phases = phases.filter_map(|trace| Some((trace.name.clone(), trace.phase?)));
         Energy {
             source: analysis.source.clone(),
             samples: analysis.samples,
@@ -184,17 +169,6 @@ impl PumpLine {
             sections: sections.collect(),
             stored: finite(line.stored),
             residual: finite(line.residual),
-        }
-    }
-}
-
-impl PhaseDelays {
-    fn of(delays: &energy::PhaseDelays) -> Self {
-        PhaseDelays {
-            frequency: finite(delays.frequency),
-            analytical: delays.analytical.and_then(finite),
-            numerical: delays.numerical.and_then(finite),
-            numerical_behind_analytical: delays.numerical_behind_analytical.and_then(finite),
         }
     }
 }

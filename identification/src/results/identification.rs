@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Parameter, finite};
 use crate::fit;
 use crate::identify::Identified;
+use crate::regression::EquationGauge;
 
 /// Parameters identified from recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -38,20 +39,6 @@ pub struct ConditionNumbers {
     pub unscaled: Option<f64>,
     /// Of the matrix with columns scaled to length one: what matters numerically.
     pub scaled: Option<f64>,
-}
-
-/// How well an equation is met.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[non_exhaustive]
-pub struct EquationGauge {
-    /// Name: `arm.motion`, `pump.continuity`.
-    pub equation: String,
-    /// Mean squared residual over what sensor noise explains; 1 where nothing is missing. `null` for least squares, which knows no noise.
-    pub chi_squared_per_row: Option<f64>,
-    /// Root mean square of the residual, as a share of the equation's own size.
-    pub relative_residual: Option<f64>,
-    /// Rows of the equation.
-    pub rows: usize,
 }
 
 /// A parameter that was not identified.
@@ -99,12 +86,6 @@ impl Identification {
             let numbers = ConditionNumbers { unscaled: finite(one.unscaled), scaled: finite(one.scaled) };
             (one.group.to_string(), numbers)
         });
-        let equations = found.equations.iter().map(|gauge| EquationGauge {
-            equation: gauge.equation.clone(),
-            chi_squared_per_row: finite(gauge.chi_squared_per_row),
-            relative_residual: finite(gauge.relative_residual),
-            rows: gauge.rows,
-        });
         let not_identified = found
             .not_identified
             .iter()
@@ -113,7 +94,7 @@ impl Identification {
             parameters: Parameter::of(model, &found.fitted),
             condition_numbers: conditions.collect(),
             rows: found.rows,
-            equations: equations.collect(),
+            equations: found.equations.clone(),
             not_identified: not_identified.collect(),
             profiles: found.profiles.iter().map(|profile| ProfileBounds::of(profile, model)).collect(),
         }

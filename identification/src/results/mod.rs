@@ -1,6 +1,7 @@
 //! Results for programs: what the verbs write as JSON, and what other front ends hand on.
 //!
-//! Each result is a type that is built `of` what the rest of this crate found. The description of a field is also its description in the
+//! Each result is a type that is built `of` what the rest of this crate found. A part that is written as it was found is the type of
+//! that place itself. The description of a field is also its description in the
 //! JSON schema ([`schemas()`]) and on the reference page. Units are SI units and stand in the description; a number without one is a pure
 //! number. JSON has no `NaN`: a number that is not known, or not finite, is `null`.
 //!
@@ -37,28 +38,25 @@ pub use characterisation::{Characterisation, CylinderCharacterisation};
 pub use comparison::{Baseline, Baselines, Comparison, OtherComparison};
 pub use determination::Determination;
 pub use diagnosis::{
-    Balance, Construction, Diagnosis, ErrorChange, Instrument, Nuisance, Remains, ResidualShare, SelectedEffect,
+    Construction, Diagnosis, ErrorChange, Instrument, Nuisance, Remains, ResidualShare, SelectedEffect,
 };
 pub use energies::{CylinderEnergies, EffectEnergies, Energies};
-pub use energy::{Cycle, Energy, LedgerCondition, LedgerPlace, PhaseDelays, PumpLine, ValveSection};
+pub use energy::{Cycle, Energy, LedgerCondition, LedgerPlace, PumpLine, ValveSection};
 pub use estimate::{Estimate, Outcome, Refused};
 pub use friction::{Friction, FrictionTerm};
 pub use gain::{DeadZone, Gain, GainPoint, Polynomial};
 pub use given_value::GivenValue;
 pub use guess::Guess;
-pub use identification::{Companion, ConditionNumbers, EquationGauge, Identification, NotIdentified, ProfileBounds};
+pub use identification::{Companion, ConditionNumbers, Identification, NotIdentified, ProfileBounds};
 pub use missing_power::{MissingPower, RecordingLedger};
 pub use parameter::Parameter;
 pub use plan::{Manoeuvre, Plan};
-pub use proposals::{Finding, Proposal, Proposals};
+pub use proposals::{Proposal, Proposals};
 pub use refinement::{Refinement, RefinementStep};
 pub use schemas::schemas;
-pub use separation::{PairSeparation, Rival, Separation, TrialRun};
+pub use separation::{Rival, Separation};
 pub use signal::{Correlation, PhaseShare, SignalComparison};
 pub use unexplained::Unexplained;
 pub use valve_leakage::{ChamberLeakage, ValveLeakage};
 
-/// A number as JSON can hold it.
-pub(crate) fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
-}
+use crate::nullable::finite;

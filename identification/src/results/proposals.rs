@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Candidate, Parameter, Unexplained, finite};
 use crate::decision::Reason;
-use crate::proposal::{self, ProposalVerdict};
+use crate::proposal::{self, Finding, ProposalVerdict};
 
 /// Proposed laws for what a model is missing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -60,28 +60,15 @@ pub struct Proposal {
     pub remarks: Vec<String>,
 }
 
-/// A row of the equations or a variable, by what single terms promise.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[non_exhaustive]
-pub struct Finding {
-    /// `piston_force@arm`, or a variable as formulas write it: `v`.
-    pub name: String,
-    /// Share, 0 to 1.
-    pub share: Option<f64>,
-}
-
 impl Proposals {
     /// Of what a search for laws found.
     pub fn of(found: &proposal::Proposals) -> Self {
-        let findings = |all: &[proposal::Finding]| {
-            all.iter().map(|one| Finding { name: one.name.clone(), share: finite(one.share) }).collect()
-        };
         Proposals {
             verdict: found.kind,
             proposals: found.proposals.iter().map(|one| Proposal::of(found, one)).collect(),
             unexplained: found.lacking.as_ref().map(Unexplained::of),
-            enters: findings(&found.survey.rows),
-            depends_on: findings(&found.survey.variables),
+            enters: found.survey.rows.clone(),
+            depends_on: found.survey.variables.clone(),
             candidates: Candidate::all(&found.diagnosis),
             reasons: found.diagnosis.verdict.reasons.clone(),
         }

@@ -103,11 +103,6 @@ impl<'m, 's> Observer<'m, 's> {
         &self.gradients
     }
 
-    /// Clears the history: the next sample starts another trajectory.
-    pub fn restart(&mut self) {
-        self.past.clear();
-    }
-
     /// Whether an instrument is delayed: then samples without a reading must be observed too.
     pub fn looks_back(&self) -> bool {
         self.instruments.iter().any(Instrument::has_delay)

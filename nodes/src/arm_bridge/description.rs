@@ -172,7 +172,6 @@ impl NumberKind {
 /// Frames of one CAN bus.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(not(feature = "can"), expect(dead_code, reason = "checked, and then refused"))]
 pub(super) struct Can {
     /// DBC file, seen from the description.
     pub dbc: PathBuf,
@@ -202,7 +201,6 @@ pub(super) enum LogPace {
 
 /// One signal of a CAN bus.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[cfg_attr(not(feature = "can"), expect(dead_code, reason = "checked, and then refused"))]
 pub(super) struct CanSignal {
     /// Name of the message in the DBC file.
     pub message: String,

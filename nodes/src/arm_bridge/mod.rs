@@ -1,4 +1,4 @@
-//! `excavator node arm-bridge`: publishes foreign instruments as `/arm/state`.
+//! Publishes foreign instruments as `/arm/state`.
 //!
 //! A description in TOML defines the source of each signal:
 //!
@@ -63,5 +63,4 @@ mod sequence;
 mod signals;
 mod udp_source;
 
-pub(crate) use node::parameters;
-pub use node::run;
+pub use node::{parameters, run};

@@ -16,7 +16,7 @@ use super::publisher::{Publisher, Refused, lock};
 use super::signals::Signals;
 use super::udp_source::UdpSource;
 use crate::arm_state::{FRAME, frame_parameter};
-use crate::error::VerbError;
+use crate::error::NodeError;
 use excavator_ros::{Health, Lifecycle, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
 /// Longest time until a listening thread notices that the node ends.
@@ -25,7 +25,7 @@ const GLANCE: Duration = Duration::from_millis(100);
 const ACQUAINTANCE: Duration = Duration::from_secs(1);
 
 /// All parameters, with defaults.
-pub(crate) fn parameters() -> Vec<Parameter> {
+pub fn parameters() -> Vec<Parameter> {
     let file =
         Parameter::new("description", Value::String(String::new()), "file (.toml) that says where signals come from");
     vec![file.read_only(), frame_parameter(), Lifecycle::parameter()]
@@ -34,8 +34,8 @@ pub(crate) fn parameters() -> Vec<Parameter> {
 /// Runs the bridge until a stop is requested.
 ///
 /// # Errors
-/// [`VerbError`] when it cannot start.
-pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
+/// [`NodeError`] when it cannot start.
+pub fn run(ros: &RosArguments) -> Result<(), NodeError> {
     let supervisor = Supervisor::start("arm_bridge", ros, parameters())?;
     let path = supervisor.parameters.text("description");
     if path.is_empty() {

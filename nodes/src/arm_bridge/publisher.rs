@@ -10,13 +10,14 @@ use excavator_msgs::{ArmState, Time};
 use super::frame_counts::Counts;
 use super::signals::{Fault, Signals};
 use crate::arm_state::joint_state;
-use excavator_ros::{Diagnostics, Health, Lifecycle, Outlet, Pace, PublishError, RosClock};
+use excavator_ros::{Diagnostics, Health, Lifecycle, Outlet, Pace, RosClock};
 
 /// Time between two diagnostics messages.
 const REPORT: Duration = Duration::from_millis(200);
 /// Rate of `/joint_states`, Hz.
 const JOINT_STATES_RATE: f64 = 50.0;
 /// Pause while readers cannot keep up with a log that is read as fast as possible.
+#[cfg(feature = "can")]
 const READERS_BEHIND: Duration = Duration::from_millis(1);
 
 pub(super) fn lock(signals: &Mutex<Signals>) -> MutexGuard<'_, Signals> {
@@ -80,9 +81,12 @@ impl Publisher<'_> {
     }
 
     /// Publishes the state of a moment as soon as readers can take it. Gives up if `stop` is set.
+    #[cfg(feature = "can")]
     pub fn publish_when_possible(&self, round: u64, nanoseconds: i64, moment: Instant, stop: &AtomicBool) {
         let faults = self.publish(round, nanoseconds, moment, |states, state| {
-            while !stop.load(Ordering::Relaxed) && states.publish(state.clone()) == Err(PublishError::Full) {
+            while !stop.load(Ordering::Relaxed)
+                && states.publish(state.clone()) == Err(excavator_ros::PublishError::Full)
+            {
                 std::thread::sleep(READERS_BEHIND);
             }
         });

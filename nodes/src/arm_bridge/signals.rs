@@ -102,6 +102,7 @@ impl Treatment {
     }
 
     /// Narrows the range to raw values from `least` to `largest`.
+    #[cfg(feature = "can")]
     pub fn narrow(&mut self, least: f64, largest: f64) {
         let (one, other) = (least * self.scale + self.offset, largest * self.scale + self.offset);
         let (minimum, maximum) = self.range();

@@ -5,7 +5,7 @@ use crate::command_gate::parameters as gate_parameters;
 use excavator_ros::{Lifecycle, Parameter, Value};
 
 /// All of them, with units, ranges and defaults.
-pub(crate) fn parameters() -> Vec<Parameter> {
+pub fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     let none = || Value::StringArray(Vec::new());
     let own = vec![

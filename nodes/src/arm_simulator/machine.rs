@@ -15,7 +15,7 @@ use super::machine_process::{Answer, Order, Ready, Setup, TalkError, receive, se
 use super::valve_limits;
 use crate::arm_state::arm_state;
 use crate::command_gate::{Slew, Wanted};
-use crate::error::VerbError;
+use crate::error::NodeError;
 use excavator_ros::system_nanoseconds;
 
 /// Longest wall-clock time for which the machine continues after its node has gone: several times the closing time of a valve.
@@ -24,13 +24,13 @@ const LONGEST_ALONE: Duration = Duration::from_secs(60);
 /// Runs the machine with the orders from standard input, which is one end of a socket pair.
 ///
 /// # Errors
-/// [`VerbError::Machine`] if it was started by hand.
-pub fn run() -> Result<(), VerbError> {
+/// [`NodeError::Machine`] if it was started by hand.
+pub fn run() -> Result<(), NodeError> {
     let input = std::io::stdin().as_fd().try_clone_to_owned()?;
     let mut stream = UnixStream::from(input);
     let setup: Setup = receive(&mut stream)
-        .map_err(|_| VerbError::Machine("this verb is for excavator node arm-simulator only".to_string()))?;
-    let failed = |reason: String| VerbError::Machine(reason);
+        .map_err(|_| NodeError::Machine("this verb is for excavator node arm-simulator only".to_string()))?;
+    let failed = |reason: String| NodeError::Machine(reason);
     let model = match document::parse(&setup.name, &setup.model, &Catalogue::built_in()) {
         Ok(model) => model,
         Err(error) => {

@@ -17,7 +17,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::command_gate::Wanted;
-use crate::error::VerbError;
+use crate::error::NodeError;
 
 /// Longest time for an answer of the machine. A model that takes longer for one sample is stuck.
 const LONGEST_ANSWER: Duration = Duration::from_secs(10);
@@ -132,8 +132,8 @@ impl MachineProcess {
     /// the terminal ends the node, and the node closes the valves.
     ///
     /// # Errors
-    /// [`VerbError::Machine`] if the model or the start is faulty; [`VerbError::Io`].
-    pub fn start(setup: &Setup) -> Result<Self, VerbError> {
+    /// [`NodeError::Machine`] if the model or the start is faulty; [`NodeError::System`].
+    pub fn start(setup: &Setup) -> Result<Self, NodeError> {
         let (stream, theirs) = UnixStream::pair()?;
         let child = Command::new(std::env::current_exe()?)
             .arg("machine")
@@ -145,20 +145,20 @@ impl MachineProcess {
         let mut process = MachineProcess { child, stream, order };
         let talked = send(&mut process.stream, setup).and_then(|()| receive::<Ready>(&mut process.stream));
         let ready = talked.map_err(|error| process.ended(&error))?;
-        if ready.failure.is_empty() { Ok(process) } else { Err(VerbError::Machine(ready.failure)) }
+        if ready.failure.is_empty() { Ok(process) } else { Err(NodeError::Machine(ready.failure)) }
     }
 
     /// Simulates the given number of samples with these openings.
     ///
     /// # Errors
-    /// [`VerbError::Machine`] when the process has ended or does not answer.
+    /// [`NodeError::Machine`] when the process has ended or does not answer.
     pub fn go_on(
         &mut self,
         wanted: &[Wanted],
         samples: u64,
         lease: Duration,
         oil_temperature: f64,
-    ) -> Result<Answer, VerbError> {
+    ) -> Result<Answer, NodeError> {
         self.order.areas.clear();
         self.order.areas.extend(wanted.iter().map(|wanted| wanted.area));
         self.order.closing.clear();
@@ -170,10 +170,10 @@ impl MachineProcess {
         talked.map_err(|error| self.ended(&error))
     }
 
-    fn ended(&mut self, error: &TalkError) -> VerbError {
+    fn ended(&mut self, error: &TalkError) -> NodeError {
         let status =
             self.child.try_wait().ok().flatten().map_or_else(|| error.to_string(), |status| status.to_string());
-        VerbError::Machine(format!("the process of the simulated machine has failed: {status}"))
+        NodeError::Machine(format!("the process of the simulated machine has failed: {status}"))
     }
 }
 

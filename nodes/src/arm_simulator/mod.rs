@@ -1,7 +1,7 @@
-//! `excavator node arm-simulator`: simulates a model as a machine on the ROS graph.
+//! Simulates a model as a machine on the ROS graph.
 //!
 //! It consists of two processes: the node, which uses the network and contains the command gate, and the machine with its
-//! valves, which no packet reaches ([`machine_process`]).
+//! valves, which no packet reaches (`machine_process`).
 
 mod declared;
 mod machine;
@@ -10,7 +10,7 @@ mod node;
 mod sensors;
 mod stamps;
 
-pub(crate) use declared::parameters;
+pub use declared::parameters;
 pub use machine::run as run_machine;
 pub use node::run;
 

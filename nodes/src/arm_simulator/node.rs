@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use excavator_model::document::to_text;
+use excavator_model::effects::Catalogue;
 use excavator_model::{Model, urdf};
 use excavator_msgs::common::{Clock, JointState, Text};
 use excavator_msgs::{ArmState, Time};
@@ -15,12 +16,12 @@ use super::stamps::Stamps;
 use super::valve_limits;
 use crate::arm_state::{FRAME, joint_state};
 use crate::command_gate::{Desk, Valve};
-use crate::error::VerbError;
-use crate::sources;
+use crate::error::NodeError;
 use excavator_ros::{
     Diagnostics, Health, Latched, Lifecycle, Logger, Outlet, Pace, Parameters, RosArguments, RosError, Supervisor,
     TopicQos,
 };
+use excavator_study::model_named;
 
 /// Rate of `/joint_states`, Hz: what RViz and robot_state_publisher need.
 const JOINT_STATES_RATE: f64 = 50.0;
@@ -35,10 +36,10 @@ const MOST_MISSED: u64 = 10_000;
 /// Runs the simulator until a stop is requested.
 ///
 /// # Errors
-/// [`VerbError`] when it cannot start.
-pub fn run(arguments: &RosArguments) -> Result<(), VerbError> {
+/// [`NodeError`] when it cannot start.
+pub fn run(arguments: &RosArguments) -> Result<(), NodeError> {
     let supervisor = Supervisor::start("arm_simulator", arguments, parameters())?;
-    let model = sources::model_named(&supervisor.parameters.text("model"))?;
+    let model = model_named(&supervisor.parameters.text("model"), &Catalogue::built_in())?;
     supervisor.diagnostics.set_hardware(&model.machine.name);
     let not_measured = supervisor.parameters.texts("not_measured");
     if let Some(unknown) = not_measured.iter().find(|name| !SIGNALS.contains(&name.as_str())) {
@@ -108,7 +109,7 @@ fn valves(model: &Model) -> Vec<Valve> {
         .collect()
 }
 
-fn setup(model: &Model, supervisor: &Supervisor) -> Result<Setup, VerbError> {
+fn setup(model: &Model, supervisor: &Supervisor) -> Result<Setup, NodeError> {
     let parameters = &supervisor.parameters;
     let (rate, speed) = (parameters.double("rate"), parameters.double("speed"));
     Ok(Setup {
@@ -140,13 +141,13 @@ struct Simulation<'r> {
 
 impl Simulation<'_> {
     /// Runs the loop. Sets the stop flag in every case when it ends.
-    fn run(&self, machine: MachineProcess) -> Result<(), VerbError> {
+    fn run(&self, machine: MachineProcess) -> Result<(), NodeError> {
         let outcome = self.steps(machine);
         self.stop.store(true, Ordering::Relaxed);
         outcome
     }
 
-    fn steps(&self, mut machine: MachineProcess) -> Result<(), VerbError> {
+    fn steps(&self, mut machine: MachineProcess) -> Result<(), NodeError> {
         let parameters = self.parameters;
         let (rate, speed) = (parameters.double("rate"), parameters.double("speed"));
         let (period, frame) = (1.0 / rate, parameters.text(FRAME));

@@ -32,4 +32,5 @@ pub(crate) use content::Valve;
 pub(crate) use desk::Desk;
 pub(crate) use parameters::parameters;
 pub(crate) use slew::{Slew, Wanted};
+#[cfg(feature = "dashboard")]
 pub(crate) use words::{CLOSED_BECAUSE, COMMAND_AGE, COMMANDED_BY, STOPPED_BY};

@@ -1,4 +1,4 @@
-//! `excavator dashboard`: shows the live topics on a page.
+//! Shows the live topics on a page.
 //!
 //! Topics arrive at their own pace and go into a [`Board`]. The board makes a frame 25 times per second. Each page receives the
 //! newest frame when it has taken the previous one. So a slow page misses frames, and no queue grows.
@@ -14,5 +14,5 @@ mod server;
 
 pub use board::Board;
 pub use hosts::Hosts;
-pub use node::run;
+pub use node::{PageOptions, run};
 pub use server::serve;

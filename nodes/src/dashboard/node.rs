@@ -9,9 +9,7 @@ use excavator_msgs::common::{DiagnosticArray, Text};
 use excavator_msgs::{ArmState, EnergyState, OrificeCommand};
 
 use super::{Board, Hosts, serve};
-use crate::cli::DashboardArguments;
-use crate::error::VerbError;
-use crate::printing::print;
+use crate::error::NodeError;
 use excavator_ros::{Health, RosArguments, Supervisor, TopicQos};
 
 /// Time between two frames: 25 per second.
@@ -22,15 +20,25 @@ fn newest(depth: u32) -> TopicQos {
     TopicQos::reliable(depth).with_room(2_000)
 }
 
-/// Serves the page until a stop is requested.
+/// Where the page is offered, and to whom.
+#[derive(Debug, Clone)]
+pub struct PageOptions {
+    /// Port of the page; 0: any that is free.
+    pub port: u16,
+    /// Address that the page listens on.
+    pub host: String,
+    /// Names under which browsers may ask for the page, beside localhost and its address.
+    pub allowed_hosts: Vec<String>,
+}
+
+/// Serves the page until a stop is requested. `on_open` receives the address of the page when it can be opened.
 ///
 /// # Errors
-/// `VerbError` if the graph cannot be joined or the address cannot be used.
-pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), VerbError> {
-    let address = (arguments.host.as_str(), arguments.port);
-    let listener = TcpListener::bind(address)
-        .map_err(|source| VerbError::Listen { address: format!("{}:{}", arguments.host, arguments.port), source })?;
-    let address = listener.local_addr()?;
+/// [`NodeError`] if the graph cannot be joined or the address cannot be used.
+pub fn run(options: &PageOptions, ros: &RosArguments, on_open: impl FnOnce(&str)) -> Result<(), NodeError> {
+    let listener = TcpListener::bind((options.host.as_str(), options.port))
+        .map_err(|source| NodeError::Listen { address: format!("{}:{}", options.host, options.port), source })?;
+    let page = format!("http://{}/", listener.local_addr()?);
     let supervisor = Supervisor::start("dashboard", ros, Vec::new())?;
     let board = Arc::new(Board::in_namespace(supervisor.link.identity().namespace()));
     let of = || Arc::clone(&board);
@@ -48,10 +56,10 @@ pub fn run(arguments: &DashboardArguments, ros: &RosArguments) -> Result<(), Ver
     })?;
     supervisor.link.subscribe("arm/model", TopicQos::latched(), move |text: Text, _| models.take_model(&text.data))?;
     let stop = supervisor.stop_flag();
-    let hosts = Hosts::new(arguments.allow_host.iter().cloned());
+    let hosts = Hosts::new(options.allowed_hosts.iter().cloned());
     let server = std::thread::spawn(move || serve_frames(listener, board, hosts, &stop));
-    supervisor.diagnostics.tell("page", Health::Ok, format!("http://{address}/"), &[]);
-    print(&format!("dashboard: http://{address}/"));
+    supervisor.diagnostics.tell("page", Health::Ok, page.as_str(), &[]);
+    on_open(&page);
     supervisor.run(|| {});
     supervisor.leave();
     match server.join() {

@@ -1,9 +1,8 @@
-//! `excavator node energy-monitor`: the energy balance of the machine, state by state.
+//! The energy balance of the machine, state by state.
 
 mod convert;
 mod incoming;
 mod ledger;
 mod node;
 
-pub(crate) use node::parameters;
-pub use node::run;
+pub use node::{parameters, run};

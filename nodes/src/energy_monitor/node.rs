@@ -17,8 +17,8 @@ use super::convert::{message, trimmed};
 use super::incoming::{Counts, Inbox, Incoming, inbox};
 use super::ledger::{Ledger, Tally, judge_windows};
 use crate::arm_state::sample;
-use crate::error::VerbError;
-use crate::sources;
+use crate::error::NodeError;
+use crate::models::{chosen_model, model_parameter};
 use excavator_ros::{
     Diagnostics, Health, Logger, Outlet, Parameter, Parameters, RosArguments, Supervisor, TopicQos, Value,
 };
@@ -31,10 +31,10 @@ const REPORT: Duration = Duration::from_millis(500);
 const SILENT: Duration = Duration::from_secs(2);
 
 /// All parameters, with units, ranges and defaults.
-pub(crate) fn parameters() -> Vec<Parameter> {
+pub fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     vec![
-        sources::model_parameter(),
+        model_parameter(),
         double("half_width", 0.01, "half width of the window of derivatives, which is also their delay [s]")
             .within(0.001, 0.5)
             .read_only(),
@@ -54,11 +54,10 @@ pub(crate) fn parameters() -> Vec<Parameter> {
 /// Runs the monitor until a stop is requested.
 ///
 /// # Errors
-/// [`VerbError`] when it cannot start.
-pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
+/// [`NodeError`] when it cannot start.
+pub fn run(ros: &RosArguments) -> Result<(), NodeError> {
     let supervisor = Supervisor::start("energy_monitor", ros, parameters())?;
-    let name = supervisor.parameters.text("model");
-    let model = if name.is_empty() { None } else { Some(sources::model_named(&name)?) };
+    let model = chosen_model(&supervisor.parameters)?;
     let outlet = supervisor.link.publish("arm/energy", TopicQos::reliable(50))?;
     let (door, incoming) = inbox();
     let states = door.clone();

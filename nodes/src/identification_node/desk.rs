@@ -11,10 +11,10 @@ use excavator_msgs::common::Text;
 use ros2_client::RmwRequestId;
 
 use super::goals::{CancelAnswer, Goals, Status};
-use super::node::out_of_time;
 use super::queue::{Job, MOST_WAITING, Queue};
 use super::refusals::Refusals;
 use super::types::{Feedback, Goal, GoalId, GoalInfo, Outcome};
+use super::work::out_of_time;
 use excavator_ros::{Diagnostics, Health, Latched, Logger, Supervisor};
 
 /// Most pending result requests: a few for each goal. When more arrive, the oldest is dropped.

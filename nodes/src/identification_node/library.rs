@@ -38,6 +38,8 @@ pub(super) enum Unusable {
     NotAModel { name: String, place: String },
     #[error("bag \"{0}\" is no readable recording of this machine; the node's console has the reason")]
     NotARecording(String),
+    #[error("no bag is given; name at least one recording")]
+    NoBags,
     #[error("{0}")]
     Text(String),
 }

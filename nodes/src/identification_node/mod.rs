@@ -1,4 +1,4 @@
-//! `excavator node identification`: the action `/identification/run`.
+//! The action `/identification/run`.
 //!
 //! Anyone on the network may send a goal. So a goal can name only models and bags below folders that the operator has set.
 //! Goals are bounded in number, size and time. A result becomes the model in use only if the operator has enabled that.
@@ -14,5 +14,4 @@ mod server;
 mod types;
 mod work;
 
-pub(crate) use node::parameters;
-pub use node::run;
+pub use node::{parameters, run};

@@ -11,8 +11,8 @@ use super::printable::printable;
 use super::queue::{Job, Queue};
 use super::server::IdentifyAction;
 use super::types::{Feedback, Outcome};
-use super::work::{Bounds, Ended, identify};
-use crate::error::VerbError;
+use super::work::{Bounds, Ended, identify, out_of_time};
+use crate::error::NodeError;
 use excavator_ros::{Health, Logger, Parameter, RosArguments, RosError, Supervisor, TopicQos, Value};
 
 /// Longest time until the worker notices that the node ends.
@@ -21,7 +21,7 @@ const GLANCE: Duration = Duration::from_millis(200);
 const NAMED: usize = 80;
 
 /// All parameters, with units, ranges and defaults.
-pub(crate) fn parameters() -> Vec<Parameter> {
+pub fn parameters() -> Vec<Parameter> {
     let text = |name, description| Parameter::new(name, Value::String(String::new()), description).read_only();
     vec![
         text("model_folder", "folder below which goals may name model files; empty: goals read no model files"),
@@ -42,8 +42,8 @@ pub(crate) fn parameters() -> Vec<Parameter> {
 /// Runs the node until a stop is requested.
 ///
 /// # Errors
-/// [`VerbError`] when it cannot start.
-pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
+/// [`NodeError`] when it cannot start.
+pub fn run(ros: &RosArguments) -> Result<(), NodeError> {
     let supervisor = Supervisor::start_large("identification", ros, parameters())?;
     let given = &supervisor.parameters;
     let library = Library::new(&given.text("model_folder"), &given.text("bag_folder")).map_err(RosError::Parameter)?;
@@ -116,12 +116,4 @@ impl Worker {
         };
         let _ = self.told.send(News::Ended { id: job.id, outcome });
     }
-}
-
-/// The message for a goal that exceeded its time limit.
-pub(super) fn out_of_time(limit: Duration) -> String {
-    format!(
-        "not done within {:.0} s; give fewer or shorter recordings, or start the node with a longer time_limit",
-        limit.as_secs_f64()
-    )
 }

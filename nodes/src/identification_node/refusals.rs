@@ -57,9 +57,12 @@ impl Refusals {
 pub(super) fn tell_operator(text: &str) {
     static SAID: Mutex<Refusals> = Mutex::new(Refusals::new());
     let line = SAID.lock().unwrap_or_else(PoisonError::into_inner).take(text, Instant::now());
-    if let Some(line) = line {
-        eprintln!("{}", printable(&line, 1000));
-    }
+    line.iter().for_each(|line| remark(line));
+}
+
+/// Prints a remark on a recording on the console. It may quote the file, as in [`tell_operator`].
+pub(super) fn remark(text: &str) {
+    eprintln!("{}", printable(text, 1000));
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use excavator_identification::fit::FitError;
 use excavator_identification::identify::{IdentifyError, Method};
@@ -11,14 +11,13 @@ use excavator_identification::validation::compare;
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
 use excavator_model::{HistoryEntry, Model, addition_name, site_name};
-use excavator_study::Study;
+use excavator_study::preparation::Preparation;
+use excavator_study::{Study, WorkError};
 
 use super::library::{Library, QUOTED, Unusable};
 use super::printable::printable;
-use super::refusals::tell_operator;
+use super::refusals::{remark, tell_operator};
 use super::types::{Goal, Outcome};
-use crate::cli::{Extent, Mapping};
-use crate::error::VerbError;
 
 /// Why there is no outcome.
 #[derive(Debug)]
@@ -30,13 +29,21 @@ pub(super) enum Ended {
     /// A model or bag of the goal cannot be used.
     Unusable(Unusable),
     /// The identification failed.
-    Failed(VerbError),
+    Failed(WorkError),
 }
 
 impl From<Unusable> for Ended {
     fn from(unusable: Unusable) -> Self {
         Ended::Unusable(unusable)
     }
+}
+
+/// The message for a goal that exceeded its time limit.
+pub(super) fn out_of_time(limit: Duration) -> String {
+    format!(
+        "not done within {:.0} s; give fewer or shorter recordings, or start the node with a longer time_limit",
+        limit.as_secs_f64()
+    )
 }
 
 /// Limits of the work on a goal.
@@ -58,10 +65,10 @@ impl Bounds<'_> {
     }
 }
 
-impl From<VerbError> for Ended {
-    fn from(error: VerbError) -> Self {
+impl From<WorkError> for Ended {
+    fn from(error: WorkError) -> Self {
         match error {
-            VerbError::Identify(
+            WorkError::Identify(
                 IdentifyError::Fit(FitError::Stopped)
                 | IdentifyError::Regression(RegressionError::Fit(FitError::Stopped)),
             ) => Ended::Cancelled,
@@ -90,7 +97,7 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
     let given = bounds.library.model(&goal.model)?;
     let wanted = with_effects(&given, &goal.effects)?;
     if goal.bags.is_empty() {
-        return Err(VerbError::NoBags.into());
+        return Err(Unusable::NoBags.into());
     }
     let mut recordings = Vec::new();
     for (index, bag) in goal.bags.iter().enumerate() {
@@ -104,12 +111,12 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
         Err(_) => ControlFlow::Break(()),
     };
     let study = Study::of_fitted(wanted, recordings);
-    let identified = study.identify(method, &watch).map_err(VerbError::from)?.result.model;
+    let identified = study.identify(method, &watch)?.result.model;
     let (mut signals, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
     let share = 1.0 / study.identification.len() as f64;
     for (index, recording) in study.identification.iter().enumerate() {
         stage("comparing", 0.7 + 0.3 * share * index as f64)?;
-        let compared = |model: &Model| compare(model, recording).map_err(VerbError::from);
+        let compared = |model: &Model| compare(model, recording).map_err(WorkError::from);
         let pairs = compared(&given)?.signals.into_iter().zip(compared(&identified)?.signals);
         for (number, (old, new)) in pairs.enumerate() {
             if index == 0 {
@@ -132,12 +139,12 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
         mean(&before),
         mean(&after)
     );
-    let model = to_text(&identified).map_err(VerbError::from)?;
+    let model = to_text(&identified).map_err(WorkError::from)?;
     Ok(Outcome { model, signals, nmse_before: before, nmse_after: after, success: true, message })
 }
 
 /// The model with the effects of a goal; its history tells that they were added.
-fn with_effects(given: &Model, effects: &[String]) -> Result<Model, VerbError> {
+fn with_effects(given: &Model, effects: &[String]) -> Result<Model, WorkError> {
     let mut wanted = given.clone();
     for effect in effects {
         for (physics, site) in wanted.parse_addition(effect)? {
@@ -158,10 +165,9 @@ fn with_effects(given: &Model, effects: &[String]) -> Result<Model, VerbError> {
 /// A bag of the library as a recording. A reader's message may quote a file, so it goes to the console only.
 fn recording(name: &str, library: &Library, wanted: &Model) -> Result<Recording, Ended> {
     let path = library.bag(name)?;
-    let mapping = Mapping::default();
-    let found = mapping.preparation(Extent::default()).recording(&path, wanted).map_err(VerbError::from);
-    found.map_err(|error| match error {
-        VerbError::Recording(_) | VerbError::Bag(_) => {
+    let preparation = Preparation { remark: &remark, ..Preparation::default() };
+    preparation.recording(&path, wanted).map_err(|error| match error {
+        WorkError::Recording(_) | WorkError::Bag(_) => {
             tell_operator(&error.to_string());
             Ended::Unusable(Unusable::NotARecording(printable(name, QUOTED)))
         }
@@ -173,7 +179,6 @@ fn recording(name: &str, library: &Library, wanted: &Model) -> Result<Recording,
 #[allow(clippy::unwrap_used)]
 mod tests {
     use std::cell::{Cell, RefCell};
-    use std::time::Duration;
 
     use excavator_model::document::{built_in, parse};
     use excavator_model::effects::Catalogue;
@@ -221,7 +226,7 @@ mod tests {
             let model = with_effects(&built_in("zx30u-arm").unwrap(), &effects).unwrap();
             let method = if effects.is_empty() { Method::WeakForm } else { Method::OutputError };
             let bag = std::path::Path::new(samples).join("arm-swing");
-            let recording = Mapping::default().preparation(Extent::default()).recording(&bag, &model).unwrap();
+            let recording = Preparation::default().recording(&bag, &model).unwrap();
             let study = Study::of_fitted(model, vec![recording]);
             let found = study.identify(method, &|_| ControlFlow::Continue(())).unwrap().result.model;
             let numbers = |model: &Model| -> Vec<_> {

@@ -27,7 +27,7 @@ pub(crate) struct Gains {
 
 /// One joint under control.
 #[derive(Debug, Clone)]
-pub(crate) struct JointLaw {
+pub struct JointLaw {
     cylinder: Cylinder,
     /// Largest opening, m².
     opening: f64,
@@ -73,7 +73,7 @@ impl JointLaw {
 
     /// Returns the opening (m²) for a joint at `position` at `time` (s), and the joint's rate. Positions may come at any rate,
     /// in order.
-    pub fn step(&mut self, wanted: Wanted, gains: Gains, position: f64, time: f64) -> (f64, f64) {
+    pub(super) fn step(&mut self, wanted: Wanted, gains: Gains, position: f64, time: f64) -> (f64, f64) {
         let (interval, rate) = match self.before {
             Some((before, then)) if time > then => (time - then, (position - before) / (time - then)),
             _ => (0.0, 0.0),

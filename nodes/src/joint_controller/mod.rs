@@ -8,6 +8,5 @@
 mod law;
 mod node;
 
-pub(crate) use law::JointLaw;
-pub(crate) use node::parameters;
-pub use node::run;
+pub use law::JointLaw;
+pub use node::{parameters, run};

@@ -13,8 +13,8 @@ use excavator_msgs::{ArmState, Header, OrificeCommand};
 
 use super::law::{Gains, JointLaw, Wanted};
 use crate::arm_state::joint_name;
-use crate::error::VerbError;
-use crate::sources;
+use crate::error::NodeError;
+use crate::models::{chosen_model, model_parameter};
 use excavator_ros::{
     Diagnostics, Health, Logger, Outlet, Pace, Parameter, Parameters, RosArguments, RosClock, Supervisor, TopicQos,
     Value,
@@ -24,10 +24,10 @@ use excavator_ros::{
 const REPORT: Duration = Duration::from_millis(500);
 
 /// All parameters, with units, ranges and defaults.
-pub(crate) fn parameters() -> Vec<Parameter> {
+pub fn parameters() -> Vec<Parameter> {
     let double = |name, value, description| Parameter::new(name, Value::Double(value), description);
     vec![
-        sources::model_parameter(),
+        model_parameter(),
         double("rate", 100.0, "commands per second [Hz]; several within the time for which one holds, 0.1 s")
             .within(20.0, 1000.0)
             .read_only(),
@@ -42,19 +42,18 @@ pub(crate) fn parameters() -> Vec<Parameter> {
 /// Runs the controller until a stop is requested.
 ///
 /// # Errors
-/// [`VerbError`] when it cannot start.
-pub fn run(ros: &RosArguments) -> Result<(), VerbError> {
+/// [`NodeError`] when it cannot start.
+pub fn run(ros: &RosArguments) -> Result<(), NodeError> {
     let supervisor = Supervisor::start("joint_controller", ros, parameters())?;
-    let name = supervisor.parameters.text("model");
     let heard = Arc::new(Mutex::new(Heard::default()));
-    if name.is_empty() {
+    if let Some(model) = chosen_model(&supervisor.parameters)? {
+        lock(&heard).model = Some(Ok(model));
+    } else {
         let listening = Arc::clone(&heard);
         supervisor.link.subscribe("arm/model", TopicQos::latched(), move |text: Text, _| {
             lock(&listening).model =
                 Some(parse("arm/model", &text.data, &Catalogue::built_in()).map_err(|e| e.to_string()));
         })?;
-    } else {
-        lock(&heard).model = Some(Ok(sources::model_named(&name)?));
     }
     let listening = Arc::clone(&heard);
     supervisor.link.subscribe("arm/state", TopicQos::reliable(50), move |state: ArmState, _| {

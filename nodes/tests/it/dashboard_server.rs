@@ -4,10 +4,10 @@ use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 
-use crate::common::LONGEST_WAIT;
-use excavator::dashboard::{Board, Hosts, serve};
+use crate::LONGEST_WAIT;
 use excavator_msgs::common::{DiagnosticArray, DiagnosticStatus};
 use excavator_msgs::{ArmState, CylinderState, Header};
+use excavator_nodes::dashboard::{Board, Hosts, serve};
 
 /// A server on a free port; it ends with the test process.
 fn server() -> (Arc<Board>, SocketAddr) {

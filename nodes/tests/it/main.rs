@@ -1,28 +1,10 @@
-//! The integration tests of this crate, in one binary: each links the crate anew.
+//! The integration tests of this crate that need no program: what a node offers beside the graph.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, missing_docs)]
 
-mod bad_input;
-mod benches;
-mod characterise;
-mod common;
-mod compare_others;
 #[cfg(feature = "dashboard")]
 mod dashboard_server;
-mod energy;
-mod full;
-#[cfg(all(feature = "dashboard", feature = "can", feature = "tables"))]
-#[path = "../../../tests/hostile/mod.rs"]
-mod hostile;
-mod import;
-#[cfg(all(feature = "dashboard", feature = "can"))]
-mod live;
-mod model_file;
-mod monte_carlo;
-mod odd_recordings;
-mod own_physics;
-mod practice;
-mod refinement;
-mod results;
-mod servo_bench;
-mod story;
+
+/// The longest time that any test waits for something.
+#[cfg(feature = "dashboard")]
+const LONGEST_WAIT: std::time::Duration = std::time::Duration::from_secs(90);

@@ -17,7 +17,7 @@ use super::registry::Registry;
 use super::summary::Summary;
 use crate::Error;
 use crate::limits::{Limit, ReadLimits};
-use crate::raw_messages::{RawMessage, Topic};
+use crate::raw_message::{RawMessage, Topic};
 
 /// One open file.
 #[derive(Debug)]

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::record::parsed;
 use crate::limits::{Limit, LimitError, ReadLimits};
-use crate::raw_messages::Topic;
+use crate::raw_message::Topic;
 
 /// Schemas and topics by their ids in the file.
 #[derive(Debug)]

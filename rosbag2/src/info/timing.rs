@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::clock::Clock;
 use super::spread::Spread;
 use crate::dynamic::{Definitions, Layout, Selector};
-use crate::raw_messages::{RawMessage, Topic};
+use crate::raw_message::{RawMessage, Topic};
 
 /// An interval longer than this many median intervals is a gap.
 const GAP_FACTOR: f64 = 1.5;

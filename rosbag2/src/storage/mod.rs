@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use crate::container::{Damage, DamageKind, McapFile};
 use crate::limits::ReadLimits;
-use crate::raw_messages::{RawMessage, Topic};
+use crate::raw_message::{RawMessage, Topic};
 use crate::{Error, location};
 
 pub(crate) use compressed::{MessageDecompressor, is_zstd};

@@ -11,7 +11,7 @@ use super::sqlite_query::{Row, rows_from, topics};
 use super::sqlite_skip::next_readable;
 use crate::container::{Damage, DamageKind, DamageList};
 use crate::limits::ReadLimits;
-use crate::raw_messages::{RawMessage, Topic};
+use crate::raw_message::{RawMessage, Topic};
 
 /// Rows per query: enough that the cost of the query is small compared with reading.
 const BATCH_ROWS: usize = 1000;

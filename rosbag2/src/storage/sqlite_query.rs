@@ -7,7 +7,7 @@ use rusqlite::types::ValueRef;
 
 use super::sqlite_connection::{Bounded, SqliteFault};
 use crate::limits::{Limit, LimitError, ReadLimits};
-use crate::raw_messages::Topic;
+use crate::raw_message::Topic;
 
 /// One row of the table of messages.
 #[derive(Debug)]

@@ -16,7 +16,7 @@ pub(super) use factor::{Factor, ONE};
 pub(super) use flows::PAST_THE_PISTON;
 #[cfg(test)]
 pub(super) use forces::{GROWING, REMEMBERING, RESISTING};
-pub(super) use term::{COEFFICIENT, Sized, Term, law_text, rounded};
+pub(super) use term::{COEFFICIENT, PROPOSED, Sized, Term, law_text, rounded};
 #[cfg(test)]
 pub(super) use valve::{OPENING, SHIFTING};
 

@@ -8,6 +8,9 @@ use super::factor::{Factor, ONE};
 use super::forces::{RESISTING, TURNING};
 use super::unit;
 
+/// Source text of a proposed law.
+pub(in crate::proposal) const PROPOSED: &str = "proposed from recordings";
+
 /// A product of two factors in a row, times a coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::proposal) struct Term {
@@ -165,7 +168,7 @@ pub(in crate::proposal) fn law_text(terms: &[Sized], summary: &str) -> Option<Fo
         acts_on: row.card().name.to_string(),
         formula,
         summary: summary.to_string(),
-        source: crate::proposal::proposals::PROPOSED.to_string(),
+        source: PROPOSED.to_string(),
         shows: String::new(),
         experiment: String::new(),
         parameters,

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use excavator::fuzzing;
+use excavator_nodes::fuzzing;
 
 use crate::samples;
 

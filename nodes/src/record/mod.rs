@@ -1,9 +1,0 @@
-//! `excavator record`: records topics of any type into a bag.
-
-mod losses;
-mod node;
-mod offered;
-mod selection;
-mod writing;
-
-pub use node::run;
