@@ -36,6 +36,8 @@ pub enum VerbError {
     ValveTest(String),
     #[error("no model: {0}")]
     NewModel(String),
+    #[error("data sheet: {0}")]
+    Sheet(String),
     #[error("--catalogue {}: {reason}", path.display())]
     Catalogue { path: PathBuf, reason: String },
     #[error("{0}")]

@@ -65,7 +65,8 @@ impl NextStep {
             words.iter().fold(step, |step, word| step.word(option).word(word.as_str()))
         };
         let step = repeated(self, "--accept", &mapping.accept);
-        repeated(step, "--where", &mapping.conditions)
+        let step = repeated(step, "--where", &mapping.conditions);
+        if mapping.leave_out_stops { step.word("--leave-out-stops") } else { step }
     }
 
     /// Adds the same recordings for the fit and for validation.

@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         recording = part.of(&recording, &data)?;
     }
     let mut remarks = report.problems();
-    let usage = Use { accept: &[], conditions: &[] };
+    let usage = Use::default();
     let recording = checked("recording", recording, &report, &usage, &model, &mut remarks)?;
     let compared = Study::of_recording(model, recording).compare(None, None)?;
     remarks.push(compared.sentence());

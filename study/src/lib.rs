@@ -28,7 +28,7 @@
 //! let model = built_in("zx30u-arm")?;
 //! let (recording, report) = read_recording_or_mapped(Path::new("drive_1"), Origin::default())?;
 //! let mut remarks = report.problems();
-//! let usage = Use { accept: &[], conditions: &[] };
+//! let usage = Use::default();
 //! let recording = checked("drive_1", recording, &report, &usage, &model, &mut remarks)?;
 //! let compared = Study::of_recording(model, recording).compare(None, None)?;
 //! println!("{}", compared.sentence());

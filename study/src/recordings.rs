@@ -52,6 +52,8 @@ pub struct Use<'u> {
     pub accept: &'u [String],
     /// Conditions that must hold when a recording is compared with a model, in the formula language.
     pub conditions: &'u [String],
+    /// Whether the time that a piston spends at a stop is left out.
+    pub leaves_out_stops: bool,
 }
 
 /// Whether a recording is reduced to its most informative stretches.
@@ -147,7 +149,31 @@ pub fn checked(
         let holds = if keeps { "where not" } else { "where" };
         remarks.push(format!("{name}: {:.0} % of the time is left out, {holds} {text}", 100.0 * left_out));
     }
+    if usage.leaves_out_stops {
+        let kept = between_stops(model, &recording);
+        if kept.len() < recording.len() {
+            let share = 100.0 * (recording.len() - kept.len()) as f64 / recording.len() as f64;
+            remarks.push(format!("{name}: {share:.0} % of the time is left out, where a piston is at a stop"));
+            recording = recording.at(&kept);
+        }
+    }
     Ok(recording)
+}
+
+/// Share of the stroke within which a piston counts as at its stop.
+const AT_A_STOP: f64 = 0.01;
+
+/// Samples at which no piston is at a stop.
+fn between_stops(model: &Model, recording: &Recording) -> Vec<usize> {
+    let is_free = |sample: usize| {
+        model.machine.cylinders.iter().all(|cylinder| {
+            recording.cylinder(&cylinder.name).map_or(true, |signals| {
+                let displacement = signals.displacement[sample];
+                !displacement.is_finite() || !cylinder.is_near_an_end(displacement, AT_A_STOP)
+            })
+        })
+    };
+    (0..recording.len()).filter(|&sample| is_free(sample)).collect()
 }
 
 /// Removes the compared outputs where the condition does not hold or, unless it `keeps`, where it holds. Inputs stay.

@@ -1,8 +1,10 @@
 //! Writes what steady stretches tell into a model, as starts for a fit.
 
-use excavator_identification::characterisation::{Characterisation, DriveCurve, Estimate};
+use excavator_identification::characterisation::{Characterisation, DriveCurve, Estimate, ValveCurve};
 use excavator_model::effects::Site;
 use excavator_model::{Model, ModelError};
+
+use crate::valve_test::put;
 
 /// Standard errors from zero above which a null counts as real.
 const CLEAR: f64 = 3.0;
@@ -10,11 +12,14 @@ const CLEAR: f64 = 3.0;
 /// Share of the full input below which a null does not matter: valves are adjusted to one per cent.
 const LEAST_NULL: f64 = 0.01;
 
+/// Share of the full input below which a dead zone does not matter.
+const LEAST_ZONE: f64 = 0.003;
+
 /// Largest relative error of a value that replaces a start.
 const USEFUL: f64 = 0.5;
 
-/// `model` with the values that the procedures found: null, gains, losses of a pump, friction, weight, stops. Dead zones, lags and other
-/// friction laws are left out: they are effects, which a diagnosis names.
+/// `model` with the values that the procedures found: null, dead zones, gains, losses of a pump, friction, weight,
+/// stops. Lags and other friction laws are left out: they are effects that a diagnosis names.
 ///
 /// # Errors
 /// [`ModelError`] if a cylinder cannot have a null.
@@ -26,10 +31,12 @@ pub(crate) fn with_steady_values(model: &Model, found: &[Characterisation]) -> R
         match &one.drive {
             Ok(DriveCurve::Valve(valve)) => {
                 let full = one.maximum_orifice_area;
-                if valve.null.value.abs() > (CLEAR * valve.null.error).max(LEAST_NULL * full) {
+                let has_null = valve.null.value.abs() > (CLEAR * valve.null.error).max(LEAST_NULL * full);
+                if has_null {
                     // Held: a dead zone has the null in its middle, and a fit could move both.
                     writer.set_held("valve_null", valve.null)?;
                 }
+                writer.add_dead_zones(valve, if has_null { 0.0 } else { valve.null.value }, full)?;
                 let gains = ["flow_gain_cap", "flow_gain_rod"].into_iter().zip(valve.gains);
                 gains.for_each(|(name, gain)| gain.into_iter().for_each(|gain| writer.set(name, gain)));
                 valve.leakage.into_iter().for_each(|leakage| writer.set("internal_leakage", leakage));
@@ -81,6 +88,17 @@ impl Writer<'_> {
             parameter.value *= share.value;
             parameter.source = SOURCE.to_string();
         }
+    }
+
+    /// Adds the dead zones that are clear of zero. A null that does not matter stays with them.
+    fn add_dead_zones(&mut self, valve: &ValveCurve, null: f64, full: f64) -> Result<(), ModelError> {
+        let zones = [1.0, -1.0].into_iter().zip(valve.dead_zones);
+        let zones: Vec<Option<f64>> = zones.map(|(sign, zone)| zone.map(|zone| (zone.value + sign * null).max(0.0))).collect();
+        let is_clear = |zone: &Estimate| zone.value > (CLEAR * zone.error).max(LEAST_ZONE * full);
+        if valve.dead_zones.iter().flatten().any(is_clear) {
+            put(self.model, "valve_dead_zone", self.site, &zones, SOURCE)?;
+        }
+        Ok(())
     }
 
     /// Sets the only parameter of an effect, which is added if the model lacks it, and holds it.

@@ -58,6 +58,9 @@ pub struct StudyOptions {
     pub accept: Vec<String>,
     /// Conditions under which the recordings were compared.
     pub conditions: Vec<String>,
+    /// Whether the time that a piston spends at a stop is left out.
+    #[serde(default)]
+    pub leave_out_stops: bool,
     /// Whether long recordings were used whole.
     pub whole: bool,
 }

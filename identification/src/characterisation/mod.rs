@@ -44,7 +44,7 @@ pub use static_valve::{FlowReading, StaticEdge, StaticTestError, StaticValve, st
 pub use track::Track;
 
 use excavator_model::Model;
-use excavator_model::machine::CommandUnit;
+use excavator_model::machine::{CommandUnit, Drive};
 use excavator_model::recording::Recording;
 
 use stops::stops;
@@ -123,8 +123,10 @@ fn characterise_cylinder(model: &Model, cylinder: usize, recordings: &[&Recordin
     let drive = drive_curve(model, cylinder, &tracks);
     let null = drive.as_ref().ok().and_then(DriveCurve::null).map_or(0.0, |null| null.value);
     let stops = stops(&tracks, null);
-    if let Some(refusal) = pump_pressure_unknown(&tracks) {
-        let of_edges = || Edge::ALL.iter().map(|edge| *edge);
+    let has_pump = matches!(constants.chambers.map(|chambers| chambers.drive), Some(Drive::Pump { .. }));
+    let no_valve = has_pump.then(|| Refusal::NoValve { cylinder: constants.name.clone() });
+    if let Some(refusal) = no_valve.or_else(|| pump_pressure_unknown(&tracks)) {
+        let of_edges = || Edge::ALL.into_iter();
         return Characterisation {
             leakage: Err(refusal.clone()),
             dead_zones: of_edges().map(|edge| (edge, Err(refusal.clone()))).collect(),

@@ -18,9 +18,9 @@ pub struct DataSheet {
     /// Flow of the fully open valve; estimated if omitted.
     pub rated: Option<RatedFlow>,
     /// Pressure of the supply, Pa: of a valve on constant pressure, of the charge line of a pump drive, or the cut-off of a
-    /// load-sensing pump.
+    /// load-sensing pump. A pump drive without it takes what it lacks from the tank.
     pub supply_pressure: Option<f64>,
-    /// Largest flow of the pump, m³/s.
+    /// Largest flow of the pump, m³/s; estimated if omitted.
     pub pump_flow: Option<f64>,
     /// Oil volumes between valve and cap side and between valve and rod side, m³: hoses and ports. A tenth of the stroke's volume
     /// if omitted.
@@ -89,8 +89,8 @@ pub enum CylinderKind {
 pub enum Load {
     /// A mass along a line.
     Mass {
-        /// Mass with piston and rod, kg.
-        mass: f64,
+        /// Mass with piston and rod, kg; estimated if omitted.
+        mass: Option<f64>,
         /// Sine of the slope: 1 where extension lifts it, 0 on the level.
         slope: f64,
     },
@@ -183,6 +183,29 @@ impl DataSheet {
             }
             Actuator::Motor { displacement, .. } => [displacement; 2],
         }
+    }
+
+    /// Largest flow of the pump, m³/s: that of the sheet, else the usual flow with a reserve, and the source of the number.
+    pub(super) fn largest_pump_flow(&self) -> (f64, &'static str) {
+        const RESERVE: f64 = 1.5;
+        self.pump_flow
+            .map_or((RESERVE * self.usual_flow(), "estimated: a full stroke in two seconds, and half as much again"), |flow| {
+                (flow, "data sheet")
+            })
+    }
+
+    /// What the sheet lacks and the model file estimates.
+    pub fn estimated(&self) -> Vec<&'static str> {
+        let has_pump = matches!(self.drive, DriveKind::OpenCentre | DriveKind::LoadSensing | DriveKind::Pump);
+        let lacks_mass = matches!(self.load, Load::Mass { mass: None, .. });
+        [
+            lacks_mass.then_some("the mass"),
+            (has_pump && self.pump_flow.is_none()).then_some("the flow of the pump"),
+            (self.drive == DriveKind::Pump && self.supply_pressure.is_none()).then_some("the charge pressure"),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 
     /// Rated flow of the actuator, m³/s.

@@ -87,6 +87,9 @@ fn usual_speed(sheet: &DataSheet) -> f64 {
 const COULOMB_SHARE: f64 = 0.02;
 const VISCOUS_SHARE: f64 = 0.05;
 
+/// Acceleration that the full force of a drive gives to its load, m/s².
+const USUAL_ACCELERATION: f64 = 50.0;
+
 /// Usual efficiency of a pump drive, and leakage across a piston as a fraction of the usual flow at the working
 /// pressure.
 const PUMP_SHARE: f64 = 0.97;
@@ -98,9 +101,11 @@ fn mechanical(sheet: &DataSheet) -> Vec<Entry> {
     let damping = "start: 5 % of the full force at the usual speed";
     let mut entries = match sheet.load {
         Load::Mass { mass, slope } => {
+            let guess = full_force(sheet) / USUAL_ACCELERATION;
+            let (mass, source) = mass.map_or((guess, "start: the full force would give it 50 m/s2"), |mass| (mass, SHEET));
             let weight = ("weight", mass * GRAVITY * slope, false, "from mass and slope");
             let gravity = (slope != 0.0).then(|| entry("gravity", vec![weight]));
-            let inertia = entry("inertia", vec![("mass", mass, false, SHEET)]);
+            let inertia = entry("inertia", vec![("mass", mass, false, source)]);
             std::iter::once(inertia).chain(gravity).collect()
         }
         Load::Link { inertia, gravity_moment, .. } => vec![

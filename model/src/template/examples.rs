@@ -21,7 +21,7 @@ fn sheets() -> Vec<DataSheet> {
         part: "axis".to_string(),
         drive,
         actuator,
-        load: Load::Mass { mass: 500.0, slope: 0.5 },
+        load: Load::Mass { mass: Some(500.0), slope: 0.5 },
         command: Some(ValveCommand::Area(1.15e-4)),
         rated: None,
         supply_pressure: Some(supply),

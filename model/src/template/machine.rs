@@ -81,23 +81,24 @@ fn supply(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
         ),
         DriveKind::Pump => source(
             "The charge line that fills the closed circuit.",
-            pressure("the pressure of its charge line (--supply, as in --supply \"20 bar\")")?,
+            sheet.supply_pressure.unwrap_or(FILLED_FROM_TANK),
         ),
         DriveKind::OpenCentre | DriveKind::LoadSensing => {
-            let flow = sheet.pump_flow.ok_or(MissingFromDataSheet {
-                what: "the flow of its pump (--pump-flow, as in --pump-flow \"23 l/min\")",
-            })?;
+            let (flow, from) = sheet.largest_pump_flow();
             "# The pump and the oil between it and the valves. The flow is the most that the pump gives.\n[machine.supply]\n\
              kind = \"pump_line\"\n"
                 .to_string()
                 + &constant("volume", LINE_TIME * flow, "m3", "estimated: a third of a second of flow")
-                + &constant("flow", flow, "m3/s", SHEET)
+                + &constant("flow", flow, "m3/s", from)
                 + &tank
                 + "\n"
         }
         DriveKind::Force | DriveKind::ImposedMotion => "[machine.supply]\nkind = \"none\"\n\n".to_string(),
     })
 }
+
+/// Charge pressure of a closed circuit that make-up valves fill from the tank, Pa.
+const FILLED_FROM_TANK: f64 = 1e5;
 
 /// Volume of the pump line divided by the pump flow, s: that of \[A\] Table 1.
 const LINE_TIME: f64 = 0.32;
@@ -168,11 +169,9 @@ fn linkage(load: &Load) -> String {
 
 fn drive(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
     if sheet.drive == DriveKind::Pump {
-        let flow = sheet.pump_flow.ok_or(MissingFromDataSheet {
-            what: "the flow of its pump at full speed and displacement (--pump-flow, as in --pump-flow \"16 l/min\")",
-        })?;
+        let (flow, from) = sheet.largest_pump_flow();
         return Ok("# The recording's orifice_area is the flow of the pump without losses: speed times displacement, in m3/s.\n".to_string()
-            + &constant("maximum_pump_flow", flow, "m3/s", SHEET));
+            + &constant("maximum_pump_flow", flow, "m3/s", from));
     }
     let command = sheet.command.ok_or(MissingFromDataSheet {
         what: "the input at which its valve is fully open (--command, as in --command \"10 V\" or --command \"115 mm2\")",

@@ -77,6 +77,8 @@ impl Arguments {
 pub enum Verb {
     /// The whole story on a simulated machine with a hidden effect; ends with a report to open.
     Demo(DemoArguments),
+    /// From the tables of a bench and its data sheet to a verdict, step by step: map, model, steady reading, comparison, diagnosis.
+    Start(StartArguments),
     /// Simulate a model with the input of a recording or with a command profile, into a bag.
     Simulate(SimulateArguments),
     /// Identify the unknown parameters of a model from recordings.

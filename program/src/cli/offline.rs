@@ -99,6 +99,22 @@ pub struct CompareArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct StartArguments {
+    /// Tables or bags of one machine. All but the last are for the fit, the last judges; a single one is cut in halves.
+    #[arg(required = true, value_name = "TABLE|BAG")]
+    pub data: Vec<PathBuf>,
+    /// Data sheet (TOML): options of `model new` by their names, and `[columns.HEADING]` with signal, scale and zero. A sheet with
+    /// `drop` and without `drive` is that of a static valve test.
+    #[arg(long, value_name = "FILE")]
+    pub sheet: PathBuf,
+    /// Folder for model, map, page and study.
+    #[arg(long, value_name = "FOLDER", default_value = "start")]
+    pub to: PathBuf,
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+}
+
+#[derive(Debug, Args)]
 pub struct CharacteriseArguments {
     /// Recordings, taken together; `BAG@20..40` is the part of one from 20 s to 40 s.
     #[arg(required = true, num_args = 1.., value_name = "BAG")]

@@ -58,6 +58,9 @@ pub struct Mapping {
     /// combine.
     #[arg(long = "where", value_name = "CONDITION")]
     pub conditions: Vec<String>,
+    /// Leave out the time that a piston spends at a stop: its contact is stiff, and shows nothing of the drive.
+    #[arg(long)]
+    pub leave_out_stops: bool,
 }
 
 impl Mapping {
@@ -68,7 +71,11 @@ impl Mapping {
 
     /// How recordings are read and made fit for use. Remarks go to standard error.
     pub fn preparation(&self, extent: Extent) -> Preparation<'_> {
-        let usage = Use { accept: &self.accept, conditions: &self.conditions };
+        let usage = Use {
+            accept: &self.accept,
+            conditions: &self.conditions,
+            leaves_out_stops: self.leave_out_stops,
+        };
         Preparation { origin: self.origin(), usage, whole: extent.whole, remark: &remark }
     }
 }

@@ -21,6 +21,7 @@ mod reindex;
 mod report;
 mod saved_study;
 mod simulate;
+mod start;
 mod valve_test;
 
 use crate::cli::Verb;
@@ -32,6 +33,7 @@ use crate::ros_words::RosWords;
 pub fn run(verb: Verb, ros: &RosWords) -> Result<(), VerbError> {
     match verb {
         Verb::Demo(arguments) => crate::demo::run(&arguments),
+        Verb::Start(arguments) => start::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Identify(arguments) => identify::run(&arguments),
         Verb::Compare(arguments) => compare::run(&arguments),

@@ -15,6 +15,7 @@ pub fn options(model: &ModelChoice, recordings: &Recordings) -> StudyOptions {
         namespace: mapping.namespace,
         accept: mapping.accept,
         conditions: mapping.conditions,
+        leave_out_stops: mapping.leave_out_stops,
         whole: recordings.extent.whole,
     }
 }
@@ -37,6 +38,7 @@ pub fn recordings(study: &StudyFile) -> Recordings {
             namespace: options.namespace,
             accept: options.accept,
             conditions: options.conditions,
+            leave_out_stops: options.leave_out_stops,
         },
         extent: Extent { whole: options.whole },
     }

@@ -28,7 +28,8 @@ pub fn run(arguments: &NewModelArguments) -> Result<(), VerbError> {
             "say what drives it (--drive), or answer the questions at a terminal".to_string(),
         ));
     };
-    let text = model_text(&sheet::data_sheet(arguments)?).map_err(|error| VerbError::NewModel(error.to_string()))?;
+    let sheet = sheet::data_sheet(arguments)?;
+    let text = model_text(&sheet).map_err(|error| VerbError::NewModel(error.to_string()))?;
     match arguments.output.as_deref() {
         Some(path) if path != Path::new("-") => {
             files::write(path, &text, arguments.overwriting)?;
@@ -38,6 +39,9 @@ pub fn run(arguments: &NewModelArguments) -> Result<(), VerbError> {
                 arguments.part,
                 path.display()
             ));
+            if !sheet.estimated().is_empty() {
+                print(&format!("Not given, so estimated in the file: {}.", sheet.estimated().join(", ")));
+            }
             print_next(&NextStep::new("try the machine", "model").word("check").word(path.display().to_string()));
             Ok(())
         }

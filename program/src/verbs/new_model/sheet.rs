@@ -127,7 +127,7 @@ fn load(arguments: &NewModelArguments) -> Result<Load, VerbError> {
     }
     if let Some(mass) = &arguments.mass {
         let mass = number::other("--mass", mass, "kg", "5 kg")?;
-        return Ok(Load::Mass { mass, slope: slope_sine(arguments.slope) });
+        return Ok(Load::Mass { mass: Some(mass), slope: slope_sine(arguments.slope) });
     }
     match (inertia()?, &arguments.motor) {
         (Some(inertia), Some(_)) => Ok(Load::Rotor {
@@ -140,10 +140,11 @@ fn load(arguments: &NewModelArguments) -> Result<Load, VerbError> {
                 .unwrap_or(0.0),
         }),
         (Some(_), None) => Err(missing("the pins of its cylinder (--link \"1100, 330, 1100\")")),
-        (None, _) => Err(VerbError::NewModel(
-            "say what is moved: --mass \"5 kg\", or --inertia \"40 kg m2\" for what a motor turns, or --link for an arm"
-                .to_string(),
+        (None, Some(_)) => Err(VerbError::NewModel(
+            "say what the motor moves: --inertia \"40 kg m2\", or --mass \"5 kg\" with a --drum".to_string(),
         )),
+        // A mass along a line that nobody knows.
+        (None, None) => Ok(Load::Mass { mass: None, slope: slope_sine(arguments.slope) }),
     }
 }
 
