@@ -1,6 +1,7 @@
 //! Suggests the next command of the workflow, ready to paste.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use excavator_study::recording_part::Part;
 
@@ -98,7 +99,17 @@ impl NextStep {
     }
 }
 
+/// Whether no next command is printed, because it follows by itself.
+static FOLLOWS: AtomicBool = AtomicBool::new(false);
+
+/// Stops the printing of next commands, for steps that follow each other by themselves, or begins it again.
+pub fn steps_follow(follow: bool) {
+    FOLLOWS.store(follow, Ordering::Relaxed);
+}
+
 /// Prints the suggested next command.
 pub fn print_next(step: &NextStep) {
-    print_fitted(|width| step.text(width));
+    if !FOLLOWS.load(Ordering::Relaxed) {
+        print_fitted(|width| step.text(width));
+    }
 }

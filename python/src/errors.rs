@@ -48,6 +48,8 @@ pub fn of_work(error: WorkError) -> PyErr {
         | WorkError::Part { .. }
         | WorkError::DiagnosisSyntax { .. }
         | WorkError::StudySyntax { .. }
+        | WorkError::SheetSyntax { .. }
+        | WorkError::ValveTest { .. }
         | WorkError::Unreadable { .. }
         | WorkError::Changed { .. } => ReadError::new_err(text),
         WorkError::Check(refusal) => CheckError::new_err(match refusal.name() {

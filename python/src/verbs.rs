@@ -55,8 +55,7 @@ impl Desk {
     }
 
     fn as_used(&mut self, signals: Signals, content: &Content, model: &Physics) -> Result<Signals, WorkError> {
-        let usage =
-            Use { accept: &self.usage.accept, conditions: &self.usage.conditions, ..Use::default() };
+        let usage = Use { accept: &self.usage.accept, conditions: &self.usage.conditions, ..Use::default() };
         checked(&content.signals.source, signals, &content.report, &usage, model, &mut self.remarks)
     }
 

@@ -24,10 +24,10 @@ pub const BLOCK: usize = 180_000;
 pub const LEDGER_BLOCK: usize = 10_000;
 
 /// Rate that the dynamics of hydraulic machines need, Hz: their oil resonates below 100 Hz, and their valves follow up to 150 Hz.
-const USEFUL_RATE: f64 = 500.0;
+const USEFUL_RATE: f64 = 250.0;
 
 /// Recordings of at least this many times [`USEFUL_RATE`] are averaged down. Below, too little is gained.
-const LEAST_REDUCTION: f64 = 3.0;
+const LEAST_REDUCTION: f64 = 6.0;
 
 /// A recording at a rate that the machine's dynamics need, with a remark if it was averaged down to it. Means of neighbouring samples
 /// keep what happens slowly, and have less noise.

@@ -93,7 +93,8 @@ impl Writer<'_> {
     /// Adds the dead zones that are clear of zero. A null that does not matter stays with them.
     fn add_dead_zones(&mut self, valve: &ValveCurve, null: f64, full: f64) -> Result<(), ModelError> {
         let zones = [1.0, -1.0].into_iter().zip(valve.dead_zones);
-        let zones: Vec<Option<f64>> = zones.map(|(sign, zone)| zone.map(|zone| (zone.value + sign * null).max(0.0))).collect();
+        let zones: Vec<Option<f64>> =
+            zones.map(|(sign, zone)| zone.map(|zone| (zone.value + sign * null).max(0.0))).collect();
         let is_clear = |zone: &Estimate| zone.value > (CLEAR * zone.error).max(LEAST_ZONE * full);
         if valve.dead_zones.iter().flatten().any(is_clear) {
             put(self.model, "valve_dead_zone", self.site, &zones, SOURCE)?;

@@ -72,9 +72,10 @@ impl ValveTestTable {
             Some(heading) => self.column(&table, heading)?,
             None => self.only(&table, "input", "--input", &|column| column.name != flow.name && is_input(column))?,
         };
-        let flow_unit = unit_of(flow, self.flow_unit).filter(|unit| unit.dimension == Dimension::Flow).ok_or_else(|| {
-            self.wrong(format!("the heading \"{}\" has no unit of a flow; say --flow-unit, as in l/min", flow.name))
-        })?;
+        let flow_unit =
+            unit_of(flow, self.flow_unit).filter(|unit| unit.dimension == Dimension::Flow).ok_or_else(|| {
+                self.wrong(format!("the heading \"{}\" has no unit of a flow; say --flow-unit, as in l/min", flow.name))
+            })?;
         let input_unit = match (unit_of(input, self.input_unit), wanted) {
             (Some(unit), Some(wanted)) if unit.dimension != wanted => {
                 return Err(self.wrong(format!(
@@ -87,7 +88,9 @@ impl ValveTestTable {
             (Some(unit), _) => unit,
             (None, Some(wanted)) => Unit::si(wanted),
             (None, None) => {
-                return Err(self.wrong(format!("the heading \"{}\" has no unit; say --input-unit, as in mA", input.name)));
+                return Err(
+                    self.wrong(format!("the heading \"{}\" has no unit; say --input-unit, as in mA", input.name))
+                );
             }
         };
         let (Values::Numbers(inputs), Values::Numbers(flows)) = (&input.values, &flow.values) else {
@@ -107,9 +110,9 @@ impl ValveTestTable {
     }
 
     fn column<'t>(&self, table: &'t Table, heading: &str) -> Result<&'t Column, WorkError> {
-        table.named(heading).ok_or_else(|| {
-            self.wrong(format!("there is no column \"{heading}\"; the columns are {}", headings(table)))
-        })
+        table
+            .named(heading)
+            .ok_or_else(|| self.wrong(format!("there is no column \"{heading}\"; the columns are {}", headings(table))))
     }
 
     /// The only column that fits.
@@ -123,7 +126,10 @@ impl ValveTestTable {
         let mut found = table.columns.iter().filter(|column| fits(column));
         match (found.next(), found.next()) {
             (Some(column), None) => Ok(column),
-            _ => Err(self.wrong(format!("which column is the {what}? say {option}; the columns are {}", headings(table)))),
+            _ => {
+                Err(self
+                    .wrong(format!("which column is the {what}? say {option}; the columns are {}", headings(table))))
+            }
         }
     }
 
@@ -163,8 +169,7 @@ impl ValveTested {
             play: edge.play.map(as_input),
             readings: edge.readings,
         };
-        let in_table_units =
-            StaticValve { null: as_input(valve.null), sides: valve.sides.map(|side| side.map(edge)) };
+        let in_table_units = StaticValve { null: as_input(valve.null), sides: valve.sides.map(|side| side.map(edge)) };
         let [input_unit, flow_unit] = units.map(|unit| unit.name.to_string());
         ValveTested { readings, pressure_drop, input_unit, flow_unit, valve, in_table_units, units }
     }
@@ -200,7 +205,8 @@ impl ValveTested {
             let values = [tested(0), tested(1)];
             put(model, "valve_dead_zone", site, &values, &source)?;
         }
-        let plays = sides.iter().flatten().filter_map(|edge| edge.play).filter(|play| play.value > 0.0 && is_clear(*play));
+        let plays =
+            sides.iter().flatten().filter_map(|edge| edge.play).filter(|play| play.value > 0.0 && is_clear(*play));
         let plays: Vec<Estimate> = plays.collect();
         if let Some(mean) = Estimate::mean(&plays) {
             put(model, "valve_hysteresis", site, &[Some(mean.value)], &source)?;

@@ -51,6 +51,11 @@ OFFLINE = {
         works=[["simulate", *MODEL, "--input", "profile.toml", "-o", "simulated"]],
         fails=["simulate", *MODEL, "--input", "nowhere.toml", "-o", "simulated-2"],
     ),
+    "start": Recipe(
+        works=[["start", "valve.csv", "--sheet", "valve-sheet.toml"]],
+        fails=["start", "valve.csv", "--sheet", "nowhere.toml"],
+        last="a static test without a model ends with its numbers",
+    ),
     "identify": Recipe(
         works=[["identify", *MODEL, "--bag", BAG], ["identify", "--verbose", *MODEL, "--bag", BAG, "-o", "identified.toml"]],
         fails=["identify", *MODEL, "--bag", "nowhere"],
@@ -126,6 +131,7 @@ def prepare(excavator, folder):
     shutil.copytree(SAMPLES / "arm-swing", folder / "damaged")
     (folder / "damaged" / "metadata.yaml").unlink()
     (folder / "valve.csv").write_text(valve_test())
+    (folder / "valve-sheet.toml").write_text('drop = "35 bar"\n')
     (folder / "law.toml").write_text(
         '[[formula]]\nname = "load_damping"\nacts_on = "piston_force"\nformula = "-k*v*abs(p_cap - p_rod)"\n'
         'parameters.k = { unit = "N s/(m Pa)", maximum = 1.0, start = [1e-3] }\n'

@@ -44,7 +44,10 @@ impl Quantity {
                 // Units can contain slashes: l/min per rpm, mm/s per V, l/min per rad/s.
                 let ratio = units.match_indices('/').find_map(|(at, slash)| {
                     let (over, under) = (&units[..at], Unit::named(&units[at + slash.len()..])?);
-                    if from == Dimension::RotationalSpeed && under.dimension == Dimension::Angle && takes(Dimension::Flow) {
+                    if from == Dimension::RotationalSpeed
+                        && under.dimension == Dimension::Angle
+                        && takes(Dimension::Flow)
+                    {
                         return Some(volume(over)? / under.factor());
                     }
                     let over = Unit::named(over).filter(|unit| takes(unit.dimension))?;

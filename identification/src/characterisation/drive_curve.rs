@@ -4,7 +4,8 @@ use excavator_model::Model;
 use excavator_model::effects::Site;
 use excavator_model::machine::Drive;
 use nalgebra::{Matrix2, Vector2};
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::edge::Side;
 use super::estimate::Estimate;
@@ -14,7 +15,7 @@ use super::stretches::{Steady, different, steady};
 use super::track::Track;
 
 /// What steady stretches tell of the drive of a cylinder.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DriveCurve {
     /// A valve.
@@ -24,7 +25,7 @@ pub enum DriveCurve {
 }
 
 /// A valve: `Q = gain (|u - null| - dead zone) sqrt(drop)` at each chamber.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ValveCurve {
     /// Input at the middle of the closed valve, in its unit.
     pub null: Estimate,
@@ -39,7 +40,7 @@ pub struct ValveCurve {
 }
 
 /// Losses of a pump that drives a cylinder: `A+ v = share q - leakage (p+ - p-)`, with the flow q without losses.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PumpLosses {
     /// Flow over flow without losses, at no pressure.
     pub share: Estimate,
@@ -69,19 +70,16 @@ pub fn drive_curve(model: &Model, cylinder: usize, tracks: &[Track]) -> Result<D
         tracks.iter().flat_map(|track| steady(track).into_iter().map(move |stretch| (track, stretch))).collect();
     let largest = stretches.iter().map(|(_, one)| one.opening.value.abs()).fold(0.0_f64, f64::max);
     let levels = different(stretches.iter().map(|(_, one)| one.opening.value), SAME_INPUT * largest);
-    let too_few = || Refusal::TooFewLevels {
-        found: stretches.len(),
-        levels,
-        needed: NEEDED.0,
-        needed_levels: NEEDED.1,
-    };
+    let too_few =
+        || Refusal::TooFewLevels { found: stretches.len(), levels, needed: NEEDED.0, needed_levels: NEEDED.1 };
     if stretches.len() < NEEDED.0 || levels < NEEDED.1 {
         return Err(too_few());
     }
     match drive {
         Drive::Pump { .. } => pump_losses(&stretches).map(DriveCurve::Pump).ok_or_else(too_few),
         Drive::Valve { .. } => {
-            let margin = model.effects.iter().find(|effect| effect.is("pressure_compensation", Site::Cylinder(cylinder)));
+            let margin =
+                model.effects.iter().find(|effect| effect.is("pressure_compensation", Site::Cylinder(cylinder)));
             let margin = margin.and_then(|effect| effect.parameters.first()).map(|parameter| parameter.value);
             let is_known = stretches.iter().all(|(_, stretch)| stretch.pressures[2].is_finite());
             let curve = match margin {
@@ -159,13 +157,13 @@ fn with_leakage(stretches: &[(&Track, Steady)]) -> Result<ValveCurve, StaticTest
         Some(Estimate { error: mean.error.hypot(shift), ..mean })
     });
     let null = match closes {
-        [Some(above), Some(below)] => Estimate {
-            value: 0.5 * (above.value - below.value),
-            error: 0.5 * above.error.hypot(below.error),
-        },
+        [Some(above), Some(below)] => {
+            Estimate { value: 0.5 * (above.value - below.value), error: 0.5 * above.error.hypot(below.error) }
+        }
         _ => Estimate { value: 0.0, error: f64::INFINITY },
     };
-    let zone = |index: usize, sign: f64| closes[index].map(|one| Estimate { value: one.value - sign * null.value, ..one });
+    let zone =
+        |index: usize, sign: f64| closes[index].map(|one| Estimate { value: one.value - sign * null.value, ..one });
     let gain = |valve: &StaticValve| {
         let both: Vec<Estimate> = valve.sides.iter().flatten().map(|edge| edge.gain).collect();
         Estimate::mean(&both)
@@ -200,8 +198,7 @@ fn reading(track: &Track, stretch: &Steady, margin: f64) -> Option<FlowReading> 
     let extends = stretch.speed.value > 0.0;
     let (area, chamber) = if extends { (track.areas.0, cap) } else { (track.areas.1, rod) };
     let drop = if (pump - chamber).is_finite() { margin.min(pump - chamber) } else { margin };
-    let reading =
-        FlowReading { input: stretch.opening.value, flow: area * stretch.speed.value, pressure_drop: drop };
+    let reading = FlowReading { input: stretch.opening.value, flow: area * stretch.speed.value, pressure_drop: drop };
     (drop > 0.0 && reading.input.is_finite()).then_some(reading)
 }
 
@@ -232,7 +229,8 @@ fn pump_losses(stretches: &[(&Track, Steady)]) -> Option<PumpLosses> {
         error: covariance[(index, index)].max(0.0).sqrt() / lengths[index],
     };
     let (share, leakage) = (estimate(0), estimate(1));
-    let lost = rows.iter().filter(|(row, _)| row[0].abs() > 0.0).map(|(row, _)| (leakage.value * row[1] / row[0]).abs());
+    let lost =
+        rows.iter().filter(|(row, _)| row[0].abs() > 0.0).map(|(row, _)| (leakage.value * row[1] / row[0]).abs());
     let lost = lost.fold([f64::INFINITY, 0.0_f64], |[least, most], one| [least.min(one), most.max(one)]);
     share.value.is_finite().then_some(PumpLosses { share, leakage, lost, stretches: rows.len() })
 }

@@ -108,11 +108,7 @@ pub(super) fn valve_curve(readings: &[FlowReading]) -> Result<StaticValve, Stati
     of_lines(lines, None, readings.len())
 }
 
-fn of_lines(
-    lines: [Option<Line>; 2],
-    null: Option<f64>,
-    readings: usize,
-) -> Result<StaticValve, StaticTestError> {
+fn of_lines(lines: [Option<Line>; 2], null: Option<f64>, readings: usize) -> Result<StaticValve, StaticTestError> {
     let null = match (lines, null) {
         ([None, None], _) => return Err(StaticTestError::NoLine { readings }),
         (_, Some(given)) => Estimate { value: given, error: 0.0 },
@@ -178,9 +174,9 @@ fn covariance(readings: &[FlowReading]) -> f64 {
 /// noise: neighbouring readings do not tell, since a noisy input rises and falls at every reading.
 fn directions(readings: &[FlowReading]) -> Vec<(f64, usize)> {
     let inputs: Vec<f64> = readings.iter().map(|one| one.input).collect();
-    let (least, most) = inputs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &input| {
-        (least.min(input), most.max(input))
-    });
+    let (least, most) = inputs
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &input| (least.min(input), most.max(input)));
     let noise = noise_level(&inputs);
     let turn = (TURN * (most - least)).max(TURN_NOISE * if noise.is_finite() { noise } else { 0.0 });
     // Turning points: the last extreme before the input came back by `turn`.
@@ -276,7 +272,8 @@ impl Line {
         }
         let spread: Matrix3<f64> = scores.iter().map(|score| score * score.transpose()).sum();
         let freedom = scores.len() as f64 / (scores.len() as f64 - 3.0).max(1.0);
-        let line = Line { solution, covariance: inverse * spread * inverse * freedom, both_ways, readings: straight.len() };
+        let line =
+            Line { solution, covariance: inverse * spread * inverse * freedom, both_ways, readings: straight.len() };
         (solution[0].is_finite() && solution[0] > 0.0).then_some(line)
     }
 
@@ -388,8 +385,11 @@ mod tests {
     fn one_side_needs_a_null() {
         let readings: Vec<FlowReading> =
             swept(2e-8, [0.4, 0.4], 0.0, false).into_iter().filter(|one| one.input >= 0.0).collect();
-        let Err(StaticTestError::NullUnknown { crossing }) = static_valve(&readings, None) else { panic!() };
-        assert!((crossing - 0.4).abs() < 0.02, "{crossing}");
+        let refused = static_valve(&readings, None).unwrap_err();
+        assert!(
+            matches!(refused, StaticTestError::NullUnknown { crossing } if (crossing - 0.4).abs() < 0.02),
+            "{refused}"
+        );
         let found = static_valve(&readings, Some(0.1)).unwrap();
         assert!((found.sides[0].unwrap().dead_zone.value - 0.3).abs() < 0.02 && found.sides[1].is_none());
     }

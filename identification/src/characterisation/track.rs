@@ -124,8 +124,7 @@ impl Track {
             Supply::PumpLine(line) => (None, line.tank_pressure),
             Supply::None => (Some(0.0), 0.0),
         };
-        let pump_pressure =
-            constant_or(&recording.pump_pressure, supply).unwrap_or_else(|| vec![f64::NAN; samples]);
+        let pump_pressure = constant_or(&recording.pump_pressure, supply).unwrap_or_else(|| vec![f64::NAN; samples]);
         let tank_pressure = constant_or(&recording.tank_pressure, Some(tank)).unwrap_or_default();
         // A machine without a load cell records a column of zeros.
         let measured_force = is_measured(&signals.rod_force) && signals.rod_force.iter().any(|&force| force != 0.0);

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{DeadZone, Friction, Gain, Outcome, ValveLeakage, finite};
-use crate::characterisation::{self, Edge, Refusal};
+use crate::characterisation::{self, DriveCurve, Edge, Refusal};
 
 /// Valves and friction, read off recordings without a simulation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -33,6 +33,10 @@ pub struct CylinderCharacterisation {
     pub valve_leakage: Outcome<ValveLeakage>,
     /// Friction against speed.
     pub friction: Outcome<Friction>,
+    /// Flow of the drive against its input, from steady stretches: null, dead zone and gains of a valve, or the losses of a pump.
+    pub drive: Outcome<DriveCurve>,
+    /// Where the piston meets its stops, m: retracted and extended; `null` where the recordings do not reach one.
+    pub stops: [Option<characterisation::Estimate>; 2],
 }
 
 impl Characterisation {
@@ -51,6 +55,8 @@ impl CylinderCharacterisation {
             dead_zones: by_edge(&found.dead_zones, DeadZone::of),
             valve_leakage: Outcome::of(&found.leakage, ValveLeakage::of),
             friction: Outcome::of(&found.friction, Friction::of),
+            drive: Outcome::of(&found.drive, DriveCurve::clone),
+            stops: found.stops,
         }
     }
 }

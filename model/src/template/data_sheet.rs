@@ -188,10 +188,10 @@ impl DataSheet {
     /// Largest flow of the pump, m³/s: that of the sheet, else the usual flow with a reserve, and the source of the number.
     pub(super) fn largest_pump_flow(&self) -> (f64, &'static str) {
         const RESERVE: f64 = 1.5;
-        self.pump_flow
-            .map_or((RESERVE * self.usual_flow(), "estimated: a full stroke in two seconds, and half as much again"), |flow| {
-                (flow, "data sheet")
-            })
+        self.pump_flow.map_or(
+            (RESERVE * self.usual_flow(), "estimated: a full stroke in two seconds, and half as much again"),
+            |flow| (flow, "data sheet"),
+        )
     }
 
     /// What the sheet lacks and the model file estimates.

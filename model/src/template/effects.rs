@@ -102,7 +102,8 @@ fn mechanical(sheet: &DataSheet) -> Vec<Entry> {
     let mut entries = match sheet.load {
         Load::Mass { mass, slope } => {
             let guess = full_force(sheet) / USUAL_ACCELERATION;
-            let (mass, source) = mass.map_or((guess, "start: the full force would give it 50 m/s2"), |mass| (mass, SHEET));
+            let (mass, source) =
+                mass.map_or((guess, "start: the full force would give it 50 m/s2"), |mass| (mass, SHEET));
             let weight = ("weight", mass * GRAVITY * slope, false, "from mass and slope");
             let gravity = (slope != 0.0).then(|| entry("gravity", vec![weight]));
             let inertia = entry("inertia", vec![("mass", mass, false, source)]);

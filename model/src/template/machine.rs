@@ -79,10 +79,9 @@ fn supply(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
             "A supply of constant pressure. A recording that measures it overrides the value.",
             pressure("the pressure of its supply (--supply, as in --supply \"70 bar\")")?,
         ),
-        DriveKind::Pump => source(
-            "The charge line that fills the closed circuit.",
-            sheet.supply_pressure.unwrap_or(FILLED_FROM_TANK),
-        ),
+        DriveKind::Pump => {
+            source("The charge line that fills the closed circuit.", sheet.supply_pressure.unwrap_or(FILLED_FROM_TANK))
+        }
         DriveKind::OpenCentre | DriveKind::LoadSensing => {
             let (flow, from) = sheet.largest_pump_flow();
             "# The pump and the oil between it and the valves. The flow is the most that the pump gives.\n[machine.supply]\n\

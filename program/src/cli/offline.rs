@@ -175,7 +175,7 @@ pub enum ModelVerb {
     /// Read a model, try the machine, and tell which of its numbers are odd.
     Check(ModelCheckArguments),
     /// Take flow gains, dead zone and play of a valve from a static test: a table of flow against input.
-    Valve(ValveTestArguments),
+    Valve(Box<ValveTestArguments>),
     /// Print the robot description (URDF) of a model's machine, for RViz and robot_state_publisher.
     Urdf(ModelChoice),
     /// Print the JSON schema of the model file, for editors that complete and check TOML.

@@ -71,11 +71,7 @@ impl Mapping {
 
     /// How recordings are read and made fit for use. Remarks go to standard error.
     pub fn preparation(&self, extent: Extent) -> Preparation<'_> {
-        let usage = Use {
-            accept: &self.accept,
-            conditions: &self.conditions,
-            leaves_out_stops: self.leave_out_stops,
-        };
+        let usage = Use { accept: &self.accept, conditions: &self.conditions, leaves_out_stops: self.leave_out_stops };
         Preparation { origin: self.origin(), usage, whole: extent.whole, remark: &remark }
     }
 }

@@ -12,11 +12,8 @@ use crate::sources;
 use crate::terminal::{characterisation_table, print, refusals};
 
 pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
-    let outputs = [
-        ("-o", arguments.output.as_deref()),
-        ("--report", arguments.report.as_deref()),
-        arguments.result.output(),
-    ];
+    let outputs =
+        [("-o", arguments.output.as_deref()), ("--report", arguments.report.as_deref()), arguments.result.output()];
     let inputs = Inputs::recordings(&arguments.bags, arguments.mapping.map.as_deref()).and_all(arguments.model.files());
     files::check(&outputs, &inputs, arguments.result.overwriting)?;
     let model = sources::model(&arguments.model)?;

@@ -10,6 +10,7 @@ use excavator_study::sheet::Sheet;
 use crate::cli::{Arguments, StartArguments, Verb};
 use crate::error::VerbError;
 use crate::manual;
+use crate::next_step::steps_follow;
 use crate::ros_words::RosWords;
 use crate::terminal::{command, print, print_text, width};
 
@@ -20,6 +21,13 @@ pub fn run(arguments: &StartArguments) -> Result<(), VerbError> {
         return valve_test(arguments, &sheet);
     }
     std::fs::create_dir_all(&arguments.to).map_err(VerbError::write(&arguments.to))?;
+    print(&format!(
+        "From {} and {} to a verdict. Every step is a command that can be repeated; its files go to {}.",
+        counted(arguments.data.len(), "recording"),
+        arguments.sheet.display(),
+        arguments.to.display()
+    ));
+    steps_follow(true);
     let Files { model, map, steady, report, study } = Files::in_folder(&arguments.to);
     step(
         "a model from the data sheet",
@@ -47,15 +55,18 @@ pub fn run(arguments: &StartArguments) -> Result<(), VerbError> {
     )?;
     let [fitted, judging] = parts(&arguments.data, is_mapped.then_some(&*map))?;
     let compared = judging.first().cloned().unwrap_or_default();
-    step("the model beside the measurement", mapped(Words::verb("compare").path("--model", &steady).path("--bag", &compared)))?;
+    step(
+        "the model beside the measurement",
+        mapped(Words::verb("compare").path("--model", &steady).path("--bag", &compared)),
+    )?;
+    steps_follow(false);
     let diagnose = Words::verb("diagnose").path("--model", &steady).files("--identification", &fitted);
     let diagnose = mapped(diagnose.files("--validation", &judging)).word("--leave-out-stops");
-    step(
-        "what the model lacks",
-        diagnose.path("--report", &report).path("--save", &study).forced(arguments),
-    )?;
-    print(&format!("The page to read is {}.", report.display()));
-    Ok(())
+    step("what the model lacks", diagnose.path("--report", &report).path("--save", &study).forced(arguments))
+}
+
+fn counted(number: usize, one: &str) -> String {
+    if number == 1 { format!("{number} {one}") } else { format!("{number} {one}s") }
 }
 
 /// What the steps write.
@@ -96,6 +107,7 @@ fn parts(data: &[PathBuf], map: Option<&Path>) -> Result<[Vec<PathBuf>; 2], Verb
 
 /// A table of a static valve test has its own verb.
 fn valve_test(arguments: &StartArguments, sheet: &Sheet) -> Result<(), VerbError> {
+    print("The data sheet is that of a static valve test: flow against input at a known pressure drop.");
     arguments.data.iter().try_for_each(|data| {
         let words = Words::verb("model").word("valve").path("--table", data).words(sheet.words());
         step("the static test of a valve", words)

@@ -23,4 +23,5 @@ mod practice;
 mod refinement;
 mod results;
 mod servo_bench;
+mod start;
 mod story;

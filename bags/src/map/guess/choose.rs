@@ -101,7 +101,11 @@ pub(super) fn choose(candidates: Vec<Candidate>, hints: Hints<'_>) -> (Vec<Guess
 /// What the owner says of this column; its heading may be given with or without the unit.
 fn described<'h>(candidate: &Candidate, hints: Hints<'h>) -> Option<&'h SheetColumn> {
     let Origin::Column(name) = &candidate.origin else { return None };
-    hints.columns.iter().find(|(heading, _)| *heading == name || heading_of(heading).0 == *name).map(|(_, column)| column)
+    hints
+        .columns
+        .iter()
+        .find(|(heading, _)| *heading == name || heading_of(heading).0 == *name)
+        .map(|(_, column)| column)
 }
 
 /// A column as the signal that its owner says it is.
@@ -214,9 +218,8 @@ fn by_name_and_unit(kind: SignalKind, candidate: &Candidate, hints: Hints<'_>) -
     let named = names::score(kind, &candidate.words);
     match candidate.dimension {
         // A pump of its own that drives a cylinder: its speed is the input, except for the displacement per revolution.
-        Some(Dimension::RotationalSpeed) if hints.has_pump_drive() => {
-            (kind == SignalKind::OrificeCommand).then(|| (0.9, "speed of the pump that drives the cylinder".to_string()))
-        }
+        Some(Dimension::RotationalSpeed) if hints.has_pump_drive() => (kind == SignalKind::OrificeCommand)
+            .then(|| (0.9, "speed of the pump that drives the cylinder".to_string())),
         // The flow of the pump, except for the displacement per revolution.
         Some(Dimension::RotationalSpeed) if kind == SignalKind::PumpFlow && names::is_of_pump(&candidate.words) => {
             Some((LEAST_SCORE, "speed of the pump".to_string()))

@@ -74,7 +74,8 @@ fn drive_rows(drive: &DriveCurve, unit: CommandUnit, row: &mut impl FnMut(String
                 zone.into_iter().for_each(|zone| row(format!("dead zone {way}, steady"), scaled(zone, factor), shown));
             }
             for (side, gain) in ["cap", "rod"].iter().zip(valve.gains) {
-                gain.into_iter().for_each(|gain| row(format!("gain of the {side} side, steady"), gain, unit.flow_gain()));
+                gain.into_iter()
+                    .for_each(|gain| row(format!("gain of the {side} side, steady"), gain, unit.flow_gain()));
             }
             let (factor, unit) = leakage_unit();
             let leakage = valve.leakage.map(|leakage| scaled(leakage, factor));
