@@ -16,7 +16,7 @@ use super::track::Track;
 
 /// What steady stretches tell of the drive of a cylinder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum DriveCurve {
     /// A valve.
     Valve(ValveCurve),

@@ -87,7 +87,7 @@ fn a_small_bench_is_read_without_a_simulation() {
     let folder = tempfile::tempdir().unwrap();
     let model = ["--drive=valve", "--cylinder=16/10 x 200", "--command=10 V", "--supply=43.5 bar"];
     let found = read(folder.path(), &bench, &["run1.csv", "run2.csv", "run3.csv"], &model);
-    let valve = &found["drive"]["valve"];
+    let valve = &found["drive"];
     close(&valve["leakage"]["value"], 1.002e-12, 0.05);
     close(&valve["gains"][0]["value"], 6.397e-9, 0.02);
     close(&valve["gains"][1]["value"], 5.333e-9, 0.02);
@@ -109,7 +109,7 @@ fn the_null_of_a_crane_is_read() {
         "--supply=180 bar",
     ];
     let found = read(folder.path(), &bench, &["lift1.csv", "lift2.csv"], &model);
-    let valve = &found["drive"]["valve"];
+    let valve = &found["drive"];
     close(&valve["null"]["value"], 5.690, 0.1 / 5.69);
     close(&valve["dead_zones"][0]["value"], 0.861, 0.15);
     close(&valve["dead_zones"][1]["value"], 0.827, 0.15);
@@ -122,7 +122,7 @@ fn the_losses_of_a_pump_drive_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let model = ["--drive=pump", "--cylinder=50/20 x 300", "--slope=90"];
     let found = read(folder.path(), &bench, &["day1.csv", "day2.csv"], &model);
-    let pump = &found["drive"]["pump"];
+    let pump = &found["drive"];
     close(&pump["share"]["value"], 4.873 / 5.0, 0.02);
     close(&pump["leakage"]["value"], 7.619e-12, 0.05);
 }
