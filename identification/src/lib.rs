@@ -14,6 +14,7 @@ pub mod fit;
 pub mod identify;
 mod nullable;
 pub mod plausibility;
+pub mod positioner;
 pub mod prelude;
 pub mod proposal;
 pub mod refinement;

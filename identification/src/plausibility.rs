@@ -2,6 +2,7 @@
 //! all ten times too large fits as well as the right one, with ten times the inertia.
 
 use excavator_model::effects::{Family, Kind, Text};
+use excavator_model::template::ESTIMATE;
 use excavator_model::{Model, ModelEffect, Parameter};
 
 /// A fitted value that is hard to believe.
@@ -41,13 +42,18 @@ const STIFFEST_FLUID: f64 = 3e9;
 /// determine is not reported.
 pub fn implausible(given: &Model, found: &Model) -> Vec<Implausible> {
     let names = found.parameter_names();
+    let given_names = given.parameter_names();
+    let guessed = |name: &str| {
+        let own = given.parameters().zip(&given_names).find(|(_, own)| *own == name);
+        own.is_some_and(|((_, parameter), _)| is_guessed(parameter))
+    };
     let fitted = found
         .parameters()
         .zip(names)
         .filter(|((effect, parameter), _)| is_known_roughly(&found.effects[*effect], parameter));
     fitted
         .filter_map(|((_, parameter), name)| {
-            let why = doubt(given.value_of(&name), parameter)?;
+            let why = doubt(given.value_of(&name).filter(|_| !guessed(&name)), parameter)?;
             Some(Implausible { name, value: parameter.value, unit: parameter.card.unit.clone(), why })
         })
         .collect()
@@ -56,6 +62,12 @@ pub fn implausible(given: &Model, found: &Model) -> Vec<Implausible> {
 /// Whether a parameter is usually known within a factor before it is fitted.
 fn is_known_roughly(effect: &ModelEffect, parameter: &Parameter) -> bool {
     effect.physics.card().family == Family::Base && !parameter.known && parameter.card.kind != Kind::Shape
+}
+
+/// Whether a value is an estimate for a machine of this size, which says nothing about the fitted one. A bulk modulus is similar in all
+/// machines.
+fn is_guessed(parameter: &Parameter) -> bool {
+    parameter.source.starts_with(ESTIMATE) && parameter.card.kind != Kind::Reciprocal
 }
 
 fn doubt(given: Option<f64>, parameter: &Parameter) -> Option<Doubt> {

@@ -50,6 +50,7 @@ pub fn of_work(error: WorkError) -> PyErr {
         | WorkError::StudySyntax { .. }
         | WorkError::SheetSyntax { .. }
         | WorkError::ValveTest { .. }
+        | WorkError::PositionTest { .. }
         | WorkError::Unreadable { .. }
         | WorkError::Changed { .. } => ReadError::new_err(text),
         WorkError::Check(refusal) => CheckError::new_err(match refusal.name() {
@@ -72,6 +73,7 @@ pub fn of_work(error: WorkError) -> PyErr {
         | WorkError::Run(_)
         | WorkError::Signal(_)
         | WorkError::Json(_)
+        | WorkError::Positioner(_)
         | WorkError::NoRecording
         | WorkError::NoTie { .. } => ComputationError::new_err(text),
     }

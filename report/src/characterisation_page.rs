@@ -1,8 +1,8 @@
 //! A page with the results of the procedures of \[B\].
 
 use excavator_identification::characterisation::{
-    ChamberLeakage, Characterisation, ClosedValve, DeadZone, DirectionalGain, Edge, Estimate, FrictionCurve,
-    Polynomial, Refusal,
+    ChamberLeakage, Characterisation, ClosedValve, DeadZone, DirectionalGain, DriveCurve, Edge, Estimate,
+    FrictionCurve, Polynomial, Refusal,
 };
 use excavator_model::Model;
 use excavator_model::display::PressureUnit;
@@ -45,6 +45,7 @@ pub fn characterisation_page(model: &Model, sources: &[String], found: &[Charact
         body: each(of),
     };
     let sections = [
+        section("drive", "Drive and stops, from steady stretches", &drive),
         section("gains", "Gains of the metering edges", &gains),
         section("dead-zone", "Dead zone and hysteresis", &dead_zones),
         section("leakage", "Leakage of the closed valve", &leakage),
@@ -57,15 +58,61 @@ fn refused(what: &str, refusal: &Refusal) -> Markup {
     html! { p.empty { (what) ": not from these recordings, because " (refusal) "." } }
 }
 
+/// Null, dead zones, gains and leakage of a valve, or the losses of a pump; and the stops.
+fn drive(one: &Characterisation) -> Markup {
+    let (factor, unit) = one.unit.for_people();
+    let (leak_factor, leak_unit) = leakage_unit();
+    let mut rows: Vec<(String, Estimate, f64, String)> = Vec::new();
+    match &one.drive {
+        Ok(DriveCurve::Valve(valve)) => {
+            rows.push(("null".into(), valve.null, factor, unit.into()));
+            for (way, zone) in ["extending", "retracting"].iter().zip(valve.dead_zones) {
+                rows.extend(zone.map(|zone| (format!("dead zone, {way}"), zone, factor, unit.into())));
+            }
+            for (side, gain) in ["cap", "rod"].iter().zip(valve.gains) {
+                rows.extend(
+                    gain.map(|gain| (format!("gain of the {side} side"), gain, 1.0, one.unit.flow_gain().into())),
+                );
+            }
+            rows.extend(valve.leakage.map(|leak| ("leakage past the piston".into(), leak, leak_factor, leak_unit)));
+        }
+        Ok(DriveCurve::Pump(pump)) => {
+            rows.push(("flow over flow without losses".into(), pump.share, 1.0, String::new()));
+            rows.push(("leakage between both sides".into(), pump.leakage, leak_factor, leak_unit));
+        }
+        Err(_) => (),
+    }
+    for (end, stop) in ["retracted", "extended"].iter().zip(one.stops) {
+        rows.extend(stop.map(|stop| (format!("stop of the {end} rod"), stop, 1e3, "mm".into())));
+    }
+    html! {
+        @if !rows.is_empty() {
+            div.wide { table.data {
+                thead { tr { th { "Quantity" } th.n { "Value" } th { "Unit" } } }
+                tbody { @for (what, estimate, factor, unit) in &rows { tr {
+                    td { (what) }
+                    td.n { (with_margin(factor * estimate.value, SIDES_95 * factor * estimate.error)) }
+                    td.unit { (unit) }
+                } } }
+            } }
+            p.note {
+                "The flow follows from the speed, where input and speed are constant. The null is the middle of the closed valve, and dead zones count from it. Both "
+                "chambers are closed by one spool, which tells the leakage past the piston. A stop is where the piston stands although it is driven on. ± 95 %."
+            }
+        }
+        @if let Err(refusal) = &one.drive { (refused("The curve of the drive", refusal)) }
+    }
+}
+
 fn gains(one: &Characterisation) -> Markup {
     let found: Vec<(Edge, &DirectionalGain)> =
         one.gains.iter().filter_map(|(edge, gain)| Some((*edge, gain.as_ref().ok()?))).collect();
     html! {
         @if !found.is_empty() {
-            (gain_plots(&found))
+            (gain_plots(&found, one.unit))
             div.wide { table.data {
                 thead { tr {
-                    th { "Edge" } th.n { "Stretches" } th { "Opening" } th.n { "Degree" } th { "Polynomial in x = |u|/umax, m/(s √Pa)" } th { "Why this degree" }
+                    th { "Edge" } th.n { "Stretches" } th { "Opening" } th.n { "Degree" } th { "Polynomial in x = |u|/umax, " (one.unit.flow_gain()) } th { "Why this degree" }
                 } }
                 tbody { @for (edge, gain) in &found {
                     (gain_row(edge.name(), gain.points.len(), "from closed", &gain.polynomial))
@@ -110,14 +157,15 @@ fn polynomial_text(curve: &Polynomial) -> String {
 fn dead_zones(one: &Characterisation) -> Markup {
     let found: Vec<(Edge, &DeadZone)> =
         one.dead_zones.iter().filter_map(|(edge, zone)| Some((*edge, zone.as_ref().ok()?))).collect();
-    let area = |estimate: Estimate| with_margin(estimate.value * 1e6, SIDES_95 * estimate.error * 1e6);
+    let (factor, unit) = one.unit.for_people();
+    let area = |estimate: Estimate| with_margin(estimate.value * factor, SIDES_95 * estimate.error * factor);
     html! {
         @if !found.is_empty() {
-            (edge_plots(&found))
+            (edge_plots(&found, one.unit))
             div.wide { table.data {
                 thead { tr {
-                    th { "Edge" } th.n { "Flow begins, mm²" } th.n { "Flow ends, mm²" } th.n { "Dead zone, mm²" } th.n { "Share of umax" }
-                    th.n { "Hysteresis, mm²" } th.n { "Runs" } th.n { "Equal lag" }
+                    th { "Edge" } th.n { "Flow begins, " (unit) } th.n { "Flow ends, " (unit) } th.n { "Dead zone, " (unit) } th.n { "Share of umax" }
+                    th.n { "Hysteresis, " (unit) } th.n { "Runs" } th.n { "Equal lag" }
                 } }
                 tbody { @for (edge, zone) in &found { tr {
                     td.unit { (edge.name()) }

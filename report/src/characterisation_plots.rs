@@ -3,9 +3,10 @@
 use excavator_identification::characterisation::{
     ClosedValve, DeadZone, Direction, DirectionalGain, Edge, FrictionCurve, Polynomial,
 };
+use excavator_model::machine::CommandUnit;
 use maud::{Markup, html};
 
-use super::numbers::SIDES_95;
+use super::numbers::{SIDES_95, superscript};
 use super::svg::{Frame, picture, range_of};
 use super::units;
 
@@ -30,30 +31,36 @@ fn along(range: (f64, f64)) -> impl Iterator<Item = f64> {
     (0..=POINTS).map(move |k| range.0 + (range.1 - range.0) * k as f64 / POINTS as f64)
 }
 
-fn banded(frame: &Frame, curve: &Polynomial, range: (f64, f64), colour: &str) -> Markup {
+/// A curve with its band, with heights times `scale`.
+fn banded(frame: &Frame, curve: &Polynomial, range: (f64, f64), scale: f64, colour: &str) -> Markup {
     let band: Vec<(f64, f64, f64)> = along(range)
         .map(|x| (x, curve.at(x) - SIDES_95 * curve.error_at(x), curve.at(x) + SIDES_95 * curve.error_at(x)))
-        .map(|(x, low, high)| (x, 1e3 * low, 1e3 * high))
+        .map(|(x, low, high)| (x, scale * low, scale * high))
         .collect();
-    let line: Vec<(f64, f64)> = along(range).map(|x| (x, 1e3 * curve.at(x))).collect();
+    let line: Vec<(f64, f64)> = along(range).map(|x| (x, scale * curve.at(x))).collect();
     html! { (frame.band(&band, colour)) (frame.line(&line, colour, false)) }
 }
 
 /// Gain over opening, edge by edge: \[B\] Figure 4.
-pub(super) fn gain_plots(found: &[(Edge, &DirectionalGain)]) -> Markup {
+pub(super) fn gain_plots(found: &[(Edge, &DirectionalGain)], unit: CommandUnit) -> Markup {
+    let largest = found.iter().flat_map(|(_, gain)| &gain.points).map(|point| point.gain.value).fold(0.0, f64::max);
+    // A power of a thousand, as for units.
+    let power = if largest > 0.0 { 3 * (largest.log10() / 3.0).floor() as i32 } else { 0 };
+    let scale = 10_f64.powi(-power);
+    let axis = format!("gain (10{} {})", superscript(power), unit.flow_gain());
     html! {
         (key([(FIRST, "counted from closed"), (SECOND, "counted from the edge of the dead zone")]))
         div.panels { @for (edge, gain) in found {
-            @let from_closed = |k: usize| (gain.points[k].opening / gain.maximum, 1e3 * gain.points[k].gain.value);
-            @let from_edge = |k: usize| gain.points[k].gain_past_edge.map(|past| (gain.points[k].opening / gain.maximum, 1e3 * past.value));
+            @let from_closed = |k: usize| (gain.points[k].opening / gain.maximum, scale * gain.points[k].gain.value);
+            @let from_edge = |k: usize| gain.points[k].gain_past_edge.map(|past| (gain.points[k].opening / gain.maximum, scale * past.value));
             @let count = gain.points.len();
             @let heights = (0..count).flat_map(|k| [Some(from_closed(k).1), from_edge(k).map(|point| point.1)]).flatten();
             @let frame = Frame { size: SIZE, margins: MARGINS, x: range_of((0..count).map(|k| from_closed(k).0)), y: range_of(heights) };
             @let range = (from_closed(0).0, from_closed(count - 1).0);
             (picture(SIZE, &format!("gain of the edge {} against opening", edge.name()), &html! {
-                (frame.axes(&format!("opening over umax, {}", edge.name()), "gain (10⁻³ m/(s √Pa))"))
-                (banded(&frame, &gain.polynomial, range, FIRST))
-                @if let Some(curve) = &gain.past_edge { (banded(&frame, curve, range, SECOND)) }
+                (frame.axes(&format!("opening over umax, {}", edge.name()), &axis))
+                (banded(&frame, &gain.polynomial, range, scale, FIRST))
+                @if let Some(curve) = &gain.past_edge { (banded(&frame, curve, range, scale, SECOND)) }
                 @for k in 0..count { (dot(&frame, from_closed(k), FIRST)) @if let Some(point) = from_edge(k) { (dot(&frame, point, SECOND)) } }
             }))
         } }
@@ -61,26 +68,27 @@ pub(super) fn gain_plots(found: &[(Edge, &DirectionalGain)]) -> Markup {
 }
 
 /// Flow over root of the pressure drop against opening: \[B\] Figure 5.
-pub(super) fn edge_plots(found: &[(Edge, &DeadZone)]) -> Markup {
+pub(super) fn edge_plots(found: &[(Edge, &DeadZone)], unit: CommandUnit) -> Markup {
+    let (factor, symbol) = unit.for_people();
     html! {
         (key([(FIRST, "opening"), (SECOND, "closing")]))
         div.panels { @for (edge, zone) in found {
             // Most of a run is far from the edge, so the picture shows only three dead zones.
-            @let shown = 3.0 * zone.opening.value.abs().max(5.0 * zone.hysteresis.value.abs()) * 1e6;
+            @let shown = 3.0 * zone.opening.value.abs().max(5.0 * zone.hysteresis.value.abs()) * factor;
             @let points = |opens: bool| -> Vec<Vec<(f64, f64)>> {
                 zone.curves.iter().filter(|curve| curve.opens == opens)
-                    .map(|curve| curve.points.iter().map(|&(u, q)| (u.abs() * 1e6, q * 1e6)).filter(|(u, _)| *u <= shown).collect()).collect()
+                    .map(|curve| curve.points.iter().map(|&(u, q)| (u.abs() * factor, q * 1e6)).filter(|(u, _)| *u <= shown).collect()).collect()
             };
             @let (opening, closing) = (points(true), points(false));
             @let all = || opening.iter().chain(&closing).flatten();
-            @let edges = [zone.opening.value * 1e6, zone.closing.value * 1e6];
+            @let edges = [zone.opening.value * factor, zone.closing.value * factor];
             @let frame = Frame { size: SIZE, margins: MARGINS, x: range_of(all().map(|point| point.0).chain(edges)), y: range_of(all().map(|point| point.1)) };
             (picture(SIZE, &format!("normalised flow through the edge {} against opening", edge.name()), &html! {
-                (frame.axes(&format!("opening (mm²), {}", edge.name()), "flow / √drop (10⁻⁶ m³/(s √Pa))"))
+                (frame.axes(&format!("opening ({symbol}), {}", edge.name()), "flow / √drop (10⁻⁶ m³/(s √Pa))"))
                 @for curve in &opening { (frame.dots(curve, FIRST)) }
                 @for curve in &closing { (frame.dots(curve, SECOND)) }
                 @for (begin, colour) in [(zone.opening, FIRST), (zone.closing, SECOND)] {
-                    (frame.line(&[(begin.value * 1e6, frame.y.0), (begin.value * 1e6, frame.y.1)], colour, true))
+                    (frame.line(&[(begin.value * factor, frame.y.0), (begin.value * factor, frame.y.1)], colour, true))
                 }
             }))
         } }

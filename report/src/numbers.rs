@@ -110,7 +110,7 @@ pub(super) fn exponent_in(power: &str) -> Option<i32> {
     digits?.parse().ok()
 }
 
-fn superscript(exponent: i32) -> String {
+pub(super) fn superscript(exponent: i32) -> String {
     exponent
         .to_string()
         .chars()

@@ -8,6 +8,7 @@ use excavator_identification::design::DesignError;
 use excavator_identification::diagnosis::DiagnosisError;
 use excavator_identification::energy::EnergyError;
 use excavator_identification::identify::IdentifyError;
+use excavator_identification::positioner::PositionerError;
 use excavator_identification::refinement::RefineError;
 use excavator_identification::regression::RegressionError;
 use excavator_model::document::{DocumentError, TomlFault};
@@ -69,6 +70,10 @@ pub enum WorkError {
     Changed { path: PathBuf },
     #[error("{}: {reason}", path.display())]
     ValveTest { path: PathBuf, reason: String },
+    #[error("{}: {reason}", path.display())]
+    PositionTest { path: PathBuf, reason: String },
+    #[error(transparent)]
+    Positioner(#[from] PositionerError),
     #[error("{} is not a data sheet: {reason}", path.display())]
     SheetSyntax { path: PathBuf, reason: String },
     #[error("no recording to compare the model with")]

@@ -13,6 +13,7 @@
 //! | [`numbers`] | numbers formatted for users |
 //! | [`simulated`] | simulations of commands, from rest |
 //! | [`sheet`] | a data sheet as a file |
+//! | [`position_test`] | a model from reference to position, from tables |
 //! | [`valve_test`] | a static valve test from a table |
 //! | [`profile_file`], [`diagnosis_file`], [`recording_files`] | files that one verb writes and another reads |
 //!
@@ -43,6 +44,7 @@ mod json_text;
 mod long_recording;
 mod model_files;
 pub mod numbers;
+pub mod position_test;
 pub mod prelude;
 pub mod preparation;
 pub mod profile_file;

@@ -4,6 +4,7 @@ import re
 import shutil
 import subprocess
 from dataclasses import dataclass
+from math import sin
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -101,6 +102,11 @@ OFFLINE = {
         last="the next command needs a recording, and none is named here",
     ),
     "model valve": Recipe(works=[[*VALVE, "35 bar", "-o", "tested.toml"]], fails=[*VALVE, "35", "-o", "tested-2.toml"]),
+    "model position": Recipe(
+        works=[["model", "position", "--identification", "position.csv"]],
+        fails=["model", "position", "--identification", "table.csv"],
+        last="a loop without pressures is no model of a machine",
+    ),
     "model urdf": Recipe(works=[["model", "urdf", *MODEL]], fails=["model", "urdf", "--model", "nowhere.toml"], data="XML"),
     "model schema": Recipe(works=[["model", "schema"]], fails=["model", "schema", "--catalogue", "nowhere"], data="JSON"),
     "model reference": Recipe(works=[["model", "reference"]], fails=["model", "reference", "--catalogue", "nowhere"], data="Markdown"),
@@ -120,6 +126,13 @@ def valve_test():
     return "\n".join(["U [V];Q [l/min]", *rows, *reversed(rows)]) + "\n"
 
 
+def position_test():
+    """The table of a position loop: a reference and a position that follows it after 50 ms."""
+    times = [row / 200 for row in range(2000)]
+    motion = [(10 * sin(3 * t), 10 * sin(3 * (t - 0.05))) for t in times]
+    return "\n".join(["t [s];reference [mm];position [mm]", *(f"{t:.3f};{a:.4f};{b:.4f}" for t, (a, b) in zip(times, motion, strict=True))]) + "\n"
+
+
 def prepare(excavator, folder):
     """The files that the recipes name, under short names: a path cannot be broken."""
     for name in ("identification", "validation"):
@@ -131,6 +144,7 @@ def prepare(excavator, folder):
     shutil.copytree(SAMPLES / "arm-swing", folder / "damaged")
     (folder / "damaged" / "metadata.yaml").unlink()
     (folder / "valve.csv").write_text(valve_test())
+    (folder / "position.csv").write_text(position_test())
     (folder / "valve-sheet.toml").write_text('drop = "35 bar"\n')
     (folder / "law.toml").write_text(
         '[[formula]]\nname = "load_damping"\nacts_on = "piston_force"\nformula = "-k*v*abs(p_cap - p_rod)"\n'

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from pages import DOCS, REPOSITORY, Save, all_commands, missing_from, runs, starts_nodes, steps
-from recipes import valve_test
+from recipes import position_test, valve_test
 
 SAMPLES = REPOSITORY / "bags" / "samples"
 HIDDEN_LAW = SAMPLES / "hidden-law"
@@ -66,7 +66,13 @@ PAGES = {
         }
     ),
     "own-machine.md": Reader(
-        files={"bench.csv": BENCH / "identification.csv", "other-day.csv": BENCH / "validation.csv", "valve-test.csv": valve_test}
+        files={
+            "bench.csv": BENCH / "identification.csv",
+            "other-day.csv": BENCH / "validation.csv",
+            "valve-test.csv": valve_test,
+            "test1.csv": position_test,
+            "test2.csv": position_test,
+        }
     ),
     "tutorial.md": Reader(),
     "own-physics.md": Reader(),

@@ -56,7 +56,10 @@ pub use conversion::Conversion;
 pub use document::TopicMap;
 pub use error::MapError;
 pub(crate) use guess::clock_of_table;
-pub use guess::{Confidence, Guess, GuessedSignal, Hints, NO_COLUMNS, Possibility, SheetColumn, ZeroAt, guess};
+pub use guess::{
+    Confidence, Guess, GuessedSignal, Hints, NO_COLUMNS, Possibility, SheetColumn, TimedColumn, ZeroAt, guess,
+    timed_columns,
+};
 pub use join::Join;
 pub use leave_out::LeaveOut;
 pub use named::NamedColumn;

@@ -123,7 +123,7 @@ pub fn valve_leakage(tracks: &[Track]) -> Result<ClosedValve, Refusal> {
             needed: NEEDED,
             longest,
             least: LEAST_HOLD,
-            limit: CLOSED * maximum,
+            limit: CLOSED,
             suggested: 5.0,
         });
     }

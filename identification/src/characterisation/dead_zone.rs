@@ -127,7 +127,8 @@ fn dead_zone(tracks: &[Track], edge: Edge) -> Result<DeadZone, Refusal> {
     };
     let both = begins.error.hypot(ends.error);
     if begins.value - ends.value < -LEADS * both {
-        return Err(Refusal::FlowLeads { begins: begins.value, ends: ends.value });
+        let full = track.maximum_opening();
+        return Err(Refusal::FlowLeads { begins: begins.value / full, ends: ends.value / full });
     }
     Ok(DeadZone {
         opening: begins,

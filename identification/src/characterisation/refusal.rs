@@ -57,8 +57,9 @@ pub enum Refusal {
     Curve(String),
     /// The valve is hardly ever closed for long enough.
     #[error(
-        "{} with closed valve (opening within {limit:.1e} m2) of at least {least:.2} s, the longest {longest:.2} s; {needed} are needed. Close the valve for {suggested:.0} s and longer, after moves in both directions",
-        counted(*found, "hold", "holds")
+        "{} with closed valve (input within {:.0} % of the full one) of at least {least:.2} s, the longest {longest:.2} s; {needed} are needed. Close the valve for {suggested:.0} s and longer, after moves in both directions",
+        counted(*found, "hold", "holds"),
+        100.0 * limit
     )]
     TooFewHolds {
         /// Holds that are long enough.
@@ -69,7 +70,7 @@ pub enum Refusal {
         longest: f64,
         /// Least time, s.
         least: f64,
-        /// Opening that counts as closed, m².
+        /// Input that counts as closed, as a share of the full one.
         limit: f64,
         /// Recommended time, s.
         suggested: f64,
@@ -106,12 +107,12 @@ pub enum Refusal {
     },
     /// Flow through an edge begins at a smaller opening than the one at which it ends.
     #[error(
-        "flow begins at {:.2} mm2 while the valve opens and ends at {:.2} mm2 while it closes: flow leads the opening. Check that pressures and openings share one clock", 1e6 * begins, 1e6 * ends
+        "flow begins at {:.2} % of the full input while the valve opens and ends at {:.2} % while it closes: flow leads the opening. Check that pressures and openings share one clock", 100.0 * begins, 100.0 * ends
     )]
     FlowLeads {
-        /// Opening at which flow begins, m².
+        /// Input at which flow begins, as a share of the full one.
         begins: f64,
-        /// Opening at which it ends, m².
+        /// Input at which it ends, as a share of the full one.
         ends: f64,
     },
     /// The opening does not pass the edge slowly enough.

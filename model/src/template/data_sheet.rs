@@ -198,7 +198,9 @@ impl DataSheet {
     pub fn estimated(&self) -> Vec<&'static str> {
         let has_pump = matches!(self.drive, DriveKind::OpenCentre | DriveKind::LoadSensing | DriveKind::Pump);
         let lacks_mass = matches!(self.load, Load::Mass { mass: None, .. });
+        let has_oil = !matches!(self.drive, DriveKind::Force | DriveKind::ImposedMotion);
         [
+            (has_oil && self.dead_volumes.is_none()).then_some("the oil in ports and hoses"),
             lacks_mass.then_some("the mass"),
             (has_pump && self.pump_flow.is_none()).then_some("the flow of the pump"),
             (self.drive == DriveKind::Pump && self.supply_pressure.is_none()).then_some("the charge pressure"),

@@ -14,6 +14,9 @@ pub use examples::examples;
 use crate::document::{DocumentError, parse};
 use crate::effects::Catalogue;
 
+/// How the source of a number begins that was estimated, because the data sheet does not have it.
+pub const ESTIMATE: &str = "start:";
+
 /// Why a model file cannot be written.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -147,3 +147,22 @@ pub struct ValveTestArguments {
     #[command(flatten)]
     pub result: ResultFile,
 }
+
+/// Tables of a drive under its own position controller.
+#[derive(Debug, Clone, Args)]
+pub struct PositionTestArguments {
+    /// Tables that the model is fitted to (.csv, .xlsx, .mat, .parquet).
+    #[arg(long, required = true, num_args = 1.., value_name = "FILE")]
+    pub identification: Vec<PathBuf>,
+    /// Tables that the model predicts.
+    #[arg(long, num_args = 1.., value_name = "FILE")]
+    pub validation: Vec<PathBuf>,
+    /// Heading of the column with the reference; without, the only one named so.
+    #[arg(long, value_name = "COLUMN")]
+    pub reference: Option<String>,
+    /// Heading of the column with the position; without, the only other length.
+    #[arg(long, value_name = "COLUMN")]
+    pub position: Option<String>,
+    #[command(flatten)]
+    pub result: ResultFile,
+}

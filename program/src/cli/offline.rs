@@ -5,7 +5,10 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 use excavator_identification::identify;
 
-use super::{Extent, Mapping, ModelChoice, NewModelArguments, Overwriting, OwnEffects, ResultFile, ValveTestArguments};
+use super::{
+    Extent, Mapping, ModelChoice, NewModelArguments, Overwriting, OwnEffects, PositionTestArguments, ResultFile,
+    ValveTestArguments,
+};
 
 #[derive(Debug, Args)]
 pub struct DemoArguments {
@@ -176,6 +179,8 @@ pub enum ModelVerb {
     Check(ModelCheckArguments),
     /// Take flow gains, dead zone and play of a valve from a static test: a table of flow against input.
     Valve(Box<ValveTestArguments>),
+    /// Fit a model from reference to position of a drive under its own controller: gain, dead band, lag, delay, bandwidth.
+    Position(Box<PositionTestArguments>),
     /// Print the robot description (URDF) of a model's machine, for RViz and robot_state_publisher.
     Urdf(ModelChoice),
     /// Print the JSON schema of the model file, for editors that complete and check TOML.

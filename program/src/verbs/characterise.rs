@@ -2,7 +2,11 @@
 
 use excavator_identification::characterisation::Characterisation;
 use excavator_model::document::to_text;
+use excavator_model::effects::Site;
+use excavator_model::machine::{CommandUnit, Machine};
+use excavator_model::{Model, ModelEffect, Parameter, site_name};
 use excavator_study::Study;
+use excavator_study::numbers::number;
 
 use crate::cli::{CharacteriseArguments, Extent};
 use crate::error::VerbError;
@@ -34,7 +38,11 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
         print_next(&next(arguments));
     }
     if let Some(path) = &arguments.output {
-        files::write(path, &to_text(&characterised.steady_model()?)?, arguments.result.overwriting)?;
+        let read = characterised.steady_model()?;
+        files::write(path, &to_text(&read)?, arguments.result.overwriting)?;
+        if arguments.result.is_shown() {
+            added(characterised.model(), &read).iter().for_each(|line| print(line));
+        }
     }
     files::write_told(&characterised, arguments.report.as_deref(), &arguments.result)
 }
@@ -45,4 +53,27 @@ fn next(arguments: &CharacteriseArguments) -> NextStep {
     let step = step.same_model(&arguments.model).word("--bag");
     let step = arguments.bags.iter().fold(step, |step, bag| step.word(bag.display().to_string()));
     step.mapping(&arguments.mapping)
+}
+
+/// What steady stretches added to the model, one line each.
+fn added(given: &Model, read: &Model) -> Vec<String> {
+    let is_new = |effect: &&ModelEffect| !given.has(effect.name(), effect.site);
+    let of_effect = |effect: &ModelEffect| {
+        let place = site_name(&read.machine, effect.site);
+        let values: Vec<String> = effect.parameters.iter().map(|one| shown(&read.machine, effect.site, one)).collect();
+        format!(
+            "Added to the model, since steady stretches show it: {} at {place} ({}).",
+            effect.name(),
+            values.join(", ")
+        )
+    };
+    read.effects.iter().filter(is_new).map(of_effect).collect()
+}
+
+/// A parameter in the unit that people use for the input of its drive.
+fn shown(machine: &Machine, site: Site, parameter: &Parameter) -> String {
+    let Site::Cylinder(cylinder) = site else { return number(parameter.value) };
+    let unit = machine.cylinders[cylinder].chambers.map_or(CommandUnit::One, |chambers| chambers.drive.command_unit());
+    let (factor, unit) = unit.for_people();
+    format!("{} {} {unit}", parameter.card.name, number(factor * parameter.value))
 }

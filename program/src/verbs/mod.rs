@@ -15,6 +15,7 @@ mod model;
 mod new_model;
 #[cfg(feature = "live")]
 mod node;
+mod position_test;
 mod propose;
 mod refine;
 mod reindex;

@@ -10,7 +10,7 @@ use excavator_model::{Model, addition_name, site_name, urdf};
 use excavator_study::numbers::number;
 use serde_json::{Value, json};
 
-use super::{new_model, valve_test};
+use super::{new_model, position_test, valve_test};
 use crate::cli::{ModelCheckArguments, ModelChoice, ModelVerb};
 use crate::error::VerbError;
 use crate::files::{self, Inputs, finite, write_json};
@@ -22,6 +22,7 @@ pub fn run(verb: &ModelVerb) -> Result<(), VerbError> {
         ModelVerb::New(arguments) => new_model::run(arguments),
         ModelVerb::Check(arguments) => check(arguments),
         ModelVerb::Valve(arguments) => valve_test::run(arguments),
+        ModelVerb::Position(arguments) => position_test::run(arguments),
         ModelVerb::Urdf(choice) => {
             print_text(urdf(&sources::model(choice)?.machine).trim_end());
             Ok(())

@@ -20,6 +20,9 @@ pub fn run(arguments: &StartArguments) -> Result<(), VerbError> {
     if sheet.option("drive").is_none() && sheet.option("drop").is_some() {
         return valve_test(arguments, &sheet);
     }
+    if sheet.option("drive").as_deref() == Some("position") {
+        return position_test(arguments);
+    }
     std::fs::create_dir_all(&arguments.to).map_err(VerbError::write(&arguments.to))?;
     print(&format!(
         "From {} and {} to a verdict. Every step is a command that can be repeated; its files go to {}.",
@@ -112,6 +115,20 @@ fn valve_test(arguments: &StartArguments, sheet: &Sheet) -> Result<(), VerbError
         let words = Words::verb("model").word("valve").path("--table", data).words(sheet.words());
         step("the static test of a valve", words)
     })
+}
+
+/// A drive under its own position controller has reference and position only.
+fn position_test(arguments: &StartArguments) -> Result<(), VerbError> {
+    print("The data sheet is that of a drive under its own position controller: reference and position, no pressures.");
+    let words = Words::verb("model").word("position");
+    let words = match arguments.data.split_last() {
+        Some((last, [])) => words.files("--identification", std::slice::from_ref(last)),
+        Some((last, others)) => {
+            words.files("--identification", others).files("--validation", std::slice::from_ref(last))
+        }
+        None => words,
+    };
+    step("a model from reference to position", words)
 }
 
 /// A command under construction.

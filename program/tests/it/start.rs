@@ -149,3 +149,23 @@ fn a_static_test_is_read_in_the_units_of_its_table() {
     let said = excavator(folder.path(), &words);
     assert!(said.status.success() && String::from_utf8_lossy(&said.stdout).contains("gpm/mA"), "{}", complaint(&said));
 }
+
+/// A test actuator under its own controller: one test predicts the other.
+#[test]
+fn a_positioner_is_predicted_from_its_reference() {
+    let Some(bench) = bench("positioner") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let [first, other, sheet] =
+        ["test1.csv", "test2.csv", "sheet.toml"].map(|name| bench.join(name).to_str().unwrap().to_string());
+    let fit = json(&excavator(
+        folder.path(),
+        &["model", "position", "--identification", &first, "--validation", &other, "--json", "-"],
+    ));
+    assert!(fit["relative_errors"][0].as_f64().unwrap() < 0.02, "{fit}");
+    let said = excavator(folder.path(), &["start", &first, &other, "--sheet", &sheet]);
+    assert!(
+        said.status.success() && String::from_utf8_lossy(&said.stdout).contains("Gain of the loop"),
+        "{}",
+        complaint(&said)
+    );
+}

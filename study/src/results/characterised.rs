@@ -39,6 +39,11 @@ impl Characterised {
         Ok(with_steady_values(&self.model, &self.found)?)
     }
 
+    /// The model as given.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
     /// Name of the machine.
     pub fn machine(&self) -> &str {
         &self.model.machine.name

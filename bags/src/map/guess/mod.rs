@@ -20,7 +20,7 @@ pub use self::sheet_column::{SheetColumn, ZeroAt};
 use super::clock_source::ClockSource;
 use super::document::TopicMap;
 use super::signal_source::SignalSource;
-use super::unit::Dimension;
+use super::unit::{Dimension, Unit};
 use crate::BagError;
 use crate::table::{Table, TableFormat};
 
@@ -217,6 +217,31 @@ pub fn guess<'h>(path: &Path, hints: impl Into<Hints<'h>>) -> Result<Guess, BagE
     let (signals, mut left) = choose::choose(candidates, hints.into());
     left.extend(unreadable);
     Ok(Guess { data: path.display().to_string(), clock, signals, left })
+}
+
+/// A column of a table with its clock.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimedColumn {
+    /// Heading.
+    pub name: String,
+    /// Unit in the heading.
+    pub unit: Option<Unit>,
+    /// Times, s.
+    pub time: Vec<f64>,
+    /// Values, in the unit.
+    pub values: Vec<f64>,
+}
+
+/// The columns of a table besides its clock, in order.
+pub fn timed_columns(table: &Table) -> Vec<TimedColumn> {
+    let found = from_table::candidates(table).candidates.into_iter();
+    let column = |one: candidate::Candidate| TimedColumn {
+        name: one.label(),
+        unit: one.unit.map(|(unit, _)| unit),
+        time: one.time,
+        values: one.values,
+    };
+    found.map(column).collect()
 }
 
 /// The clock of a table and the reason for it.
