@@ -294,7 +294,7 @@ mod tests {
         let reference: Vec<f64> = time.iter().map(|t| t.sin()).collect();
         let position: Vec<f64> = time.iter().map(|t| (91.0 * t).cos()).collect();
         let recording = PositionRecording { source: "test".into(), time, reference, position };
-        let refused = fit_positioner(&[recording.clone()], &[]).unwrap_err();
+        let refused = fit_positioner(std::slice::from_ref(&recording), &[]).unwrap_err();
         assert!(matches!(refused, PositionerError::NoLoop { .. }), "{refused}");
         let short =
             PositionRecording { time: vec![0.0; 3], reference: vec![0.0; 3], position: vec![0.0; 3], ..recording };
