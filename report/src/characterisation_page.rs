@@ -74,6 +74,10 @@ fn drive(one: &Characterisation) -> Markup {
                     gain.map(|gain| (format!("gain of the {side} side"), gain, 1.0, one.unit.flow_gain().into())),
                 );
             }
+            let shown = PressureUnit::shown();
+            rows.extend(valve.compensator_margin.map(|margin| {
+                ("drop that the compensator leaves".into(), margin, shown.factor(), shown.symbol().to_string())
+            }));
             rows.extend(valve.leakage.map(|leak| ("leakage past the piston".into(), leak, leak_factor, leak_unit)));
         }
         Ok(DriveCurve::Pump(pump)) => {

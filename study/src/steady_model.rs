@@ -40,6 +40,7 @@ pub(crate) fn with_steady_values(model: &Model, found: &[Characterisation]) -> R
                 let gains = ["flow_gain_cap", "flow_gain_rod"].into_iter().zip(valve.gains);
                 gains.for_each(|(name, gain)| gain.into_iter().for_each(|gain| writer.set(name, gain)));
                 valve.leakage.into_iter().for_each(|leakage| writer.set("internal_leakage", leakage));
+                valve.compensator_margin.into_iter().for_each(|margin| writer.set("compensator_margin", margin));
             }
             Ok(DriveCurve::Pump(pump)) => {
                 writer.set("pump_flow_share", pump.share);

@@ -33,8 +33,10 @@ pub struct ValveCurve {
     pub dead_zones: [Option<Estimate>; 2],
     /// Flow per input and root of the pressure drop of cap and rod side, m³/(s sqrt(Pa)) per unit of the input.
     pub gains: [Option<Estimate>; 2],
-    /// Leakage past the seals of the piston, m³/(s Pa); `None` if only one chamber's flow is used.
+    /// Leakage past the seals of the piston, m³/(s Pa); `None` for a compensated valve.
     pub leakage: Option<Estimate>,
+    /// Pressure drop that a compensator leaves to the edge that drives, Pa; `None` without a compensator.
+    pub compensator_margin: Option<Estimate>,
     /// Number of steady stretches.
     pub stretches: usize,
 }
@@ -98,16 +100,44 @@ pub fn drive_curve(model: &Model, cylinder: usize, tracks: &[Track]) -> Result<D
     }
 }
 
-/// A compensated valve, of the chamber that drives: the compensator sets the drop over its edge.
+/// A compensated valve. Oil flows in over the compensator's drop, which is the same for all loads, and out over the drop from chamber to
+/// tank. Both edges of a chamber have one gain, so the flows out tell the gains and the flows in the compensator's drop. Where the flows out
+/// are no lines, `margin` (Pa) is taken for that drop.
 fn compensated(stretches: &[(&Track, Steady)], margin: f64) -> Result<ValveCurve, StaticTestError> {
-    let readings: Vec<FlowReading> = stretches.iter().filter_map(|(track, one)| reading(track, one, margin)).collect();
-    let valve = valve_curve(&readings)?;
+    let of = |flows_in: bool, drop: Option<f64>| -> Vec<FlowReading> {
+        stretches.iter().filter_map(|(track, one)| edge_reading(track, one, flows_in, drop)).collect()
+    };
+    let inflow = valve_curve(&of(true, Some(1.0)))?;
+    let [Some(cap_in), Some(rod_in)] = inflow.sides else {
+        return of_inflow(&valve_curve(&of(true, Some(margin)))?, stretches.len());
+    };
+    let outflow = valve_curve(&of(false, None)).map(|valve| valve.sides);
+    let Ok([Some(rod_out), Some(cap_out)]) = outflow else {
+        return of_inflow(&valve_curve(&of(true, Some(margin)))?, stretches.len());
+    };
+    let square = |inner: Estimate, outer: Estimate| {
+        let value = (inner.value / outer.value).powi(2);
+        Estimate { value, error: 2.0 * value * inner.relative_error().hypot(outer.relative_error()) }
+    };
+    let drops = [square(cap_in.gain, cap_out.gain), square(rod_in.gain, rod_out.gain)];
+    Ok(ValveCurve {
+        null: inflow.null,
+        dead_zones: inflow.sides.map(|side| side.map(|edge| edge.dead_zone)),
+        gains: [Some(cap_out.gain), Some(rod_out.gain)],
+        leakage: None,
+        compensator_margin: Estimate::mean(&drops),
+        stretches: stretches.len(),
+    })
+}
+
+fn of_inflow(valve: &StaticValve, stretches: usize) -> Result<ValveCurve, StaticTestError> {
     Ok(ValveCurve {
         null: valve.null,
         dead_zones: valve.sides.map(|side| side.map(|edge| edge.dead_zone)),
         gains: valve.sides.map(|side| side.map(|edge| edge.gain)),
         leakage: None,
-        stretches: readings.len(),
+        compensator_margin: None,
+        stretches,
     })
 }
 
@@ -173,6 +203,7 @@ fn with_leakage(stretches: &[(&Track, Steady)]) -> Result<ValveCurve, StaticTest
         dead_zones: [zone(0, 1.0), zone(1, -1.0)],
         gains: [gain(&found[0]), gain(&found[1])],
         leakage,
+        compensator_margin: None,
         stretches: stretches.len(),
     })
 }
@@ -192,14 +223,15 @@ fn chamber_reading(track: &Track, stretch: &Steady, side: Side, leakage: f64) ->
     is_usable.then_some(FlowReading { input: stretch.opening.value, flow, pressure_drop: drop })
 }
 
-/// Flow into the chamber that drives, and the drop over its edge: that of the compensator, unless the pump gives less.
-fn reading(track: &Track, stretch: &Steady, margin: f64) -> Option<FlowReading> {
-    let [cap, rod, pump, _] = stretch.pressures;
+/// Flow through the edge that the pump feeds, or through the one to the tank, positive where the rod extends; over this drop, else over the
+/// drop from chamber to tank.
+fn edge_reading(track: &Track, stretch: &Steady, flows_in: bool, drop: Option<f64>) -> Option<FlowReading> {
+    let [cap, rod, _, tank] = stretch.pressures;
     let extends = stretch.speed.value > 0.0;
-    let (area, chamber) = if extends { (track.areas.0, cap) } else { (track.areas.1, rod) };
-    let drop = if (pump - chamber).is_finite() { margin.min(pump - chamber) } else { margin };
+    let (area, chamber) = if extends == flows_in { (track.areas.0, cap) } else { (track.areas.1, rod) };
+    let drop = drop.unwrap_or(chamber - tank);
     let reading = FlowReading { input: stretch.opening.value, flow: area * stretch.speed.value, pressure_drop: drop };
-    (drop > 0.0 && reading.input.is_finite()).then_some(reading)
+    (drop.is_finite() && drop > 0.0 && reading.input.is_finite()).then_some(reading)
 }
 
 /// Least squares over the stretches, each with the error of its speed; the spread of their residuals is taken into account.

@@ -20,7 +20,8 @@ pub struct DataSheet {
     /// Pressure of the supply, Pa: of a valve on constant pressure, of the charge line of a pump drive, or the cut-off of a
     /// load-sensing pump. A pump drive without it takes what it lacks from the tank.
     pub supply_pressure: Option<f64>,
-    /// Largest flow of the pump, m³/s; estimated if omitted.
+    /// Largest flow of the pump, m³/s. Without it, that of an open-centre valve or of a pump drive is estimated, and a load-sensing pump
+    /// counts as a supply of constant pressure.
     pub pump_flow: Option<f64>,
     /// Oil volumes between valve and cap side and between valve and rod side, m³: hoses and ports. A tenth of the stroke's volume
     /// if omitted.
@@ -196,7 +197,7 @@ impl DataSheet {
 
     /// What the sheet lacks and the model file estimates.
     pub fn estimated(&self) -> Vec<&'static str> {
-        let has_pump = matches!(self.drive, DriveKind::OpenCentre | DriveKind::LoadSensing | DriveKind::Pump);
+        let has_pump = matches!(self.drive, DriveKind::OpenCentre | DriveKind::Pump);
         let lacks_mass = matches!(self.load, Load::Mass { mass: None, .. });
         let has_oil = !matches!(self.drive, DriveKind::Force | DriveKind::ImposedMotion);
         [

@@ -188,13 +188,16 @@ fn hydraulic(sheet: &DataSheet) -> Vec<Entry> {
             entries.push(at_pump("open_centre_bypass", vec![bypass]));
         }
         DriveKind::LoadSensing => {
-            let (drop, source) =
-                sheet.metering_drop.map_or((7e5, "usual: 7 bar; see the data sheet"), |drop| (drop, SHEET));
-            let margin = ("compensator_margin", drop, true, source);
+            let is_given = sheet.metering_drop.is_some();
+            let source = if is_given { SHEET } else { "start: usual" };
+            let margin = ("compensator_margin", sheet.metering_drop.unwrap_or(7e5), is_given, source);
             let (above, source) =
                 sheet.load_sensing_margin.map_or((2e6, "usual: 20 bar; see the data sheet"), |margin| (margin, SHEET));
             entries.push(entry("pressure_compensation", vec![margin]));
             entries.push(entry("load_check_valve", vec![("check_tightness", 1.0, true, "usual with compensators")]));
+            if sheet.pump_flow.is_none() {
+                return entries;
+            }
             entries.push(at_pump("oil_compressibility", vec![line]));
             entries.push(at_pump(
                 "load_sensing_pump",

@@ -79,6 +79,10 @@ fn supply(sheet: &DataSheet) -> Result<String, MissingFromDataSheet> {
             "A supply of constant pressure. A recording that measures it overrides the value.",
             pressure("the pressure of its supply (--supply, as in --supply \"70 bar\")")?,
         ),
+        DriveKind::LoadSensing if sheet.pump_flow.is_none() => source(
+            "The pump's flow is not known, so its pressure counts as constant: the compensators keep it from the valve.",
+            pressure("the cut-off pressure of its pump (--supply, as in --supply \"210 bar\")")?,
+        ),
         DriveKind::Pump => {
             source("The charge line that fills the closed circuit.", sheet.supply_pressure.unwrap_or(FILLED_FROM_TANK))
         }

@@ -35,7 +35,6 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
             print(&characterisation_table(one).to_string());
             refusals(one).iter().for_each(|line| print(line));
         }
-        print_next(&next(arguments));
     }
     if let Some(path) = &arguments.output {
         let read = characterised.steady_model()?;
@@ -44,13 +43,20 @@ pub fn run(arguments: &CharacteriseArguments) -> Result<(), VerbError> {
             added(characterised.model(), &read).iter().for_each(|line| print(line));
         }
     }
+    if arguments.result.is_shown() {
+        print_next(&next(arguments));
+    }
     files::write_told(&characterised, arguments.report.as_deref(), &arguments.result)
 }
 
 /// A fit needs the whole recordings, not only the parts that the procedures use.
 fn next(arguments: &CharacteriseArguments) -> NextStep {
     let step = NextStep::new("fit all parameters to the same recordings", "identify");
-    let step = step.same_model(&arguments.model).word("--bag");
+    let step = match &arguments.output {
+        Some(read) => step.model(read, &arguments.model),
+        None => step.same_model(&arguments.model),
+    };
+    let step = step.word("--bag");
     let step = arguments.bags.iter().fold(step, |step, bag| step.word(bag.display().to_string()));
     step.mapping(&arguments.mapping)
 }

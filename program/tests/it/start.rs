@@ -113,6 +113,9 @@ fn the_null_of_a_crane_is_read() {
     close(&valve["null"]["value"], 5.690, 0.1 / 5.69);
     close(&valve["dead_zones"][0]["value"], 0.861, 0.15);
     close(&valve["dead_zones"][1]["value"], 0.827, 0.15);
+    close(&valve["gains"][0]["value"], 3.028e-7, 0.03);
+    close(&valve["gains"][1]["value"], 3.377e-7, 0.03);
+    close(&valve["compensator_margin"]["value"], 1.2e6, 0.1);
 }
 
 /// Displacement and leakage of a pump that drives a cylinder.

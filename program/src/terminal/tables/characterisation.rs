@@ -2,6 +2,7 @@
 
 use comfy_table::{Cell, Table};
 use excavator_identification::characterisation::{Characterisation, DriveCurve, Estimate, Refusal};
+use excavator_model::display::PressureUnit;
 use excavator_model::machine::CommandUnit;
 use excavator_report::leakage_unit;
 use excavator_study::numbers::number;
@@ -76,6 +77,10 @@ fn drive_rows(drive: &DriveCurve, unit: CommandUnit, row: &mut impl FnMut(String
             for (side, gain) in ["cap", "rod"].iter().zip(valve.gains) {
                 gain.into_iter()
                     .for_each(|gain| row(format!("gain of the {side} side, steady"), gain, unit.flow_gain()));
+            }
+            if let Some(margin) = valve.compensator_margin {
+                let unit = PressureUnit::shown();
+                row("drop that the compensator leaves".into(), scaled(margin, unit.factor()), unit.symbol());
             }
             let (factor, unit) = leakage_unit();
             let leakage = valve.leakage.map(|leakage| scaled(leakage, factor));
