@@ -12,6 +12,7 @@ mod rows;
 mod situation;
 pub mod smooth;
 mod system;
+mod valves;
 
 pub use channel::Channel;
 pub use inputs::{ImposedState, Inputs};

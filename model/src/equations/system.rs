@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Inputs, Instruments, Layout, Rounding, Rows, Situation};
+use super::{Inputs, Instruments, Layout, Rows, Situation};
 use crate::effects::{ActsOn, Number, Site};
 use crate::machine::{Growth, Size, Supply};
 use crate::{Imposed, Model};
@@ -10,20 +10,20 @@ use crate::{Imposed, Model};
 /// A model's equations of motion `dx/dt = f(x, inputs, parameters)`.
 #[derive(Debug, Clone)]
 pub struct System<'m> {
-    model: &'m Model,
-    layout: Layout,
-    parameter_ranges: Vec<(usize, usize)>,
+    pub(super) model: &'m Model,
+    pub(super) layout: Layout,
+    pub(super) parameter_ranges: Vec<(usize, usize)>,
     /// Effects that change the values other effects see.
-    adjusting: Vec<usize>,
+    pub(super) adjusting: Vec<usize>,
     /// Effects that read the rate of the input.
-    readers_of_input_rate: Vec<usize>,
+    pub(super) readers_of_input_rate: Vec<usize>,
     /// Effects with memory.
     remembering: Vec<usize>,
     /// Whether an effect needs the metering flows.
     reads_metering_flows: bool,
     own_instruments: Instruments<f64>,
     /// Size of each cylinder.
-    sizes: Vec<Size>,
+    pub(super) sizes: Vec<Size>,
     /// Size of the whole machine.
     size: Size,
 }
@@ -273,73 +273,9 @@ impl<'m> System<'m> {
                 rates[layout.rate(index)] = imposed.acceleration + (imposed.rate - piston.rate) / self.tracking();
             }
             piston.command = inputs.orifice_area[index];
-            piston.spool = piston.command;
-        }
-        for &number in &self.readers_of_input_rate {
-            let effect = &self.model.effects[number];
-            let Site::Cylinder(index) = effect.site else { continue };
-            let (first, last) = self.parameter_ranges[number];
-            let piston = &mut situation.pistons[index];
-            let rates = inputs.orifice_rates[index];
-            piston.spool = T::hooks(&*effect.physics).read(&parameters[first..last], piston.spool, rates);
+            piston.spool = self.read(index, parameters, piston.command, inputs.orifice_rates[index]);
         }
         self.observe_valves(situation, parameters, state, rates);
-    }
-
-    /// The valve's part of the situation: spools, then openings, then the adjustments for other effects.
-    fn observe_valves<T: Number>(
-        &self,
-        situation: &mut Situation<'m, T>,
-        parameters: &[T],
-        state: &[T],
-        rates: &mut [T],
-    ) {
-        for piston in &mut situation.pistons {
-            piston.bypass_closing = piston.spool;
-        }
-        for &number in &self.adjusting {
-            let effect = &self.model.effects[number];
-            let Site::Cylinder(index) = effect.site else { continue };
-            let (first, last) = self.parameter_ranges[number];
-            let (state_first, states) = self.layout.effect_states[number];
-            let own_states = &state[state_first..state_first + states];
-            let own_rates = &mut rates[state_first..state_first + states];
-            let piston = &mut situation.pistons[index];
-            let size = &self.sizes[index];
-            let [metering, bypass] =
-                T::hooks(&*effect.physics).spool(size, &parameters[first..last], own_states, own_rates, piston.spool);
-            piston.bypass_closing += bypass - piston.spool;
-            piston.spool = metering;
-        }
-        for (piston, size) in situation.pistons.iter_mut().zip(&self.sizes) {
-            piston.opening = piston.spool;
-            piston.bypass_closing = piston.bypass_closing.abs();
-            piston.backflow = T::from(1.0);
-            piston.compensator_margin = None;
-            piston.hose_resistance = None;
-            piston.rounding = Rounding::of_the_equations(size);
-        }
-        for &number in &self.adjusting {
-            let effect = &self.model.effects[number];
-            let (first, last) = self.parameter_ranges[number];
-            let own = &parameters[first..last];
-            if let Site::Cylinder(index) = effect.site
-                && self.model.machine.cylinders[index].chambers.is_some()
-            {
-                let opening = situation.pistons[index].opening;
-                situation.pistons[index].opening =
-                    T::hooks(&*effect.physics).opening(effect.site, own, opening, situation);
-            }
-        }
-        for piston in &mut situation.pistons {
-            piston.supply_opening = piston.opening;
-            piston.return_opening = piston.opening;
-        }
-        for &number in &self.adjusting {
-            let effect = &self.model.effects[number];
-            let (first, last) = self.parameter_ranges[number];
-            T::hooks(&*effect.physics).adjust(effect.site, &parameters[first..last], situation);
-        }
     }
 
     /// Writes known motion and pressures to `state`: of each cylinder what `known` gives for its number, and the pump pressure, Pa,
@@ -368,20 +304,14 @@ impl<'m> System<'m> {
     /// Sets the effects' own states. Spools are set to the openings of these inputs (m², one per cylinder; missing ones are zero),
     /// settled or as measured. Other states take their initial values.
     pub fn set_effect_states(&self, openings: &[f64], state: &mut [f64]) {
-        let parameters = self.model.parameter_values();
-        let mut spools = openings.to_vec();
-        for (number, effect) in self.model.effects.iter().enumerate() {
-            if let Site::Cylinder(cylinder) = effect.site
-                && let Some(spool) = spools.get_mut(cylinder)
-                && effect.physics.reads_input_rate()
-            {
-                let own = &parameters[self.parameters_of(number)];
-                *spool = f64::hooks(&*effect.physics).read(own, *spool, [0.0; 2]);
-            }
+        if !self.has_effect_states() {
+            return;
         }
+        let parameters = self.model.parameter_values();
         for number in 0..self.model.effects.len() {
             if let Site::Cylinder(cylinder) = self.model.effects[number].site {
-                state[self.states_of(number)].fill(spools.get(cylinder).copied().unwrap_or(0.0));
+                let spool = openings.get(cylinder).map_or(0.0, |&one| self.read(cylinder, &parameters, one, [0.0; 2]));
+                state[self.states_of(number)].fill(spool);
             }
         }
         if self.remembering.is_empty() {
