@@ -1,14 +1,15 @@
 //! A page with the results of the procedures of \[B\].
 
 use excavator_identification::characterisation::{
-    ChamberLeakage, Characterisation, ClosedValve, DeadZone, DirectionalGain, DriveCurve, Edge, Estimate,
-    FrictionCurve, Polynomial, Refusal,
+    ChamberLeakage, Characterisation, ClosedValve, DeadZone, DirectionalGain, Edge, Estimate, FrictionCurve,
+    Polynomial, Refusal,
 };
 use excavator_model::Model;
 use excavator_model::display::PressureUnit;
 use maud::{Markup, html};
 
 use super::characterisation_plots::{edge_plots, friction_plot, gain_plots, transient_plots};
+use super::drive_rows::drive_rows;
 use super::numbers::{SIDES_95, percent, significant, with_margin};
 use super::page::{Section, page, tile};
 
@@ -60,43 +61,15 @@ fn refused(what: &str, refusal: &Refusal) -> Markup {
 
 /// Null, dead zones, gains and leakage of a valve, or the losses of a pump; and the stops.
 fn drive(one: &Characterisation) -> Markup {
-    let (factor, unit) = one.unit.for_people();
-    let (leak_factor, leak_unit) = leakage_unit();
-    let mut rows: Vec<(String, Estimate, f64, String)> = Vec::new();
-    match &one.drive {
-        Ok(DriveCurve::Valve(valve)) => {
-            rows.push(("null".into(), valve.null, factor, unit.into()));
-            for (way, zone) in ["extending", "retracting"].iter().zip(valve.dead_zones) {
-                rows.extend(zone.map(|zone| (format!("dead zone, {way}"), zone, factor, unit.into())));
-            }
-            for (side, gain) in ["cap", "rod"].iter().zip(valve.gains) {
-                rows.extend(
-                    gain.map(|gain| (format!("gain of the {side} side"), gain, 1.0, one.unit.flow_gain().into())),
-                );
-            }
-            let shown = PressureUnit::shown();
-            rows.extend(valve.compensator_margin.map(|margin| {
-                ("drop that the compensator leaves".into(), margin, shown.factor(), shown.symbol().to_string())
-            }));
-            rows.extend(valve.leakage.map(|leak| ("leakage past the piston".into(), leak, leak_factor, leak_unit)));
-        }
-        Ok(DriveCurve::Pump(pump)) => {
-            rows.push(("flow over flow without losses".into(), pump.share, 1.0, String::new()));
-            rows.push(("leakage between both sides".into(), pump.leakage, leak_factor, leak_unit));
-        }
-        Err(_) => (),
-    }
-    for (end, stop) in ["retracted", "extended"].iter().zip(one.stops) {
-        rows.extend(stop.map(|stop| (format!("stop of the {end} rod"), stop, 1e3, "mm".into())));
-    }
+    let rows = drive_rows(one);
     html! {
         @if !rows.is_empty() {
             div.wide { table.data {
                 thead { tr { th { "Quantity" } th.n { "Value" } th { "Unit" } } }
-                tbody { @for (what, estimate, factor, unit) in &rows { tr {
-                    td { (what) }
-                    td.n { (with_margin(factor * estimate.value, SIDES_95 * factor * estimate.error)) }
-                    td.unit { (unit) }
+                tbody { @for row in &rows { tr {
+                    td { (row.what) }
+                    td.n { (with_margin(row.estimate.value, SIDES_95 * row.estimate.error)) }
+                    td.unit { (row.unit) }
                 } } }
             } }
             p.note {

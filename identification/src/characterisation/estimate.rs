@@ -20,6 +20,12 @@ impl Estimate {
         if self.value == 0.0 { f64::INFINITY } else { (self.error / self.value).abs() }
     }
 
+    /// The estimate in another unit, of which one has this many.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Estimate { value: factor * self.value, error: factor * self.error }
+    }
+
     /// Mean of estimates, weighted by their errors. Its error is the larger of two: from their errors and from their scatter.
     /// Repeats that disagree therefore do not average to an unrealistic precision. `None` for an empty slice.
     pub fn mean(estimates: &[Estimate]) -> Option<Estimate> {

@@ -1,10 +1,8 @@
 //! Prints a characterisation.
 
 use comfy_table::{Cell, Table};
-use excavator_identification::characterisation::{Characterisation, DriveCurve, Estimate, Refusal};
-use excavator_model::display::PressureUnit;
-use excavator_model::machine::CommandUnit;
-use excavator_report::leakage_unit;
+use excavator_identification::characterisation::{Characterisation, Estimate, Refusal};
+use excavator_report::{drive_rows, leakage_unit};
 use excavator_study::numbers::number;
 
 use super::{right, table};
@@ -32,25 +30,20 @@ pub fn characterisation_table(found: &Characterisation) -> Table {
     }
     for (edge, zone) in &found.dead_zones {
         let Ok(zone) = zone else { continue };
-        row(format!("dead zone {}", edge.name()), scaled(zone.dead_zone, factor), shown);
-        row(format!("hysteresis {}", edge.name()), scaled(zone.hysteresis, factor), shown);
+        row(format!("dead zone {}", edge.name()), zone.dead_zone.scaled(factor), shown);
+        row(format!("hysteresis {}", edge.name()), zone.hysteresis.scaled(factor), shown);
     }
     if let Ok(leakage) = &found.leakage {
         let (factor, unit) = leakage_unit();
         let sides = [("cap side", &leakage.cap), ("rod side", &leakage.rod)];
         for (name, side) in sides.iter().filter_map(|(name, side)| Some((name, side.as_ref().ok()?))) {
-            row(format!("leakage pump to {name}"), scaled(side.from_pump, factor), &unit);
-            row(format!("leakage {name} to tank"), scaled(side.to_tank, factor), &unit);
+            row(format!("leakage pump to {name}"), side.from_pump.scaled(factor), &unit);
+            row(format!("leakage {name} to tank"), side.to_tank.scaled(factor), &unit);
             row(format!("time constant {name}"), side.time_constant, "s");
             row(format!("static gain {name}"), side.static_gain, "-");
         }
     }
-    if let Ok(drive) = &found.drive {
-        drive_rows(drive, found.unit, &mut row);
-    }
-    for (name, stop) in ["stop of the retracted rod", "stop of the extended rod"].iter().zip(found.stops) {
-        stop.into_iter().for_each(|stop| row((*name).to_string(), scaled(stop, 1e3), "mm"));
-    }
+    drive_rows(found).into_iter().for_each(|one| row(one.what, one.estimate, &one.unit));
     if let Ok(friction) = &found.friction {
         for term in &friction.terms {
             row(format!("{}, times {}", term.effect, term.shape), term.coefficient, term.unit);
@@ -63,35 +56,6 @@ pub fn characterisation_table(found: &Characterisation) -> Table {
         }
     }
     rows
-}
-
-/// Null, dead zones and gains of a valve, or the losses of a pump.
-fn drive_rows(drive: &DriveCurve, unit: CommandUnit, row: &mut impl FnMut(String, Estimate, &str)) {
-    let (factor, shown) = unit.for_people();
-    match drive {
-        DriveCurve::Valve(valve) => {
-            row("null of the valve".into(), scaled(valve.null, factor), shown);
-            for (way, zone) in ["extending", "retracting"].iter().zip(valve.dead_zones) {
-                zone.into_iter().for_each(|zone| row(format!("dead zone {way}, steady"), scaled(zone, factor), shown));
-            }
-            for (side, gain) in ["cap", "rod"].iter().zip(valve.gains) {
-                gain.into_iter()
-                    .for_each(|gain| row(format!("gain of the {side} side, steady"), gain, unit.flow_gain()));
-            }
-            if let Some(margin) = valve.compensator_margin {
-                let unit = PressureUnit::shown();
-                row("drop that the compensator leaves".into(), scaled(margin, unit.factor()), unit.symbol());
-            }
-            let (factor, unit) = leakage_unit();
-            let leakage = valve.leakage.map(|leakage| scaled(leakage, factor));
-            leakage.into_iter().for_each(|leakage| row("leakage past the piston, steady".into(), leakage, &unit));
-        }
-        DriveCurve::Pump(pump) => {
-            row("flow of the pump over its flow without losses".into(), pump.share, "-");
-            let (factor, unit) = leakage_unit();
-            row("leakage between both sides".into(), scaled(pump.leakage, factor), &unit);
-        }
-    }
 }
 
 /// One line per reason, with the names of the values that were not found because of it.
@@ -121,8 +85,4 @@ pub fn refusals(found: &Characterisation) -> Vec<String> {
         tell("friction".into(), refusal);
     }
     told.into_iter().map(|(names, refusal)| format!("no {}: {refusal}", names.join(", "))).collect()
-}
-
-fn scaled(estimate: Estimate, factor: f64) -> Estimate {
-    Estimate { value: factor * estimate.value, error: factor * estimate.error }
 }
