@@ -48,6 +48,7 @@ pub mod position_test;
 pub mod prelude;
 pub mod preparation;
 pub mod profile_file;
+mod read_values;
 pub mod recording_files;
 pub mod recording_part;
 pub mod recordings;

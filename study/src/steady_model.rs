@@ -4,16 +4,10 @@ use excavator_identification::characterisation::{Characterisation, DriveCurve, E
 use excavator_model::effects::Site;
 use excavator_model::{Model, ModelError};
 
-use crate::valve_test::put;
-
-/// Standard errors from zero above which a null counts as real.
-const CLEAR: f64 = 3.0;
+use crate::read_values::{LEAST_SHARE, effect_of, is_clear, put};
 
 /// Share of the full input below which a null does not matter: valves are adjusted to one per cent.
 const LEAST_NULL: f64 = 0.01;
-
-/// Share of the full input below which a dead zone does not matter.
-const LEAST_ZONE: f64 = 0.003;
 
 /// Largest relative error of a value that replaces a start.
 const USEFUL: f64 = 0.5;
@@ -31,7 +25,7 @@ pub(crate) fn with_steady_values(model: &Model, found: &[Characterisation]) -> R
         match &one.drive {
             Ok(DriveCurve::Valve(valve)) => {
                 let full = one.maximum_orifice_area;
-                let has_null = valve.null.value.abs() > (CLEAR * valve.null.error).max(LEAST_NULL * full);
+                let has_null = is_clear(valve.null, LEAST_NULL * full);
                 if has_null {
                     // Held: a dead zone has the null in its middle, and a fit could move both.
                     writer.set_held("valve_null", valve.null)?;
@@ -49,8 +43,9 @@ pub(crate) fn with_steady_values(model: &Model, found: &[Characterisation]) -> R
             Err(_) => (),
         }
         if let Ok(friction) = &one.friction {
-            for (effect, name) in [("coulomb_friction", "coulomb_friction"), ("viscous_damping", "viscous_damping")] {
-                friction.coefficient(effect).into_iter().for_each(|value| writer.set(name, value));
+            // Both effects have one parameter, of their own name.
+            for name in ["coulomb_friction", "viscous_damping"] {
+                friction.coefficient(name).into_iter().for_each(|value| writer.set(name, value));
             }
             friction.load_share.into_iter().for_each(|share| writer.scale("gravity", share));
         }
@@ -96,8 +91,8 @@ impl Writer<'_> {
         let zones = [1.0, -1.0].into_iter().zip(valve.dead_zones);
         let zones: Vec<Option<f64>> =
             zones.map(|(sign, zone)| zone.map(|zone| (zone.value + sign * null).max(0.0))).collect();
-        let is_clear = |zone: &Estimate| zone.value > (CLEAR * zone.error).max(LEAST_ZONE * full);
-        if valve.dead_zones.iter().flatten().any(is_clear) {
+        let is_real = |zone: &Estimate| zone.value > 0.0 && is_clear(*zone, LEAST_SHARE * full);
+        if valve.dead_zones.iter().flatten().any(is_real) {
             put(self.model, "valve_dead_zone", self.site, &zones, SOURCE)?;
         }
         Ok(())
@@ -105,11 +100,7 @@ impl Writer<'_> {
 
     /// Sets the only parameter of an effect, which is added if the model lacks it, and holds it.
     fn set_held(&mut self, effect: &str, value: Estimate) -> Result<(), ModelError> {
-        if !self.model.effects.iter().any(|one| one.is(effect, self.site)) {
-            let Ok(physics) = self.model.catalogue.find(effect) else { return Ok(()) };
-            *self.model = self.model.with_effect(&physics, self.site)?;
-        }
-        let own = self.model.effects.iter_mut().find(|one| one.is(effect, self.site));
+        let own = effect_of(self.model, effect, self.site)?;
         for parameter in own.into_iter().flat_map(|one| &mut one.parameters) {
             // The reading counts from the null that the model already has.
             parameter.value += value.value;

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use excavator_bags::map::{Dimension, Unit};
 use excavator_bags::table::{Column, Table, TableFormat, Values};
 use excavator_identification::characterisation::{Estimate, FlowReading, StaticEdge, StaticValve, static_valve};
+use excavator_model::Model;
 use excavator_model::effects::Site;
 use excavator_model::machine::Drive;
-use excavator_model::{Model, ModelError};
 use serde::Serialize;
 
 use crate::WorkError;
+use crate::read_values::{LEAST_SHARE, is_clear, put};
 
 /// Where a static valve test stands, and what is known of it.
 #[derive(Debug, Clone, Default)]
@@ -46,15 +47,7 @@ pub struct ValveTested {
     pub valve: StaticValve,
     /// The same numbers in the units of the table.
     pub in_table_units: StaticValve,
-    #[serde(skip)]
-    units: [Unit; 2],
 }
-
-/// Standard errors from zero above which a null, a dead zone or a play counts as real.
-const CLEAR: f64 = 3.0;
-
-/// Share of the full input below which none of them matters.
-const LEAST_SHARE: f64 = 0.003;
 
 impl ValveTestTable {
     /// Reads the test. `wanted` is the dimension that the model's valve takes.
@@ -160,9 +153,8 @@ fn is_input(column: &Column) -> bool {
 impl ValveTested {
     fn of(readings: usize, pressure_drop: f64, units: [Unit; 2], valve: StaticValve) -> Self {
         let [input, flow] = units.map(|unit| unit.factor());
-        let scaled = |one: Estimate, factor: f64| Estimate { value: one.value * factor, error: one.error * factor };
-        let as_input = |one: Estimate| scaled(one, 1.0 / input);
-        let as_gain = |one: Estimate| scaled(one, pressure_drop.sqrt() * input / flow);
+        let as_input = |one: Estimate| one.scaled(1.0 / input);
+        let as_gain = |one: Estimate| one.scaled(pressure_drop.sqrt() * input / flow);
         let edge = |edge: StaticEdge| StaticEdge {
             gain: as_gain(edge.gain),
             dead_zone: as_input(edge.dead_zone),
@@ -171,7 +163,7 @@ impl ValveTested {
         };
         let in_table_units = StaticValve { null: as_input(valve.null), sides: valve.sides.map(|side| side.map(edge)) };
         let [input_unit, flow_unit] = units.map(|unit| unit.name.to_string());
-        ValveTested { readings, pressure_drop, input_unit, flow_unit, valve, in_table_units, units }
+        ValveTested { readings, pressure_drop, input_unit, flow_unit, valve, in_table_units }
     }
 
     /// Puts gains, null, dead zones and play into a model; a null, a dead zone or a play only if it is clear of zero. A side without
@@ -186,7 +178,7 @@ impl ValveTested {
             Some(Drive::Valve { full_command, .. }) => full_command,
             _ => return Ok(()),
         };
-        let is_clear = |one: Estimate| one.value.abs() > CLEAR * one.error && one.value.abs() > LEAST_SHARE * full;
+        let is_clear = |one: Estimate| is_clear(one, LEAST_SHARE * full);
         let StaticValve { null, sides } = self.valve;
         let shift = if is_clear(null) { null.value } else { 0.0 };
         let gains = sides.map(|side| side.map(|edge| edge.gain.value));
@@ -213,34 +205,4 @@ impl ValveTested {
         }
         Ok(())
     }
-
-    /// Units of the input and of the flow in the table.
-    pub fn units(&self) -> [Unit; 2] {
-        self.units
-    }
-}
-
-/// Sets the first parameters of an effect, which is added if the model does not have it.
-pub(crate) fn put(
-    model: &mut Model,
-    effect: &str,
-    site: Site,
-    values: &[Option<f64>],
-    source: &str,
-) -> Result<(), ModelError> {
-    if !model.effects.iter().any(|one| one.is(effect, site))
-        && let Ok(physics) = model.catalogue.find(effect)
-    {
-        *model = model.with_effect(&physics, site)?;
-    }
-    let own = model.effects.iter_mut().find(|one| one.is(effect, site));
-    for (parameter, value) in own.into_iter().flat_map(|one| &mut one.parameters).zip(values) {
-        if let Some(value) = value {
-            parameter.value = *value;
-            parameter.source = source.to_string();
-            parameter.standard_error = None;
-            parameter.margin_95 = None;
-        }
-    }
-    Ok(())
 }

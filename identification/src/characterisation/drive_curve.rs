@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::edge::Side;
 use super::estimate::Estimate;
 use super::refusal::Refusal;
-use super::static_valve::{FlowReading, StaticTestError, StaticValve, valve_curve};
+use super::static_valve::{FlowReading, StaticTestError, StaticValve, middle, valve_curve};
 use super::stretches::{Steady, different, steady};
 use super::track::Track;
 
@@ -108,12 +108,9 @@ fn compensated(stretches: &[(&Track, Steady)], margin: f64) -> Result<ValveCurve
         stretches.iter().filter_map(|(track, one)| edge_reading(track, one, flows_in, drop)).collect()
     };
     let inflow = valve_curve(&of(true, Some(1.0)))?;
-    let [Some(cap_in), Some(rod_in)] = inflow.sides else {
-        return of_inflow(&valve_curve(&of(true, Some(margin)))?, stretches.len());
-    };
     let outflow = valve_curve(&of(false, None)).map(|valve| valve.sides);
-    let Ok([Some(rod_out), Some(cap_out)]) = outflow else {
-        return of_inflow(&valve_curve(&of(true, Some(margin)))?, stretches.len());
+    let ([Some(cap_in), Some(rod_in)], Ok([Some(rod_out), Some(cap_out)])) = (inflow.sides, outflow) else {
+        return Ok(of_inflow(&valve_curve(&of(true, Some(margin)))?, stretches.len()));
     };
     let square = |inner: Estimate, outer: Estimate| {
         let value = (inner.value / outer.value).powi(2);
@@ -121,24 +118,22 @@ fn compensated(stretches: &[(&Track, Steady)], margin: f64) -> Result<ValveCurve
     };
     let drops = [square(cap_in.gain, cap_out.gain), square(rod_in.gain, rod_out.gain)];
     Ok(ValveCurve {
-        null: inflow.null,
-        dead_zones: inflow.sides.map(|side| side.map(|edge| edge.dead_zone)),
         gains: [Some(cap_out.gain), Some(rod_out.gain)],
-        leakage: None,
         compensator_margin: Estimate::mean(&drops),
-        stretches: stretches.len(),
+        ..of_inflow(&inflow, stretches.len())
     })
 }
 
-fn of_inflow(valve: &StaticValve, stretches: usize) -> Result<ValveCurve, StaticTestError> {
-    Ok(ValveCurve {
+/// What the edges that the pump feeds tell alone.
+fn of_inflow(valve: &StaticValve, stretches: usize) -> ValveCurve {
+    ValveCurve {
         null: valve.null,
         dead_zones: valve.sides.map(|side| side.map(|edge| edge.dead_zone)),
         gains: valve.sides.map(|side| side.map(|edge| edge.gain)),
         leakage: None,
         compensator_margin: None,
         stretches,
-    })
+    }
 }
 
 /// Inputs at which the lines of a chamber meet zero flow, extending and retracting.
@@ -187,9 +182,7 @@ fn with_leakage(stretches: &[(&Track, Steady)]) -> Result<ValveCurve, StaticTest
         Some(Estimate { error: mean.error.hypot(shift), ..mean })
     });
     let null = match closes {
-        [Some(above), Some(below)] => {
-            Estimate { value: 0.5 * (above.value - below.value), error: 0.5 * above.error.hypot(below.error) }
-        }
+        [Some(above), Some(below)] => middle([above, below]),
         _ => Estimate { value: 0.0, error: f64::INFINITY },
     };
     let zone =

@@ -112,10 +112,7 @@ fn of_lines(lines: [Option<Line>; 2], null: Option<f64>, readings: usize) -> Res
     let null = match (lines, null) {
         ([None, None], _) => return Err(StaticTestError::NoLine { readings }),
         (_, Some(given)) => Estimate { value: given, error: 0.0 },
-        ([Some(above), Some(below)], None) => {
-            let [above, below] = [above.crossing(), below.crossing()];
-            Estimate { value: 0.5 * (above.value - below.value), error: 0.5 * above.error.hypot(below.error) }
-        }
+        ([Some(above), Some(below)], None) => middle([above.crossing(), below.crossing()]),
         ([Some(line), None], None) => return Err(StaticTestError::NullUnknown { crossing: line.crossing().value }),
         ([None, Some(line)], None) => return Err(StaticTestError::NullUnknown { crossing: -line.crossing().value }),
     };
@@ -132,6 +129,11 @@ fn of_lines(lines: [Option<Line>; 2], null: Option<f64>, readings: usize) -> Res
     };
     let [above, below] = lines;
     Ok(StaticValve { null, sides: [edge(above, 1.0), edge(below, -1.0)] })
+}
+
+/// The null, from the inputs at which the lines of both sides meet zero flow, each in the direction of its side.
+pub(super) fn middle([above, below]: [Estimate; 2]) -> Estimate {
+    Estimate { value: 0.5 * (above.value - below.value), error: 0.5 * above.error.hypot(below.error) }
 }
 
 /// Flow over root of the pressure drop.
@@ -153,8 +155,11 @@ fn signed_areas(readings: &[FlowReading], null: Option<f64>) -> Vec<f64> {
         return readings.iter().map(|one| along.signum() * one.flow.signum() * area(one)).collect();
     }
     let closed = null.or_else(|| {
-        let least = readings.iter().map(area).fold(f64::INFINITY, f64::min);
-        let nearly = least + 0.5 * STRAIGHT[0] * (most - least).max(-least).abs();
+        let [least, most] = readings
+            .iter()
+            .map(area)
+            .fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], one| [least.min(one), most.max(one)]);
+        let nearly = least + 0.5 * STRAIGHT[0] * (most - least);
         let shut: Vec<f64> = readings.iter().filter(|one| area(one) <= nearly).map(|one| one.input).collect();
         (!shut.is_empty()).then(|| shut.iter().sum::<f64>() / shut.len() as f64)
     });

@@ -38,9 +38,6 @@ pub struct PositionerFit {
     pub errors: Vec<f64>,
     /// The same as shares of the amplitude of the reference.
     pub relative_errors: Vec<f64>,
-    /// The loop with all its parameters.
-    #[serde(skip)]
-    pub found: Option<PositionLoop>,
 }
 
 /// Why there is no position loop.
@@ -119,7 +116,6 @@ pub fn fit_positioner(
         follows_after: follows_after(fitted),
         errors: predicted.iter().map(|(error, _)| *error).collect(),
         relative_errors: predicted.iter().map(|(error, amplitude)| error / amplitude).collect(),
-        found: Some(found),
     })
 }
 

@@ -121,18 +121,16 @@ fn from_sheet(
         possibility(candidate, shape, name, "the data sheet says so", hints);
     source.scale = column.scale.clone().or(source.scale);
     source.sign = column.sign;
-    if column.zero.is_some() {
-        source.offset = None;
-    }
-    if let (Some(zero), Some(stroke)) = (column.zero, stroke) {
-        let half = 500.0 * stroke;
-        let (sign, offset) = match zero {
-            ZeroAt::Retracted => (column.sign, Some(-half)),
-            ZeroAt::Extended => (column.sign.or(Some(-1)), Some(half)),
-            ZeroAt::Middle => (column.sign, None),
+    if let Some(zero) = column.zero {
+        let from_middle = |sign: f64| stroke.map(|stroke| Quantity::Text(format!("{} mm", sign * 500.0 * stroke)));
+        source.offset = match zero {
+            ZeroAt::Retracted => from_middle(-1.0),
+            ZeroAt::Extended => from_middle(1.0),
+            ZeroAt::Middle => None,
         };
-        source.sign = sign;
-        source.offset = offset.map(|offset| Quantity::Text(format!("{offset} mm")));
+        if zero == ZeroAt::Extended && stroke.is_some() {
+            source.sign = column.sign.or(Some(-1));
+        }
     }
     let confidence = Confidence::Chosen;
     GuessedSignal { source, label, reason, unit_reason, confidence, alternatives: Vec::new() }

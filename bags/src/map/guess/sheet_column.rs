@@ -1,6 +1,6 @@
 //! What the owner of a table says of one of its columns.
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::super::quantity::Quantity;
 use super::super::signal::SignalKind;
@@ -41,7 +41,7 @@ impl TryFrom<String> for SheetSignal {
 }
 
 /// Where a displacement is zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ZeroAt {
     /// Where the rod is fully in.
