@@ -59,15 +59,16 @@ def identify(
     model: Model,
     recordings: Recordings,
     *,
-    method: str = "weak-form",
+    method: str = "best",
     accept: str | Sequence[str] = (),
     where: Where = (),
     whole: bool = False,
 ) -> Identification:
     """Identifies the unknown parameters of `model`.
 
-    `method` is `weak-form` (not biased by sensor noise), `least-squares` (smoothed differences; biased by noise) or `output-error` (weak
-    form, followed by a fit of simulated outputs to the measured ones).
+    `method` is `weak-form` (not biased by sensor noise), `least-squares` (smoothed differences; biased by noise), `output-error` (weak
+    form, followed by a fit of simulated outputs over short segments), `simulation-error` (the same from measured states) or `best`: the
+    one of the three others than least squares that predicts the last third of the recordings best from the rest.
     """
     return Identification(_told(_native.identify(model._native, _all(recordings), method, _usage(accept, where, whole))))
 

@@ -119,11 +119,13 @@ pub fn identify(
     usage: Usage,
 ) -> PyResult<(Outcome, Vec<String>)> {
     let method = match method {
+        "best" => Method::Best,
         "weak-form" => Method::WeakForm,
         "least-squares" => Method::LeastSquares,
         "output-error" => Method::OutputError,
+        "simulation-error" => Method::SimulationError,
         other => {
-            let known = "weak-form, least-squares, output-error";
+            let known = "best, weak-form, least-squares, output-error, simulation-error";
             return Err(PyValueError::new_err(format!("no method \"{other}\"; there are {known}")));
         }
     };

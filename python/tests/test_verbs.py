@@ -84,7 +84,7 @@ def test_json_is_that_of_the_program_character_by_character(hidden, samples, pro
     assert text.startswith('{\n  "') and text.endswith("}\n")
 
 
-@pytest.mark.parametrize("method", ["weak-form", "least-squares", pytest.param("output-error", marks=pytest.mark.full)])
+@pytest.mark.parametrize("method", ["weak-form", "least-squares", pytest.param("best", marks=pytest.mark.full)])
 def test_identify_equals_the_program(hidden, samples, program, method):
     model, identification, _ = hidden
     own = program("identify", "--model", MODEL, "--bag", samples / "hidden-law/identification", "--method", method)

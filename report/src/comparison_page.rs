@@ -1,6 +1,6 @@
 //! A page that compares a model with recordings.
 
-use excavator_identification::validation::{Baselines, Comparison, Repeat};
+use excavator_identification::validation::{Baselines, Comparison, Repeat, mean_error_of};
 use excavator_model::Model;
 use maud::{Markup, html};
 
@@ -37,7 +37,7 @@ impl<'a> Beside<'a> {
     /// NMSE of a signal; `NaN` if it has none.
     pub fn error_of(self, signal: &str) -> f64 {
         let own = self.comparison().signals.iter().find(|own| own.name == signal);
-        own.map_or(f64::NAN, |own| own.normalised_error)
+        own.map_or(f64::NAN, |own| own.error.normalised())
     }
 
     fn line(self) -> Line {
@@ -63,7 +63,7 @@ pub fn comparison_page(
     baselines: &[Baselines],
     others: &[Beside<'_>],
 ) -> String {
-    let mean = comparisons.iter().map(Comparison::mean_error).sum::<f64>() / comparisons.len() as f64;
+    let mean = mean_error_of(comparisons);
     let duration: f64 = comparisons.iter().map(|comparison| comparison.measured.duration()).sum();
     let lead = html! {
         p.about { (model.machine.description) }

@@ -8,6 +8,9 @@ use super::numbers::{percent, significant};
 /// Share of a signal's error that one phase of motion must hold to be mentioned.
 const MOST_OF_IT: f64 = 0.8;
 
+/// An error in a signal of mostly noise is mentioned if it is this many times that of the noise.
+const MORE_THAN_NOISE: f64 = 2.0;
+
 /// Summary of a comparison: how much of the recording the model explains, how good that is, and where it is worst.
 pub fn comparison_sentence(comparison: &Comparison, baselines: &Baselines) -> String {
     let machine = &comparison.machine.name;
@@ -30,7 +33,13 @@ pub fn comparison_sentence(comparison: &Comparison, baselines: &Baselines) -> St
     if !known.is_empty() {
         sentences.push(format!("For comparison, {}.", known.join(", ")));
     }
-    let worst = comparison.signals.iter().max_by(|a, b| a.normalised_error.total_cmp(&b.normalised_error));
+    // Not a signal whose error is the noise of its instrument.
+    let is_more = |signal: &&SignalComparison| {
+        let (error, noise) = (signal.error.normalised(), signal.error.normalised_noise());
+        signal.error.tells() || error > MORE_THAN_NOISE * noise
+    };
+    let signals = comparison.signals.iter().filter(is_more);
+    let worst = signals.max_by(|a, b| a.error.normalised().total_cmp(&b.error.normalised()));
     sentences.extend(worst.filter(|_| comparison.signals.len() > 1).map(worst_sentence));
     sentences.join(" ")
 }
@@ -73,7 +82,7 @@ fn worst_sentence(signal: &SignalComparison) -> String {
     format!(
         "The largest error is in {} (NMSE {}){when}.",
         spoken(&signal.name),
-        significant(signal.normalised_error, 3)
+        significant(signal.error.normalised(), 3)
     )
 }
 

@@ -56,6 +56,7 @@ pub use plausibility_text::implausible_sentence;
 pub use proposal_page::{proposal_page, result as law_result};
 pub use proposal_text::{guess_sentence, proposal_sentence};
 pub use refinement_page::refinement_page;
+pub use units::signal_unit;
 pub use verdict_text::{NONE_TRIED, verdict_sentence};
 
 #[cfg(doctest)]

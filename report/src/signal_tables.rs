@@ -1,7 +1,7 @@
 //! Tables of the errors of each signal.
 
 use excavator_identification::refinement::Refinement;
-use excavator_identification::validation::{Comparison, Correlation};
+use excavator_identification::validation::{Comparison, Correlation, ErrorSums, errors_of, mean_error_of};
 use maud::{Markup, html};
 
 use super::numbers::{NOTHING, decimal, significant};
@@ -38,8 +38,8 @@ pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
                         @let sizes = error_sizes(comparison, &signal.name);
                         tr {
                             td { (words::signal(&signal.name)) " " code.code-name { (signal.name) } }
-                            td.n { (significant(signal.normalised_error, 3)) }
-                            td.n { @if signal.fit.is_finite() { (decimal(signal.fit)) " %" } @else { (NOTHING) } }
+                            td.n { (significant(signal.error.normalised(), 3)) @if !signal.error.tells() { "*" } }
+                            td.n { @let fit = signal.error.fit_percent(); @if fit.is_finite() { (decimal(fit)) " %" } @else { (NOTHING) } }
                             td.n { (signal.phase_delay_degrees.map_or(NOTHING.to_string(), |d| format!("{}°", decimal(d)))) }
                             td.n { (sizes.map_or(NOTHING.to_string(), |s| format!("{} {}", significant(s.0 * unit.factor, 3), unit.symbol))) }
                             td.n { (sizes.map_or(NOTHING.to_string(), |s| format!("{} {}", significant(s.1 * unit.factor, 3), unit.symbol))) }
@@ -52,6 +52,9 @@ pub(super) fn measures(comparisons: &[Comparison]) -> Markup {
             }
         } }
         p.note {
+            @if comparisons.iter().flat_map(|one| &one.signals).any(|signal| !signal.error.tells()) {
+                "* Not in the mean: the signal is mostly noise, or it does not change. "
+            }
             "NMSE: squared error over the signal's own variance; 0 is perfect, 1 is no better than its mean. "
             "FIT = 100 (1 − √NMSE) %. Phase delay: by how much the model lags behind the measurement at the frequency of "
             "the excitation" (frequencies(comparisons)) "; negative where it leads. "
@@ -122,29 +125,23 @@ impl Stages {
             let name = step.added.as_ref().map_or("refitted".to_string(), |added| format!("+ {}", added_name(added)));
             stages.push((name, &step.comparisons));
         }
+        let errors: Vec<Vec<(&str, ErrorSums)>> =
+            stages.iter().map(|(_, comparisons)| errors_of(comparisons)).collect();
         let mut names: Vec<&str> = Vec::new();
-        for signal in stages.iter().flat_map(|(_, comparisons)| *comparisons).flat_map(|comparison| &comparison.signals)
-        {
-            if !names.contains(&signal.name.as_str()) {
-                names.push(&signal.name);
+        for (name, _) in errors.iter().flatten() {
+            if !names.contains(name) {
+                names.push(name);
             }
         }
-        let error = |comparisons: &[Comparison], name: &str| {
-            let own =
-                || comparisons.iter().flat_map(|c| &c.signals).filter(|s| s.name == name).map(|s| s.normalised_error);
-            own().sum::<f64>() / own().count() as f64
-        };
-        let mean = |comparisons: &[Comparison]| {
-            comparisons.iter().map(Comparison::mean_error).sum::<f64>() / comparisons.len() as f64
+        let own = |stage: &[(&str, ErrorSums)], name: &str| {
+            stage.iter().find(|(own, _)| *own == name).map_or(f64::NAN, |(_, error)| error.normalised())
         };
         Stages {
             signals: names
                 .into_iter()
-                .map(|name| {
-                    (name.to_string(), stages.iter().map(|(_, comparisons)| error(comparisons, name)).collect())
-                })
+                .map(|name| (name.to_string(), errors.iter().map(|stage| own(stage, name)).collect()))
                 .collect(),
-            mean: stages.iter().map(|(_, comparisons)| mean(comparisons)).collect(),
+            mean: stages.iter().map(|(_, comparisons)| mean_error_of(comparisons)).collect(),
             names: stages.into_iter().map(|(name, _)| name).collect(),
         }
     }

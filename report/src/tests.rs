@@ -8,7 +8,7 @@ use excavator_identification::energy::{MissingPower, Regime};
 use excavator_identification::fit::{Fit, Instrument};
 use excavator_identification::refinement::{Reason as Cause, Refinement, Step};
 use excavator_identification::search::{Addition, Trial, score, scores_of_given};
-use excavator_identification::validation::{Baselines, Comparison, SignalComparison};
+use excavator_identification::validation::{Baselines, Comparison, ErrorSums, SignalComparison};
 use excavator_model::Model;
 use excavator_model::document::built_in;
 use excavator_model::effects::{Catalogue, Family, Site};
@@ -47,10 +47,8 @@ fn comparison(error: f64) -> Comparison {
             autocorrelation: None,
             input_correlation: None,
             name: name.to_string(),
-            normalised_error: error * error,
-            root_mean_squared_error: error,
+            error: ErrorSums::of(&[-1.0, 1.0], &[-1.0 - error, 1.0 + error], 0.0),
             unit: "Pa",
-            fit: 100.0 * (1.0 - error),
             phases: Vec::new(),
             phase_delay_degrees: (name != "arm.velocity").then_some(-1.25),
         })

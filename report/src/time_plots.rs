@@ -84,10 +84,10 @@ pub(super) fn time_plots(models: &[(Line, &Comparison)], number: usize, recordin
 fn caption(models: &[(Line, &Comparison)], signal: &SignalComparison) -> String {
     let error = |comparison: &Comparison| {
         let own = comparison.signals.iter().find(|candidate| candidate.name == signal.name);
-        numbers::significant(own.map_or(f64::NAN, |own| own.normalised_error), 3)
+        numbers::significant(own.map_or(f64::NAN, |own| own.error.normalised()), 3)
     };
     match models {
-        [(_, only)] => format!("NMSE {} · FIT {:.1} %", error(only), signal.fit),
+        [(_, only)] => format!("NMSE {} · FIT {:.1} %", error(only), signal.error.fit_percent()),
         several => {
             let errors: Vec<String> = several.iter().map(|(line, c)| format!("{} {}", line.label, error(c))).collect();
             format!("NMSE {}", errors.join(", "))

@@ -61,6 +61,12 @@ pub(super) fn of_opening(cylinder: Option<&Cylinder>) -> Unit<'static> {
     }
 }
 
+/// Factor from SI to the unit in which a signal of this contract name is shown, and the symbol of that unit.
+pub fn signal_unit(machine: &Machine, name: &str) -> (f64, &'static str) {
+    let unit = of_signal(machine, name);
+    (unit.factor, unit.symbol)
+}
+
 /// Unit in which a signal of this contract name is shown.
 pub(super) fn of_signal(machine: &Machine, name: &str) -> Unit<'static> {
     let (place, signal) = name.rsplit_once('.').unwrap_or(("", name));

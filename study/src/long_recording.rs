@@ -40,6 +40,10 @@ pub(crate) fn recording_or_stretches(
         }
         let mut selection = Selection::new(model, SelectionSettings::default());
         selection.offer(&recording)?;
+        if selection.is_blind() {
+            // Nothing tells the stretches apart, and all of it is in memory.
+            return Ok((recording, report, None));
+        }
         return Ok(of_stretches(selection.finish(&path.display().to_string()), report));
     }
     in_blocks(path, (&whole, origin.namespace), part, model)

@@ -93,6 +93,10 @@ pub fn most_informative(
     } else {
         blocks(recording, BLOCK).try_for_each(|block| selection.offer(&block))?;
     }
+    if selection.is_blind() {
+        // Nothing tells the stretches apart, and all of it is in memory.
+        return Ok(None);
+    }
     let mut chosen = selection.finish(&recording.source);
     let used = std::mem::take(&mut chosen.recording);
     let sentence = choice(&used, &chosen);
@@ -102,15 +106,17 @@ pub fn most_informative(
 /// Lists the chosen stretches, in a sentence without its full stop.
 pub fn choice(used: &Recording, chosen: &Chosen) -> String {
     let starts: Vec<String> = chosen.starts.iter().map(|start| format!("{start:.0}")).collect();
-    format!(
-        "{:.0} of {:.0} s are used: the most informative stretches of {:.0} s, from {} s (stretches at random would give intervals {:.1} times \
-         as wide)",
-        used.recorded_time(),
-        chosen.duration,
-        chosen.stretch,
-        starts.join(", "),
-        chosen.gain
-    )
+    let (seconds, all, stretch, starts) = (used.recorded_time(), chosen.duration, chosen.stretch, starts.join(", "));
+    match chosen.gain {
+        Some(gain) => format!(
+            "{seconds:.0} of {all:.0} s are used: the most informative stretches of {stretch:.0} s, from {starts} s (stretches at random \
+             would give intervals {gain:.1} times as wide)"
+        ),
+        None => format!(
+            "{seconds:.0} of {all:.0} s are used: stretches of {stretch:.0} s spread over the recording, from {starts} s (no equation has \
+             all of its signals, so none tells more than another)"
+        ),
+    }
 }
 
 /// Prepares a recording for use and adds messages for the user to `remarks`, where it is called `name`. `report` lists

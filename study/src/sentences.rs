@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use excavator_identification::design::{ParameterDesign, Plan, SeparationDesign};
 use excavator_identification::energy::{EnergyAnalysis, MissingPower};
 use excavator_identification::fit::ProfileInterval;
-use excavator_identification::identify::Identified;
+use excavator_identification::identify::{HeldOut, Identified};
 use excavator_model::simulation::Profile;
 use excavator_model::{Model, Parameter};
 
@@ -37,7 +37,24 @@ pub fn identification_sentence(result: &Identified) -> String {
             number(worst.chi_squared_per_row)
         );
     }
+    if let Some(sentence) = method_sentence(result) {
+        text += &format!(" {sentence}");
+    }
     text
+}
+
+/// Why this method was used, if it was chosen.
+fn method_sentence(result: &Identified) -> Option<String> {
+    let error = |one: &HeldOut| one.nmse.map_or("fails".to_string(), |nmse| format!("has {}", number(nmse)));
+    let own = result.held_out.iter().find(|one| one.method == result.method)?.nmse?;
+    let others = result.held_out.iter().filter(|one| one.method != result.method);
+    let others: Vec<String> = others.map(|one| format!("{} {}", one.method, error(one))).collect();
+    Some(format!(
+        "Method: {}, which predicts the last third of the recordings from the rest with a mean NMSE of {}; {}.",
+        result.method,
+        number(own),
+        others.join(", ")
+    ))
 }
 
 /// What the recordings determine about a parameter that is weakly identifiable.

@@ -3,6 +3,7 @@
 mod check;
 mod clipped;
 mod error;
+mod moves_closed;
 mod opening;
 mod remarks;
 mod runs;

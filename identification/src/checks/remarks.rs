@@ -7,6 +7,7 @@ use excavator_model::machine::Cylinder;
 use excavator_model::recording::{Recording, has_noise, is_measured, noise_level};
 
 use super::check::usual_size;
+use super::moves_closed::moves_while_closed;
 use super::opening::{largest, open_one_way};
 use super::runs::range;
 
@@ -74,6 +75,23 @@ pub enum Remark {
         /// The machine.
         machine: String,
     },
+    /// A piston moves although its valve is closed.
+    #[error(
+        "{cylinder} moves by {travel:.0} mm while its valve is closed, at {closed:.2} {unit}, and stands at about {stands_at:.2} {unit}: that is \
+         its null. `characterise -o` writes the null into a model; or correct the zero of the input in the map"
+    )]
+    MovesWhileClosed {
+        /// The cylinder.
+        cylinder: String,
+        /// How far, mm.
+        travel: f64,
+        /// The input of the closed valve, as the model has it, in the unit.
+        closed: f64,
+        /// The input at which the piston stands, in the unit.
+        stands_at: f64,
+        /// The unit of the valve's input, as displayed.
+        unit: &'static str,
+    },
     /// A command that was measured.
     #[error(
         "{cylinder}.orifice_command has noise, so it was measured; map it to orifice_area, which is interpolated between samples, while a command is held"
@@ -116,7 +134,7 @@ const LEAST_TRAVEL: f64 = 0.01;
 pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
     let mut found = Vec::new();
     let machine = &model.machine;
-    for cylinder in &machine.cylinders {
+    for (number, cylinder) in machine.cylinders.iter().enumerate() {
         let Ok(signals) = recording.cylinder(&cylinder.name) else { continue };
         if !is_measured(&signals.orifice_area) && has_noise(&signals.orifice_command) {
             found.push(Remark::MeasuredCommand { cylinder: cylinder.name.clone() });
@@ -140,6 +158,7 @@ pub fn remarks(model: &Model, recording: &Recording) -> Vec<Remark> {
                 found.push(Remark::CommandNotFollowed { cylinder: cylinder.name.clone(), correlation });
             }
         }
+        found.extend(moves_while_closed(model, recording, number, opening));
         found.extend(pressed(model, cylinder, &signals.displacement, opening));
         found.extend(spikes(name("cap_pressure"), &signals.cap_pressure, "Pa", LARGEST_PRESSURE));
         found.extend(spikes(name("rod_pressure"), &signals.rod_pressure, "Pa", LARGEST_PRESSURE));

@@ -1,6 +1,6 @@
 //! Finds readings that two recordings share.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use excavator_model::recording::Recording;
 
@@ -19,31 +19,46 @@ pub struct SharedReadings {
     pub share: f64,
 }
 
-/// Share of the readings, %, above which sharing is reported: a resting signal behind a coarse converter repeats values at times.
+/// Share of the readings, %, above which sharing is reported. Fewer can be a stray repetition.
 const SOME: f64 = 5.0;
+
+/// Readings that both have must be this many, and this share of them must follow each other in the same order: single readings of a
+/// coarse converter are also equal by chance, but then in any order.
+const NEEDED: usize = 20;
+const IN_ORDER: f64 = 0.9;
 
 /// Finds readings of the validation recordings that also occur in the fitted ones.
 pub fn shared_readings(identification: &[&Recording], validation: &[&Recording]) -> Vec<SharedReadings> {
-    let fitted: Vec<(&str, HashSet<Vec<u64>>)> =
-        identification.iter().map(|recording| (recording.source.as_str(), readings(recording).collect())).collect();
-    let pairs = validation.iter().flat_map(|recording| fitted.iter().map(move |fitted| (recording, fitted)));
-    pairs
-        .filter_map(|(recording, (source, fitted))| {
-            let all = readings(recording).count();
-            let same = readings(recording).filter(|reading| fitted.contains(reading)).count();
-            let share = 100.0 * same as f64 / all.max(1) as f64;
-            (share > SOME).then(|| SharedReadings {
-                identification: (*source).to_string(),
-                validation: recording.source.clone(),
-                share,
+    let fitted: Vec<(&str, HashMap<Vec<u64>, usize>)> =
+        identification.iter().map(|recording| (recording.source.as_str(), single_readings(recording))).collect();
+    let judging = validation.iter().map(|recording| (recording.source.as_str(), single_readings(recording)));
+    judging
+        .flat_map(|(validation, own)| {
+            fitted.iter().filter_map(move |(identification, fitted)| {
+                Some(SharedReadings {
+                    identification: (*identification).to_string(),
+                    validation: validation.to_string(),
+                    share: share(&own, fitted)?,
+                })
             })
         })
         .collect()
 }
 
-/// All measured values at each moment of motion, bit for bit: noise makes every moment unique. A moment at which every reading
-/// repeats the previous one is skipped.
-fn readings(recording: &Recording) -> impl Iterator<Item = Vec<u64>> {
+/// Share of these readings, %, that the fitted recording has in the same order; `None` if hardly any.
+fn share(own: &HashMap<Vec<u64>, usize>, fitted: &HashMap<Vec<u64>, usize>) -> Option<f64> {
+    let mut common: Vec<(usize, usize)> =
+        own.iter().filter_map(|(reading, &at)| Some((at, *fitted.get(reading)?))).collect();
+    common.sort_unstable();
+    let in_order = common.windows(2).filter(|pair| pair[0].1 < pair[1].1).count();
+    let share = 100.0 * common.len() as f64 / own.len().max(1) as f64;
+    let is_same = common.len() >= NEEDED && in_order as f64 >= IN_ORDER * (common.len() - 1) as f64;
+    (share > SOME && is_same).then_some(share)
+}
+
+/// All measured values at a moment, bit for bit, with the number of the moment, where they occur once in the recording: noise makes a
+/// moment of motion unique. A machine at rest and a converter at its end repeat themselves, which says nothing about another recording.
+fn single_readings(recording: &Recording) -> HashMap<Vec<u64>, usize> {
     let signals: Vec<&[f64]> = recording
         .cylinders
         .iter()
@@ -59,12 +74,62 @@ fn readings(recording: &Recording) -> impl Iterator<Item = Vec<u64>> {
         })
         .chain([&recording.pump_pressure[..]])
         .collect();
-    let moment = move |index: usize| -> Vec<u64> {
+    let mut moments: HashMap<Vec<u64>, Option<usize>> = HashMap::new();
+    for index in 0..recording.len() {
         let values = signals.iter().map(|signal| signal.get(index).copied().unwrap_or(f64::NAN));
-        values.map(|value| if value.is_finite() { value.to_bits() } else { u64::MAX }).collect()
-    };
-    (1..recording.len()).filter_map(move |index| {
-        let now = moment(index);
-        (now != moment(index - 1)).then_some(now)
-    })
+        let moment = values.map(|value| if value.is_finite() { value.to_bits() } else { u64::MAX }).collect();
+        moments.entry(moment).and_modify(|first| *first = None).or_insert(Some(index));
+    }
+    moments.into_iter().filter_map(|(moment, index)| Some((moment, index?))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cylinder that moves for `moving` samples and then stands for 2000, behind a converter with steps of this size.
+    fn run(seed: u32, moving: usize, step: f64) -> Recording {
+        let time: Vec<f64> = (0..moving + 2000).map(|index| 1e-3 * index as f64).collect();
+        let mut recording = Recording::unmeasured("run", time, &["load"]);
+        let mut state = seed;
+        let mut noise = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 24) - 0.5
+        };
+        let signals = &mut recording.cylinders[0];
+        for index in 0..moving + 2000 {
+            let position = 1e-4 * index.min(moving) as f64 * (1.0 + 1e-3 * f64::from(seed));
+            signals.displacement[index] = ((position + 1e-5 * noise()) / step).round() * step;
+            signals.cap_pressure[index] = ((2e6 + 2e3 * noise()) / 1e3).round() * 1e3;
+            signals.rod_pressure[index] = ((1e6 + 2e3 * noise()) / 1e3).round() * 1e3;
+        }
+        recording
+    }
+
+    #[test]
+    fn a_machine_at_rest_and_a_converter_at_its_end_are_not_shared() {
+        for step in [1e-7, 1e-5, 1e-4] {
+            let (first, second) = (run(1, 400, step), run(2, 500, step));
+            assert_eq!(shared_readings(&[&first], &[&second]), [], "steps of {step} m");
+        }
+        let (mut first, mut second) = (run(3, 2000, 1e-7), run(4, 2000, 1e-7));
+        for recording in [&mut first, &mut second] {
+            recording.cylinders[0].displacement.iter_mut().for_each(|value| *value = value.min(0.02));
+        }
+        assert_eq!(shared_readings(&[&first], &[&second]), []);
+    }
+
+    #[test]
+    fn the_same_run_and_parts_of_it_are_shared() {
+        for step in [1e-7, 1e-5] {
+            let whole = run(1, 3000, step);
+            let found = shared_readings(&[&whole], &[&whole]);
+            assert!(found.len() == 1 && found[0].share > 99.0, "{found:?}");
+            // A part that overlaps by a third, at half the rate.
+            let part = whole.at(&(1000..2500).step_by(2).collect::<Vec<_>>());
+            let fitted = whole.at(&(0..2000).collect::<Vec<_>>());
+            let found = shared_readings(&[&fitted], &[&part]);
+            assert!(found.len() == 1 && (50.0..80.0).contains(&found[0].share), "{found:?}");
+        }
+    }
 }

@@ -36,6 +36,6 @@ pub use prediction::{Prediction, predict};
 pub(crate) use priors::ParameterPriors;
 pub use profile::{ProfileInterval, profile};
 pub use segments::{Segment, SegmentedRecording};
-pub use settings::FitSettings;
+pub use settings::{FitSettings, InitialStates};
 pub(crate) use step::scales;
 pub use watch::Watch;

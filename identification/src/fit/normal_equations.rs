@@ -6,7 +6,7 @@ use excavator_model::simulation::{Integrator, Observer, Sensitivity, SimulationE
 use nalgebra::{DMatrix, DVector};
 
 use super::reading_rows::ReadingRows;
-use super::{Instrument, Segment, SegmentedRecording};
+use super::{InitialStates, Instrument, Segment, SegmentedRecording};
 
 /// Sums over one segment, for parameters and its own initial state.
 #[derive(Debug, Clone)]
@@ -56,8 +56,11 @@ pub(super) const BLOCK_DURATION: f64 = 0.5;
 /// judged on the same readings.
 const SETTLING: f64 = 0.03;
 
-/// How far an initial state may be from the estimate from the first samples. The prior is weak: it only decides where
-/// nothing is measured.
+/// Factor on the spread of initial states that are as measured: small beside any state, and large beside rounding.
+const HELD: f64 = 1e-5;
+
+/// How far an initial state may be from the estimate from the first samples. Where states are fitted, the prior is weak: it only
+/// decides where nothing is measured.
 #[derive(Debug, Clone)]
 pub(super) struct InitialStatePrior {
     /// Standard deviation of each state.
@@ -65,7 +68,7 @@ pub(super) struct InitialStatePrior {
 }
 
 impl InitialStatePrior {
-    pub fn of(system: &System<'_>) -> Self {
+    pub fn of(system: &System<'_>, initial_states: InitialStates) -> Self {
         let layout = system.layout();
         let machine = &system.model().machine;
         let size = machine.size();
@@ -81,6 +84,9 @@ impl InitialStatePrior {
         }
         for (state, scale) in system.state_scales() {
             spread[state] = 0.1 * scale;
+        }
+        if initial_states == InitialStates::Measured {
+            spread.iter_mut().for_each(|spread| *spread *= HELD);
         }
         InitialStatePrior { spread }
     }

@@ -68,7 +68,7 @@ impl<'s, 'm> Problem<'s, 'm> {
         let cards: Vec<_> = model.parameters().map(|(_, parameter)| parameter.card.clone()).collect();
         let scales = scales(model, &fitted);
         let noise = instruments.iter().map(|instrument| instrument.noise).collect();
-        let prior = InitialStatePrior::of(system);
+        let prior = InitialStatePrior::of(system, settings.initial_states);
         Ok(Problem { system, prior, recordings, owners, segments, instruments, noise, fitted, scales, cards, priors })
     }
 

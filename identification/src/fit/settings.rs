@@ -10,6 +10,8 @@ pub struct FitSettings {
     /// displacement. It is short enough that a wrong model, which is what the fit has to assess, cannot diverge far
     /// from the data.
     pub segment_duration: f64,
+    /// Whether the initial states of segments are unknowns of the fit.
+    pub initial_states: InitialStates,
     /// Samples per second that are compared. Faster recordings are thinned to about this rate, except where a valve
     /// moves too fast for it. Model errors are slower than that, and the computation time is proportional to the rate.
     pub sample_rate: f64,
@@ -19,6 +21,15 @@ pub struct FitSettings {
     pub maximum_steps: usize,
     /// The fit ends when a step improves the loss by less than this fraction.
     pub least_improvement: f64,
+}
+
+/// Initial states of segments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InitialStates {
+    /// Fitted to the readings: the fit does not depend on the noise of the first ones.
+    Fitted,
+    /// As measured: the fit sees the error that a simulation from there has.
+    Measured,
 }
 
 impl FitSettings {
@@ -37,6 +48,7 @@ impl Default for FitSettings {
     fn default() -> Self {
         FitSettings {
             segment_duration: 4.0,
+            initial_states: InitialStates::Fitted,
             sample_rate: 170.0,
             give_up_above: f64::INFINITY,
             maximum_steps: 15,

@@ -14,7 +14,7 @@ use crate::decision::Verdict;
 use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisSettings, Unexplained, diagnosis_of, unexplained};
 use crate::regression::situations_along;
 use crate::search::{Pool, Trial};
-use crate::validation::{Comparison, compare};
+use crate::validation::{Comparison, compare, mean_error_of};
 
 /// What comes of a search for laws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -104,7 +104,7 @@ pub(super) fn proposals(
 ) -> Result<Proposals, DiagnosisError> {
     let diagnosis = diagnosis_of(pool, verdict, settings, validation)?;
     let before = comparisons(diagnosis.given(), validation);
-    let error_before = mean_error(&before);
+    let error_before = mean_error_of(&before);
     let is_needed = matches!(kind, ProposalVerdict::Law | ProposalVerdict::NoLaw);
     let lacking =
         if is_needed { unexplained(&diagnosis.given().fit.model, validation, &settings.policy)? } else { None };
@@ -168,7 +168,7 @@ fn of_trial(
     validation: &[&Recording],
 ) -> Result<Vec<Proposal>, DiagnosisError> {
     let trial = &diagnosis.trials[number];
-    let validation_error = mean_error(&comparisons(trial, validation));
+    let validation_error = mean_error_of(&comparisons(trial, validation));
     let mut situations = Vec::new();
     for recording in identification.iter().chain(validation) {
         situations.extend(situations_along(&trial.fit.model, recording)?);
@@ -225,8 +225,4 @@ fn fitted_text(text: &FormulaText, effect: &ModelEffect) -> FormulaText {
 fn comparisons(trial: &Trial, validation: &[&Recording]) -> Vec<Comparison> {
     let model = trial.model_on_validation();
     validation.iter().filter_map(|recording| compare(&model, recording).ok()).collect()
-}
-
-fn mean_error(comparisons: &[Comparison]) -> f64 {
-    comparisons.iter().map(Comparison::mean_error).sum::<f64>() / comparisons.len() as f64
 }

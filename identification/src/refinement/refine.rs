@@ -9,7 +9,7 @@ use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisSettings, NamedVerdic
 use crate::fit::{Fit, FitError, nuisances_shown, simplified};
 use crate::proposal::propose;
 use crate::search::{Addition, AdditionError, fit_addition, fit_given};
-use crate::validation::{Comparison, compare};
+use crate::validation::{Comparison, compare, mean_error_of};
 
 /// Effects to add.
 #[derive(Debug, Clone)]
@@ -66,7 +66,7 @@ pub struct Step {
 impl Step {
     /// Mean normalised squared error over signals and validation recordings.
     pub fn mean_error(&self) -> f64 {
-        self.comparisons.iter().map(Comparison::mean_error).sum::<f64>() / self.comparisons.len() as f64
+        mean_error_of(&self.comparisons)
     }
 }
 

@@ -29,6 +29,7 @@ pub use error::RegressionError;
 pub(crate) use flow_rows::{FlowGround, FlowRows};
 pub(crate) use information::Gauge;
 pub use least_squares::least_squares;
+pub(crate) use observation::slope_noise;
 pub use observation::{Observation, observe, observe_guided};
 pub(crate) use seen::Ground;
 pub use solution::{ConditionNumber, EquationGauge, Regression};

@@ -3,7 +3,7 @@
 use excavator_model::Model;
 use excavator_model::effects::Number;
 use excavator_model::equations::{KnownCylinder, System};
-use excavator_model::recording::{CylinderSignals, Recording, denoised};
+use excavator_model::recording::{CylinderSignals, Recording, denoised, noise_level};
 use excavator_model::simulation::InputSignals;
 
 /// The known part of the state at each sample: raw signals for differentiation, smooth ones for formulas.
@@ -81,8 +81,7 @@ fn observe_against(
         let displacement = displacement(signals, |joint| cylinder.linkage.displacement(joint));
         let joint: Vec<f64> = displacement.iter().map(|&s| cylinder.linkage.joint(s)).collect();
         let measured_velocity = signals.velocity.iter().any(|v| v.is_finite());
-        let half_width = (SLOPE_HALF_WIDTH * model.machine.size().time())
-            .max(SLOPE_HALF_WIDTH_SAMPLES * recording.sample_interval());
+        let half_width = slope_half_width(model, recording);
         let (mut smooth_displacement, mut slope) = (Vec::new(), Vec::new());
         // Samples across a pause are not neighbours.
         for piece in recording.pieces() {
@@ -109,6 +108,23 @@ fn observe_against(
         smooth_pump_pressure: smooth(&recording.pump_pressure, guide.map(|simulation| &simulation.pump_pressure)),
         pump_pressure: recording.pump_pressure.clone(),
     })
+}
+
+/// Half width of the parabola whose slope is the velocity, s.
+fn slope_half_width(model: &Model, recording: &Recording) -> f64 {
+    (SLOPE_HALF_WIDTH * model.machine.size().time()).max(SLOPE_HALF_WIDTH_SAMPLES * recording.sample_interval())
+}
+
+/// Noise of a velocity that is the slope of the displacement of this cylinder, m/s: a slope over samples at `t` about their middle
+/// has the noise of one sample over `sqrt(sum t²)`. `NaN` if no displacement is measured.
+pub(crate) fn slope_noise(model: &Model, recording: &Recording, cylinder: usize) -> f64 {
+    let constants = &model.machine.cylinders[cylinder];
+    let Ok(signals) = recording.cylinder(&constants.name) else { return f64::NAN };
+    let interval = recording.sample_interval();
+    let each_side = (slope_half_width(model, recording) / interval).floor();
+    let squares = each_side * (each_side + 1.0) * (2.0 * each_side + 1.0) / 3.0;
+    let positions = displacement(signals, |joint| constants.linkage.displacement(joint));
+    noise_level(&positions) / (interval * squares.sqrt())
 }
 
 impl Observation {

@@ -13,7 +13,7 @@ use crate::validation;
 #[non_exhaustive]
 #[must_use]
 pub struct Comparison {
-    /// Mean over the signals of their mean squared error over their variance (NMSE): 0 is a perfect match, 1 is no better than a constant.
+    /// Mean over the signals (those with `in_mean`) of their mean squared error over their variance (NMSE): 0 is a perfect match, 1 is no better than a constant.
     pub mean_nmse: Option<f64>,
     /// Another model on the same recording; `null` where none was given.
     pub against: Option<OtherComparison>,
@@ -51,7 +51,7 @@ pub struct Baselines {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct Baseline {
-    /// NMSE of sensor noise alone; `null` for a velocity that is derived.
+    /// NMSE of sensor noise alone; of a velocity that was not measured, of the noise of the displacement that it was derived from.
     pub noise: Option<f64>,
     /// NMSE of a linear ARX model without physics that was fitted to this recording.
     pub arx: Option<f64>,

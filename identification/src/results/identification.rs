@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Parameter, finite};
 use crate::fit;
-use crate::identify::Identified;
+use crate::identify::{HeldOut, Identified, Method};
 use crate::regression::EquationGauge;
 
 /// Parameters identified from recordings.
@@ -16,6 +16,11 @@ use crate::regression::EquationGauge;
 #[non_exhaustive]
 #[must_use]
 pub struct Identification {
+    /// The method that was used.
+    pub method: Method,
+    /// How well each method predicts the last third of each recording from the rest; absent where one method was asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub held_out: Vec<HeldOut>,
     /// The identified parameters, in the model's order.
     pub parameters: Vec<Parameter>,
     /// Condition numbers of the regression by group of equations: `mechanical`, `hydraulic`.
@@ -91,6 +96,8 @@ impl Identification {
             .iter()
             .map(|(index, reason)| NotIdentified { name: names[*index].clone(), reason: reason.clone() });
         Identification {
+            method: found.method,
+            held_out: found.held_out.clone(),
             parameters: Parameter::of(model, &found.fitted),
             condition_numbers: conditions.collect(),
             rows: found.rows,

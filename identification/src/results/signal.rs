@@ -6,21 +6,24 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::finite;
-use crate::validation;
+use crate::validation::{self, ErrorSums, errors_of};
 
 /// A simulated signal beside its measurement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct SignalComparison {
-    /// Mean squared error over the variance of the measured signal (NMSE); of several recordings the mean.
+    /// Mean squared error over the variance of the measured signal (NMSE), both over all samples of the recordings.
     pub nmse: Option<f64>,
-    /// Root mean squared error, in `unit`; of several recordings the mean.
+    /// Root mean squared error over all samples, in `unit`.
     pub rmse: Option<f64>,
     /// SI unit of the signal.
     #[serde(default)]
     pub unit: String,
-    /// `100 (1 - sqrt(NMSE))`, %; of several recordings the mean.
+    /// `100 (1 - sqrt(NMSE))`, %.
     pub fit: Option<f64>,
+    /// Whether the signal counts in the mean NMSE. One that hardly changes, or that was derived from a noisy one, does not: sensor noise alone has an NMSE above 0.1 in it.
+    #[serde(default = "counts")]
+    pub in_mean: bool,
     /// Lag of the model behind the measurement at the frequency of the excitation, degrees; of several recordings the largest by size. `null` where no frequency stands out.
     pub phase_delay_deg: Option<f64>,
     /// Correlation of the error with its own past; of several recordings the one furthest beyond its bound. `null` where nothing can be said.
@@ -59,31 +62,35 @@ pub struct PhaseShare {
 impl SignalComparison {
     /// Every signal by its contract name, over the comparisons of one model with several recordings.
     pub(super) fn all(comparisons: &[validation::Comparison]) -> BTreeMap<String, Self> {
-        let Some(first) = comparisons.first() else { return BTreeMap::new() };
-        let signals = first.signals.iter().enumerate();
-        signals.map(|(index, signal)| (signal.name.clone(), Self::of(comparisons, index))).collect()
+        let each = errors_of(comparisons).into_iter();
+        each.map(|(name, error)| (name.to_string(), Self::of(comparisons, name, error))).collect()
     }
 
-    /// The signal at this place of the comparisons.
-    fn of(comparisons: &[validation::Comparison], index: usize) -> Self {
-        let count = comparisons.len() as f64;
-        let own = || comparisons.iter().filter_map(move |comparison| comparison.signals.get(index));
+    fn of(comparisons: &[validation::Comparison], name: &str, error: ErrorSums) -> Self {
+        let all = || comparisons.iter().flat_map(|comparison| &comparison.signals);
+        let own = || all().filter(|signal| signal.name == name);
         let delays = own().filter_map(|signal| signal.phase_delay_degrees);
         let phases = match comparisons {
             [_] => own().next().map(|signal| signal.phases.iter().map(PhaseShare::of).collect()),
             _ => None,
         };
         SignalComparison {
-            nmse: finite(own().map(|signal| signal.normalised_error).sum::<f64>() / count),
-            rmse: finite(own().map(|signal| signal.root_mean_squared_error).sum::<f64>() / count),
+            nmse: finite(error.normalised()),
+            rmse: finite(error.root_mean_square()),
             unit: own().next().map(|signal| signal.unit.to_string()).unwrap_or_default(),
-            fit: finite(own().map(|signal| signal.fit).sum::<f64>() / count),
+            fit: finite(error.fit_percent()),
+            in_mean: error.tells(),
             phase_delay_deg: delays.max_by(|a, b| a.abs().total_cmp(&b.abs())).and_then(finite),
             autocorrelation: Correlation::worst(own().filter_map(|signal| signal.autocorrelation)),
             input_correlation: Correlation::worst(own().filter_map(|signal| signal.input_correlation)),
             phases,
         }
     }
+}
+
+/// Older results have no such key: all of their signals counted.
+fn counts() -> bool {
+    true
 }
 
 impl Correlation {

@@ -11,7 +11,7 @@ use super::*;
 use crate::decision::Kind;
 use crate::energy::Regime;
 use crate::proposal::ProposalVerdict;
-use crate::validation;
+use crate::validation::{self, ErrorSums};
 
 /// Every schema that describes an object, or one form of it, with its place.
 fn objects<'s>(place: &str, schema: &'s Value, found: &mut Vec<(String, &'s Value)>) {
@@ -85,13 +85,13 @@ fn comparison() -> (validation::Comparison, validation::Baselines) {
 #[test]
 fn what_is_written_is_read_back_and_not_a_number_is_null() {
     let (mut comparison, baselines) = comparison();
-    comparison.signals[0].normalised_error = f64::NAN;
+    comparison.signals.iter_mut().for_each(|signal| signal.error = ErrorSums::of(&[1.0, 1.0], &[1.0, 1.0], f64::NAN));
     let result = Comparison::of(&comparison, &baselines, Some(&comparison), None);
     let written = serde_json::to_value(&result).unwrap();
     assert!(written["mean_nmse"].is_null() && written["repeat"].is_null());
     let first = &comparison.signals[0].name;
     assert!(written["signals"][first]["nmse"].is_null());
-    assert_eq!(written["signals"][first]["fit"], json!(comparison.signals[0].fit));
+    assert_eq!(written["signals"][first]["rmse"], json!(0.0));
     assert_eq!(serde_json::from_value::<Comparison>(written).unwrap(), result);
 }
 

@@ -58,8 +58,9 @@ pub struct Chosen {
     /// Duration of all offered blocks, s.
     pub duration: f64,
     /// Factor by which the intervals of the parameters, as a geometric mean, would be wider with as many random
-    /// stretches.
-    pub gain: f64,
+    /// stretches. `None` if no equation has all of its signals: then nothing tells one stretch from another, and the kept ones are
+    /// spread over the recording.
+    pub gain: Option<f64>,
 }
 
 impl<'m> Selection<'m> {
@@ -119,10 +120,24 @@ impl<'m> Selection<'m> {
         }
         let total = self.kept_information();
         let without = |kept: &Stretch| log_determinant(&total - &kept.information);
-        let least = self.kept.iter().map(without).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((number, _)) = least {
+        let least = if self.is_blind() {
+            // The one whose neighbours are closest to each other, so that the others stay spread.
+            let start = |number: usize| self.kept[number].recording.start_nanoseconds;
+            (1..self.kept.len() - 1)
+                .min_by_key(|&number| start(number + 1) - start(number - 1))
+                .or(Some(self.settings.most))
+        } else {
+            let each = self.kept.iter().map(without).enumerate();
+            each.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(number, _)| number)
+        };
+        if let Some(number) = least {
             self.kept.remove(number);
         }
+    }
+
+    /// Whether no stretch so far tells anything about a parameter.
+    pub fn is_blind(&self) -> bool {
+        self.all.iter().all(|information| *information == 0.0)
     }
 
     fn kept_information(&self) -> DMatrix<f64> {
@@ -131,6 +146,7 @@ impl<'m> Selection<'m> {
 
     /// Returns the selected stretches, with `source` as the name of the recording.
     pub fn finish(self, source: &str) -> Chosen {
+        let is_blind = self.is_blind();
         let parameters = self.all.nrows().max(1) as f64;
         let share = self.kept.len() as f64 / self.offered.max(1) as f64;
         let ratio = log_determinant(self.kept_information()) - log_determinant(&self.all * share);
@@ -143,7 +159,7 @@ impl<'m> Selection<'m> {
             starts: parts.iter().map(|part| (part.start_nanoseconds - start) as f64 * 1e-9).collect(),
             stretch,
             duration: self.duration,
-            gain: (ratio / (2.0 * parameters)).exp(),
+            gain: (!is_blind).then(|| (ratio / (2.0 * parameters)).exp()),
         }
     }
 }
@@ -222,7 +238,12 @@ mod tests {
         let chosen = selection.finish("day");
         // The arm first sinks slowly, which shows leaks. The fast stretch follows.
         assert_eq!(chosen.starts, [0.0, 40.0]);
-        assert!((chosen.duration - 160.0).abs() < 0.1 && chosen.gain > 1.5, "{} {}", chosen.duration, chosen.gain);
+        assert!(
+            (chosen.duration - 160.0).abs() < 0.1 && chosen.gain > Some(1.5),
+            "{} {:?}",
+            chosen.duration,
+            chosen.gain
+        );
         let parts = chosen.recording.pieces();
         assert_eq!(parts.len(), 2);
         // Samples and their times are those of the recording.
@@ -230,5 +251,22 @@ mod tests {
         let own = chosen.recording.cylinders[0].cap_pressure[parts[1].start + 7];
         assert_eq!(own, recording.cylinders[0].cap_pressure[first + 7]);
         assert!((chosen.recording.time[parts[1].start] - 40.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn without_a_complete_equation_the_stretches_are_spread() {
+        let model = built_in("zx30u-arm").unwrap();
+        let mut recording = mostly_at_rest(&model, 160);
+        let signals = &mut recording.cylinders[0];
+        signals.cap_pressure.fill(f64::NAN);
+        signals.rod_pressure.fill(f64::NAN);
+        recording.pump_pressure.fill(f64::NAN);
+        let mut selection = Selection::new(&model, SelectionSettings { stretch: 8.0, most: 4 });
+        selection.offer(&recording).unwrap();
+        assert!(selection.is_blind());
+        let chosen = selection.finish("day");
+        assert_eq!(chosen.gain, None);
+        let gaps: Vec<f64> = chosen.starts.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        assert!(chosen.starts[0] == 0.0 && gaps.iter().all(|gap| (24.0..90.0).contains(gap)), "{:?}", chosen.starts);
     }
 }

@@ -1,7 +1,7 @@
 //! Baselines for errors: those of sensor noise, of a held value and of a model without physics on the same signals.
 
 use excavator_model::Model;
-use excavator_model::recording::{Recording, noise_level, standard_deviation};
+use excavator_model::recording::Recording;
 use excavator_model::simulation::InputSignals;
 
 use super::arx::simulated_arx;
@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-7;
 /// Normalised mean squared errors that a model's error is compared with, for one signal. `NaN` if there is none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Baseline {
-    /// Error of sensor noise alone, a lower bound for any model in the long run. `NaN` for a derived velocity.
+    /// Error of sensor noise alone, a lower bound for any model in the long run.
     pub noise: f64,
     /// Error of the value from [`Baselines::held`] seconds before.
     pub held: f64,
@@ -49,10 +49,8 @@ impl Baselines {
             .iter()
             .map(|signal| {
                 let measured = comparison.measured.signal(&signal.name).unwrap_or(&[]);
-                let is_own =
-                    recording.signal(&signal.name).is_some_and(|own| own.iter().any(|value| value.is_finite()));
                 Baseline {
-                    noise: if is_own { noise_error(measured) } else { f64::NAN },
+                    noise: signal.error.normalised_noise(),
                     held: held_error(&recording.time, measured, held),
                     arx: thinned.arx_error(measured),
                 }
@@ -66,11 +64,6 @@ impl Baselines {
         let known: Vec<f64> = self.signals.iter().map(of).filter(|value| value.is_finite()).collect();
         known.iter().sum::<f64>() / known.len() as f64
     }
-}
-
-fn noise_error(signal: &[f64]) -> f64 {
-    let deviation = standard_deviation(signal);
-    if deviation > 0.0 { (noise_level(signal) / deviation).powi(2) } else { f64::NAN }
 }
 
 fn held_error(time: &[f64], signal: &[f64], held: f64) -> f64 {

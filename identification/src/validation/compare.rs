@@ -2,14 +2,15 @@
 
 use excavator_model::Model;
 use excavator_model::machine::{Cylinder, Machine};
-use excavator_model::recording::{Recording, is_measured};
+use excavator_model::recording::{Recording, is_measured, noise_level};
 use excavator_model::simulation::{InputSignals, RunError, simulate};
 
+use super::measures::mean_normalised;
 use super::{
-    Correlation, MotionPhase, PhaseShare, autocorrelation, dominant_frequency, fit_percent, input_correlation,
-    motion_phases, normalised_mean_squared_error, phase_delay_degrees, phase_shares, root_mean_squared_error,
+    Correlation, ErrorSums, MotionPhase, PhaseShare, autocorrelation, dominant_frequency, input_correlation,
+    motion_phases, phase_delay_degrees, phase_shares,
 };
-use crate::regression::observe;
+use crate::regression::{observe, slope_noise};
 
 /// A measurement and its simulation.
 #[derive(Debug, Clone)]
@@ -31,14 +32,10 @@ pub struct Comparison {
 pub struct SignalComparison {
     /// Contract name.
     pub name: String,
-    /// Normalised mean squared error.
-    pub normalised_error: f64,
-    /// Root mean squared error, in `unit`.
-    pub root_mean_squared_error: f64,
+    /// Measures of the error.
+    pub error: ErrorSums,
     /// SI unit of the signal.
     pub unit: &'static str,
-    /// FIT in %.
-    pub fit: f64,
     /// Lag of the model behind the measurement at the excitation frequency, degrees.
     pub phase_delay_degrees: Option<f64>,
     /// Correlation of the error with its own past. It is not significant if only noise is left.
@@ -52,9 +49,9 @@ pub struct SignalComparison {
 }
 
 impl Comparison {
-    /// Mean normalised squared error over the signals.
+    /// Mean normalised squared error over the signals that tell it ([`ErrorSums::tells`]).
     pub fn mean_error(&self) -> f64 {
-        self.signals.iter().map(|signal| signal.normalised_error).sum::<f64>() / self.signals.len() as f64
+        mean_error_of(std::slice::from_ref(self))
     }
 }
 
@@ -158,17 +155,14 @@ pub(super) fn beside(model: &Model, recording: &Recording, simulated: Recording)
             }
             let error: Vec<f64> = y.iter().zip(yhat).map(|(measured, simulated)| measured - simulated).collect();
             let input = driving_input(model, &inputs, &measured, cylinder);
-            let normalised_error = normalised_mean_squared_error(y, yhat);
             Some(SignalComparison {
                 phase_delay_degrees: excitation_frequency
                     .and_then(|frequency| phase_delay_degrees(&recording.time, y, yhat, frequency)),
                 autocorrelation: autocorrelation(&time, &error).map(in_seconds),
                 input_correlation: input_correlation(&time, &error, &input).map(in_seconds),
-                root_mean_squared_error: root_mean_squared_error(y, yhat),
+                error: ErrorSums::of(y, yhat, noise_of(model, recording, &name, y)),
                 unit: unit_of(&name, cylinder.map(|number| &model.machine.cylinders[number])),
-                fit: fit_percent(normalised_error),
                 phases: phase_shares(cylinder.map_or(&together, |number| &own_phases[number]), &error),
-                normalised_error,
                 name,
             })
         })
@@ -190,14 +184,45 @@ fn unit_of(name: &str, cylinder: Option<&Cylinder>) -> &'static str {
     }
 }
 
-/// Mean over the recordings of the mean normalised squared error of `model`: the one number by which models are compared.
+/// Noise of a compared signal, in its unit. That of a velocity which was not measured comes from the displacement.
+fn noise_of(model: &Model, recording: &Recording, name: &str, measured: &[f64]) -> f64 {
+    if recording.signal(name).is_some_and(is_measured) {
+        return noise_level(measured);
+    }
+    let place = name.strip_suffix(".velocity").unwrap_or_default();
+    let cylinder = model.machine.cylinders.iter().position(|cylinder| cylinder.name == place);
+    cylinder.map_or(f64::NAN, |cylinder| slope_noise(model, recording, cylinder))
+}
+
+/// Errors of each signal of one model over all samples of several recordings, in the order of the first.
+pub fn errors_of(comparisons: &[Comparison]) -> Vec<(&str, ErrorSums)> {
+    let mut names: Vec<&str> = Vec::new();
+    for signal in comparisons.iter().flat_map(|comparison| &comparison.signals) {
+        if !names.contains(&signal.name.as_str()) {
+            names.push(&signal.name);
+        }
+    }
+    let own = |name: &str| {
+        let signals = comparisons.iter().flat_map(|comparison| &comparison.signals);
+        ErrorSums::joined(signals.filter(|signal| signal.name == name).map(|signal| signal.error))
+    };
+    names.into_iter().map(|name| (name, own(name))).collect()
+}
+
+/// Mean over the signals of the normalised squared error over all samples of several recordings: the one number by which models are
+/// compared.
+pub fn mean_error_of(comparisons: &[Comparison]) -> f64 {
+    let errors: Vec<ErrorSums> = errors_of(comparisons).into_iter().map(|(_, error)| error).collect();
+    mean_normalised(&errors)
+}
+
+/// [`mean_error_of`] `model` on these recordings.
 ///
 /// # Errors
 /// [`RunError`] as of [`compare`].
 pub fn mean_error(model: &Model, recordings: &[&Recording]) -> Result<f64, RunError> {
-    let errors = recordings.iter().map(|recording| Ok(compare(model, recording)?.mean_error()));
-    let errors = errors.collect::<Result<Vec<f64>, RunError>>()?;
-    Ok(errors.iter().sum::<f64>() / errors.len() as f64)
+    let comparisons = recordings.iter().map(|recording| compare(model, recording));
+    Ok(mean_error_of(&comparisons.collect::<Result<Vec<_>, RunError>>()?))
 }
 
 /// The input of a cylinder, or the sum over all.

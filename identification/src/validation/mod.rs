@@ -10,8 +10,8 @@ mod residual_test;
 mod runs;
 
 pub use baselines::{Baseline, Baselines};
-pub use compare::{Comparison, SignalComparison, compare, mean_error, measured_velocity};
-pub use measures::{fit_percent, normalised_mean_squared_error, root_mean_squared_error};
+pub use compare::{Comparison, SignalComparison, compare, errors_of, mean_error, mean_error_of, measured_velocity};
+pub use measures::{ErrorSums, normalised_mean_squared_error};
 pub use motion_phase::{MotionPhase, PhaseShare, motion_phases, phase_shares};
 pub use phase::{dominant_frequency, phase_delay_degrees};
 pub use residual_test::{Correlation, autocorrelation, input_correlation};

@@ -11,13 +11,26 @@ const INTERVALS: f64 = 1000.0;
 /// position.
 const LEAST: f64 = 2.0;
 
+/// Sample intervals that a simulation may bridge.
+const FEW: f64 = 100.0;
+
 impl Recording {
     /// The samples of each piece, in order: pieces are more than 1000 sample intervals, and more than 2 s, apart.
     ///
     /// A clock that is set forward by a year leaves a gap of a year between two samples. Nothing is known about that time, so
     /// no method may bridge it.
     pub fn pieces(&self) -> Vec<Range<usize>> {
-        let longest = longest_gap(self.sample_interval());
+        self.pieces_apart(longest_gap(self.sample_interval()))
+    }
+
+    /// The samples of each piece for a machine that forgets its state within `memory` s: pieces are further apart than that, and more
+    /// than a hundred sample intervals, between which the inputs may be interpolated.
+    pub fn pieces_after(&self, memory: f64) -> Vec<Range<usize>> {
+        let few = FEW * self.sample_interval();
+        self.pieces_apart(if few.is_finite() { memory.max(few) } else { memory })
+    }
+
+    fn pieces_apart(&self, longest: f64) -> Vec<Range<usize>> {
         let mut pieces = Vec::new();
         let mut first = 0;
         for index in 1..=self.len() {
@@ -84,6 +97,15 @@ mod tests {
         assert_eq!(stepped(1e9).pieces(), [0..400, 400..1000]);
         assert_eq!(Recording::default().pieces(), []);
         assert_eq!(Recording::unmeasured("bag", vec![0.0], &[]).pieces(), vec![0..1]);
+    }
+
+    #[test]
+    fn a_fast_machine_forgets_within_a_shorter_pause() {
+        let recording = stepped(1.0);
+        assert_eq!(recording.pieces(), [0..1000]);
+        assert_eq!(recording.pieces_after(0.4), [0..400, 400..1000]);
+        assert_eq!(recording.pieces_after(1.5), [0..1000]);
+        assert_eq!(stepped(0.15).pieces_after(0.01), [0..1000], "few samples are lost");
     }
 
     #[test]

@@ -121,8 +121,13 @@ fn balance(system: &System<'_>, spool: &[f64], tank_pressure: f64, unmeasured: &
     }
 }
 
-/// Value and slope of a signal with a delay of `delay` s, at sample `index`: from the straight line through the values reported
-/// within `window` s after the delay.
+/// Squared size of the bend of a signal, in standard errors, above which its start is taken from a parabola. With noise alone, one start
+/// in 500 has a bend of this size in ten samples.
+const BENT: f64 = 20.0;
+
+/// Value and slope of a signal with a delay of `delay` s, at sample `index`: from the straight line through the values reported within
+/// `window` s after the delay, or from the parabola through them if they bend. A line has the slope of the middle of the window: of a
+/// drive that starts with 1 m/s² it is 10 mm/s off.
 fn start_line(time: &[f64], signal: &[f64], index: usize, delay: f64, window: f64) -> Option<(f64, f64)> {
     let start = *time.get(index)? + delay;
     // Rounding of the clock must not exclude the first point.
@@ -140,10 +145,54 @@ fn start_line(time: &[f64], signal: &[f64], index: usize, delay: f64, window: f6
     }
     let mean_time = points.iter().map(|point| point.0).sum::<f64>() / count;
     let mean = points.iter().map(|point| point.1).sum::<f64>() / count;
-    let spread: f64 = points.iter().map(|point| (point.0 - mean_time).powi(2)).sum();
+    // The line is fitted about the middle, and the bend with what is orthogonal to it.
+    let centred = || points.iter().map(|point| (point.0 - mean_time, point.1 - mean));
+    let sum = |of: &dyn Fn(f64, f64) -> f64| centred().map(|(t, value)| of(t, value)).sum::<f64>();
+    let spread = sum(&|t, _| t * t);
     if spread == 0.0 {
         return Some((mean, 0.0));
     }
-    let slope = points.iter().map(|point| (point.0 - mean_time) * (point.1 - mean)).sum::<f64>() / spread;
+    let slope = sum(&|t, value| t * value) / spread;
+    let (skew, square) = (sum(&|t, _| t * t * t) / spread, spread / count);
+    let curve = |t: f64| t * t - skew * t - square;
+    let curved = sum(&|t, _| curve(t).powi(2));
+    let bend = if curved > 0.0 { sum(&|t, value| curve(t) * value) / curved } else { 0.0 };
+    let explained = bend * bend * curved;
+    let left = (sum(&|t, value| (value - slope * t).powi(2)) - explained).max(0.0);
+    let freedom = count - 3.0;
+    if freedom >= 1.0 && explained * freedom > BENT * left && explained > ROUNDING * mean * mean * count {
+        let value = mean - slope * mean_time + bend * curve(-mean_time);
+        return Some((value, slope + bend * (-2.0 * mean_time - skew)));
+    }
     Some((mean - slope * mean_time, slope))
+}
+
+/// Squared bends below this share of the squared signal are rounding.
+const ROUNDING: f64 = 1e-24;
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn start(signal: impl Fn(f64, usize) -> f64) -> (f64, f64) {
+        let time: Vec<f64> = (0..30).map(|k| 1e-3 * f64::from(k)).collect();
+        let values: Vec<f64> = time.iter().enumerate().map(|(k, t)| signal(*t, k)).collect();
+        start_line(&time, &values, 0, 0.0, 0.02).unwrap()
+    }
+
+    #[test]
+    fn a_start_with_acceleration_has_the_speed_of_its_first_moment() {
+        let (value, slope) = start(|t, _| 0.1 + 0.006 * t + 0.5 * t * t);
+        assert!((value - 0.1).abs() < 1e-12 && (slope - 0.006).abs() < 1e-9, "{value} {slope}");
+    }
+
+    #[test]
+    fn noise_does_not_bend_a_start() {
+        let noise = |k: usize| 1e-4 * ((k * 7919 % 31) as f64 / 15.0 - 1.0);
+        let (value, slope) = start(|t, k| 0.1 + 0.2 * t + noise(k));
+        // A parabola would have three times the error of the line, which has 2 noise / sqrt(21) at its end.
+        assert!((value - 0.1).abs() < 1e-4 && (slope - 0.2).abs() < 5e-3, "{value} {slope}");
+        assert_eq!(start(|_, _| 0.3), (0.3, 0.0));
+    }
 }

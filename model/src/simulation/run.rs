@@ -24,7 +24,7 @@ pub enum RunError {
 /// Simulates `model` with the inputs of `recording` from the state measured at its start. The result has the recording's
 /// clock and inputs, and displacement, velocity, joint angle and pressures as its instruments report them.
 ///
-/// Each piece of the recording ([`Recording::pieces`]) is simulated from its own start, because the time between pieces is
+/// Each piece of the recording ([`Recording::pieces_after`]) is simulated from its own start, because the time between pieces is
 /// unknown. Simulated signals are `NaN` before the first measured position of a piece.
 ///
 /// ```
@@ -46,7 +46,7 @@ pub enum RunError {
 /// # Errors
 /// [`RunError`].
 pub fn simulate(model: &Model, recording: &Recording) -> Result<Recording, RunError> {
-    let pieces = recording.pieces();
+    let pieces = recording.pieces_after(MEMORY * model.machine.size().time().min(1.0));
     if pieces.len() < 2 && matches!(first_known_position(model, recording, 0), Some(0) | None) {
         return simulate_piece(model, recording);
     }
@@ -89,6 +89,10 @@ fn fill_simulated(model: &Model, recording: &mut Recording, value: f64) {
         }
     }
 }
+
+/// Time after which the state before a pause says nothing about the state after it, s on a machine of the reference size: an arm comes to
+/// rest by itself within this time.
+const MEMORY: f64 = 2.0;
 
 fn simulate_piece(model: &Model, recording: &Recording) -> Result<Recording, RunError> {
     let signals = InputSignals::from_recording(model, recording)?;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use excavator_identification::fit::FitError;
 use excavator_identification::identify::{IdentifyError, Method};
 use excavator_identification::regression::RegressionError;
-use excavator_identification::validation::compare;
+use excavator_identification::validation::{Comparison, compare, errors_of, mean_error_of};
 use excavator_model::document::to_text;
 use excavator_model::recording::Recording;
 use excavator_model::{HistoryEntry, Model, addition_name, site_name};
@@ -105,42 +105,33 @@ fn identify_within(goal: &Goal, bounds: &Bounds<'_>, tell: &dyn Fn(&str, f64)) -
         recordings.push(recording(bag, bounds.library, &wanted)?);
     }
     // Added effects start far from their values, and some enter nonlinearly. So the outputs are fitted as well.
-    let method = if goal.effects.is_empty() { Method::WeakForm } else { Method::OutputError };
+    let method = if goal.effects.is_empty() { Method::Best } else { Method::OutputError };
     let watch = |done: f64| match stage("identifying", 0.3 + 0.4 * done) {
         Ok(()) => ControlFlow::Continue(()),
         Err(_) => ControlFlow::Break(()),
     };
     let study = Study::of_fitted(wanted, recordings);
     let identified = study.identify(method, &watch)?.result.model;
-    let (mut signals, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
-    let share = 1.0 / study.identification.len() as f64;
+    let (mut before, mut after) = (Vec::new(), Vec::new());
     for (index, recording) in study.identification.iter().enumerate() {
-        stage("comparing", 0.7 + 0.3 * share * index as f64)?;
-        let compared = |model: &Model| compare(model, recording).map_err(WorkError::from);
-        let pairs = compared(&given)?.signals.into_iter().zip(compared(&identified)?.signals);
-        for (number, (old, new)) in pairs.enumerate() {
-            if index == 0 {
-                signals.push(old.name);
-                before.push(0.0);
-                after.push(0.0);
-            }
-            if let (Some(before), Some(after)) = (before.get_mut(number), after.get_mut(number)) {
-                *before += share * old.normalised_error;
-                *after += share * new.normalised_error;
-            }
-        }
+        stage("comparing", 0.7 + 0.3 * index as f64 / study.identification.len() as f64)?;
+        before.push(compare(&given, recording).map_err(WorkError::from)?);
+        after.push(compare(&identified, recording).map_err(WorkError::from)?);
     }
     stage("done", 1.0)?;
-    let mean = |errors: &[f64]| errors.iter().sum::<f64>() / errors.len().max(1) as f64;
     let message = format!(
         "{} identified from {} bags: mean NMSE on these bags {:.4} before, {:.4} after",
         identified.machine.name,
         study.identification.len(),
-        mean(&before),
-        mean(&after)
+        mean_error_of(&before),
+        mean_error_of(&after)
     );
+    let errors = |comparisons: &[Comparison]| -> (Vec<String>, Vec<f64>) {
+        errors_of(comparisons).into_iter().map(|(name, error)| (name.to_string(), error.normalised())).unzip()
+    };
+    let ((signals, nmse_before), (_, nmse_after)) = (errors(&before), errors(&after));
     let model = to_text(&identified).map_err(WorkError::from)?;
-    Ok(Outcome { model, signals, nmse_before: before, nmse_after: after, success: true, message })
+    Ok(Outcome { model, signals, nmse_before, nmse_after, success: true, message })
 }
 
 /// The model with the effects of a goal; its history tells that they were added.
@@ -224,17 +215,18 @@ mod tests {
             let told = parse("told", &outcome.unwrap().model, &Catalogue::built_in()).unwrap();
 
             let model = with_effects(&built_in("zx30u-arm").unwrap(), &effects).unwrap();
-            let method = if effects.is_empty() { Method::WeakForm } else { Method::OutputError };
+            let method = if effects.is_empty() { Method::Best } else { Method::OutputError };
             let bag = std::path::Path::new(samples).join("arm-swing");
             let recording = Preparation::default().recording(&bag, &model).unwrap();
             let study = Study::of_fitted(model, vec![recording]);
-            let found = study.identify(method, &|_| ControlFlow::Continue(())).unwrap().result.model;
+            let found = study.identify(method, &|_| ControlFlow::Continue(())).unwrap().result;
+            let (found_by, found) = (found.method, found.model);
             let numbers = |model: &Model| -> Vec<_> {
                 model.parameters().map(|(_, one)| (one.value, one.standard_error, one.margin_95)).collect()
             };
             assert_eq!(numbers(&told), numbers(&found), "{effects:?}");
             let done: Vec<&str> = told.history.iter().map(|entry| entry.what.as_str()).collect();
-            let identified = format!("parameters identified ({method})");
+            let identified = format!("parameters identified ({found_by})");
             assert_eq!(done.last(), Some(&identified.as_str()));
             assert_eq!(done.len(), 1 + effects.len(), "{done:?}");
         }

@@ -38,20 +38,27 @@ pub struct SimulateArguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Method {
+    /// The one of weak form, output error and simulation error that predicts the last third of the recordings best from the rest. The
+    /// weak form is kept unless another is clearly better.
+    Best,
     /// Weak form of the equations with instruments from the simulated model: not biased by sensor noise.
     WeakForm,
     /// Ordinary least squares on smoothed differences, the recipe of Arai et al. 2021; biased by noise.
     LeastSquares,
-    /// Weak form, then simulated outputs fitted to the measured ones.
+    /// Weak form, then simulated outputs fitted to the measured ones over short segments, with the errors of instruments as unknowns.
     OutputError,
+    /// Weak form, then outputs fitted that are simulated from measured states: what `compare` judges.
+    SimulationError,
 }
 
 impl From<Method> for identify::Method {
     fn from(method: Method) -> Self {
         match method {
+            Method::Best => identify::Method::Best,
             Method::WeakForm => identify::Method::WeakForm,
             Method::LeastSquares => identify::Method::LeastSquares,
             Method::OutputError => identify::Method::OutputError,
+            Method::SimulationError => identify::Method::SimulationError,
         }
     }
 }
@@ -71,7 +78,7 @@ pub struct IdentifyArguments {
     #[arg(short, long, value_name = "MODEL")]
     pub output: Option<PathBuf>,
     /// How parameters are estimated.
-    #[arg(long, value_enum, default_value_t = Method::WeakForm)]
+    #[arg(long, value_enum, default_value_t = Method::Best)]
     pub method: Method,
     #[command(flatten)]
     pub result: ResultFile,

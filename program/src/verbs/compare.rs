@@ -8,7 +8,7 @@ use crate::error::VerbError;
 use crate::files::{self, Inputs};
 use crate::next_step::{NextStep, print_next};
 use crate::sources;
-use crate::terminal::{comparison_table, correlation_table, phase_table, print, print_detail};
+use crate::terminal::{comparison_table, correlation_table, not_in_mean, phase_table, print, print_detail};
 
 pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
     let outputs = [("--report", arguments.report.as_deref()), arguments.result.output()];
@@ -27,6 +27,7 @@ pub fn run(arguments: &CompareArguments) -> Result<(), VerbError> {
         print(&comparison_sentence(comparison, baselines));
         others.iter().for_each(|other| print(&others_sentence(comparison, *other)));
         print(&comparison_table(comparison, baselines, &others).to_string());
+        not_in_mean(comparison).iter().for_each(|note| print(note));
         print_detail(&correlation_table(comparison).to_string());
         if let Some(table) = phase_table(comparison) {
             print_detail(&table.to_string());

@@ -27,7 +27,7 @@ impl Study {
     pub fn identify(&self, method: Method, watch: Watch<'_>) -> Result<IdentifiedResult, WorkError> {
         let recordings = self.fitted();
         let mut result = identify_watched(&self.model, &recordings, method, watch)?;
-        result.add_history(&jiff::Timestamp::now().to_string(), method, &recordings);
+        result.add_history(&jiff::Timestamp::now().to_string(), &recordings);
         Ok(IdentifiedResult { given: self.model.clone(), result })
     }
 }

@@ -14,10 +14,12 @@ use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
 use comfy_table::{Attribute, Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 use excavator_identification::diagnosis::Diagnosis;
 use excavator_identification::refinement::Refinement;
-use excavator_identification::validation::{Baselines, Comparison, Correlation, MotionPhase, SignalComparison};
+use excavator_identification::validation::{
+    Baselines, Comparison, Correlation, ErrorSums, MotionPhase, SignalComparison, errors_of, mean_error_of,
+};
 use excavator_identification::value_marks::{remedies, value_mark};
 use excavator_model::Model;
-use excavator_report::Beside;
+use excavator_report::{Beside, signal_unit};
 use excavator_study::numbers::number;
 
 /// A number with so many decimals, and no minus sign before zero.
@@ -89,24 +91,38 @@ pub fn remedy_lines(model: &Model, fitted: &[usize]) -> Vec<String> {
 /// Errors of every signal beside those of noise, of a model without physics, and of a constant value.
 pub fn comparison_table(comparison: &Comparison, baselines: &Baselines, others: &[Beside<'_>]) -> Table {
     let held = format!("{:.1} s before", baselines.held);
-    let mut heads = vec!["signal", "NMSE"];
+    let mut heads = vec!["signal", "RMS error", "NMSE"];
     heads.extend(others.iter().map(|other| other.label()));
-    heads.extend(["noise", "linear ARX", &held, "FIT %", "delay °"]);
+    heads.extend(["noise", "linear ARX", &held, "delay °"]);
     let mut table = table(&heads);
     for (signal, baseline) in comparison.signals.iter().zip(&baselines.signals) {
-        let mut cells =
-            vec![Cell::new(&signal.name), right(number(signal.normalised_error)).add_attribute(Attribute::Bold)];
+        let (factor, unit) = signal_unit(&comparison.machine, &signal.name);
+        let mark = if signal.error.tells() { "" } else { NOT_IN_MEAN };
+        let mut cells = vec![
+            Cell::new(&signal.name),
+            right(format!("{} {unit}", number(factor * signal.error.root_mean_square())))
+                .add_attribute(Attribute::Bold),
+            right(format!("{}{mark}", number(signal.error.normalised()))),
+        ];
         cells.extend(others.iter().map(|other| right(number(other.error_of(&signal.name)))));
         cells.extend([
             right(number(baseline.noise)),
             right(number(baseline.arx)),
             right(number(baseline.held)),
-            right(format!("{:.1}", signal.fit)),
             right(signal.phase_delay_degrees.map_or("-".into(), |degrees| format!("{degrees:.1}"))),
         ]);
         table.add_row(cells);
     }
     table
+}
+
+/// Marks an error that does not count in the mean.
+const NOT_IN_MEAN: &str = "*";
+
+/// Explains the mark, where a signal has it.
+pub fn not_in_mean(comparison: &Comparison) -> Option<String> {
+    let is_marked = comparison.signals.iter().any(|signal| !signal.error.tells());
+    is_marked.then(|| format!("{NOT_IN_MEAN} not in the mean: the signal is mostly noise, or it does not change"))
 }
 
 /// Whether the error of every signal still correlates with its own past, or with the input.
@@ -214,21 +230,20 @@ impl<'c> Stage<'c> {
 pub fn stage_table(stages: &[Stage<'_>]) -> Table {
     let heads: Vec<&str> = std::iter::once("NMSE").chain(stages.iter().map(|stage| stage.name.as_str())).collect();
     let mut table = table(&heads);
-    let mean = |comparisons: &[Comparison], of: &dyn Fn(&Comparison) -> f64| {
-        comparisons.iter().map(of).sum::<f64>() / comparisons.len() as f64
-    };
-    let signals = stages.iter().find_map(|stage| stage.comparisons.first()).map_or(&[][..], |first| &first.signals);
-    for (index, signal) in signals.iter().enumerate() {
-        let of = |one: &Comparison| one.signals.get(index).map_or(f64::NAN, |signal| signal.normalised_error);
-        let cells = stages.iter().map(|stage| right(number(mean(stage.comparisons, &of))));
-        table.add_row(std::iter::once(Cell::new(&signal.name)).chain(cells));
+    let errors: Vec<_> = stages.iter().map(|stage| errors_of(stage.comparisons)).collect();
+    let signals = errors.first().map_or(&[][..], Vec::as_slice);
+    for (name, _) in signals {
+        let of = |stage: &Vec<(&str, ErrorSums)>| {
+            stage.iter().find(|(own, _)| own == name).map_or(f64::NAN, |(_, error)| error.normalised())
+        };
+        let cells = errors.iter().map(|stage| right(number(of(stage))));
+        table.add_row(std::iter::once(Cell::new(name)).chain(cells));
     }
     if signals.len() < 2 {
         return table;
     }
-    let means = stages
-        .iter()
-        .map(|stage| right(number(mean(stage.comparisons, &Comparison::mean_error))).add_attribute(Attribute::Bold));
+    let mean = |stage: &Stage<'_>| right(number(mean_error_of(stage.comparisons))).add_attribute(Attribute::Bold);
+    let means = stages.iter().map(mean);
     table.add_row(std::iter::once(Cell::new("mean").add_attribute(Attribute::Bold)).chain(means));
     table
 }
