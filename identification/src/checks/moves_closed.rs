@@ -123,6 +123,6 @@ mod tests {
             unreachable!("{:?}", found(&shifted))
         };
         assert!((600.0..1100.0).contains(&travel) && (stands_at - 20.0).abs() < 0.1, "{travel} {stands_at}");
-        assert_eq!((closed, unit), (0.0, "mm²"));
+        assert_eq!((closed, unit), (0.0, "mm2"));
     }
 }

@@ -22,10 +22,11 @@ pub struct SharedReadings {
 /// Share of the readings, %, above which sharing is reported. Fewer can be a stray repetition.
 const SOME: f64 = 5.0;
 
-/// Readings that both have must be this many, and this share of them must follow each other in the same order: single readings of a
-/// coarse converter are also equal by chance, but then in any order.
+/// Readings that both have must be this many, and this share of them must follow each other in the same order. Single readings of a
+/// coarse converter are also equal by chance, but then in any order, or with many others between them if a motion was repeated.
 const NEEDED: usize = 20;
 const IN_ORDER: f64 = 0.9;
+const SIDE_BY_SIDE: f64 = 0.4;
 
 /// Finds readings of the validation recordings that also occur in the fitted ones.
 pub fn shared_readings(identification: &[&Recording], validation: &[&Recording]) -> Vec<SharedReadings> {
@@ -52,7 +53,11 @@ fn share(own: &HashMap<Vec<u64>, usize>, fitted: &HashMap<Vec<u64>, usize>) -> O
     common.sort_unstable();
     let in_order = common.windows(2).filter(|pair| pair[0].1 < pair[1].1).count();
     let share = 100.0 * common.len() as f64 / own.len().max(1) as f64;
-    let is_same = common.len() >= NEEDED && in_order as f64 >= IN_ORDER * (common.len() - 1) as f64;
+    let (first, last) = (common.first()?.0, common.last()?.0);
+    let between = own.values().filter(|&&at| (first..=last).contains(&at)).count();
+    let is_same = common.len() >= NEEDED
+        && in_order as f64 >= IN_ORDER * (common.len() - 1) as f64
+        && common.len() as f64 >= SIDE_BY_SIDE * between as f64;
     (share > SOME && is_same).then_some(share)
 }
 

@@ -157,7 +157,7 @@ mod tests {
         assert!((baselines.held - 1.0).abs() < 0.2, "{}", baselines.held);
         for (signal, baseline) in comparison.signals.iter().zip(&baselines.signals) {
             assert!(
-                baseline.arx > 10.0 * signal.normalised_error && baseline.arx.is_finite(),
+                baseline.arx > 10.0 * signal.error.normalised() && baseline.arx.is_finite(),
                 "{signal:?} {baseline:?}"
             );
             assert!(baseline.held > 0.01, "{signal:?} {baseline:?}");
