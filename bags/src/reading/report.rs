@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use rosbag2::{Damage, printable};
+use rosbag2::{Damage, LostMessages, printable};
 
 /// A pause in the state messages.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -49,6 +49,8 @@ pub struct ReadReport {
     pub truncated_after: Option<f64>,
     /// Messages that `metadata.yaml` promises and that are not there; 0 without metadata.
     pub missing_messages: u64,
+    /// Messages that were lost while the bag was recorded, as far as its recorder tells.
+    pub lost: Vec<LostMessages>,
     /// What a map or a table could not give, and where a clock was set back, one line each.
     pub notes: Vec<String>,
     /// Conditions under which a map leaves measurements out. Who knows the machine evaluates them.
@@ -88,6 +90,7 @@ impl ReadReport {
         self.undecodable += piece.undecodable;
         self.missing_messages += piece.missing_messages;
         self.damage.extend(piece.damage.iter().cloned());
+        self.lost.extend(piece.lost.iter().cloned());
         self.first_undecodable = self.first_undecodable.take().or(piece.first_undecodable.clone());
         self.truncated_after = self.truncated_after.or(piece.truncated_after);
         let notes = piece.notes.iter().map(|note| format!("{}: {note}", path.display()));
@@ -109,6 +112,22 @@ impl ReadReport {
     /// Chunks left out because of a wrong checksum or broken content.
     pub fn bad_chunks(&self) -> usize {
         self.damage.iter().filter(|damage| matches!(damage.kind, rosbag2::DamageKind::BadChunk { .. })).count()
+    }
+
+    /// How many messages of a topic were lost, and where.
+    fn lost_text(&self, lost: &LostMessages) -> String {
+        let LostMessages { topic, in_transport, in_recorder, .. } = lost;
+        let of = match self.messages.get(topic) {
+            Some(read) => format!("of {} messages of {topic}", read.saturating_add(lost.count())),
+            None if topic.is_empty() => "messages of unknown topics".to_string(),
+            None => format!("messages of {topic}"),
+        };
+        let place = match (in_transport, in_recorder) {
+            (_, 0) => "on their way to the recorder".to_string(),
+            (0, _) => "in the recorder".to_string(),
+            _ => format!("{in_transport} on their way to the recorder and {in_recorder} in it"),
+        };
+        format!("{} {of} were lost while the bag was recorded: {place}", lost.count())
     }
 
     /// One line of text for each kind of imperfection; empty for a perfect bag.
@@ -138,6 +157,7 @@ impl ReadReport {
             let names = self.commands_without_cylinder.join(", ");
             lines.push(format!("commands for {names} are not used: no state message has such a cylinder"));
         }
+        lines.extend(self.lost.iter().map(|lost| self.lost_text(lost)));
         lines.extend(self.notes.iter().cloned());
         lines.into_iter().map(|line| printable(&line).into_owned()).collect()
     }
