@@ -40,6 +40,23 @@ impl LostMessages {
     pub fn count(&self) -> u64 {
         self.in_transport.saturating_add(self.in_recorder)
     }
+
+    /// How many of how many, and where, in one line. `read` is the number of messages of the topic that the bag has.
+    #[must_use]
+    pub fn text(&self, read: Option<u64>) -> String {
+        let LostMessages { topic, in_transport, in_recorder, .. } = self;
+        let of = match read {
+            _ if topic.is_empty() => "messages of unknown topics".to_string(),
+            Some(read) => format!("of {} messages of {topic}", read.saturating_add(self.count())),
+            None => format!("messages of {topic}"),
+        };
+        let place = match (in_transport, in_recorder) {
+            (_, 0) => "on their way to the recorder".to_string(),
+            (0, _) => "in the recorder".to_string(),
+            _ => format!("{in_transport} on their way to the recorder and {in_recorder} in it"),
+        };
+        format!("{} {of} were lost while the bag was recorded: {place}", self.count())
+    }
 }
 
 /// Collects what messages tell about losses.

@@ -107,6 +107,11 @@ impl<'m> MappedTopic<'m> {
         self.clock_stamp = StampReader::new(policy, self.auto);
     }
 
+    /// The signals and names that are read from it.
+    pub fn labels(&self) -> Vec<String> {
+        self.fields.iter().map(|field| field.wanted.label.clone()).collect()
+    }
+
     /// Log time minus stamp of its messages.
     pub fn delays(&self) -> &LeastDelays {
         &self.delays

@@ -122,6 +122,7 @@ fn read_once<'m>(
     report.missing_messages = messages.promised_messages().unwrap_or(0).saturating_sub(found);
     for topic in &mut topics {
         topic.finish(&messages, &mut report)?;
+        report.sources.insert(topic.name.clone(), topic.labels());
     }
     Ok((topics, report))
 }

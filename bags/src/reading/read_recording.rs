@@ -51,6 +51,7 @@ pub fn read_recording_in_blocks(
 ) -> Result<ReadReport, BagError> {
     let mut messages = RawMessages::open(path)?;
     let mut report = ReadReport::default();
+    report.sources.extend([&topics.state, &topics.command].map(|topic| (topic.clone(), Vec::new())));
     let mut states = TopicReader::<ArmState>::new(path, &topics.state);
     let mut commands = TopicReader::<OrificeCommand>::new(path, &topics.command);
     let (mut state_decoder, mut command_decoder) = (StateDecoder::new(), CommandDecoder::default());

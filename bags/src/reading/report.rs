@@ -51,6 +51,9 @@ pub struct ReadReport {
     pub missing_messages: u64,
     /// Messages that were lost while the bag was recorded, as far as its recorder tells.
     pub lost: Vec<LostMessages>,
+    /// Topics that the recording was made of, and the signals that were read from each; no signals for our own topics.
+    #[serde(skip)]
+    pub sources: BTreeMap<String, Vec<String>>,
     /// What a map or a table could not give, and where a clock was set back, one line each.
     pub notes: Vec<String>,
     /// Conditions under which a map leaves measurements out. Who knows the machine evaluates them.
@@ -91,6 +94,7 @@ impl ReadReport {
         self.missing_messages += piece.missing_messages;
         self.damage.extend(piece.damage.iter().cloned());
         self.lost.extend(piece.lost.iter().cloned());
+        self.sources.extend(piece.sources.clone());
         self.first_undecodable = self.first_undecodable.take().or(piece.first_undecodable.clone());
         self.truncated_after = self.truncated_after.or(piece.truncated_after);
         let notes = piece.notes.iter().map(|note| format!("{}: {note}", path.display()));
@@ -114,20 +118,17 @@ impl ReadReport {
         self.damage.iter().filter(|damage| matches!(damage.kind, rosbag2::DamageKind::BadChunk { .. })).count()
     }
 
-    /// How many messages of a topic were lost, and where.
-    fn lost_text(&self, lost: &LostMessages) -> String {
-        let LostMessages { topic, in_transport, in_recorder, .. } = lost;
-        let of = match self.messages.get(topic) {
-            Some(read) => format!("of {} messages of {topic}", read.saturating_add(lost.count())),
-            None if topic.is_empty() => "messages of unknown topics".to_string(),
-            None => format!("messages of {topic}"),
+    /// Losses of the topics that the recording was made of, one line each, with the signals that lack them.
+    pub fn lost_of_sources(&self) -> Vec<String> {
+        let of_source = |lost: &LostMessages| {
+            let read = self.messages.get(&lost.topic).copied();
+            match self.sources.get(&lost.topic) {
+                Some(signals) if signals.is_empty() => Some(lost.text(read)),
+                Some(signals) => Some(format!("{}, so {} has gaps", lost.text(read), signals.join(", "))),
+                None => lost.topic.is_empty().then(|| lost.text(read)),
+            }
         };
-        let place = match (in_transport, in_recorder) {
-            (_, 0) => "on their way to the recorder".to_string(),
-            (0, _) => "in the recorder".to_string(),
-            _ => format!("{in_transport} on their way to the recorder and {in_recorder} in it"),
-        };
-        format!("{} {of} were lost while the bag was recorded: {place}", lost.count())
+        self.lost.iter().filter_map(of_source).map(|line| printable(&line).into_owned()).collect()
     }
 
     /// One line of text for each kind of imperfection; empty for a perfect bag.
@@ -157,7 +158,7 @@ impl ReadReport {
             let names = self.commands_without_cylinder.join(", ");
             lines.push(format!("commands for {names} are not used: no state message has such a cylinder"));
         }
-        lines.extend(self.lost.iter().map(|lost| self.lost_text(lost)));
+        lines.extend(self.lost.iter().map(|lost| lost.text(self.messages.get(&lost.topic).copied())));
         lines.extend(self.notes.iter().cloned());
         lines.into_iter().map(|line| printable(&line).into_owned()).collect()
     }
