@@ -294,7 +294,7 @@ pub enum MapError {
     /// Stamps that run faster or slower than the log times of the other topics.
     #[error(
         "stamps in the headers of {topic} run at {rate:.3} s per second of the log times, and {others} have only log times: as in a \
-         simulation that is not real time; record with use_sim_time, or give stamp = \"log\" for {topic} to take the recorder's seconds"
+         simulation that is not real time; record with use_sim_time, or give stamp = \"log\" for the signals of {topic} to take the recorder's seconds"
     )]
     ClockRates {
         /// The topic with the stamps.

@@ -40,18 +40,14 @@ pub(super) fn why_by_log_times(topics: &[MappedTopic], clock: &str) -> Result<Op
     }
     let differs = |topic: &MappedTopic| differs_from_log(topic, clock);
     let Some(topic) = by_header.iter().find(|topic| differs(topic)) else { return Ok(None) };
-    if let Some(rate) = topic.delays().rate().filter(|rate| !RATES.contains(rate)) {
+    // A clock alone may be moved: its samples are only moments at which signals are wanted.
+    let has_signals = topic.stamp_uses(false).iter().any(|used| *used.policy == Stamp::Auto);
+    if let Some(rate) = topic.delays().rate().filter(|rate| has_signals && !RATES.contains(rate)) {
         let (topic, others) = (topic.name.clone(), names(&by_log));
         return Err(MapError::ClockRates { topic, rate, others });
     }
-    Ok(Some(line(
-        topic,
-        &format!(
-            "log times are all that {} {}",
-            names(&by_log),
-            if by_log.len() == 1 { "is read by" } else { "are read by" }
-        ),
-    )))
+    let reason = format!("{} {} read by log times", names(&by_log), if by_log.len() == 1 { "is" } else { "are" });
+    Ok(Some(line(topic, &reason)))
 }
 
 /// Warns of stamps that the map asks for by name and that are not on the clock of the others.

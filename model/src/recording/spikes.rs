@@ -1,7 +1,5 @@
 //! Single values far off the line of their neighbours: a disturbed cable, a second publisher, a lost frame.
 
-use super::noise_level;
-
 /// Values on each side of a jump that show how fast the signal moves there.
 const NEIGHBOURS: usize = 8;
 /// Factor over the largest step among the neighbours by which a value must jump: nothing real starts and ends so.
@@ -14,6 +12,18 @@ const TIMES_THE_STEPS: f64 = 10.0;
 const SHARE_OF_THE_RANGE: f64 = 0.02;
 /// Share of the jump by which the values on both sides may differ.
 const RETURNS: f64 = 0.2;
+/// The value that a fifth of the sizes of second differences of white noise stay below, in its standard deviations: they have
+/// variance 6, and a fifth of a normal variable is within 0.253.
+const SECOND_DIFFERENCES: f64 = 0.62;
+/// Share of the values that a second publisher may write, in turns with the first.
+const LEAST_TURNS: f64 = 0.15;
+const MOST_TURNS: f64 = 0.6;
+/// Share of its values that have other values on both sides.
+const ALONE: f64 = 0.9;
+/// Fewest different values of the first publisher: a signal with fewer is switched.
+const FEWEST_DISTINCT: usize = 20;
+/// Values of a quick look.
+const LOOKED_AT: usize = 4099;
 /// Fewest values that show what is usual.
 const FEWEST: usize = 50;
 
@@ -33,13 +43,19 @@ pub fn spikes(signal: &[f64]) -> Vec<usize> {
     if known.len() < FEWEST {
         return Vec::new();
     }
-    let steps: Vec<f64> = known.windows(2).map(|pair| pair[1].1 - pair[0].1).collect();
-    let candidates: Vec<bool> = steps.windows(2).map(|pair| is_there_and_back(pair[0], pair[1])).collect();
-    if !candidates.contains(&true) {
+    let values: Vec<f64> = known.iter().map(|(_, value)| *value).collect();
+    let found = second_writer(&values).unwrap_or_else(|| single(&values));
+    found.into_iter().map(|index| known[index].0).collect()
+}
+
+/// Spikes among values that are all known.
+fn single(values: &[f64]) -> Vec<usize> {
+    let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if !may_have_spikes(values, &steps) {
         return Vec::new();
     }
-    let values: Vec<f64> = known.iter().map(|(_, value)| *value).collect();
-    let least = least_jump(&values, &steps);
+    let candidates: Vec<bool> = steps.windows(2).map(|pair| is_there_and_back(pair[0], pair[1])).collect();
+    let least = least_jump(values, &steps);
     // Candidate k is value k + 1, between steps k and k + 1.
     let is_of_candidate = |step: usize| {
         let is = |candidate: usize| candidates.get(candidate) == Some(&true) && jump(&steps, candidate) > least;
@@ -56,7 +72,64 @@ pub fn spikes(signal: &[f64]) -> Vec<usize> {
         let largest = calm.iter().copied().fold(0.0, f64::max);
         2 * calm.len() >= around.len() && jump(&steps, candidate) > TIMES_THE_NEIGHBOURS * largest
     };
-    (0..candidates.len()).filter(|candidate| is_spike(*candidate)).map(|candidate| known[candidate + 1].0).collect()
+    let inner = (0..candidates.len()).filter(|candidate| is_spike(*candidate)).map(|candidate| candidate + 1);
+    // The first and the last value have one neighbour only.
+    let is_edge = |step: usize, others: &mut dyn Iterator<Item = usize>| {
+        let calm: Vec<f64> = others.filter(|other| !is_of_candidate(*other)).map(|other| steps[other].abs()).collect();
+        let limit = least.max(TIMES_THE_NEIGHBOURS * calm.iter().copied().fold(0.0, f64::max));
+        2 * calm.len() >= NEIGHBOURS && steps[step].abs() > limit
+    };
+    let last = steps.len() - 1;
+    let first_is = is_edge(0, &mut (1..1 + NEIGHBOURS));
+    let last_is = is_edge(last, &mut (last - NEIGHBOURS..last));
+    let first = first_is.then_some(0);
+    first
+        .into_iter()
+        .chain(inner.filter(|index| *index > 0 && *index < last + 1))
+        .chain(last_is.then_some(last + 1))
+        .collect()
+}
+
+/// Whether any step is large enough, by a quick look at the range; most signals need no more.
+fn may_have_spikes(values: &[f64], steps: &[f64]) -> bool {
+    let some = some_of(values);
+    let range = quantile(some.clone(), 0.99) - quantile(some, 0.01);
+    steps.iter().any(|step| step.abs() > 0.5 * SHARE_OF_THE_RANGE * range)
+}
+
+/// At most a few thousand of the values, from all over the signal.
+fn some_of(values: &[f64]) -> Vec<f64> {
+    values.iter().copied().step_by(values.len().div_ceil(LOOKED_AT).max(1)).collect()
+}
+
+/// The value that occurs most often, with its share.
+fn mode(mut values: Vec<f64>) -> Option<(f64, f64)> {
+    values.sort_unstable_by(f64::total_cmp);
+    let most = values.chunk_by(|one, other| one == other).max_by_key(|equal| equal.len())?;
+    Some((*most.first()?, most.len() as f64 / values.len() as f64))
+}
+
+/// The values of a second publisher that writes one constant in turns with the signal: what is left without it is calm.
+fn second_writer(values: &[f64]) -> Option<Vec<usize>> {
+    mode(some_of(values)).filter(|(_, share)| *share > 0.5 * LEAST_TURNS)?;
+    let (constant, share) = mode(values.to_vec())?;
+    if !(LEAST_TURNS..=MOST_TURNS).contains(&share) {
+        return None;
+    }
+    let (turns, others): (Vec<usize>, Vec<usize>) = (0..values.len()).partition(|&index| values[index] == constant);
+    let alone = turns.windows(2).filter(|pair| pair[1] - pair[0] > 1).count();
+    if (alone as f64) < ALONE * turns.len() as f64 {
+        return None;
+    }
+    let others: Vec<f64> = others.into_iter().map(|index| values[index]).collect();
+    let steps: Vec<f64> = others.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let jump = quantile(others.iter().map(|value| (value - constant).abs()).collect(), 0.5);
+    let sizes: Vec<f64> = steps.iter().map(|step| step.abs()).collect();
+    let calm = jump > TIMES_THE_NEIGHBOURS * quantile(sizes, 0.9) && jump > least_jump(&others, &steps);
+    let mut distinct = others;
+    distinct.sort_unstable_by(f64::total_cmp);
+    distinct.dedup();
+    (calm && distinct.len() >= FEWEST_DISTINCT).then_some(turns)
 }
 
 fn is_there_and_back(there: f64, back: f64) -> bool {
@@ -69,13 +142,18 @@ fn jump(steps: &[f64], candidate: usize) -> f64 {
 
 /// A jump that is no more than this is usual.
 fn least_jump(values: &[f64], steps: &[f64]) -> f64 {
-    let quantile = |mut sizes: Vec<f64>, share: f64| {
-        let place = (sizes.len() as f64 * share) as usize;
-        if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(place, f64::total_cmp).1 }
-    };
     let range = quantile(values.to_vec(), 0.99) - quantile(values.to_vec(), 0.01);
     let moving = steps.iter().map(|step| step.abs()).filter(|step| *step > 0.0).collect();
-    (TIMES_THE_NOISE * noise_level(values)).max(TIMES_THE_STEPS * quantile(moving, 0.1)).max(SHARE_OF_THE_RANGE * range)
+    // Each spike spoils three second differences, so the usual median would take many spikes for noise.
+    let second = steps.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    let noise = quantile(second, 0.2) / SECOND_DIFFERENCES;
+    (TIMES_THE_NOISE * noise).max(TIMES_THE_STEPS * quantile(moving, 0.1)).max(SHARE_OF_THE_RANGE * range)
+}
+
+/// The value that this share does not exceed; zero without values.
+fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    let place = (values.len() as f64 * share) as usize;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(place, f64::total_cmp).1 }
 }
 
 #[cfg(test)]
@@ -94,6 +172,30 @@ mod tests {
             wrong.iter().for_each(|&index| signal[index] = 0.0);
             assert_eq!(spikes(&signal), wrong, "every {every}");
         }
+    }
+
+    #[test]
+    fn a_constant_in_turns_with_the_signal_is_a_second_publisher() {
+        for turns in [1, 2, 3] {
+            let (mut signal, mut wrong) = (Vec::new(), Vec::new());
+            for (index, value) in wave(1500).into_iter().enumerate() {
+                signal.push(value + 0.1);
+                if index % turns == 0 {
+                    wrong.push(signal.len());
+                    signal.push(0.0);
+                }
+            }
+            assert_eq!(spikes(&signal), wrong, "after every {turns}");
+        }
+    }
+
+    #[test]
+    fn a_spike_at_either_end_is_found_and_a_start_in_motion_is_none() {
+        let mut signal: Vec<f64> = wave(500).iter().map(|value| value + 0.2).collect();
+        (signal[0], signal[499]) = (0.0, 0.5);
+        assert_eq!(spikes(&signal), [0, 499]);
+        let ramp: Vec<f64> = (0..500).map(|sample| 0.001 * f64::from(sample)).collect();
+        assert!(spikes(&ramp).is_empty());
     }
 
     #[test]
