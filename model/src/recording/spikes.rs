@@ -39,6 +39,9 @@ const FEWEST: usize = 50;
 /// assert_eq!(spikes(&signal), [70]);
 /// ```
 pub fn spikes(signal: &[f64]) -> Vec<usize> {
+    if !may_have_spikes(signal) {
+        return Vec::new();
+    }
     let known: Vec<(usize, f64)> = signal.iter().copied().enumerate().filter(|(_, value)| value.is_finite()).collect();
     if known.len() < FEWEST {
         return Vec::new();
@@ -51,9 +54,6 @@ pub fn spikes(signal: &[f64]) -> Vec<usize> {
 /// Spikes among values that are all known.
 fn single(values: &[f64]) -> Vec<usize> {
     let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if !may_have_spikes(values, &steps) {
-        return Vec::new();
-    }
     let candidates: Vec<bool> = steps.windows(2).map(|pair| is_there_and_back(pair[0], pair[1])).collect();
     let least = least_jump(values, &steps);
     // Candidate k is value k + 1, between steps k and k + 1.
@@ -77,7 +77,7 @@ fn single(values: &[f64]) -> Vec<usize> {
     let is_edge = |step: usize, others: &mut dyn Iterator<Item = usize>| {
         let calm: Vec<f64> = others.filter(|other| !is_of_candidate(*other)).map(|other| steps[other].abs()).collect();
         let limit = least.max(TIMES_THE_NEIGHBOURS * calm.iter().copied().fold(0.0, f64::max));
-        2 * calm.len() >= NEIGHBOURS && steps[step].abs() > limit
+        !is_of_candidate(step) && 2 * calm.len() >= NEIGHBOURS && steps[step].abs() > limit
     };
     let last = steps.len() - 1;
     let first_is = is_edge(0, &mut (1..1 + NEIGHBOURS));
@@ -90,11 +90,15 @@ fn single(values: &[f64]) -> Vec<usize> {
         .collect()
 }
 
-/// Whether any step is large enough, by a quick look at the range; most signals need no more.
-fn may_have_spikes(values: &[f64], steps: &[f64]) -> bool {
-    let some = some_of(values);
+/// Whether any step is large enough, by a quick look at the range; most signals need no more, and no memory.
+fn may_have_spikes(signal: &[f64]) -> bool {
+    let some: Vec<f64> = some_of(signal).into_iter().filter(|value| value.is_finite()).collect();
     let range = quantile(some.clone(), 0.99) - quantile(some, 0.01);
-    steps.iter().any(|step| step.abs() > 0.5 * SHARE_OF_THE_RANGE * range)
+    let mut last = f64::NAN;
+    signal.iter().filter(|value| value.is_finite()).any(|&value| {
+        let step = (value - std::mem::replace(&mut last, value)).abs();
+        step > 0.5 * SHARE_OF_THE_RANGE * range
+    })
 }
 
 /// At most a few thousand of the values, from all over the signal.
@@ -194,6 +198,8 @@ mod tests {
         let mut signal: Vec<f64> = wave(500).iter().map(|value| value + 0.2).collect();
         (signal[0], signal[499]) = (0.0, 0.5);
         assert_eq!(spikes(&signal), [0, 499]);
+        (signal[0], signal[1], signal[499]) = (0.2, 0.0, signal[498]);
+        assert_eq!(spikes(&signal), [1]);
         let ramp: Vec<f64> = (0..500).map(|sample| 0.001 * f64::from(sample)).collect();
         assert!(spikes(&ramp).is_empty());
     }
