@@ -7,6 +7,7 @@
 //! - [`dynamic`] reads fields of messages of any type, by the definition in the bag; [`cdr`] decodes whole messages
 //!   into your own types.
 //! - [`info`](fn@info) reports the contents of a bag per topic, and the regularity of each topic.
+//! - [`LossReader`] collects what a recorder tells of messages that it lost.
 //! - [`reindex`](fn@reindex) makes a damaged bag readable for other readers.
 //!
 //! Damage is skipped and always reported: a truncated file is read up to the cut, a chunk with a wrong checksum is left
