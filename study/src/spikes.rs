@@ -3,6 +3,9 @@
 use excavator_bags::map::SignalName;
 use excavator_model::recording::{Recording, spikes};
 
+/// Neighbours of a value are at most this many median intervals away.
+const NEAR: f64 = 3.0;
+
 /// Replaces such values of a recording by the line between their neighbours, and returns one line for each signal that had
 /// some. Reading with a map does the same for the values of each topic or column; this is for bags of our own topics.
 pub(crate) fn leave_out_spikes(recording: &mut Recording) -> Vec<String> {
@@ -11,7 +14,12 @@ pub(crate) fn leave_out_spikes(recording: &mut Recording) -> Vec<String> {
     for (name, values) in recording.signals() {
         let Ok(name) = name.parse::<SignalName>() else { continue };
         if name.kind.calm_interval().is_some_and(|longest| interval <= longest) {
-            let indices = spikes(values);
+            let mut indices = spikes(values);
+            // Beyond a gap the signal may have moved.
+            indices.retain(|&index| {
+                let neighbours = &recording.time[index.saturating_sub(1)..(index + 2).min(recording.len())];
+                neighbours.windows(2).all(|pair| pair[1] - pair[0] <= NEAR * interval)
+            });
             if !indices.is_empty() {
                 found.push((name, indices));
             }
@@ -63,6 +71,11 @@ mod tests {
         assert!((recording.cylinders[0].displacement[100] - 0.02).abs() < 1e-12);
         assert_eq!(recording.cylinders[0].orifice_command[100], 1e-4);
         assert!(leave_out_spikes(&mut recording).is_empty());
+        // After a gap it may have moved and come back.
+        let mut with_gap = recording.clone();
+        with_gap.cylinders[0].displacement[100] = -0.3;
+        with_gap.time.iter_mut().skip(100).for_each(|time| *time += 0.5);
+        assert!(leave_out_spikes(&mut with_gap).is_empty());
         // Too slow to know: the same values at 10 Hz may be a motion.
         recording.cylinders[0].displacement[100] = -0.3;
         recording.time.iter_mut().for_each(|time| *time *= 50.0);

@@ -2,6 +2,9 @@
 
 use excavator_model::recording::spikes;
 
+/// Neighbours of a value are at most this many median intervals away.
+const NEAR: f64 = 3.0;
+
 /// Values sorted by stamp, without duplicate stamps.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Track {
@@ -52,10 +55,15 @@ impl Track {
     /// Leaves out single values that jump away and back, and returns these with their stamps. `longest` is the interval in
     /// ns up to which the signal cannot do so between two samples.
     pub fn leave_out_spikes(&mut self, longest: f64) -> Vec<(i64, f64)> {
-        if self.median_interval().is_none_or(|interval| interval > longest) {
+        let Some(interval) = self.median_interval().filter(|interval| *interval <= longest) else {
             return Vec::new();
-        }
-        let found = spikes(&self.values);
+        };
+        // Beyond a gap the signal may have moved.
+        let is_near = |index: usize| {
+            let neighbours = &self.stamps[index.saturating_sub(1)..(index + 2).min(self.stamps.len())];
+            neighbours.windows(2).all(|pair| pair[1].saturating_sub(pair[0]) as f64 <= NEAR * interval)
+        };
+        let found: Vec<usize> = spikes(&self.values).into_iter().filter(|&index| is_near(index)).collect();
         let left_out = found.iter().filter_map(|&index| self.get(index)).collect();
         remove(&mut self.values, &found);
         remove(&mut self.stamps, &found);
