@@ -65,7 +65,11 @@ impl Desk {
 
     /// A study of the recordings for the fit and of those for validation.
     fn study(&mut self, contents: &[Vec<Arc<Content>>; 2], model: &Physics) -> Result<Study, WorkError> {
-        let study = Study::new(model.clone(), self.all(&contents[0], model)?, self.all(&contents[1], model)?);
+        let mut study = Study::new(model.clone(), self.all(&contents[0], model)?, self.all(&contents[1], model)?);
+        for content in contents.iter().flatten() {
+            let lost = content.report.lost_of_sources();
+            study.lost_messages.extend(lost.iter().map(|line| format!("{}: {line}", content.signals.source)));
+        }
         self.remarks.extend(study.shared_readings());
         Ok(study)
     }

@@ -142,6 +142,7 @@ fn diagnosis(kind: Kind, trials: Vec<Trial>, set: &[usize], reasons: Vec<Reason>
             curve: vec![[-0.1, 20.0, 2.0], [0.0, f64::NAN, 1.0], [0.1, -30.0, 2.5]],
             unit: "N m".into(),
         }),
+        lost_messages: Vec::new(),
     }
 }
 

@@ -42,7 +42,14 @@ pub fn verdict_sentence(model: &Model, diagnosis: &Diagnosis) -> String {
     }
     sentences.extend(implausible_sentence(model, last));
     sentences.extend(undetermined(diagnosis));
+    sentences.extend(lost_messages(diagnosis));
     sentences.join(" ")
+}
+
+/// What the recordings lack of the signals that the verdict rests on.
+fn lost_messages(diagnosis: &Diagnosis) -> Option<String> {
+    let lost = &diagnosis.lost_messages;
+    (!lost.is_empty()).then(|| format!("The verdict rests on signals with losses: {}.", lost.join("; ")))
 }
 
 const TOO_COARSE: &str = "The recordings are coarse: the readings of the inputs alone could cause an error of this size. Record command and \

@@ -151,6 +151,33 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
+    /// A bag that is read back after it was written anew, and does not have all messages.
+    #[error(
+        "{} is written anew, but has {found} messages when it is read back, not {expected}; keep the originals and report this",
+        shown(path)
+    )]
+    NotReadBack {
+        /// The bag.
+        path: PathBuf,
+        /// Messages that can be read.
+        found: u64,
+        /// Messages that were written.
+        expected: u64,
+    },
+    /// Messages of which only some are compressed, or that are compressed twice.
+    #[error(
+        "{}: {compressed} of {messages} messages are compressed by themselves, and no metadata can say so; record or convert \
+         the two parts into bags of their own",
+        shown(path)
+    )]
+    MixedCompression {
+        /// The bag.
+        path: PathBuf,
+        /// Compressed messages.
+        compressed: u64,
+        /// All messages.
+        messages: u64,
+    },
     /// A bag to be replaced is not a bag, or contains other files.
     #[error("{} is not replaced: {reason}; choose another name or remove it first", shown(path))]
     NotReplaceable {

@@ -7,6 +7,7 @@
 //! - [`dynamic`] reads fields of messages of any type, by the definition in the bag; [`cdr`] decodes whole messages
 //!   into your own types.
 //! - [`info`](fn@info) reports the contents of a bag per topic, and the regularity of each topic.
+//! - [`LossReader`] collects what a recorder tells of messages that it lost.
 //! - [`reindex`](fn@reindex) makes a damaged bag readable for other readers.
 //!
 //! Damage is skipped and always reported: a truncated file is read up to the cut, a chunk with a wrong checksum is left
@@ -55,6 +56,7 @@ mod error;
 mod info;
 mod limits;
 mod location;
+mod lost;
 mod metadata;
 pub mod prelude;
 mod printable;
@@ -71,6 +73,8 @@ pub use container::{Damage, DamageKind};
 pub use error::{Error, in_short};
 pub use info::{BagInfo, StampTiming, Timing, TopicInfo, info, info_with};
 pub use limits::{Limit, LimitError, ReadLimits};
+pub use lost::{LossReader, LostMessages};
+pub use metadata::BagCompression;
 pub use printable::{printable, printable_path};
 pub use qos::{Durability, History, Qos, Reliability};
 pub use raw_message::{RawMessage, Topic};

@@ -80,6 +80,30 @@ pub(crate) struct Contents<'c> {
     pub files: &'c [FileContents],
     pub topics: &'c [TopicContents],
     pub custom_data: &'c BTreeMap<String, String>,
+    pub compression: BagCompression,
+}
+
+/// What rosbag2 itself compressed, with zstd. Compressed chunks of MCAP files are not its business.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BagCompression {
+    /// Nothing.
+    #[default]
+    None,
+    /// Every message by itself.
+    Message,
+    /// Every file as a whole.
+    File,
+}
+
+impl BagCompression {
+    /// The format and the mode in the metadata.
+    fn words(self) -> (&'static str, &'static str) {
+        match self {
+            BagCompression::None => ("", ""),
+            BagCompression::Message => ("zstd", "MESSAGE"),
+            BagCompression::File => ("zstd", "FILE"),
+        }
+    }
 }
 
 /// One file of [`Contents`].
@@ -107,6 +131,7 @@ impl Contents<'_> {
         let whole = spans().map(|span| span.0).min().zip(spans().map(|span| span.1).max());
         let (starting_time, duration) = start_and_duration(whole);
         let message_count = self.topics.iter().map(|topic| topic.message_count).sum();
+        let (compression_format, compression_mode) = self.compression.words();
         crate::yaml::to_string(&Written {
             rosbag2_bagfile_information: WrittenMetadata {
                 version: VERSION_WRITTEN,
@@ -115,8 +140,8 @@ impl Contents<'_> {
                 starting_time,
                 message_count,
                 topics_with_message_count: self.topics.iter().map(WrittenTopic::from).collect(),
-                compression_format: "",
-                compression_mode: "",
+                compression_format,
+                compression_mode,
                 relative_file_paths: self.files.iter().map(|file| file.name.as_str()).collect(),
                 files: self.files.iter().map(WrittenFile::from).collect(),
                 custom_data: (!self.custom_data.is_empty()).then_some(self.custom_data),

@@ -56,6 +56,7 @@ pub mod results;
 pub mod sentences;
 pub mod sheet;
 pub mod simulated;
+mod spikes;
 mod steady_model;
 mod study;
 mod study_file;

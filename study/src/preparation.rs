@@ -38,12 +38,16 @@ impl Preparation<'_> {
     /// # Errors
     /// [`WorkError`] if it cannot be read, or if a check refuses it.
     pub fn whole(&self, path: &Path, model: &Model) -> Result<Recording, WorkError> {
+        self.whole_with_losses(path, model).map(|(recording, _)| recording)
+    }
+
+    fn whole_with_losses(&self, path: &Path, model: &Model) -> Result<(Recording, Vec<String>), WorkError> {
         let (whole, part) = Part::split(path)?;
         let (mut recording, report) = read_recording_or_mapped(&whole, self.origin)?;
         if let Some(part) = part {
             recording = part.of(&recording, path)?;
         }
-        self.checked(path, recording, &report, model)
+        Ok((self.checked(path, recording, &report, model)?, report.lost_of_sources()))
     }
 
     /// A recording, checked against the model. Of a long one only the stretches that are most informative about the parameters of
@@ -52,14 +56,19 @@ impl Preparation<'_> {
     /// # Errors
     /// As [`Preparation::whole`].
     pub fn recording(&self, path: &Path, model: &Model) -> Result<Recording, WorkError> {
+        self.recording_with_losses(path, model).map(|(recording, _)| recording)
+    }
+
+    /// A recording, and what was lost of the messages that it rests on.
+    fn recording_with_losses(&self, path: &Path, model: &Model) -> Result<(Recording, Vec<String>), WorkError> {
         if self.whole {
-            return self.whole(path, model);
+            return self.whole_with_losses(path, model);
         }
         let (recording, report, chosen) = recording_or_stretches(path, self.origin, model)?;
         if let Some(chosen) = &chosen {
             (self.remark)(&format!("{}: {}; --whole uses all", path.display(), choice(&recording, chosen)));
         }
-        self.checked(path, recording, &report, model)
+        Ok((self.checked(path, recording, &report, model)?, report.lost_of_sources()))
     }
 
     /// Several recordings.
@@ -75,7 +84,19 @@ impl Preparation<'_> {
     /// # Errors
     /// As [`Preparation::whole`].
     pub fn study(&self, model: Model, [fitted, judging]: [&[PathBuf]; 2]) -> Result<Study, WorkError> {
-        let study = Study::new(model.clone(), self.recordings(fitted, &model)?, self.recordings(judging, &model)?);
+        let mut lost_messages = Vec::new();
+        let mut read = |paths: &[PathBuf]| {
+            let one = |path: &PathBuf| {
+                let (recording, lost) = self.recording_with_losses(path, &model)?;
+                let lines = lost.iter().map(|line| format!("{}: {line}", path.display()));
+                lost_messages.extend(lines);
+                Ok(recording)
+            };
+            paths.iter().map(one).collect::<Result<Vec<Recording>, WorkError>>()
+        };
+        let (fitted, judging) = (read(fitted)?, read(judging)?);
+        let mut study = Study::new(model, fitted, judging);
+        study.lost_messages = lost_messages;
         study.shared_readings().iter().for_each(|shared| (self.remark)(shared));
         Ok(study)
     }

@@ -12,6 +12,7 @@ use excavator_model::recording::Recording;
 use excavator_model::simulation::input_holes;
 
 use crate::WorkError;
+use crate::spikes::leave_out_spikes;
 
 /// A recording longer than this is long, s of time on a machine of the reference size. A fit of three minutes takes a
 /// minute.
@@ -132,6 +133,8 @@ pub fn checked(
     model: &Model,
     remarks: &mut Vec<String>,
 ) -> Result<Recording, WorkError> {
+    let mut recording = recording;
+    remarks.extend(leave_out_spikes(&mut recording).iter().map(|line| format!("{name}: {line}")));
     let (mut recording, reduced) = at_useful_rate(recording);
     remarks.extend(reduced.map(|line| format!("{name}: {line}")));
     leave_pump_pressure_out(model, &mut recording, &report.left_out);

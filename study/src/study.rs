@@ -18,13 +18,16 @@ pub struct Study {
     pub validation: Vec<Recording>,
     /// How much a diagnosis tries, and the rules of its verdict.
     pub settings: DiagnosisSettings,
+    /// Messages that the recordings rest on and that were lost, one line each.
+    pub lost_messages: Vec<String>,
 }
 
 impl Study {
     /// A study of `model` with the usual settings.
     #[must_use]
     pub fn new(model: Model, identification: Vec<Recording>, validation: Vec<Recording>) -> Self {
-        Study { model, identification, validation, settings: DiagnosisSettings::default() }
+        let settings = DiagnosisSettings::default();
+        Study { model, identification, validation, settings, lost_messages: Vec::new() }
     }
 
     /// A study of one recording, which is compared with the model and not fitted.

@@ -192,7 +192,10 @@ mod tests {
     #[test]
     fn a_study_gives_the_same_bytes_again() {
         let folder = tempfile::tempdir().unwrap();
-        let diagnosed = study().diagnose(&|_, _| ()).unwrap();
+        let lost = "8 of 240 messages of /arm/state were lost";
+        let study = Study { lost_messages: vec![lost.to_string()], ..study() };
+        let diagnosed = study.diagnose(&|_, _| ()).unwrap();
+        assert!(diagnosed.sentence().contains(&format!("The verdict rests on signals with losses: {lost}.")));
         let bag = saved(&folder, "the recording");
         let file = StudyFile::of(&diagnosed, StudyOptions::default(), [&[], &[bag]]).unwrap();
         let path = saved(&folder, &file.text().unwrap());

@@ -6,11 +6,15 @@ use excavator_model::recording::Recording;
 
 use super::document::TopicMap;
 use super::error::MapError;
+use super::one_clock::stretch_text;
 use super::resample::{Policy, resample};
 use super::signal_source::SignalSource;
 use super::track::Track;
 use super::wanted::{Computed, Wanted};
 use crate::reading::{ReadReport, count_late, gaps, steps_back};
+
+/// A sensor may end this long before the clock begins, ns; more is another clock.
+const ENDS_EARLY: i64 = 1_000_000_000;
 
 /// The samples read for one signal or name.
 pub(super) enum Samples {
@@ -36,18 +40,27 @@ impl<'m> Input<'m> {
     }
 
     /// Its values at the clock times (ns, ascending).
-    fn on(self, clock: &[i64], report: &mut ReadReport) -> Vec<f64> {
-        match (self.samples, self.wanted) {
-            (Samples::Constant(value), _) => vec![value; clock.len()],
-            (Samples::Timed(_), None) => vec![f64::NAN; clock.len()],
-            (Samples::Timed(samples), Some(wanted)) => {
-                let track = Track::new(samples);
-                let policy = Policy::of(wanted.resampling(), wanted.from.maximum_gap, &track);
-                let values = resample(&track, clock, policy);
-                note_missing(&self.label, &track, &values, policy, report);
-                values
-            }
+    ///
+    /// # Errors
+    /// [`MapError::NoCommonTime`].
+    fn on(self, clock: &[i64], clock_name: &str, report: &mut ReadReport) -> Result<Vec<f64>, MapError> {
+        let (samples, wanted) = match (self.samples, self.wanted) {
+            (Samples::Constant(value), _) => return Ok(vec![value; clock.len()]),
+            (Samples::Timed(_), None) => return Ok(vec![f64::NAN; clock.len()]),
+            (Samples::Timed(samples), Some(wanted)) => (samples, wanted),
+        };
+        let mut track = Track::new(samples);
+        if wanted.from.topic.is_some() {
+            check_common_time(&self.label, &track, clock, clock_name)?;
         }
+        let policy = Policy::of(wanted.resampling(), wanted.from.maximum_gap, &track);
+        note_differing(&self.label, &track, wanted.from.topic.as_deref(), report);
+        if let Some(source) = self.signal {
+            leave_out_spikes(source, &mut track, clock, report);
+        }
+        let values = resample(&track, clock, policy);
+        note_missing(&self.label, &track, &values, policy, report);
+        Ok(values)
     }
 }
 
@@ -70,7 +83,7 @@ pub(super) fn constants(map: &TopicMap) -> Result<Vec<Input<'_>>, MapError> {
 /// Resamples all inputs to the clock (stamps in ns, in the order of the data), and evaluates the formulas of the map.
 ///
 /// # Errors
-/// [`MapError::EmptyClock`].
+/// [`MapError::EmptyClock`], [`MapError::NoCommonTime`].
 pub(super) fn assemble(
     path: &Path,
     clock_name: &str,
@@ -104,7 +117,7 @@ pub(super) fn assemble(
         if signal.is_none() && !is_used {
             continue;
         }
-        let values = input.on(&stamps, report);
+        let values = input.on(&stamps, clock_name, report)?;
         if is_used {
             used.push((label, values.clone()));
         }
@@ -130,6 +143,46 @@ pub(super) fn assemble(
     }
     report.gaps = gaps(&recording);
     Ok(recording)
+}
+
+/// Values stamped by another clock than the samples are in none of them.
+fn check_common_time(signal: &str, track: &Track, clock: &[i64], clock_name: &str) -> Result<(), MapError> {
+    let (Some((first, last)), Some((&start, &end))) = (track.range(), clock.first().zip(clock.last())) else {
+        return Ok(());
+    };
+    let length = end.saturating_sub(start);
+    let distance = first.saturating_sub(end).max(start.saturating_sub(last));
+    if distance <= length.saturating_add(ENDS_EARLY) {
+        return Ok(());
+    }
+    let stretch = stretch_text(first.saturating_sub(start), last.saturating_sub(start));
+    let (signal, clock, duration) = (signal.to_string(), clock_name.to_string(), length as f64 / 1e9);
+    Err(MapError::NoCommonTime { signal, clock, stretch, duration })
+}
+
+fn note_differing(signal: &str, track: &Track, topic: Option<&str>, report: &mut ReadReport) {
+    if track.differing() > 0 {
+        let hint = topic.map_or(String::new(), |topic| format!("; perhaps two publishers write {topic}"));
+        report.notes.push(format!(
+            "{signal}: {} values differ from an earlier one with the same time; the earlier one is used{hint}",
+            track.differing()
+        ));
+    }
+}
+
+/// Leaves out single values that no machine can reach between two samples.
+fn leave_out_spikes(source: &SignalSource, track: &mut Track, clock: &[i64], report: &mut ReadReport) {
+    let Some(longest) = source.signal.kind.calm_interval() else { return };
+    let found = track.leave_out_spikes(longest * 1e9);
+    let Some(&(first, value)) = found.first() else { return };
+    let start = clock.first().copied().unwrap_or_default();
+    report.notes.push(format!(
+        "{}: {} single values jump away from their neighbours and back, the first at {:.3} s to {value:.4e} {}; they are left out",
+        source.signal,
+        found.len(),
+        first.saturating_sub(start) as f64 / 1e9,
+        source.signal.kind.dimension().si_unit()
+    ));
 }
 
 fn note_missing(signal: &str, track: &Track, values: &[f64], policy: Policy, report: &mut ReadReport) {

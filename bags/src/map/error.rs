@@ -291,6 +291,34 @@ pub enum MapError {
         /// The fault.
         reason: String,
     },
+    /// Stamps that run faster or slower than the log times of the other topics.
+    #[error(
+        "stamps in the headers of {topic} run at {rate:.3} s per second of the log times, and {others} have only log times: as in a \
+         simulation that is not real time; record with use_sim_time, or give stamp = \"log\" for the signals of {topic} to take the recorder's seconds"
+    )]
+    ClockRates {
+        /// The topic with the stamps.
+        topic: String,
+        /// Seconds of its stamps per second of the log.
+        rate: f64,
+        /// The topics without.
+        others: String,
+    },
+    /// A signal that has no time in common with the clock.
+    #[error(
+        "{signal} has no time in common with the clock ({clock}): its values are from {stretch} after the start of the clock, which has \
+         {duration:.3} s: the two are stamped by different clocks; give stamp = \"log\" for both"
+    )]
+    NoCommonTime {
+        /// The signal.
+        signal: String,
+        /// Topic of the clock.
+        clock: String,
+        /// First and last value, relative to the first sample of the clock.
+        stretch: String,
+        /// Length of the clock, s.
+        duration: f64,
+    },
     /// A clock without samples.
     #[error("{}: the clock ({clock}) has no sample", path.display())]
     EmptyClock {

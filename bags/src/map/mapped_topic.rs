@@ -4,13 +4,16 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rosbag2::cdr::CdrError;
-use rosbag2::dynamic::{Definitions, FieldPath, Kind, Layout, Selector};
+use rosbag2::dynamic::{Definitions, FieldPath, Layout, Selector};
 use rosbag2::{RawMessage, RawMessages, Topic};
 
 use super::assemble::{Input, Samples};
+use super::channels::{Beside, Channels};
 use super::clock_source::Stamp;
 use super::conversion::Conversion;
 use super::error::MapError;
+use super::least_delays::LeastDelays;
+use super::message_times::{Auto, MessageTimes, StampReader, header_selector};
 use super::wanted::Wanted;
 use crate::BagError;
 use crate::can::{DataFrame, Database, FrameReader, Identifier, Place};
@@ -22,9 +25,19 @@ pub(super) struct MappedTopic<'m> {
     pub name: String,
     fields: Vec<MappedField<'m>>,
     clock_stamp: StampReader,
+    /// Stamps in the headers, if the type has one.
+    header: Option<Selector>,
+    /// How long after their stamps the messages were received.
+    delays: LeastDelays,
+    /// Messages without stamp: of a type without header, or with a stamp of zero.
+    unstamped: u64,
+    auto: Auto,
     /// Stamps of its messages, ns. For CAN frames one list per wanted identifier, since a bus carries more than the
     /// mapped frames.
     stamps: Vec<(Option<Identifier>, Vec<i64>)>,
+    /// The channels of the topic, in the order of the bag, and the number of the one of the last message.
+    channels: Vec<Arc<Topic>>,
+    channel: usize,
     /// The definition for which the selectors were resolved, with its layout.
     layout: Option<(Arc<Topic>, Layout)>,
     frames: Option<FrameReader>,
@@ -41,6 +54,14 @@ struct MappedField<'m> {
     stamp: StampReader,
     at: At,
     samples: Vec<(i64, f64)>,
+    channels: Channels,
+}
+
+/// How a signal, or the clock, is stamped.
+pub(super) struct StampUse<'t> {
+    pub policy: &'t Stamp,
+    /// Added to the stamps, ns.
+    pub shift: i64,
 }
 
 /// The position of the number.
@@ -52,8 +73,9 @@ enum At {
 }
 
 impl<'m> MappedTopic<'m> {
-    pub fn new(name: &str) -> MappedTopic<'m> {
-        MappedTopic { name: name.to_string(), ..MappedTopic::default() }
+    /// A topic whose stamps are read with this meaning of [`Stamp::Auto`].
+    pub fn new(name: &str, auto: Auto) -> MappedTopic<'m> {
+        MappedTopic { name: name.to_string(), auto, ..MappedTopic::default() }
     }
 
     /// Adds a field, or a signal of a frame.
@@ -74,13 +96,55 @@ impl<'m> MappedTopic<'m> {
             }
         };
         let conversion = wanted.conversion(unit.as_deref())?;
-        self.fields.push(MappedField { wanted, conversion, stamp: StampReader::default(), at, samples: Vec::new() });
+        let stamp = StampReader::new(&wanted.from.stamp, self.auto);
+        let channels = Channels::default();
+        self.fields.push(MappedField { wanted, conversion, stamp, at, samples: Vec::new(), channels });
         Ok(())
     }
 
     /// Sets which stamp is used if this topic is the clock.
     pub fn set_clock_stamp(&mut self, policy: &Stamp) {
-        self.clock_stamp = StampReader { policy: policy.clone(), selector: None };
+        self.clock_stamp = StampReader::new(policy, self.auto);
+    }
+
+    /// The signals and names that are read from it.
+    pub fn labels(&self) -> Vec<String> {
+        self.fields.iter().map(|field| field.wanted.label.clone()).collect()
+    }
+
+    /// Log time minus stamp of its messages.
+    pub fn delays(&self) -> &LeastDelays {
+        &self.delays
+    }
+
+    /// Messages whose only time is the log time.
+    pub fn unstamped(&self) -> u64 {
+        self.unstamped
+    }
+
+    /// For each signal, the channels beside another one with more values.
+    pub fn beside_others(&self) -> Vec<(String, Beside)> {
+        let of = |field: &MappedField| {
+            let label = field.wanted.label.clone();
+            field.channels.beside_others().into_iter().map(move |beside| (label.clone(), beside)).collect::<Vec<_>>()
+        };
+        self.fields.iter().flat_map(of).collect()
+    }
+
+    /// Leaves the values of a signal out that come through these channels.
+    pub fn leave_out(&mut self, left_out: &[(String, usize)]) {
+        for field in &mut self.fields {
+            let own = left_out.iter().filter(|(label, _)| *label == field.wanted.label);
+            field.channels.left_out = own.map(|(_, number)| *number).collect();
+        }
+    }
+
+    /// How each of its signals with samples is stamped, and the topic itself if it is the clock.
+    pub fn stamp_uses(&self, is_clock: bool) -> Vec<StampUse<'_>> {
+        let with_samples = self.fields.iter().filter(|field| !field.samples.is_empty());
+        let signals = with_samples.map(|field| StampUse { policy: field.stamp.policy(), shift: field.wanted.shift() });
+        let clock = StampUse { policy: self.clock_stamp.policy(), shift: 0 };
+        signals.chain(is_clock.then_some(clock)).collect()
     }
 
     /// The stamps of the topic; for CAN frames those of the most frequent wanted frame.
@@ -98,7 +162,10 @@ impl<'m> MappedTopic<'m> {
     /// # Errors
     /// Errors of [`MappedTopic::prepare`]; a message that cannot be read is only counted.
     pub fn take(&mut self, path: &Path, message: &RawMessage, extra: &Definitions) -> Result<u64, BagError> {
-        if !self.layout.as_ref().is_some_and(|(topic, _)| Arc::ptr_eq(topic, &message.topic)) {
+        self.find_channel(&message.topic);
+        let is_prepared =
+            |(topic, _): &(Arc<Topic>, Layout)| Arc::ptr_eq(topic, &message.topic) || *topic == message.topic;
+        if !self.layout.as_ref().is_some_and(is_prepared) {
             self.prepare(path, &message.topic, extra)?;
         }
         let index = self.seen;
@@ -115,6 +182,17 @@ impl<'m> MappedTopic<'m> {
             0
         });
         Ok((taken * size_of::<(i64, f64)>()) as u64)
+    }
+
+    /// Sets the number of the channel; publishers that a recorder tells apart have channels of their own.
+    fn find_channel(&mut self, topic: &Arc<Topic>) {
+        if self.channels.get(self.channel).is_some_and(|current| Arc::ptr_eq(current, topic)) {
+            return;
+        }
+        self.channel = self.channels.iter().position(|known| Arc::ptr_eq(known, topic)).unwrap_or_else(|| {
+            self.channels.push(Arc::clone(topic));
+            self.channels.len() - 1
+        });
     }
 
     /// Resolves every field in the topic definition of this file.
@@ -137,14 +215,11 @@ impl<'m> MappedTopic<'m> {
                 }
                 At::Frame(_) => {}
             }
-            mapped.stamp = StampReader { policy: mapped.wanted.from.stamp.clone(), selector: None };
             mapped.stamp.prepare(&layout).map_err(wrong)?;
         }
-        self.clock_stamp.prepare(&layout).map_err(|source| MapError::Field {
-            signal: "[clock]".to_string(),
-            topic: topic.name.clone(),
-            source,
-        })?;
+        let of_clock = |source| MapError::Field { signal: "[clock]".to_string(), topic: topic.name.clone(), source };
+        self.clock_stamp.prepare(&layout).map_err(of_clock)?;
+        self.header = header_selector(&layout).map_err(of_clock)?;
         self.layout = Some((Arc::clone(topic), layout));
         Ok(())
     }
@@ -156,6 +231,7 @@ impl<'m> MappedTopic<'m> {
             return Ok(0);
         };
         layout.check(&message.data)?;
+        let times = MessageTimes::of(self.header.as_ref(), layout, message)?;
         let is_of_frames = self.fields.iter().any(|field| matches!(field.at, At::Frame(_)));
         let frame = match (&self.frames, is_of_frames) {
             (Some(reader), true) => reader.read(layout, &message.data)?,
@@ -163,7 +239,7 @@ impl<'m> MappedTopic<'m> {
         };
         let mut is_wanted = !is_of_frames;
         let mut is_short = false;
-        let mut taken = 0;
+        let (mut taken, mut left_out) = (0, 0);
         for mapped in &mut self.fields {
             let number = match (&mapped.at, &frame) {
                 (At::Field(_, Some(selector)), _) => {
@@ -179,14 +255,24 @@ impl<'m> MappedTopic<'m> {
                 _ => None,
             };
             if let Some(number) = number {
-                let stamp = mapped.stamp.read(layout, message)?.saturating_add(mapped.wanted.shift());
+                if mapped.channels.left_out.contains(&self.channel) {
+                    left_out += 1;
+                    continue;
+                }
+                mapped.channels.note(self.channel, times.log);
+                let stamp = mapped.stamp.read(times, layout, message)?.saturating_add(mapped.wanted.shift());
                 mapped.samples.push((stamp, mapped.conversion.apply(number)));
                 taken += 1;
             }
         }
         self.short_frames += u64::from(is_short);
-        if is_wanted {
-            let stamp = self.clock_stamp.read(layout, message)?;
+        // A message of which all is left out is no sample of the clock either.
+        if is_wanted && (taken > 0 || left_out == 0) {
+            match times.set_header() {
+                Some(stamp) => self.delays.note(times.log, stamp),
+                None => self.unstamped += 1,
+            }
+            let stamp = self.clock_stamp.read(times, layout, message)?;
             let of = frame.filter(|_| is_of_frames).map(|frame| frame.identifier);
             match self.stamps.iter_mut().find(|(known, _)| *known == of) {
                 Some((_, stamps)) => stamps.push(stamp),
@@ -225,42 +311,4 @@ impl<'m> MappedTopic<'m> {
         }
         Ok(())
     }
-}
-
-/// Which stamp of a message is used.
-#[derive(Debug, Clone, Default)]
-struct StampReader {
-    policy: Stamp,
-    selector: Option<Selector>,
-}
-
-impl StampReader {
-    fn prepare(&mut self, layout: &Layout) -> Result<(), rosbag2::dynamic::PathError> {
-        self.selector = match &self.policy {
-            Stamp::Log => None,
-            Stamp::Auto if !has_header(layout) => None,
-            Stamp::Auto | Stamp::Header => Some(Selector::time(layout, &"header.stamp".parse()?)?),
-            Stamp::Field(path) => Some(Selector::time(layout, &path.parse()?)?),
-        };
-        Ok(())
-    }
-
-    fn read(&self, layout: &Layout, message: &RawMessage) -> Result<i64, CdrError> {
-        let log_time = i64::try_from(message.log_time).unwrap_or(i64::MAX);
-        let Some(selector) = &self.selector else {
-            return Ok(log_time);
-        };
-        let stamp = selector.read_time(layout, &message.data)?;
-        let unset = self.policy == Stamp::Auto && stamp == Some(0);
-        Ok(stamp.filter(|_| !unset).unwrap_or(log_time))
-    }
-}
-
-fn has_header(layout: &Layout) -> bool {
-    let members = layout.structure(0).map_or(&[][..], |structure| &structure.members);
-    members.iter().any(|member| {
-        member.name == "header"
-            && matches!(member.kind, Kind::Struct(number)
-                if layout.structure(number).is_some_and(|structure| structure.name == "std_msgs/Header"))
-    })
 }

@@ -28,6 +28,7 @@
 //! ```
 
 mod assemble;
+mod channels;
 mod clock_source;
 mod conversion;
 mod document;
@@ -35,9 +36,12 @@ mod error;
 mod guess;
 mod join;
 mod joined;
+mod least_delays;
 mod leave_out;
 mod mapped_topic;
+mod message_times;
 mod named;
+mod one_clock;
 mod pieces;
 mod quantity;
 mod read_bag;

@@ -81,6 +81,20 @@ impl SignalKind {
             }
     }
 
+    /// Interval up to which it cannot jump away and back between two samples, s; `None` for one that can. A piston that goes
+    /// 30 mm and back in 20 ms needs 30 times the acceleration of gravity; oil in hoses resonates below 100 Hz.
+    pub fn calm_interval(self) -> Option<f64> {
+        match self {
+            SignalKind::JointAngle | SignalKind::Displacement => Some(0.02),
+            SignalKind::Velocity | SignalKind::CapPressure | SignalKind::RodPressure | SignalKind::RodForce => {
+                Some(0.005)
+            }
+            SignalKind::PumpPressure | SignalKind::TankPressure => Some(0.005),
+            SignalKind::OrificeArea | SignalKind::OrificeCommand => None,
+            SignalKind::PumpFlow | SignalKind::OilTemperature => None,
+        }
+    }
+
     /// Its dimension.
     pub fn dimension(self) -> Dimension {
         match self {

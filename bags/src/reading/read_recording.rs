@@ -7,7 +7,7 @@ use std::sync::Arc;
 use excavator_model::recording::Recording;
 use excavator_msgs::{ArmState, Message, OrificeCommand};
 use rosbag2::cdr::CdrError;
-use rosbag2::{Damage, RawMessage, RawMessages, Topic};
+use rosbag2::{Damage, LossReader, RawMessage, RawMessages, Topic};
 
 use super::command_decoder::CommandDecoder;
 use super::command_track::CommandTrack;
@@ -51,12 +51,13 @@ pub fn read_recording_in_blocks(
 ) -> Result<ReadReport, BagError> {
     let mut messages = RawMessages::open(path)?;
     let mut report = ReadReport::default();
+    report.sources.extend([&topics.state, &topics.command].map(|topic| (topic.clone(), Vec::new())));
     let mut states = TopicReader::<ArmState>::new(path, &topics.state);
     let mut commands = TopicReader::<OrificeCommand>::new(path, &topics.command);
     let (mut state_decoder, mut command_decoder) = (StateDecoder::new(), CommandDecoder::default());
     let mut table = StateTable::default();
     let mut track = CommandTrack::default();
-    let mut counts = TopicCounts::default();
+    let mut counts = TopicCounts::of(path);
     let mut first_log_time = None;
     let mut blocks = BlockMaker { source: path.display().to_string(), start: None };
     while let Some(message) = messages.next() {
@@ -145,23 +146,48 @@ pub(crate) fn truncated_after(damage: &[Damage], first_log_time: Option<u64>) ->
 
 /// Messages per topic. Counted per shared [`Topic`] first, since a lookup by name for every message costs more than
 /// decompressing it.
-#[derive(Default)]
-pub(crate) struct TopicCounts(Vec<(Arc<Topic>, u64)>);
+pub(crate) struct TopicCounts {
+    topics: Vec<TopicCount>,
+    losses: LossReader,
+}
+
+struct TopicCount {
+    topic: Arc<Topic>,
+    messages: u64,
+    /// Whether its messages tell of losses.
+    tells: bool,
+}
 
 impl TopicCounts {
-    /// Counts one message.
+    /// For a bag.
+    pub fn of(bag: &Path) -> TopicCounts {
+        TopicCounts { topics: Vec::new(), losses: LossReader::of(bag) }
+    }
+
+    /// Counts one message, and reads it if it tells of lost ones.
     pub fn count(&mut self, message: &RawMessage) {
-        match self.0.iter_mut().find(|(topic, _)| Arc::ptr_eq(topic, &message.topic)) {
-            Some((_, count)) => *count += 1,
-            None => self.0.push((Arc::clone(&message.topic), 1)),
+        let tells = match self.topics.iter_mut().find(|one| Arc::ptr_eq(&one.topic, &message.topic)) {
+            Some(one) => {
+                one.messages += 1;
+                one.tells
+            }
+            None => {
+                let (topic, tells) = (Arc::clone(&message.topic), LossReader::is_told_by(&message.topic));
+                self.topics.push(TopicCount { topic, messages: 1, tells });
+                tells
+            }
+        };
+        if tells {
+            self.losses.take(message);
         }
     }
 
-    /// Adds the counts to the report.
+    /// Adds the counts and the losses to the report.
     pub fn write_to(self, report: &mut ReadReport) {
-        for (topic, count) in self.0 {
-            *report.messages.entry(topic.name.clone()).or_default() += count;
+        for TopicCount { topic, messages, .. } in self.topics {
+            *report.messages.entry(topic.name.clone()).or_default() += messages;
         }
+        report.lost = self.losses.finish();
     }
 }
 

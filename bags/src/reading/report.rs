@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use rosbag2::{Damage, printable};
+use rosbag2::{Damage, LostMessages, printable};
 
 /// A pause in the state messages.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -49,6 +49,11 @@ pub struct ReadReport {
     pub truncated_after: Option<f64>,
     /// Messages that `metadata.yaml` promises and that are not there; 0 without metadata.
     pub missing_messages: u64,
+    /// Messages that were lost while the bag was recorded, as far as its recorder tells.
+    pub lost: Vec<LostMessages>,
+    /// Topics that the recording was made of, and the signals that were read from each; no signals for our own topics.
+    #[serde(skip)]
+    pub sources: BTreeMap<String, Vec<String>>,
     /// What a map or a table could not give, and where a clock was set back, one line each.
     pub notes: Vec<String>,
     /// Conditions under which a map leaves measurements out. Who knows the machine evaluates them.
@@ -88,6 +93,8 @@ impl ReadReport {
         self.undecodable += piece.undecodable;
         self.missing_messages += piece.missing_messages;
         self.damage.extend(piece.damage.iter().cloned());
+        self.lost.extend(piece.lost.iter().cloned());
+        self.sources.extend(piece.sources.clone());
         self.first_undecodable = self.first_undecodable.take().or(piece.first_undecodable.clone());
         self.truncated_after = self.truncated_after.or(piece.truncated_after);
         let notes = piece.notes.iter().map(|note| format!("{}: {note}", path.display()));
@@ -109,6 +116,19 @@ impl ReadReport {
     /// Chunks left out because of a wrong checksum or broken content.
     pub fn bad_chunks(&self) -> usize {
         self.damage.iter().filter(|damage| matches!(damage.kind, rosbag2::DamageKind::BadChunk { .. })).count()
+    }
+
+    /// Losses of the topics that the recording was made of, one line each, with the signals that lack them.
+    pub fn lost_of_sources(&self) -> Vec<String> {
+        let of_source = |lost: &LostMessages| {
+            let read = self.messages.get(&lost.topic).copied();
+            match self.sources.get(&lost.topic) {
+                Some(signals) if signals.is_empty() => Some(lost.text(read)),
+                Some(signals) => Some(format!("{}, so {} has gaps", lost.text(read), signals.join(", "))),
+                None => lost.topic.is_empty().then(|| lost.text(read)),
+            }
+        };
+        self.lost.iter().filter_map(of_source).map(|line| printable(&line).into_owned()).collect()
     }
 
     /// One line of text for each kind of imperfection; empty for a perfect bag.
@@ -138,6 +158,7 @@ impl ReadReport {
             let names = self.commands_without_cylinder.join(", ");
             lines.push(format!("commands for {names} are not used: no state message has such a cylinder"));
         }
+        lines.extend(self.lost.iter().map(|lost| lost.text(self.messages.get(&lost.topic).copied())));
         lines.extend(self.notes.iter().cloned());
         lines.into_iter().map(|line| printable(&line).into_owned()).collect()
     }

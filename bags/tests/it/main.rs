@@ -2,6 +2,7 @@
 
 #![allow(clippy::panic, clippy::single_range_in_vec_init, clippy::unwrap_used, missing_docs)]
 
+mod bag_matrix;
 mod can_frames;
 mod damage;
 mod guessed_maps;

@@ -36,6 +36,8 @@ pub struct Diagnosis {
     pub remainders: Vec<Remainder>,
     /// The remaining residual, if no effect explains it.
     pub unexplained: Option<Unexplained>,
+    /// Messages that the recordings rest on and that were lost, one line each; whoever reads the recordings fills it in.
+    pub lost_messages: Vec<String>,
 }
 
 /// Why a diagnosis fails.
@@ -115,8 +117,9 @@ pub(crate) fn diagnosis_of(
     let failed = pool.failed.into_iter().map(|(name, error)| (name, error.to_string())).collect();
     let (trials, scores, unpromising) = (pool.trials, pool.scores, pool.unpromising);
     let (map, remainders, unexplained) = (Vec::new(), Vec::new(), None);
+    let lost_messages = Vec::new();
     let mut diagnosis =
-        Diagnosis { policy, verdict, scores, trials, unpromising, failed, map, remainders, unexplained };
+        Diagnosis { policy, verdict, scores, trials, unpromising, failed, map, remainders, unexplained, lost_messages };
     let simple: Vec<(usize, Trial)> = diagnosis
         .on_paths()
         .into_par_iter()

@@ -26,6 +26,8 @@ pub struct DiagnosisRecord {
     shares: Vec<(String, Text, [Option<f64>; 2])>,
     remainders: Vec<(String, [Option<f64>; 2], bool)>,
     unexplained: Option<UnexplainedRecord>,
+    #[serde(default)]
+    lost_messages: Vec<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -139,6 +141,7 @@ impl DiagnosisRecord {
                 differs_in_form: one.differs_in_form,
                 curve: one.curve.iter().map(|point| point.map(finite)).collect(),
             }),
+            lost_messages: diagnosis.lost_messages.clone(),
         }
     }
 
@@ -185,6 +188,7 @@ impl DiagnosisRecord {
                 differs_in_form: one.differs_in_form,
                 curve: one.curve.into_iter().map(|point| point.map(number)).collect(),
             }),
+            lost_messages: self.lost_messages,
         })
     }
 }

@@ -61,6 +61,9 @@ pub struct Diagnosis {
     /// What the energy ledger of the refitted model misses, for each validation recording in which energy is known.
     #[serde(default)]
     pub missing_power: Vec<RecordingLedger>,
+    /// Messages that the recordings rest on and that were lost while they were recorded, one line each.
+    #[serde(default)]
+    pub lost_messages: Vec<String>,
 }
 
 /// An error before and after additions.
@@ -194,6 +197,7 @@ impl Diagnosis {
             instruments: instruments.collect(),
             first_guess: guess.map(Guess::of),
             missing_power: ledgers.collect(),
+            lost_messages: diagnosis.lost_messages.clone(),
         }
     }
 }

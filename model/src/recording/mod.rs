@@ -9,6 +9,7 @@ mod pieces;
 mod resolution;
 mod sample;
 mod slopes;
+mod spikes;
 mod standard_deviation;
 
 pub use cylinder_signals::CylinderSignals;
@@ -20,6 +21,7 @@ pub use pieces::{closed_gaps, longest_gap, median_interval};
 pub use resolution::resolution;
 pub use sample::{CylinderSample, Sample};
 pub use slopes::slopes;
+pub use spikes::spikes;
 pub use standard_deviation::standard_deviation;
 
 /// A recording of one machine: all signals sampled on one, possibly uneven, clock.

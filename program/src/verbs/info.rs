@@ -21,6 +21,10 @@ use crate::terminal::{print, right, table};
 /// Smallest clock offset that is reported, s: networks and recorders add less.
 const NOTABLE_DELAY: f64 = 0.1;
 
+/// Median delay below which stamps are those of another clock, s: nothing is logged before it is made, but some recorders
+/// round log times to milliseconds.
+const IMPOSSIBLE_DELAY: f64 = -0.002;
+
 pub fn run(arguments: &InfoArguments) -> Result<(), VerbError> {
     let path = &arguments.bag;
     let inputs = Inputs::recordings([path], arguments.map.as_deref());
@@ -168,6 +172,10 @@ fn show_bag(bag: &BagInfo) {
     for problem in &bag.problems {
         print(&format!("problem: {problem}"));
     }
+    for lost in &bag.lost {
+        let read = bag.topics.iter().find(|topic| topic.name == lost.topic).map(|topic| topic.message_count);
+        print(&format!("problem: {}", lost.text(read)));
+    }
     for topic in &bag.topics {
         for line in topic.timing.iter().flat_map(clock_problems) {
             print(&format!("clock of {}: {line}", topic.name));
@@ -193,13 +201,14 @@ fn clock_problems(timing: &Timing) -> Vec<String> {
         lines.push(format!("{} stamps repeat the one before", stamps.repeated));
     }
     let (least, most) = stamps.delay_range;
-    if stamps.median_delay.abs() > NOTABLE_DELAY {
+    if stamps.median_delay.abs() > NOTABLE_DELAY || stamps.median_delay < IMPOSSIBLE_DELAY {
         let side = if stamps.median_delay > 0.0 { "after" } else { "before" };
         lines.push(format!(
-            "messages were logged {} {side} their stamps ({} to {}): they arrived late, or the clocks differ",
+            "messages were logged {} {side} their stamps ({} to {}): {}",
             seconds(stamps.median_delay.abs()),
             seconds(least),
-            seconds(most)
+            seconds(most),
+            if stamps.median_delay > 0.0 { "they arrived late, or the clocks differ" } else { "the clocks differ" }
         ));
     } else if most - least > NOTABLE_DELAY {
         lines.push(format!("log time minus stamp varies from {} to {}", seconds(least), seconds(most)));

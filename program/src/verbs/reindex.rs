@@ -1,6 +1,6 @@
 //! `excavator reindex`
 
-use rosbag2::{Reindexed, ReindexedFile, printable, reindex};
+use rosbag2::{BagCompression, Reindexed, ReindexedFile, printable, reindex};
 
 use crate::cli::ReindexArguments;
 use crate::error::VerbError;
@@ -26,6 +26,9 @@ pub fn run(arguments: &ReindexArguments) -> Result<(), VerbError> {
 fn sentence(file: &ReindexedFile) -> String {
     let path = file.path.display().to_string();
     let (path, messages) = (printable(&path), file.messages);
+    if file.packed && !file.rewritten {
+        return format!("{path}: compressed as the other files are, with all {messages} messages");
+    }
     match (file.rewritten, file.damage.is_empty()) {
         (false, true) => format!("{path}: whole, {messages} messages; left as it is"),
         (false, false) => format!("{path}: {messages} messages readable; left as it is:"),
@@ -39,7 +42,12 @@ fn summary(done: &Reindexed) -> String {
     let (messages, topics, files) = (done.messages(), done.topics, done.files.len());
     let metadata = done.metadata.as_ref().map_or(String::new(), |path| {
         let path = path.display().to_string();
-        format!(" {} is written.", printable(&path))
+        let compression = match done.compression {
+            BagCompression::None => "",
+            BagCompression::Message => ", with compression of each message by zstd",
+            BagCompression::File => ", with compression of whole files by zstd",
+        };
+        format!(" {} is written{compression}.", printable(&path))
     });
     let files = if files == 1 { "one file".to_string() } else { format!("{files} files") };
     format!("{messages} messages in {topics} topics and {files} can be read, and {lost} bytes are lost.{metadata}")

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::dynamic::Definitions;
 use crate::location::BagFiles;
+use crate::lost::{LossReader, LostMessages};
 use crate::{Error, RawMessages};
 
 use timing::Times;
@@ -35,6 +36,8 @@ pub struct BagInfo {
     pub message_count: u64,
     /// The topics, by name.
     pub topics: Vec<TopicInfo>,
+    /// Messages that were lost while the bag was recorded, as far as its recorder tells.
+    pub lost: Vec<LostMessages>,
     /// What is wrong with the bag, one line each.
     pub problems: Vec<String>,
 }
@@ -95,6 +98,7 @@ pub fn info_with(path: &Path, extra: &Definitions) -> Result<BagInfo, Error> {
         size += std::fs::metadata(file).map_err(Error::io("read", file))?.len();
     }
     let mut messages = RawMessages::open(path)?;
+    let mut losses = LossReader::of(path);
     let mut seen: BTreeMap<String, (TopicInfo, Times)> = BTreeMap::new();
     for message in &mut messages {
         let message = message?;
@@ -104,6 +108,9 @@ pub fn info_with(path: &Path, extra: &Definitions) -> Result<BagInfo, Error> {
                 .entry(message.topic.name.clone())
                 .or_insert_with(|| (TopicInfo::empty(&message.topic), Times::of(&message.topic, extra))),
         };
+        if LossReader::is_told_by(&message.topic) {
+            losses.take(&message);
+        }
         topic.note(message.log_time);
         times.note(&message);
     }
@@ -130,6 +137,7 @@ pub fn info_with(path: &Path, extra: &Definitions) -> Result<BagInfo, Error> {
         duration: nanoseconds as f64 / 1e9,
         message_count,
         topics,
+        lost: losses.finish(),
         problems,
     })
 }

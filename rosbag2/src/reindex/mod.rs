@@ -2,20 +2,25 @@
 //!
 //! A recorder that is killed leaves MCAP files without an end and a folder without `metadata.yaml`. This crate reads
 //! such bags; `ros2 bag` and most other readers do not. Intact files are unchanged. The others are rewritten next to
-//! the original, verified, and moved to its place atomically; then the metadata is written.
+//! the original, verified, and moved to its place atomically; then the metadata is written, and the whole bag read back.
+//!
+//! A bag that rosbag2 compressed stays compressed, and its metadata says so. A killed recorder may have left its last file
+//! uncompressed beside compressed ones, which no metadata can describe: that file is compressed too.
 
+mod readable;
 mod rewrite;
 mod tally;
 
 use std::path::{Path, PathBuf};
 
 use crate::location::{BagFiles, from_folder};
-use crate::metadata::{Contents, FILE_NAME, FileContents, Metadata, TopicContents};
+use crate::metadata::{BagCompression, Contents, FILE_NAME, FileContents, Metadata, TopicContents};
 use crate::qos::QosEntry;
 use crate::regular_file::check_regular;
-use crate::storage::{StorageFile, StorageKind};
-use crate::{Damage, Error, Qos, ReadLimits};
-use rewrite::rewrite;
+use crate::storage::StorageKind;
+use crate::{Damage, Error, Qos, RawMessages, ReadLimits};
+use readable::Readable;
+use rewrite::{Original, rewrite};
 use tally::Tally;
 
 /// The result of reindexing a bag.
@@ -27,6 +32,8 @@ pub struct Reindexed {
     pub metadata: Option<PathBuf>,
     /// Number of topics.
     pub topics: usize,
+    /// What rosbag2 compressed.
+    pub compression: BagCompression,
 }
 
 /// The result of reindexing one file.
@@ -36,6 +43,8 @@ pub struct ReindexedFile {
     pub path: PathBuf,
     /// Whether it was rewritten.
     pub rewritten: bool,
+    /// Whether it was compressed as a whole, as the other files of the bag are.
+    pub packed: bool,
     /// Number of messages after reindexing.
     pub messages: u64,
     /// The damage in the original.
@@ -57,7 +66,7 @@ impl Reindexed {
 ///
 /// # Errors
 /// [`Error::NotABag`] for files of which nothing can be read, [`Error::StillWritten`], [`Error::NotVerified`],
-/// [`Error::UnsupportedCompression`] for files that rosbag2 compressed as a whole; [`Error::Write`], [`Error::Io`].
+/// [`Error::NotReadBack`], [`Error::MixedCompression`]; [`Error::Write`], [`Error::Io`].
 /// On failure, every file is either unchanged or completely rewritten.
 pub fn reindex(path: &Path, keep: bool) -> Result<Reindexed, Error> {
     let limits = ReadLimits::DEFAULT;
@@ -66,32 +75,81 @@ pub fn reindex(path: &Path, keep: bool) -> Result<Reindexed, Error> {
     }
     let is_folder = path.is_dir();
     let files = if is_folder { files_of(path, &limits)? } else { bare(path)? };
-    let mut bag = Tally::default();
-    let mut done = Vec::new();
-    let mut contents = Vec::new();
-    let mut storage = None;
-    for file in files {
-        let (found, tally, kind) = one_file(&file, keep, &limits)?;
-        if *storage.get_or_insert(kind) != kind {
-            let reason = "it has MCAP and SQLite3 files; put them into two folders".to_string();
-            return Err(Error::NotABag { path: path.to_path_buf(), reason });
-        }
-        contents.push(FileContents {
-            name: file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default(),
-            span: tally.span(),
-            message_count: tally.messages(),
-        });
-        bag.add(&tally);
-        done.push(found);
+    let mut read = Vec::new();
+    for file in &files {
+        read.push(one_file(file, keep, &limits)?);
     }
+    let compression = compression(path, &read)?;
+    let mut bag = Tally::default();
+    let mut contents = Vec::new();
+    for one in &mut read {
+        if compression == BagCompression::File && !one.is_packed {
+            pack(one, keep, &limits)?;
+        }
+        let name = one.found.path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        contents.push(FileContents { name, span: one.tally.span(), message_count: one.tally.messages() });
+        bag.add(&one.tally);
+    }
+    let storage = read.first().map_or(StorageKind::Mcap, |one| one.kind);
     let topics = bag.topics();
     let count = topics.len();
-    let metadata = if is_folder {
-        Some(write_metadata(path, storage.unwrap_or(StorageKind::Mcap), &contents, topics)?)
-    } else {
-        None
+    let metadata = match is_folder {
+        true => Some(write_metadata(path, storage, &contents, topics, compression)?),
+        false => None,
     };
-    Ok(Reindexed { files: done, metadata, topics: count })
+    let found: Vec<ReindexedFile> = read.into_iter().map(|one| one.found).collect();
+    let written = match &found[..] {
+        // A bare file may have a new name.
+        [only] if !is_folder => only.path.clone(),
+        _ => path.to_path_buf(),
+    };
+    read_back(&written, bag.messages(), &limits)?;
+    Ok(Reindexed { files: found, metadata, topics: count, compression })
+}
+
+/// What rosbag2 compressed in these files.
+fn compression(bag: &Path, files: &[OneFile]) -> Result<BagCompression, Error> {
+    if files.iter().any(|one| one.kind != files[0].kind) {
+        let reason = "it has MCAP and SQLite3 files; put them into two folders".to_string();
+        return Err(Error::NotABag { path: bag.to_path_buf(), reason });
+    }
+    let sum = |of: &dyn Fn(&OneFile) -> u64| files.iter().map(of).sum::<u64>();
+    let (messages, compressed) = (sum(&|one| one.tally.messages()), sum(&|one| one.tally.compressed()));
+    let is_packed = files.iter().any(|one| one.is_packed);
+    if compressed > 0 && (compressed < messages || is_packed) {
+        return Err(Error::MixedCompression { path: bag.to_path_buf(), compressed, messages });
+    }
+    Ok(match (is_packed, compressed > 0) {
+        (true, _) => BagCompression::File,
+        (false, true) => BagCompression::Message,
+        (false, false) => BagCompression::None,
+    })
+}
+
+/// Reads the bag as any reader does, and counts its messages.
+fn read_back(bag: &Path, expected: u64, limits: &ReadLimits) -> Result<(), Error> {
+    let mut found = 0;
+    for message in RawMessages::open_within(bag, limits)? {
+        message?;
+        found += 1;
+    }
+    if found == expected { Ok(()) } else { Err(Error::NotReadBack { path: bag.to_path_buf(), found, expected }) }
+}
+
+/// Compresses a file as a whole: `NAME.zstd`.
+fn pack(one: &mut OneFile, keep: bool, limits: &ReadLimits) -> Result<(), Error> {
+    let path = one.found.path.clone();
+    let mut name = path.clone().into_os_string();
+    name.push(".zstd");
+    let target = PathBuf::from(name);
+    let length = std::fs::metadata(&path).map_err(Error::io("read", &path))?.len();
+    // The original of a file that was rewritten is kept already.
+    let keep = keep && one.found.original.is_none();
+    let original = Original { path: &path, tally: &one.tally, length, packs: true, keep };
+    let kept = rewrite(&original, &target, limits)?;
+    one.found.original = one.found.original.take().or(kept);
+    (one.found.path, one.found.packed) = (target, true);
+    Ok(())
 }
 
 /// The files listed in the metadata, otherwise all in the folder. Files that the metadata does not list are added: a
@@ -113,43 +171,41 @@ fn bare(path: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(vec![path.to_path_buf()])
 }
 
-fn one_file(path: &Path, keep: bool, limits: &ReadLimits) -> Result<(ReindexedFile, Tally, StorageKind), Error> {
+/// One file and what was read of it.
+struct OneFile {
+    found: ReindexedFile,
+    tally: Tally,
+    kind: StorageKind,
+    /// Whether rosbag2 compressed the whole file.
+    is_packed: bool,
+}
+
+fn one_file(path: &Path, keep: bool, limits: &ReadLimits) -> Result<OneFile, Error> {
     let length = || std::fs::metadata(path).map(|metadata| metadata.len()).map_err(Error::io("read", path));
     let before = length()?;
-    let mut file = StorageFile::open(path, limits)?;
-    let Some(kind) = file.kind() else {
-        let damage: Vec<String> = file.damage().map(ToString::to_string).collect();
+    let mut source = Readable::open(path, limits)?;
+    let Some(kind) = source.file().kind() else {
+        let damage: Vec<String> = source.damage().iter().map(ToString::to_string).collect();
         return Err(Error::NotABag { path: path.to_path_buf(), reason: damage.join("; ") });
     };
-    if file.is_compressed() {
-        let (mode, format) = ("file".to_string(), "zstd".to_string());
-        return Err(Error::UnsupportedCompression { path: path.to_path_buf(), mode, format });
-    }
-    let mut tally = Tally::default();
-    tally.define(file.topics().into_iter());
-    while let Some(message) = file.next_message()? {
-        tally.count(&message);
-    }
-    tally.define(file.topics().into_iter());
-    let damage: Vec<Damage> = file.damage().cloned().collect();
+    let is_packed = source.file().is_compressed();
+    let tally = Tally::of(&mut source)?;
+    let damage = source.damage();
     if length()? != before {
         return Err(Error::StillWritten { path: path.to_path_buf() });
     }
-    let whole = damage.is_empty() && file.has_index();
-    let mut found = ReindexedFile {
-        path: path.to_path_buf(),
-        rewritten: false,
-        messages: tally.messages(),
-        damage,
-        original: None,
-    };
+    let whole = damage.is_empty() && source.file().has_index();
+    let messages = tally.messages();
+    let mut found =
+        ReindexedFile { path: path.to_path_buf(), rewritten: false, packed: false, messages, damage, original: None };
     // The index of SQLite is part of the database and cannot be missing; damage in it is not repaired.
     if !whole && kind == StorageKind::Mcap {
-        drop(file);
-        found.original = rewrite(path, &tally, before, keep, limits)?;
+        drop(source);
+        let original = Original { path, tally: &tally, length: before, packs: is_packed, keep };
+        found.original = rewrite(&original, path, limits)?;
         found.rewritten = true;
     }
-    Ok((found, tally, kind))
+    Ok(OneFile { found, tally, kind, is_packed })
 }
 
 fn write_metadata(
@@ -157,6 +213,7 @@ fn write_metadata(
     storage: StorageKind,
     files: &[FileContents],
     topics: Vec<(std::sync::Arc<crate::Topic>, u64)>,
+    compression: BagCompression,
 ) -> Result<PathBuf, Error> {
     let path = folder.join(FILE_NAME);
     // Custom data that a user added to the metadata is kept.
@@ -168,7 +225,8 @@ fn write_metadata(
             TopicContents { name: topic.name.clone(), type_name: topic.type_name.clone(), qos, message_count }
         })
         .collect();
-    let contents = Contents { storage: storage.name(), files, topics: &topics, custom_data: &custom_data };
+    let (storage, custom_data) = (storage.name(), &custom_data);
+    let contents = Contents { storage, files, topics: &topics, custom_data, compression };
     let failed = Error::io("write", &path);
     let text = match contents.to_yaml() {
         Ok(text) => text,

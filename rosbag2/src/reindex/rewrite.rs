@@ -8,49 +8,76 @@ use std::sync::Arc;
 
 use mcap::records::MessageHeader;
 
+use super::readable::Readable;
 use super::tally::Tally;
-use crate::storage::StorageFile;
 use crate::{Error, ReadLimits, Topic, WriteOptions};
 
-/// Writes the readable messages of the file at `path` to a new file, verifies it against `tally`, and replaces the
-/// original. Returns the new path of the original, if it was kept.
-pub(super) fn rewrite(
-    path: &Path,
-    tally: &Tally,
-    length: u64,
-    keep: bool,
-    limits: &ReadLimits,
-) -> Result<Option<PathBuf>, Error> {
+/// A file of a bag that is written anew.
+pub(super) struct Original<'o> {
+    pub path: &'o Path,
+    /// What can be read of it.
+    pub tally: &'o Tally,
+    /// Its length when it was read, bytes.
+    pub length: u64,
+    /// Whether the new file is compressed as a whole.
+    pub packs: bool,
+    /// Whether the original is kept.
+    pub keep: bool,
+}
+
+/// Writes the readable messages of a file to a new one, verifies it, and moves it to `target`: the place of the original, or
+/// beside it. Returns the new path of the original, if it was kept.
+pub(super) fn rewrite(original: &Original, target: &Path, limits: &ReadLimits) -> Result<Option<PathBuf>, Error> {
+    let path = original.path;
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // A name that no reader of the folder takes for a file of the bag; the file is removed on any failure.
-    let beside = tempfile::Builder::new()
-        .prefix(".reindex-")
-        .tempfile_in(folder)
-        .map_err(Error::io("create a file in", folder))?;
-    let file = beside.reopen().map_err(Error::io("write", beside.path()))?;
-    copy(path, file, limits)?;
-    let copied = read_back(beside.path(), limits)?;
-    if copied.fingerprint() != tally.fingerprint() {
+    let mut new = beside(folder)?;
+    let is_rewritten = path == target;
+    if is_rewritten {
+        copy(path, new.reopen().map_err(Error::io("write", new.path()))?, limits)?;
+    }
+    if original.packs {
+        let packed = beside(folder)?;
+        pack(if is_rewritten { new.path() } else { path }, &packed)?;
+        new = packed;
+    }
+    if read_back(new.path(), limits)?.fingerprint() != original.tally.fingerprint() {
         return Err(Error::NotVerified { path: path.to_path_buf() });
     }
     let now = std::fs::metadata(path).map_err(Error::io("read", path))?.len();
-    if now != length {
+    if now != original.length {
         return Err(Error::StillWritten { path: path.to_path_buf() });
     }
-    with_usual_rights(beside.as_file()).map_err(Error::io("write", beside.path()))?;
-    let original = keep.then(|| {
+    with_usual_rights(new.as_file()).map_err(Error::io("write", new.path()))?;
+    let kept = original.keep.then(|| {
         let mut name = path.as_os_str().to_os_string();
         name.push(".damaged");
         PathBuf::from(name)
     });
-    if let Some(original) = &original {
+    if let Some(kept) = &kept {
         // A hard link to the same bytes, so that the bag file exists at all times.
-        std::fs::hard_link(path, original).map_err(Error::io("keep the original as", original))?;
+        std::fs::hard_link(path, kept).map_err(Error::io("keep the original as", kept))?;
     }
-    beside.persist(path).map_err(|error| Error::io("replace", path)(error.error))?;
+    new.persist(target).map_err(|error| Error::io("replace", path)(error.error))?;
+    if !is_rewritten {
+        std::fs::remove_file(path).map_err(Error::io("remove", path))?;
+    }
     // The rename survives a power cut only after the folder is synced to disk.
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
-    Ok(original)
+    Ok(kept)
+}
+
+/// A file with a name that no reader of the folder takes for a file of the bag; it is removed on any failure.
+fn beside(folder: &Path) -> Result<tempfile::NamedTempFile, Error> {
+    tempfile::Builder::new().prefix(".reindex-").tempfile_in(folder).map_err(Error::io("create a file in", folder))
+}
+
+/// Compresses a whole file as rosbag2 does.
+fn pack(path: &Path, packed: &tempfile::NamedTempFile) -> Result<(), Error> {
+    let source = File::open(path).map_err(Error::io("read", path))?;
+    let target = packed.reopen().map_err(Error::io("write", packed.path()))?;
+    zstd::stream::copy_encode(io::BufReader::new(source), &target, zstd::DEFAULT_COMPRESSION_LEVEL)
+        .and_then(|()| target.sync_all())
+        .map_err(Error::io("write", packed.path()))
 }
 
 fn copy(path: &Path, file: File, limits: &ReadLimits) -> Result<(), Error> {
@@ -64,7 +91,7 @@ fn copy(path: &Path, file: File, limits: &ReadLimits) -> Result<(), Error> {
         .chunk_size(Some(options.chunk_size))
         .create(BufWriter::new(file))
         .map_err(failed)?;
-    let mut source = StorageFile::open(path, limits)?;
+    let mut source = Readable::open(path, limits)?;
     let mut channels: HashMap<String, u16> = HashMap::new();
     while let Some(message) = source.next_message()? {
         let channel_id = match channels.get(&message.topic.name) {
@@ -84,7 +111,7 @@ fn copy(path: &Path, file: File, limits: &ReadLimits) -> Result<(), Error> {
         writer.write_to_known_channel(&header, &message.data).map_err(failed)?;
     }
     // Topics without messages belong to the bag as well.
-    for topic in source.topics() {
+    for topic in source.file().topics() {
         if !channels.contains_key(&topic.name) {
             let added = add(&mut writer, topic).map_err(failed)?;
             channels.insert(topic.name.clone(), added);
@@ -107,13 +134,9 @@ fn add<W: io::Write + io::Seek>(writer: &mut mcap::Writer<W>, topic: &Arc<Topic>
 
 /// The contents of the new file; empty if it is not intact.
 fn read_back(path: &Path, limits: &ReadLimits) -> Result<Tally, Error> {
-    let mut file = StorageFile::open(path, limits)?;
-    let mut tally = Tally::default();
-    tally.define(file.topics().into_iter());
-    while let Some(message) = file.next_message()? {
-        tally.count(&message);
-    }
-    if file.damage().next().is_some() || !file.has_index() {
+    let mut source = Readable::open(path, limits)?;
+    let tally = Tally::of(&mut source)?;
+    if !source.damage().is_empty() || !source.file().has_index() {
         return Ok(Tally::default());
     }
     Ok(tally)

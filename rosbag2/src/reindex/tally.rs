@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::{RawMessage, Topic};
+use super::readable::Readable;
+use crate::storage::is_zstd;
+use crate::{Error, RawMessage, Topic};
 
 /// Topics and messages that were counted.
 #[derive(Debug, Default)]
@@ -12,9 +14,22 @@ pub(super) struct Tally {
     /// Log times of the earliest and the latest message, ns.
     span: Option<(u64, u64)>,
     sum: crc32fast::Hasher,
+    /// Messages that are compressed by themselves.
+    compressed: u64,
 }
 
 impl Tally {
+    /// All that can be read of a file.
+    pub fn of(source: &mut Readable) -> Result<Tally, Error> {
+        let mut tally = Tally::default();
+        tally.define(source.file().topics().into_iter());
+        while let Some(message) = source.next_message()? {
+            tally.count(&message);
+        }
+        tally.define(source.file().topics().into_iter());
+        Ok(tally)
+    }
+
     /// Adds topics, including those without messages.
     pub fn define<'t>(&mut self, topics: impl Iterator<Item = &'t Arc<Topic>>) {
         for topic in topics {
@@ -28,6 +43,7 @@ impl Tally {
         self.topics[index].1 += 1;
         let (first, last) = self.span.unwrap_or((message.log_time, message.log_time));
         self.span = Some((first.min(message.log_time), last.max(message.log_time)));
+        self.compressed += u64::from(is_zstd(&message.data));
         self.sum.update(message.topic.name.as_bytes());
         self.sum.update(&message.log_time.to_le_bytes());
         self.sum.update(&message.publish_time.to_le_bytes());
@@ -51,6 +67,7 @@ impl Tally {
             let index = self.index_of(topic);
             self.topics[index].1 += messages;
         }
+        self.compressed += other.compressed;
         if let Some((first, last)) = other.span {
             let (begin, end) = self.span.unwrap_or((first, last));
             self.span = Some((begin.min(first), end.max(last)));
@@ -60,6 +77,11 @@ impl Tally {
     /// Number of messages.
     pub fn messages(&self) -> u64 {
         self.topics.iter().map(|(_, messages)| messages).sum()
+    }
+
+    /// Number of messages that are compressed by themselves.
+    pub fn compressed(&self) -> u64 {
+        self.compressed
     }
 
     /// Log times of the earliest and the latest message, ns.

@@ -10,7 +10,7 @@ use super::gone::GoneFile;
 use super::options::WriteOptions;
 use super::part::{Location, Part, Written};
 use super::reserve::Reserve;
-use crate::metadata::{Contents, FILE_NAME, FileContents, TopicContents};
+use crate::metadata::{BagCompression, Contents, FILE_NAME, FileContents, TopicContents};
 use crate::{Error, Qos};
 
 /// A topic to be added to a bag.
@@ -230,7 +230,8 @@ impl BagWriter {
             })
             .collect();
         let files: Vec<FileContents> = self.finished.iter().map(|(_, file)| file.contents.clone()).collect();
-        let contents = Contents { storage: "mcap", files: &files, topics: &topics, custom_data: &self.custom_data };
+        let (custom_data, compression) = (&self.custom_data, BagCompression::None);
+        let contents = Contents { storage: "mcap", files: &files, topics: &topics, custom_data, compression };
         let path = self.folder.join(FILE_NAME);
         let text = contents.to_yaml().map_err(|error| Error::Io {
             action: "write",

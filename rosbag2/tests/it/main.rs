@@ -6,3 +6,4 @@ mod dynamic_decoder;
 mod every_shared_bag;
 mod info_of_clocks;
 mod raw_bags;
+mod reindex_compressed;

@@ -35,7 +35,8 @@ impl Study {
     /// [`WorkError::Diagnosis`].
     pub fn diagnose(self, progress: Progress<'_>) -> Result<Diagnosed, WorkError> {
         let (fitted, judging) = (self.fitted(), self.judging());
-        let diagnosis = diagnose(&self.model, &fitted, &judging, &self.settings, progress)?;
+        let mut diagnosis = diagnose(&self.model, &fitted, &judging, &self.settings, progress)?;
+        diagnosis.lost_messages = self.lost_messages.clone();
         let guess = guess_for(&diagnosis, &fitted, &judging);
         let missing = ledgers(&diagnosis.given().fit.model, &judging);
         Ok(Diagnosed { diagnosis, guess, missing, model: self.model, validation: self.validation })
