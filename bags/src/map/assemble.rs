@@ -4,17 +4,19 @@ use std::path::Path;
 
 use excavator_model::recording::Recording;
 
+use super::conversion::Conversion;
 use super::document::TopicMap;
 use super::error::MapError;
+use super::fault_code;
 use super::resample::{Policy, resample};
 use super::signal_source::SignalSource;
 use super::track::Track;
 use super::wanted::{Computed, Wanted};
-use crate::reading::{ReadReport, count_late, gaps, steps_back};
+use crate::reading::{MappedUnit, ReadReport, count_late, gaps, steps_back};
 
-/// The samples read for one signal or name.
-pub(super) enum Samples {
-    /// Values with their stamps, ns.
+/// The numbers of one signal or name.
+enum Samples {
+    /// Before their conversion, with their stamps, ns.
     Timed(Vec<(i64, f64)>),
     /// A constant, for the whole recording.
     Constant(f64),
@@ -25,14 +27,21 @@ pub(super) struct Input<'m> {
     label: String,
     signal: Option<&'m SignalSource>,
     /// How it is resampled to the clock; `None` for a constant.
-    wanted: Option<Wanted<'m>>,
+    wanted: Option<(Wanted<'m>, Conversion)>,
     samples: Samples,
 }
 
 impl<'m> Input<'m> {
-    /// The samples of an entry of the map.
-    pub fn read(wanted: Wanted<'m>, samples: Samples) -> Input<'m> {
-        Input { label: wanted.label.clone(), signal: wanted.signal, wanted: Some(wanted), samples }
+    /// The numbers of an entry of the map with their stamps, ns, before their conversion.
+    pub fn read(wanted: Wanted<'m>, conversion: Conversion, samples: Vec<(i64, f64)>) -> Input<'m> {
+        let (label, signal) = (wanted.label.clone(), wanted.signal);
+        Input { label, signal, wanted: Some((wanted, conversion)), samples: Samples::Timed(samples) }
+    }
+
+    /// The signal and what its values measure, if the map or the data say so.
+    fn mapped(&self) -> Option<MappedUnit> {
+        let (_, conversion) = self.wanted.as_ref()?;
+        mapped_unit(self.signal?, conversion)
     }
 
     /// Its values at the clock times (ns, ascending).
@@ -40,8 +49,11 @@ impl<'m> Input<'m> {
         match (self.samples, self.wanted) {
             (Samples::Constant(value), _) => vec![value; clock.len()],
             (Samples::Timed(_), None) => vec![f64::NAN; clock.len()],
-            (Samples::Timed(samples), Some(wanted)) => {
+            (Samples::Timed(mut samples), Some((wanted, conversion))) => {
+                let codes = fault_code::remove(&mut samples);
+                samples.iter_mut().for_each(|(_, number)| *number = conversion.apply(*number));
                 let track = Track::new(samples);
+                report.notes.extend(fault_code::note(&self.label, &codes, &track));
                 let policy = Policy::of(wanted.resampling(), wanted.from.maximum_gap, &track);
                 let values = resample(&track, clock, policy);
                 note_missing(&self.label, &track, &values, policy, report);
@@ -101,6 +113,7 @@ pub(super) fn assemble(
     for input in inputs {
         let (label, signal) = (input.label.clone(), input.signal);
         let is_used = is_used(&label);
+        report.mapped.extend(input.mapped());
         if signal.is_none() && !is_used {
             continue;
         }
@@ -116,6 +129,7 @@ pub(super) fn assemble(
         // Names of the map are added after signals, and take precedence over signals of the same name.
         let column =
             |label: &String| used.iter().rfind(|(known, _)| known == label).map_or(&[][..], |(_, values)| values);
+        report.mapped.extend(mapped_unit(source, conversion));
         let columns: Vec<&[f64]> = inputs.iter().map(column).collect();
         let values = formula.evaluate(&recording.time, &columns);
         let values: Vec<f64> = values.into_iter().map(|value| conversion.apply(value)).collect();
@@ -130,6 +144,11 @@ pub(super) fn assemble(
     }
     report.gaps = gaps(&recording);
     Ok(recording)
+}
+
+fn mapped_unit(source: &SignalSource, conversion: &Conversion) -> Option<MappedUnit> {
+    let (dimension, unit) = conversion.measures()?;
+    Some(MappedUnit { signal: source.signal.clone(), unit, dimension })
 }
 
 fn note_missing(signal: &str, track: &Track, values: &[f64], policy: Policy, report: &mut ReadReport) {

@@ -7,7 +7,7 @@ use rosbag2::cdr::CdrError;
 use rosbag2::dynamic::{Definitions, FieldPath, Kind, Layout, Selector};
 use rosbag2::{RawMessage, RawMessages, Topic};
 
-use super::assemble::{Input, Samples};
+use super::assemble::Input;
 use super::clock_source::Stamp;
 use super::conversion::Conversion;
 use super::error::MapError;
@@ -90,7 +90,7 @@ impl<'m> MappedTopic<'m> {
 
     /// The samples read.
     pub fn into_inputs(self) -> impl Iterator<Item = Input<'m>> {
-        self.fields.into_iter().map(|field| Input::read(field.wanted, Samples::Timed(field.samples)))
+        self.fields.into_iter().map(|field| Input::read(field.wanted, field.conversion, field.samples))
     }
 
     /// Reads the numbers of one message. Returns the bytes of memory that they take.
@@ -180,7 +180,7 @@ impl<'m> MappedTopic<'m> {
             };
             if let Some(number) = number {
                 let stamp = mapped.stamp.read(layout, message)?.saturating_add(mapped.wanted.shift());
-                mapped.samples.push((stamp, mapped.conversion.apply(number)));
+                mapped.samples.push((stamp, number));
                 taken += 1;
             }
         }

@@ -37,6 +37,11 @@ impl Track {
         self.stamps.get(place).copied().zip(self.values.get(place).copied())
     }
 
+    /// Number of values.
+    pub fn len(&self) -> usize {
+        self.stamps.len()
+    }
+
     /// Whether there is no value.
     pub fn is_empty(&self) -> bool {
         self.stamps.is_empty()

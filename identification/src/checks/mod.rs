@@ -3,6 +3,7 @@
 mod check;
 mod clipped;
 mod error;
+mod impossible;
 mod opening;
 mod remarks;
 mod runs;
@@ -12,5 +13,6 @@ mod swapped;
 
 pub use check::check;
 pub use error::{CheckError, OVERRULABLE};
+pub use impossible::remove_impossible;
 pub use remarks::{Remark, remarks};
 pub use shared_readings::{SharedReadings, shared_readings};
