@@ -30,8 +30,10 @@
 mod assemble;
 mod clock_source;
 mod conversion;
+mod day_serial;
 mod document;
 mod error;
+mod fault_code;
 mod guess;
 mod join;
 mod joined;
@@ -46,9 +48,11 @@ mod read_table;
 mod resample;
 mod signal;
 mod signal_source;
+mod sparse;
 mod table_clock;
 mod track;
 mod unit;
+mod unit_words;
 mod wanted;
 
 pub use clock_source::{ClockSource, ColumnName, Stamp};
