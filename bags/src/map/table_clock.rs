@@ -135,7 +135,13 @@ impl TableClock {
 
 /// The column that is most likely the time: one of dates, otherwise one with a common heading.
 pub(super) fn time_column(table: &Table) -> Option<&Column> {
-    let by_name = |column: &&Column| TIME_NAMES.contains(&column.name.to_lowercase().as_str());
+    let has_times = |column: &&Column| match &column.values {
+        Values::Numbers(numbers) => numbers.iter().any(|number| number.is_finite()),
+        Values::Stamps(_) => true,
+    };
+    let by_name = |column: &&Column| {
+        TIME_NAMES.contains(&column.name.to_lowercase().as_str()) && (has_times(column) || table.sampling.is_none())
+    };
     let dates = table.columns.iter().find(|column| match &column.values {
         // A column of days says nothing of the time between rows.
         Values::Stamps(stamps) => stamps.iter().flatten().any(|stamp| stamp % DAY != 0),

@@ -25,13 +25,16 @@ pub(super) struct HeadRow<'l> {
 impl<'l> HeadRow<'l> {
     pub fn of(line: &'l Line, delimiter: u8, decimal: char) -> HeadRow<'l> {
         let text = line.text.as_str();
-        let cells = split::cells(text, delimiter);
+        let is_comment = text.starts_with(['#', '%']);
+        // A comment may have headings.
+        let written = if is_comment { text.trim_start_matches(['#', '%', ' ']) } else { text };
+        let cells = split::cells(written, delimiter);
         HeadRow {
             text,
             filled: cells.iter().filter(|cell| !cell.is_empty()).count(),
             numbers: cells.iter().filter(|cell| is_number(cell)).count(),
             with_unit: cells.iter().map(|cell| has_unit(cell)).collect(),
-            is_comment: text.starts_with(['#', '%']),
+            is_comment,
             sampling: Sampling::of(text, delimiter, decimal),
             cells,
         }

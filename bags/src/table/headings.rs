@@ -76,14 +76,17 @@ impl Headings {
 mod tests {
     use super::*;
 
-    fn columns(names: &[&str], units: &[&str]) -> (Vec<(String, Option<String>, Option<usize>)>, usize) {
+    /// Name, unit, index of the column of times.
+    type Found = (String, Option<String>, Option<usize>);
+
+    fn columns(names: &[&str], units: &[&str]) -> (Vec<Found>, usize) {
         let own = |texts: &[&str]| texts.iter().map(|text| text.to_string()).collect();
         let layout = Layout { names: own(names), units: own(units), ..Layout::default() };
         let found = Headings::of(&layout, names.len(), &TableFormat::default());
         (found.columns.into_iter().map(|column| (column.name, column.unit, column.times)).collect(), found.notes.len())
     }
 
-    fn column(name: &str, unit: &str, times: Option<usize>) -> (String, Option<String>, Option<usize>) {
+    fn column(name: &str, unit: &str, times: Option<usize>) -> Found {
         (name.to_string(), Some(unit.to_string()).filter(|unit| !unit.is_empty()), times)
     }
 

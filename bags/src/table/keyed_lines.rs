@@ -5,10 +5,12 @@ use super::heading;
 use crate::map::{Dimension, Unit};
 
 /// Keys of a line of units, in lower case.
-const UNIT_KEYS: [&str; 10] = [
+const UNIT_KEYS: [&str; 12] = [
     "unit",
     "units",
     "y_unit_label",
+    "vunit",
+    "yunit",
     "y unit label",
     "einheit",
     "einheiten",
@@ -18,10 +20,12 @@ const UNIT_KEYS: [&str; 10] = [
     "physical unit",
 ];
 /// Keys of a line of names, the better first.
-const NAME_KEYS: [&str; 12] = [
+const NAME_KEYS: [&str; 14] = [
     "name",
     "names",
     "channel name",
+    "tracename",
+    "trace name",
     "channel names",
     "channelname",
     "signal name",
@@ -58,7 +62,7 @@ pub(super) struct Channels {
 
 /// The channels that these lines describe, in a table of `width` columns. Every other cell of such a line is its key.
 pub(super) fn channels<'r>(rows: impl Iterator<Item = &'r [String]>, width: usize) -> Option<Channels> {
-    if width < 2 || width % 2 != 0 {
+    if width < 2 || !width.is_multiple_of(2) {
         return None;
     }
     let keyed: Vec<&[String]> = rows.filter(|row| is_keyed(row, width)).collect();
@@ -70,7 +74,7 @@ pub(super) fn channels<'r>(rows: impl Iterator<Item = &'r [String]>, width: usiz
         return None;
     }
     let of_time = |row: &&[String]| heading::split(&row[0]).1.and_then(|unit| Unit::named(&unit));
-    let time_unit = keyed.iter().filter_map(|row| of_time(row)).find(|unit| unit.dimension == Dimension::Time);
+    let time_unit = keyed.iter().filter_map(of_time).find(|unit| unit.dimension == Dimension::Time);
     let units = units.map_or(vec![None; width / 2], |row| values(row).into_iter().map(Some).collect());
     Some(Channels { names: values(names), units, time_unit: time_unit.map(|unit| unit.name.to_string()) })
 }

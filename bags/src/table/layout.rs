@@ -49,6 +49,10 @@ pub(super) fn find(skipped: &[String], lines: &[Line], delimiter: u8, decimal: c
             headings(&rows[..data], width, delimiter, &mut layout, &mut used);
         }
     }
+    if layout.names.len() + 1 == width && are_row_numbers(&rows[data.min(rows.len())..]) {
+        // R writes no heading over the numbers of rows.
+        layout.names.insert(0, "row".to_string());
+    }
     if layout.names.is_empty() {
         // Without headings, a line of the width of the table belongs to it, whatever it holds.
         while data > 0 && header == Some(false) && rows[data - 1].cells.len() == width && width > 1 {
@@ -107,13 +111,17 @@ fn headings(rows: &[HeadRow], width: usize, delimiter: u8, layout: &mut Layout, 
         layout.of_channels(channels);
         return true;
     }
-    let mut candidates: Vec<(usize, Vec<String>)> = near()
-        .filter(|index| !rows[*index].is_comment && rows[*index].sampling.is_none())
-        .filter_map(|index| Some((index, fitting(&rows[index], width, delimiter)?)))
-        .collect();
-    if candidates.is_empty() {
-        // numpy and others write the headings as a comment.
-        candidates.extend(comment(rows, width, delimiter));
+    let candidates_of = |comments: bool| -> Vec<(usize, Vec<String>)> {
+        near()
+            .filter(|index| rows[*index].is_comment == comments && rows[*index].sampling.is_none())
+            .filter_map(|index| Some((index, fitting(&rows[index], width, delimiter)?)))
+            .collect()
+    };
+    let mut candidates = candidates_of(false);
+    if candidates.is_empty() && width > 1 {
+        // numpy and others write the headings as comments; one of more words is a sentence.
+        candidates = candidates_of(true);
+        candidates.retain(|(_, cells)| cells.len() == width);
     }
     if let Some(place) =
         candidates.iter().position(|(_, cells)| cells.first().is_some_and(|key| keyed_lines::is_unit_key(key)))
@@ -179,14 +187,6 @@ fn fitting(row: &HeadRow, width: usize, delimiter: u8) -> Option<Vec<String>> {
     (width > 0 && is_wide && is_filled && 2 * numbers <= filled).then_some(cells)
 }
 
-/// The headings in the last comment before the numbers.
-fn comment(rows: &[HeadRow], width: usize, delimiter: u8) -> Option<(usize, Vec<String>)> {
-    let (index, row) = rows.iter().enumerate().next_back().filter(|(_, row)| row.is_comment)?;
-    let cells = split::cells(row.text.trim_start_matches(['#', '%', ' ']), delimiter);
-    let are_words = cells.iter().all(|cell| !cell.is_empty() && !is_number(cell));
-    (cells.len() == width && width > 1 && are_words && row.sampling.is_none()).then_some((index, cells))
-}
-
 /// Which of the lines that may be headings has them; the nearest to the numbers is the first.
 fn names_among(candidates: &[(usize, Vec<String>)]) -> Option<usize> {
     let is_subtitle = |place: usize| {
@@ -197,6 +197,20 @@ fn names_among(candidates: &[(usize, Vec<String>)]) -> Option<usize> {
             has_units(cells) || distinct(cells) < distinct(above) && 2 * distinct(cells) <= distinct(above)
         })
     };
+    let is_named = |(_, cells): &(usize, Vec<String>)| cells.first().is_some_and(|key| keyed_lines::is_name_key(key));
+    if let Some(named) = candidates.iter().position(is_named) {
+        return Some(named);
+    }
+    // Under a line of units there may be one of remarks.
+    let is_of_units = |place: &usize| {
+        are_units(&candidates[*place].1)
+            && candidates
+                .get(place + 1)
+                .is_some_and(|above| above.0 + 1 == candidates[*place].0 && above.1.iter().all(|cell| !cell.is_empty()))
+    };
+    if let Some(units) = (0..candidates.len()).find(is_of_units) {
+        return Some(units + 1);
+    }
     let mut place = 0;
     while place < candidates.len() && is_subtitle(place) {
         place += 1;
@@ -209,6 +223,15 @@ fn distinct(cells: &[String]) -> usize {
     cells.sort_unstable();
     cells.dedup();
     cells.len()
+}
+
+/// Whether the first cells of the table are the numbers of its rows, or their names.
+fn are_row_numbers(rows: &[HeadRow]) -> bool {
+    let firsts: Vec<&String> = rows.iter().take(FIRST_ROWS).filter_map(|row| row.cells.first()).collect();
+    let numbers: Vec<i64> = firsts.iter().filter_map(|cell| cell.parse().ok()).collect();
+    let are_next =
+        numbers.windows(2).all(|pair| pair[1] == pair[0] + 1) && numbers.first().is_some_and(|first| *first < 2);
+    firsts.len() > 1 && ((numbers.len() == firsts.len() && are_next) || firsts.iter().all(|cell| !is_number(cell)))
 }
 
 /// A unit that is written in a cell of its own, with or without brackets.
@@ -273,6 +296,12 @@ mod tests {
     }
 
     #[test]
+    fn numbers_of_rows_have_no_heading_in_r() {
+        let found = layout("a b\n1 0.5 7\n2 0.6 8\n3 0.7 9\n", b' ');
+        assert_eq!(found.names, ["row", "a", "b"]);
+    }
+
+    #[test]
     fn a_line_of_units_is_none_of_headings() {
         let rows = "0;1;2\n1;2;3\n2;3;4\n";
         for (head, names, units) in [
@@ -283,6 +312,8 @@ mod tests {
             ("t;x;p\ns;mm;bar\n;;\n", ["t", "x", "p"], ["s", "mm", "bar"]),
             ("t;x;p\ns;mm;bar\nREAL;REAL;REAL\n", ["t", "x", "p"], ["s", "mm", "bar"]),
             ("Unit;s;mm;bar\nName;t;x;p\n", ["t", "x", "p"], ["s", "mm", "bar"]),
+            ("#Name;t;x;p\n#Unit;s;mm;bar\n", ["t", "x", "p"], ["s", "mm", "bar"]),
+            ("t;x;p\nsec;mm;bar\nlogged;raw data;filtered\n", ["t", "x", "p"], ["sec", "mm", "bar"]),
         ] {
             let found = layout(&format!("{head}{rows}"), b';');
             assert_eq!(

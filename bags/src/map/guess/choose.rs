@@ -1,6 +1,7 @@
 //! Assigns candidates to signals.
 
 use std::collections::{BTreeSet, HashSet};
+use std::f64::consts::{PI, TAU};
 
 use excavator_model::display::pressure_text;
 use excavator_model::recording::has_noise;
@@ -292,7 +293,7 @@ fn add_derivatives(candidates: &[Candidate], pairs: &mut [Pair], may_rotate: boo
 /// turns.
 const LINEAR_RATIOS: [f64; 12] =
     [1.0, 10.0, 100.0, 1000.0, 0.1, 0.01, 1e-3, 25.4, 1.0 / 25.4, 1.0 / 60.0, 1000.0 / 60.0, 1.0 / 3.6];
-const ANGULAR_RATIOS: [f64; 6] = [57.295_78, 0.017_453_29, 0.104_719_8, 6.0, 6.283_185, 0.159_155];
+const ANGULAR_RATIOS: [f64; 6] = [180.0 / PI, PI / 180.0, PI / 30.0, 6.0, TAU, 1.0 / TAU];
 /// Relative difference within which a measured ratio is one of these: velocities are filtered and noisy.
 const RATIO_TOLERANCE: f64 = 0.12;
 
